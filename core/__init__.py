@@ -1,0 +1,1 @@
+"""The numbers: recordings, machine models, optimisers, diagnosis. Knows no network, no database, no clock."""

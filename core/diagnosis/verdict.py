@@ -1,0 +1,83 @@
+"""What the diagnosis says of one recording; the shape of `mcc diagnose --json`."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Literal
+
+
+class Verdict(StrEnum):
+    HEALTHY = "healthy"
+    WATCH = "watch"
+    FAULT = "fault"
+    UNDIAGNOSABLE = "undiagnosable"
+
+
+@dataclass(frozen=True, slots=True)
+class QualityFinding:
+    """One check of the quality gate: its name, the figure it measured, its limit and what that means."""
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+    passed: bool
+    message: str
+
+    def as_dict(self) -> dict[str, str | float | bool]:
+        return {
+            "name": self.name,
+            "value": self.value,
+            "limit": self.limit,
+            "unit": self.unit,
+            "passed": self.passed,
+            "message": self.message,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """The result for one recording. Figures are None where the quality gate refused the recording.
+
+    mu_f: equivalent fault level, fraction of the phase turns (PHYSICS: mu_eq = g R_s), with its 95 % interval.
+    theta_f: 0, 1, 2 = winding on terminals a, b, c; None unless shorted turns are found; `phase` likewise.
+    load_level: load torque over rated torque.  time_offset_s: delay of the currents against the voltages.
+    residual_rms_A: rms of measured minus modelled current over both Clarke axes.
+    """
+
+    verdict: Verdict
+    mu_f: float | None
+    mu_f_ci95: tuple[float, float] | None
+    theta_f: Literal[0, 1, 2] | None
+    load_level: float | None
+    time_offset_s: float | None
+    residual_rms_A: float | None
+    evaluations: int
+    compute_seconds: float
+    quality: tuple[QualityFinding, ...]
+    reasons: tuple[str, ...]
+    model: str
+    method: str
+
+    @property
+    def phase(self) -> Literal["a", "b", "c"] | None:
+        phases: tuple[Literal["a", "b", "c"], ...] = ("a", "b", "c")
+        return None if self.theta_f is None else phases[self.theta_f]
+
+    def as_dict(self) -> dict[str, object]:
+        """The document `mcc diagnose --json` prints; its keys are a contract."""
+        return {
+            "verdict": str(self.verdict),
+            "mu_f": self.mu_f,
+            "mu_f_ci95": None if self.mu_f_ci95 is None else list(self.mu_f_ci95),
+            "theta_f": self.theta_f,
+            "phase": self.phase,
+            "load_level": self.load_level,
+            "time_offset_s": self.time_offset_s,
+            "residual_rms_A": self.residual_rms_A,
+            "evaluations": self.evaluations,
+            "compute_seconds": self.compute_seconds,
+            "quality": [finding.as_dict() for finding in self.quality],
+            "reasons": list(self.reasons),
+            "model": self.model,
+            "method": self.method,
+        }

@@ -1,0 +1,25 @@
+"""Errors of the record readers: which file, which field, what was expected."""
+
+from pathlib import Path
+
+
+class RecordingError(ValueError):
+    """A recording cannot be read as it is; nothing of it was repaired or guessed.
+
+    `path` is the file at fault, `field` the place in it ("line 2, channel counts"), `expected` and `found`
+    say why in words a person can act on.
+    """
+
+    def __init__(self, path: Path | str, field: str, *, expected: str, found: str) -> None:
+        self.path = Path(path)
+        self.field = field
+        self.expected = expected
+        self.found = found
+        super().__init__(f"{self.path.name}: {field}: expected {expected}, found {found}")
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _rebuild, (self.path, self.field, self.expected, self.found)
+
+
+def _rebuild(path: Path, field: str, expected: str, found: str) -> RecordingError:
+    return RecordingError(path, field, expected=expected, found=found)
