@@ -38,7 +38,7 @@ class QualityFinding:
 class Diagnosis:
     """The result for one recording. Figures are None where the quality gate refused the recording.
 
-    mu_f: equivalent fault level, fraction of the phase turns (PHYSICS: mu_eq = g R_s), with its 95 % interval.
+    mu_f: equivalent fault level, fraction of the phase turns, with its 95 % interval.
     theta_f: 0, 1, 2 = winding on terminals a, b, c; None unless shorted turns are found; `phase` likewise.
     load_level: load torque over rated torque.  time_offset_s: delay of the currents against the voltages.
     residual_rms_A: rms of measured minus modelled current over both Clarke axes.

@@ -55,13 +55,14 @@ class Recording:
     def __post_init__(self) -> None:
         if self.samples.ndim != 2 or self.samples.shape[0] != len(self.channels):
             raise ValueError(
-                f"samples must have one row a channel: {len(self.channels)} channels, array of shape {self.samples.shape}"
+                f"samples must have one row a channel: {len(self.channels)} channels, "
+                f"array of shape {self.samples.shape}"
             )
 
     @property
     def duration_s(self) -> float:
         """Time spanned by the samples [s]."""
-        return self.samples.shape[1] / self.sample_rate_hz
+        return float(self.samples.shape[1] / self.sample_rate_hz)
 
     @property
     def trigger_time_ns(self) -> int:
