@@ -1,0 +1,1 @@
+"""Global and local search. Every optimiser returns scipy's OptimizeResult."""

@@ -1,6 +1,6 @@
 """A recording: channels of samples at one rate, in SI units, with its start time."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -41,6 +41,7 @@ class Recording:
     start_time_ns: UTC of the first sample, integer nanoseconds since 1970.
     trigger_index: sample at which the recorder was triggered, None if the file does not tell.
     nominal_frequency_hz: line frequency written in the file, None if it is not.
+    source: the file it was read from, for messages; recordings that differ only here are the same.
     """
 
     samples: NDArray[np.float64]
@@ -51,6 +52,7 @@ class Recording:
     nominal_frequency_hz: float | None = None
     station: str = ""
     device: str = ""
+    source: str = field(default="recording", compare=False)
 
     def __post_init__(self) -> None:
         if self.samples.ndim != 2 or self.samples.shape[0] != len(self.channels):

@@ -1,0 +1,116 @@
+"""One recording of one motor, brought into the form every stage works on.
+
+Stages see winding quantities in a positive-sequence world: a delta is turned into its windings, and a supply
+of sequence a-c-b is mirrored, so that rotation, slip and load always count positive. The winding a stage
+names is turned back into the terminals' labels on the way out.
+"""
+
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.machines.base import Array
+from core.machines.parameters import Connection, Motor
+from core.machines.playback import Window, window_of_record
+from core.machines.supply import Supply, supply
+from core.signals.clarke import clarke
+from core.signals.phasors import fundamental_phasors
+from core.signals.sequence import PhaseSequence
+
+LONGEST_WINDOW_S = 1.0
+Winding = Literal[0, 1, 2]
+
+_TURNED: dict[tuple[Connection, PhaseSequence], tuple[Winding, Winding, Winding]] = {
+    (Connection.STAR, PhaseSequence.ABC): (0, 1, 2),
+    (Connection.DELTA, PhaseSequence.ABC): (0, 1, 2),
+    # Mirroring swaps terminals b and c: in delta the windings a-b and c-a change places.
+    (Connection.STAR, PhaseSequence.ACB): (0, 2, 1),
+    (Connection.DELTA, PhaseSequence.ACB): (2, 1, 0),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """What the search and the refinement work on.
+
+    current_ab: winding currents on the Clarke axes, shape (2, n) [A]; line_per_winding_current turns their
+    magnitude into that of the lines (sqrt 3 in delta).
+    sequence: that of the supply, before mirroring.
+    """
+
+    motor: Motor
+    supply: Supply
+    current_ab: Array
+    sample_rate_hz: float
+    frequency_hz: float
+    sequence: PhaseSequence
+    window: Window
+
+    @property
+    def line_per_winding_current(self) -> float:
+        return sqrt(3.0) if self.motor.nameplate.connection is Connection.DELTA else 1.0
+
+    @property
+    def samples_compared(self) -> int:
+        """Samples of the record that enter the cost."""
+        return self.window.last - self.window.compare_from
+
+    def terminal_winding(self, winding: int) -> Winding:
+        """The winding as the terminals label it."""
+        return _TURNED[self.motor.nameplate.connection, self.sequence][winding]
+
+    def space_vector(self, x_ab: Array) -> NDArray[np.complex128]:
+        """x_alpha + j x_beta over the compared samples, from values over the window, shape (2, window)."""
+        compared = x_ab[:, self.window.compare_from - self.window.first :]
+        return np.asarray(compared[0] + 1j * compared[1], dtype=np.complex128)
+
+    def negative_sequence(self, vector: NDArray[np.complex128]) -> complex:
+        """Component of a space vector that turns backwards at supply frequency: peak space-vector length."""
+        angle = 2.0 * pi * self.frequency_hz / self.sample_rate_hz
+        whole = _whole_cycles(vector.size, self.sample_rate_hz / self.frequency_hz)
+        return complex(np.mean(vector[:whole] * np.exp(1j * angle * np.arange(whole))))
+
+    def positive_sequence(self, vector: NDArray[np.complex128]) -> complex:
+        """Component that turns forwards at supply frequency."""
+        return self.negative_sequence(vector.conj()).conjugate()
+
+
+def case_of(
+    motor: Motor,
+    current_abc: Array,
+    voltage_ab: Array,
+    sample_rate_hz: float,
+    frequency_hz: float,
+    sequence: PhaseSequence,
+) -> Case:
+    """Winding quantities in a positive-sequence world; inputs as measured at the terminals."""
+    current_ab = clarke(current_abc)
+    if sequence is PhaseSequence.ACB:
+        mirror = np.array([[1.0], [-1.0]])
+        current_ab, voltage_ab = mirror * current_ab, mirror * voltage_ab
+    if motor.nameplate.connection is Connection.DELTA:
+        # v_ab = v_a - v_b and i_a = i_ab - i_ca turn and stretch the space vectors by sqrt 3 and 30 degrees.
+        ahead = _rotation(pi / 6.0)
+        current_ab, voltage_ab = ahead @ current_ab / sqrt(3.0), ahead @ voltage_ab * sqrt(3.0)
+    phasor = sqrt(2.0) * fundamental_phasors(voltage_ab, frequency_hz, sample_rate_hz)
+    return Case(
+        motor=motor,
+        supply=supply(voltage_ab, sample_rate_hz, frequency_hz, phasor),
+        current_ab=current_ab,
+        sample_rate_hz=sample_rate_hz,
+        frequency_hz=frequency_hz,
+        sequence=sequence,
+        window=window_of_record(current_ab.shape[1], sample_rate_hz, frequency_hz, LONGEST_WINDOW_S),
+    )
+
+
+def _rotation(angle: float) -> Array:
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def _whole_cycles(samples: int, samples_per_cycle: float) -> int:
+    """Samples of the longest whole number of cycles."""
+    return round(int(samples / samples_per_cycle) * samples_per_cycle)

@@ -1,0 +1,185 @@
+"""Local refinement: Gauss-Newton on the model's currents, and what its Jacobian says of the uncertainty.
+
+The Jacobian comes from central differences, all of them one batch of the compiled kernel. The covariance
+allows for coloured residuals: the gradient of the cost is summed over single cycles, and the scatter of those
+sums, not that of single samples, is the noise (batch means; Law and Kelton, Simulation Modeling and
+Analysis). Harmonics the model does not explain repeat every cycle and so do not pass for noise.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import t as student_t
+
+from core.diagnosis.case import Case
+from core.machines.base import Array
+from core.machines.playback import Candidates, Playback
+
+CONFIDENCE = 0.95
+MOST_ITERATIONS = 12
+FEWEST_BLOCKS = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A quantity that is fitted: its name in Candidates, the step of its difference quotient, its range."""
+
+    name: str
+    step: float
+    lower: float
+    upper: float
+
+
+FAULT_LEVEL = Unknown("fault_level", 2e-4, -0.05, 0.5)
+LOAD_LEVEL = Unknown("load_level", 2e-3, -0.2, 2.0)
+PATH_RATIO = Unknown("path_ratio", 2e-3, 0.0, 20.0)
+
+
+def time_offset(frequency_hz: float) -> Unknown:
+    """T_d within half a cycle either way: it is known only modulo one cycle."""
+    return Unknown("time_offset_s", 1e-4 / frequency_hz, -0.5 / frequency_hz, 0.5 / frequency_hz)
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A hypothesis at its best.
+
+    candidate: a batch of one.  squared_error: over the compared samples [A^2, winding current].
+    residual_ab: measured minus modelled winding current over the window, (2, window samples) [A].
+    standard_error: by name of the unknowns; `degrees_of_freedom` of the noise behind it.
+    at_bound: names of unknowns that ended on their bound and have no standard error.
+    """
+
+    candidate: Candidates
+    squared_error: float
+    residual_ab: Array
+    standard_error: dict[str, float]
+    degrees_of_freedom: int
+    at_bound: tuple[str, ...]
+    evaluations: int
+
+    def value(self, name: str) -> float:
+        """Fitted value of an unknown."""
+        return float(getattr(self.candidate, name)[0])
+
+    def interval(self, name: str) -> tuple[float, float]:
+        """95 % confidence interval of an unknown."""
+        reach = (
+            float(student_t.ppf(0.5 + CONFIDENCE / 2.0, self.degrees_of_freedom)) * self.standard_error[name]
+        )
+        return self.value(name) - reach, self.value(name) + reach
+
+
+def refine(case: Case, playback: Playback, start: Candidates, unknowns: tuple[Unknown, ...]) -> Fit:
+    """Minimise the squared residual from one candidate over `unknowns`, the others held."""
+    candidate, evaluations = start, 0
+    residual, jacobian = _linearise(case, playback, candidate, unknowns)
+    evaluations += 1 + 2 * len(unknowns)
+    error = _squared(case, residual)
+    for _ in range(MOST_ITERATIONS):
+        free = _free(candidate, unknowns, case, residual, jacobian)
+        step = np.zeros(len(unknowns))
+        stacked, target = _stack(case, jacobian[free]), _flat(case, residual)
+        step[free] = np.linalg.lstsq(stacked, target)[0]
+        improved = False
+        for damping in (1.0, 0.3, 0.1, 0.03):
+            moved = _moved(candidate, unknowns, damping * step)
+            new_residual, new_jacobian = _linearise(case, playback, moved, unknowns)
+            evaluations += 1 + 2 * len(unknowns)
+            new_error = _squared(case, new_residual)
+            if new_error <= error:
+                improved = True
+                break
+        if not improved:
+            break
+        gain = error - new_error
+        candidate, residual, jacobian, error = moved, new_residual, new_jacobian, new_error
+        if gain <= 1e-7 * error:
+            break
+    free = _free(candidate, unknowns, case, residual, jacobian)
+    scatter, blocks = _covariance(case, residual, jacobian[free])
+    names = [unknown.name for unknown, is_free in zip(unknowns, free, strict=True) if is_free]
+    return Fit(
+        candidate=candidate,
+        squared_error=error,
+        residual_ab=residual,
+        standard_error=dict(zip(names, np.sqrt(np.diag(scatter)).tolist(), strict=True)),
+        degrees_of_freedom=blocks - 1,
+        at_bound=tuple(unknown.name for unknown, is_free in zip(unknowns, free, strict=True) if not is_free),
+        evaluations=evaluations,
+    )
+
+
+def _linearise(
+    case: Case, playback: Playback, candidate: Candidates, unknowns: tuple[Unknown, ...]
+) -> tuple[Array, Array]:
+    """Residual (2, window) and the model current's derivatives (unknowns, 2, window)."""
+    rows = 1 + 2 * len(unknowns)
+    batch = Candidates(
+        fault_level=np.repeat(candidate.fault_level, rows),
+        winding=np.repeat(candidate.winding, rows),
+        load_level=np.repeat(candidate.load_level, rows),
+        time_offset_s=np.repeat(candidate.time_offset_s, rows),
+        path_ratio=np.repeat(candidate.path_ratio, rows),
+    )
+    for k, unknown in enumerate(unknowns):
+        values = getattr(batch, unknown.name)
+        values[1 + 2 * k] += unknown.step
+        values[2 + 2 * k] -= unknown.step
+    current = playback.trajectories(batch).current
+    window = case.window
+    residual = case.current_ab[:, window.first : window.last] - current[0]
+    steps = np.array([unknown.step for unknown in unknowns])
+    jacobian = (current[1::2] - current[2::2]) / (2.0 * steps[:, np.newaxis, np.newaxis])
+    return residual, jacobian
+
+
+def _free(
+    candidate: Candidates, unknowns: tuple[Unknown, ...], case: Case, residual: Array, jacobian: Array
+) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Unknowns that are inside their range, or at its edge with the cost falling inwards."""
+    free = np.ones(len(unknowns), dtype=np.bool_)
+    target = _flat(case, residual)
+    for k, unknown in enumerate(unknowns):
+        value = float(getattr(candidate, unknown.name)[0])
+        descent = float(_stack(case, jacobian[k : k + 1])[:, 0] @ target)
+        outwards = (value <= unknown.lower and descent < 0.0) or (value >= unknown.upper and descent > 0.0)
+        free[k] = not outwards
+    return free
+
+
+def _moved(candidate: Candidates, unknowns: tuple[Unknown, ...], step: Array) -> Candidates:
+    for unknown, change in zip(unknowns, step.tolist(), strict=True):
+        value = np.clip(getattr(candidate, unknown.name) + change, unknown.lower, unknown.upper)
+        candidate = replace(candidate, **{unknown.name: value})
+    return candidate
+
+
+def _covariance(case: Case, residual: Array, jacobian: Array) -> tuple[Array, int]:
+    """Covariance of the free unknowns and the number of cycles it rests on."""
+    stacked = _stack(case, jacobian)
+    bread = np.linalg.inv(stacked.T @ stacked)
+    offset = case.window.compare_from - case.window.first
+    scores = (jacobian[:, :, offset:] * residual[:, offset:]).sum(axis=1)
+    per_cycle = case.sample_rate_hz / case.frequency_hz
+    blocks = max(int(scores.shape[1] / per_cycle), FEWEST_BLOCKS)
+    edges = np.round(np.arange(blocks) * scores.shape[1] / blocks).astype(np.int64)
+    sums = np.add.reduceat(scores, edges, axis=1)
+    centred = sums - sums.mean(axis=1, keepdims=True)
+    filling = centred @ centred.T * (blocks / (blocks - 1))
+    return bread @ filling @ bread, blocks
+
+
+def _stack(case: Case, jacobian: Array) -> Array:
+    """Derivatives over the compared samples, both axes one after the other: (2 samples, unknowns)."""
+    offset = case.window.compare_from - case.window.first
+    return jacobian[:, :, offset:].reshape(jacobian.shape[0], -1).T
+
+
+def _flat(case: Case, residual: Array) -> Array:
+    return residual[:, case.window.compare_from - case.window.first :].reshape(-1)
+
+
+def _squared(case: Case, residual: Array) -> float:
+    flat = _flat(case, residual)
+    return float(flat @ flat)

@@ -1,0 +1,58 @@
+"""What a machine model is: coupled circuits, linear in flux at a given speed.
+
+Every model of the stator is five coupled circuits z = (i_s_alpha, i_s_beta, i_r_alpha, i_r_beta, j)
+
+    psi = L z
+    d(psi)/dt = B v_s - R z + w Jr psi          Jr turns the rotor flux, B feeds the stator equations
+
+so that a model is two small matrices that can be read against the page, and everything else (steady state,
+stepping, cost) is written once. `j` is the model's fifth current, scaled to the phase winding (j = mu i_f).
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.machines.parameters import Motor
+
+Array = NDArray[np.float64]
+
+CLARKE_PHASE = float(np.sqrt(2.0 / 3.0))
+"""k: length of one phase's unit vector in power-invariant Clarke axes (3.11)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Circuits:
+    """Inductances L [H] and resistances R [ohm] of a batch, each of shape (candidates, 5, 5)."""
+
+    inductance: Array
+    resistance: Array
+
+
+class StatorModel(Protocol):
+    """A stator winding with a fault of a level in one phase; replaceable (thesis section 6.5)."""
+
+    @property
+    def name(self) -> str:
+        """As written on the command line: "split-winding"."""
+        ...
+
+    def circuits(
+        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
+    ) -> Circuits:
+        """Matrices for a batch of candidates, every argument of shape (candidates,).
+
+        fault_level: equivalent level mu_eq, fraction of the phase turns; 0 is the healthy machine exactly.
+        winding: theta_f, 0, 1 or 2 for the winding on terminals a, b, c.
+        path_ratio: resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s);
+        models that know no path ignore it.
+        """
+        ...
+
+
+def winding_axis(winding: NDArray[np.int64]) -> Array:
+    """n = (cos th, sin th), th = theta_f 2 pi / 3, shape (candidates, 2) (6.9)."""
+    angle = 2.0 * np.pi / 3.0 * winding
+    return np.stack([np.cos(angle), np.sin(angle)], axis=1)

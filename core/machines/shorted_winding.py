@@ -1,0 +1,40 @@
+"""The thesis's fault model: an additional shorted winding on the axis of one phase (thesis 6.10-6.15)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.machines.base import CLARKE_PHASE, Array, Circuits, winding_axis
+from core.machines.healthy import symmetrical
+from core.machines.parameters import Motor
+
+SMALLEST_LEVEL = 1e-9
+"""Below it the loop's current is less than double precision can see beside i_s: the machine is healthy."""
+
+
+class ShortedWinding:
+    """A winding of mu times the phase turns, closed on itself, beside an intact stator.
+
+    With j = mu i_f and psi_j = psi_f / mu (the turns ratio N_s/N_r printed in 6.14 must not be there):
+
+        psi_m = L_m (i_s + i_r + k n j)
+        psi_j = k n . psi_m + L_ls j
+        0     = (R_s / mu) j + d(psi_j)/dt                                        (6.12)
+    """
+
+    name = "shorted-winding"
+
+    def circuits(
+        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
+    ) -> Circuits:
+        del path_ratio
+        circuits = symmetrical(motor, fault_level.size)
+        L, R = circuits.inductance, circuits.resistance
+        machine = motor.parameters
+        L_m = machine.magnetising_inductance_H
+        faulty = np.abs(fault_level) > SMALLEST_LEVEL
+        coupling = CLARKE_PHASE * L_m * winding_axis(winding[faulty])
+        L[faulty, 0:2, 4] = L[faulty, 2:4, 4] = coupling
+        L[faulty, 4, 0:2] = L[faulty, 4, 2:4] = coupling
+        L[faulty, 4, 4] = machine.stator_leakage_H + CLARKE_PHASE**2 * L_m
+        R[faulty, 4, 4] = machine.stator_resistance_ohm / fault_level[faulty]
+        return circuits

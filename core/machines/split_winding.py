@@ -1,0 +1,56 @@
+"""Shorted turns as part of the phase winding (Tallam, Habetler, Harley, IEEE Trans. Ind. Appl. 38, 2002)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.machines.base import CLARKE_PHASE, Array, Circuits, winding_axis
+from core.machines.healthy import symmetrical
+from core.machines.parameters import Connection, Motor
+
+
+class SplitWinding:
+    """A fraction mu of the phase's turns, bridged by a path of resistance r_f that carries i_f = j / mu.
+
+        v_s     = R_s (i_s - k n j) + d(psi_s)/dt
+        psi_s   = L_ls (i_s - k n j) + psi_m,       psi_m = L_m (i_s - k n j + i_r)
+        r_f i_f = mu R_s (i_x - i_f) + d(psi_x2)/dt,
+        psi_x2  = mu (L_ls (i_x - i_f) + k n . psi_m)
+
+    i_x, the current of the faulted winding, is k n . i_s in star. In delta the windings also carry the
+    circulating current j / 3 that the terminals never see: the phase voltages of a delta add up to zero, so
+    the zero-sequence part of the shunt current has no other way to go.
+
+    At one slip the terminals see a shunt across the phase whose resistance is r_f / mu^2 + R_s / mu (beside
+    terms of order 1), so the level is given as the equivalent one, mu_eq = mu / (1 + r_f / (mu R_s)).
+
+    The fifth row below is -psi_x2: at mu = 0 it is the idle winding of the healthy machine, and its rate
+    R_s / L_ls stays finite for every mu, so nothing is stiff.
+    """
+
+    name = "split-winding"
+
+    def circuits(
+        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
+    ) -> Circuits:
+        circuits = symmetrical(motor, fault_level.size)
+        L, R = circuits.inductance, circuits.resistance
+        machine = motor.parameters
+        L_ls, L_m, R_s = (
+            machine.stator_leakage_H,
+            machine.magnetising_inductance_H,
+            machine.stator_resistance_ohm,
+        )
+        axis = CLARKE_PHASE * winding_axis(winding)
+        level = fault_level * (1.0 + path_ratio)
+        mu = level[:, np.newaxis]
+        L[:, 0:2, 4] = -(L_ls + L_m) * axis
+        L[:, 2:4, 4] = -L_m * axis
+        L[:, 4, 0:2] = -mu * (L_ls + L_m) * axis
+        L[:, 4, 2:4] = -mu * L_m * axis
+        R[:, 0:2, 4] = -R_s * axis
+        R[:, 4, 0:2] = -mu * R_s * axis
+        circulating = 1.0 / 3.0 if motor.nameplate.connection is Connection.DELTA else 0.0
+        own_share = 1.0 - circulating * level
+        L[:, 4, 4] = own_share * L_ls + CLARKE_PHASE**2 * level * L_m
+        R[:, 4, 4] = (own_share + path_ratio) * R_s
+        return circuits

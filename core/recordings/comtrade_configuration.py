@@ -1,0 +1,353 @@
+"""The COMTRADE configuration file (.CFG): IEEE Std C37.111-1991, -1999 and -2013 (IEC 60255-24).
+
+Every field that bears on the samples is checked; a field that does not fit is a RecordingError.
+Clauses are those of C37.111-1999, chapter 5; differences of the other editions are named where they occur.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from math import isfinite
+from pathlib import Path
+
+from core.recordings.errors import RecordingError
+
+REVISIONS = {"1991": 1991, "1997": 1999, "1999": 1999, "2001": 1999, "2013": 2013}
+"""Revision year in the file -> edition whose layout holds. IEC 60255-24:2001 is the 1999 edition;
+Schneider's Sepam relays write 1997, the draft of it."""
+
+DATA_FORMATS = ("ASCII", "BINARY", "BINARY32", "FLOAT32")
+
+MAX_CHANNELS = 999_999
+MAX_SAMPLES = 9_999_999_999
+
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+_INTEGER = re.compile(r"[+-]?[0-9]{1,10}", re.ASCII)
+_REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?", re.ASCII)
+_DATE = re.compile(r"([0-9]{1,2})/([0-9]{1,2})/([0-9]{4}|[0-9]{2})", re.ASCII)
+_TIME = re.compile(r"([0-9]{1,2}):([0-9]{1,2}):([0-9]{1,2})(?:\.([0-9]{1,9}))?", re.ASCII)
+_UTC_OFFSET = re.compile(r"([+-]?)([0-9]{1,2})(?:h([0-9]{1,2}))?", re.ASCII)
+_CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
+
+
+@dataclass(frozen=True, slots=True)
+class AnalogChannel:
+    """One analogue channel line (5.3.3): value = (gain * count + offset), in `unit`, primary or secondary.
+
+    `to_primary` is the transformer ratio if the values are secondary ("S"), 1 if they are primary ("P").
+    1991 has neither: its values are taken in the unit as written.
+    """
+
+    name: str
+    phase: str
+    unit: str
+    gain: float
+    offset: float
+    skew_us: float
+    minimum: float
+    maximum: float
+    to_primary: float
+
+
+@dataclass(frozen=True, slots=True)
+class Configuration:
+    """A checked configuration file.
+
+    sample_rate_hz: None where the samples' own time stamps are the only time base (0 rates in the file).
+    start_time_ns, trigger_time_ns: UTC. 1991 and 1999 know no time zone: their times are taken as UTC.
+    time_stamp_unit_s: seconds one step of the data file's time stamps stands for.
+    """
+
+    revision: int
+    station: str
+    device: str
+    analog: tuple[AnalogChannel, ...]
+    status_count: int
+    nominal_frequency_hz: float | None
+    sample_rate_hz: float | None
+    sample_count: int
+    start_time_ns: int
+    trigger_time_ns: int
+    data_format: str
+    time_stamp_unit_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Line:
+    path: Path
+    number: int
+    what: str
+    fields: tuple[str, ...]
+
+    def refuse(self, field: str, expected: str, found: str) -> RecordingError:
+        where = f"line {self.number}, {self.what}" + (f", {field}" if field else "")
+        return RecordingError(self.path, where, expected=expected, found=found)
+
+    def has_fields(self, *counts: int) -> None:
+        if len(self.fields) not in counts:
+            expected = " or ".join(str(count) for count in counts)
+            raise self.refuse(
+                "", f"{expected} field{'' if counts == (1,) else 's'}", f"{len(self.fields)}: {self.quoted()}"
+            )
+
+    def quoted(self) -> str:
+        return quoted(",".join(self.fields))
+
+    def integer(self, index: int, field: str, at_least: int, at_most: int) -> int:
+        text = self.fields[index]
+        if not _INTEGER.fullmatch(text) or not at_least <= int(text) <= at_most:
+            raise self.refuse(field, f"an integer from {at_least} to {at_most}", quoted(text))
+        return int(text)
+
+    def real(self, index: int, field: str) -> float:
+        text = self.fields[index]
+        if not _REAL.fullmatch(text) or not isfinite(float(text)):
+            raise self.refuse(field, "a finite number", quoted(text))
+        return float(text)
+
+    def positive(self, index: int, field: str, at_least: float = 0.0, at_most: float = 1e300) -> float:
+        value = self.real(index, field)
+        if not (value > 0 and at_least <= value <= at_most):
+            limits = (
+                "a number greater than 0" if at_least == 0 else f"a number from {at_least:g} to {at_most:g}"
+            )
+            raise self.refuse(field, limits, quoted(self.fields[index]))
+        return value
+
+
+class _Lines:
+    """The file's lines one after another, each with its number for messages."""
+
+    def __init__(self, path: Path, text: str) -> None:
+        # Not str.splitlines: in Latin-1 it would also split at 0x85, a letter of other code pages.
+        self._lines = re.split(r"\r\n|\n|\r", text)
+        self._path = path
+        self._next = 0
+
+    def next(self, what: str) -> _Line:
+        if self._next >= len(self._lines):
+            raise RecordingError(
+                self._path, f"line {self._next + 1}", expected=what, found="the end of the file"
+            )
+        text = self._lines[self._next]
+        self._next += 1
+        return _Line(self._path, self._next, what, tuple(field.strip() for field in text.split(",")))
+
+    def remaining(self) -> Iterator[_Line]:
+        while self._next < len(self._lines):
+            yield self.next("end of the file")
+
+    def __len__(self) -> int:
+        return len(self._lines)
+
+
+def quoted(text: str) -> str:
+    """Text from a file, for a message: short and without control characters."""
+    return repr(text if len(text) <= 60 else text[:57] + "...")
+
+
+def parse_configuration(path: Path, text: str) -> Configuration:
+    """Check and read the text of a configuration file.
+
+    Raises RecordingError with the line and field at fault; `path` only names the file in it.
+    """
+    text = text.rstrip("\x1a\r\n\t ")
+    if control := _CONTROL.search(text):
+        raise RecordingError(path, "text", expected="no control characters", found=repr(control.group()))
+    lines = _Lines(path, text)
+    station, device, revision = _identification(lines.next("station, device and revision"))
+    analog_count, status_count = _channel_counts(lines.next("channel counts"), len(lines))
+    analog = tuple(
+        _analog_channel(lines.next(f"analogue channel {k}"), k, revision) for k in range(1, analog_count + 1)
+    )
+    for k in range(1, status_count + 1):
+        _check_status_channel(lines.next(f"status channel {k}"), k, revision)
+    nominal_frequency_hz = _nominal_frequency(lines.next("line frequency"))
+    sample_rate_hz, sample_count = _rate(lines)
+    start_ns, start_digits = _date_time(lines.next("time of the first sample"), revision)
+    trigger_ns, trigger_digits = _date_time(lines.next("time of the trigger"), revision)
+    data_format = _data_format(lines.next("data format"))
+    time_multiplier, utc_offset_ns = 1.0, 0
+    if revision >= 1999:
+        line = lines.next("time multiplier")
+        line.has_fields(1)
+        time_multiplier = line.positive(0, "", 1e-9, 1e9)
+    if revision >= 2013:
+        utc_offset_ns = _utc_offset(lines.next("time code and local code"))
+        _check_time_quality(lines.next("time quality and leap second"))
+    for line in lines.remaining():
+        if any(line.fields):
+            raise line.refuse("", f"nothing more in a file of revision {revision}", line.quoted())
+    # 2013, 7.4.9: nanoseconds if the file's times are written to more than six decimals.
+    time_base_s = 1e-9 if max(start_digits, trigger_digits) > 6 else 1e-6
+    return Configuration(
+        revision=revision,
+        station=station,
+        device=device,
+        analog=analog,
+        status_count=status_count,
+        nominal_frequency_hz=nominal_frequency_hz,
+        sample_rate_hz=sample_rate_hz,
+        sample_count=sample_count,
+        start_time_ns=start_ns - utc_offset_ns,
+        trigger_time_ns=trigger_ns - utc_offset_ns,
+        data_format=data_format,
+        time_stamp_unit_s=time_multiplier * time_base_s,
+    )
+
+
+def _identification(line: _Line) -> tuple[str, str, int]:
+    line.has_fields(2, 3)
+    station, device = line.fields[:2]
+    if len(line.fields) == 2:  # 1991 has no revision year
+        return station, device, 1991
+    if line.fields[2] not in REVISIONS:
+        raise line.refuse("revision", f"one of {', '.join(REVISIONS)}", quoted(line.fields[2]))
+    return station, device, REVISIONS[line.fields[2]]
+
+
+def _channel_counts(line: _Line, line_count: int) -> tuple[int, int]:
+    line.has_fields(3)
+    total = line.integer(0, "total", 1, MAX_CHANNELS)
+    counts = []
+    for index, letter, field in ((1, "A", "analogue channels"), (2, "D", "status channels")):
+        text = line.fields[index]
+        if not re.fullmatch(rf"[0-9]{{1,6}}{letter}", text, re.ASCII | re.IGNORECASE):
+            raise line.refuse(field, f"a count followed by {letter}", quoted(text))
+        counts.append(int(text[:-1]))
+    analog, status = counts
+    if analog + status != total:
+        raise line.refuse("total", f"{analog} + {status} = {analog + status} channels", str(total))
+    if analog == 0:
+        raise line.refuse("analogue channels", "at least one", "none")
+    if total > line_count:
+        raise line.refuse("total", f"at most the file's {line_count} lines", str(total))
+    return analog, status
+
+
+def _analog_channel(line: _Line, number: int, revision: int) -> AnalogChannel:
+    line.has_fields(10 if revision == 1991 else 13)
+    line.integer(0, "index", number, number)
+    gain = line.real(5, "multiplier a")
+    if gain == 0:
+        raise line.refuse("multiplier a", "a number other than 0", quoted(line.fields[5]))
+    minimum, maximum = line.real(8, "minimum"), line.real(9, "maximum")
+    if minimum > maximum:
+        raise line.refuse("minimum", f"at most the maximum, {maximum:g}", f"{minimum:g}")
+    return AnalogChannel(
+        name=line.fields[1],
+        phase=line.fields[2],
+        unit=line.fields[4],
+        gain=gain,
+        offset=line.real(6, "offset b"),
+        skew_us=line.real(7, "skew") if line.fields[7] else 0.0,
+        minimum=minimum,
+        maximum=maximum,
+        to_primary=1.0 if revision == 1991 else _ratio(line),
+    )
+
+
+def _ratio(line: _Line) -> float:
+    """What turns the channel's values into primary ones (5.3.3.11 to 5.3.3.13)."""
+    primary, secondary = line.real(10, "primary ratio"), line.real(11, "secondary ratio")
+    scaling = line.fields[12].upper()
+    if scaling not in ("P", "S"):
+        raise line.refuse("PS", "P or S", quoted(line.fields[12]))
+    if scaling == "P":
+        return 1.0
+    if primary <= 0 or secondary <= 0:
+        raise line.refuse(
+            "transformer ratio",
+            "two positive numbers, as the values are secondary",
+            f"{primary:g}:{secondary:g}",
+        )
+    ratio = primary / secondary
+    if not 0 < ratio < 1e12:
+        raise line.refuse("transformer ratio", "a ratio below 1e12", f"{ratio:g}")
+    return ratio
+
+
+def _check_status_channel(line: _Line, number: int, revision: int) -> None:
+    line.has_fields(3 if revision == 1991 else 5)
+    line.integer(0, "index", number, number)
+    if line.fields[-1] not in ("0", "1", ""):
+        raise line.refuse("normal state", "0 or 1", quoted(line.fields[-1]))
+
+
+def _nominal_frequency(line: _Line) -> float | None:
+    """Line frequency [Hz]; None where the field is empty or 0, as it is not critical (5.3.5)."""
+    line.has_fields(1)
+    if line.fields[0] == "" or line.real(0, "") == 0:
+        return None
+    return line.positive(0, "", 1e-3, 1e6)
+
+
+def _rate(lines: _Lines) -> tuple[float | None, int]:
+    line = lines.next("number of sampling rates")
+    line.has_fields(1)
+    rates = line.integer(0, "", 0, MAX_CHANNELS)
+    if rates > 1:
+        raise line.refuse("", "one sampling rate throughout the record", f"{rates} rates")
+    line = lines.next("sampling rate and last sample")
+    line.has_fields(2)
+    samples = line.integer(1, "last sample", 1, MAX_SAMPLES)
+    if rates == 1:
+        return line.positive(0, "sampling rate [Hz]", 1e-3, 1e9), samples
+    if line.real(0, "sampling rate [Hz]") != 0:
+        raise line.refuse("sampling rate [Hz]", "0, as the file announces 0 rates", quoted(line.fields[0]))
+    return None, samples
+
+
+def _date_time(line: _Line, revision: int) -> tuple[int, int]:
+    """Nanoseconds since 1970 in the file's own time zone, and the number of decimals written."""
+    line.has_fields(2)
+    date, time = _DATE.fullmatch(line.fields[0]), _TIME.fullmatch(line.fields[1])
+    layout = "mm/dd/yy" if revision == 1991 else "dd/mm/yyyy"
+    if date is None or time is None or (revision >= 1999 and len(date[3]) != 4):
+        raise line.refuse("", f"{layout},hh:mm:ss.ssssss", line.quoted())
+    day, month = (date[2], date[1]) if revision == 1991 else (date[1], date[2])
+    year = int(date[3])
+    if len(date[3]) == 2:  # two digits of a format born in 1991; its files reach into this century
+        year += 1900 if year >= 70 else 2000
+    if not 1970 <= year <= 2200:
+        raise line.refuse("year", "1970 to 2200", str(year))
+    try:
+        moment = datetime(year, int(month), int(day), int(time[1]), int(time[2]), int(time[3]), tzinfo=UTC)
+    except ValueError as error:
+        raise line.refuse(
+            "", f"a date and time, {layout},hh:mm:ss.ssssss", f"{line.quoted()} ({error})"
+        ) from None
+    elapsed = moment - _EPOCH
+    fraction = time[4] or ""
+    ns = (elapsed.days * 86_400 + elapsed.seconds) * 1_000_000_000 + int(fraction.ljust(9, "0"))
+    return ns, len(fraction)
+
+
+def _data_format(line: _Line) -> str:
+    line.has_fields(1)
+    data_format = line.fields[0].upper()
+    if data_format not in DATA_FORMATS:
+        raise line.refuse("", f"one of {', '.join(DATA_FORMATS)}", quoted(line.fields[0]))
+    return data_format
+
+
+def _utc_offset(line: _Line) -> int:
+    """What the file's times are ahead of UTC [ns]; "-5h30" is five and a half hours behind (2013, 7.4.11)."""
+    line.has_fields(2)
+    offset = _UTC_OFFSET.fullmatch(line.fields[0])
+    if offset is None or int(offset[2]) > 14 or int(offset[3] or 0) > 59:
+        raise line.refuse("time code", "hours ahead of UTC such as 0, +1 or -5h30", quoted(line.fields[0]))
+    if line.fields[1] not in ("x", "X") and not _UTC_OFFSET.fullmatch(line.fields[1]):
+        raise line.refuse(
+            "local code", "hours ahead of UTC such as 0, +1 or -5h30, or x", quoted(line.fields[1])
+        )
+    minutes = int(offset[2]) * 60 + int(offset[3] or 0)
+    return (-minutes if offset[1] == "-" else minutes) * 60 * 1_000_000_000
+
+
+def _check_time_quality(line: _Line) -> None:
+    line.has_fields(2)
+    if not re.fullmatch(r"[0-9A-Fa-f]", line.fields[0], re.ASCII):
+        raise line.refuse("time quality", "a hexadecimal digit", quoted(line.fields[0]))
+    line.integer(1, "leap second", 0, 3)

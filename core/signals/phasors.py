@@ -1,0 +1,202 @@
+"""Fundamental frequency and phasors of sampled waveforms by least squares.
+
+Phasors are rms values referred to the first sample: x(t) = sqrt(2) Re{X exp(j w t)}, t = 0 at sample 0.
+Least squares, unlike the DFT, needs no whole number of cycles in the record.
+"""
+
+from collections.abc import Sequence
+from math import pi, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.signals.errors import SignalError
+
+MIN_CYCLES = 1.5
+"""Shortest record for a frequency estimate; below it sequences and offset are no longer told apart."""
+
+MAX_FREQUENCY_OF_RATE = 0.45
+"""Highest frequency modelled, fraction of the sampling rate; at half of it both sequences coincide."""
+
+MIN_FUNDAMENTAL_SHARE = 0.5
+"""Least share of the voltages' energy in the fundamental; noise and open inputs have far less."""
+
+HARMONICS_OF_A_SUPPLY = (1, 3, 5, 7, 11, 13)
+"""Orders modelled beside the fundamental while its frequency is sought, in both sequences."""
+
+_MAX_ITERATIONS = 12
+_CONVERGED_CYCLES = 1e-8
+"""Change of the whole record's phase at which the iteration stops [cycles]; far below any noise."""
+
+
+def harmonic_phasors(
+    x: NDArray[np.float64], frequency_hz: float, sample_rate_hz: float, orders: Sequence[int] = (1,)
+) -> NDArray[np.complex128]:
+    """Least-squares phasors of the given harmonic orders, with a constant offset fitted beside them.
+
+    x: samples, shape (..., n), finite. Returns rms phasors of shape (..., len(orders)), unit of x.
+    Name every order the waveform contains: over a part of a cycle an order left out leaks into the others.
+    Raises SignalError for fewer samples than unknowns or values that are not finite.
+    """
+    n = x.shape[-1]
+    if n < 1 + 2 * len(orders):
+        raise SignalError(
+            f"{n} samples cannot tell {len(orders)} phasors and an offset apart; "
+            f"at least {1 + 2 * len(orders)} are needed"
+        )
+    if not np.isfinite(x).all():
+        raise SignalError("phasors need finite samples; the waveform has missing values")
+    theta = np.outer(2 * pi * frequency_hz / sample_rate_hz * np.arange(n), np.asarray(orders))
+    # Re{X e^jθ} sqrt(2) = sqrt(2) (Re X cos θ - Im X sin θ)
+    basis = np.concatenate([sqrt(2) * np.cos(theta), -sqrt(2) * np.sin(theta), np.ones((n, 1))], axis=1)
+    solution, _, rank, _ = np.linalg.lstsq(basis, x.reshape(-1, n).T)
+    if rank < basis.shape[1]:
+        raise SignalError(
+            f"orders {tuple(orders)} of {frequency_hz:g} Hz cannot be told apart in {n} samples "
+            f"at {sample_rate_hz:g} Hz"
+        )
+    count = len(orders)
+    phasors = solution[:count] + 1j * solution[count : 2 * count]
+    return np.asarray(phasors.T.reshape(*x.shape[:-1], count), dtype=np.complex128)
+
+
+def fundamental_phasors(
+    x: NDArray[np.float64], frequency_hz: float, sample_rate_hz: float
+) -> NDArray[np.complex128]:
+    """Least-squares fundamental phasors, rms: samples (..., n) give (...); see `harmonic_phasors`."""
+    return harmonic_phasors(x, frequency_hz, sample_rate_hz)[..., 0]
+
+
+def fundamental_frequency(
+    v_ab: NDArray[np.float64], sample_rate_hz: float, *, search_hz: tuple[float, float] = (20.0, 120.0)
+) -> float:
+    """Fundamental frequency of a three-phase supply from its voltages in Clarke axes (2, n) [Hz].
+
+    The four-parameter sine fit of IEEE Std 1057, carried over to the space vector
+    v_alpha + j v_beta = sum over k of C_k exp(j k w t): both sequences of every order share one frequency,
+    so neither phase order, unbalance nor harmonics bias it. A Hann-windowed spectrum gives the start value;
+    Gauss-Newton steps on w with the C_k projected out (variable projection) refine it. Under white noise
+    it is the maximum-likelihood estimate.
+
+    Raises SignalError if the record is shorter than MIN_CYCLES of the found frequency, has no
+    dominant line within `search_hz`, or has missing values.
+    """
+    space_vector = v_ab[0] + 1j * v_ab[1]
+    if not np.isfinite(space_vector).all():
+        raise SignalError("a frequency needs finite samples; the voltages have missing values")
+    coarse_hz = _spectral_peak(space_vector, sample_rate_hz, search_hz)
+    n = space_vector.size
+    if n * coarse_hz / sample_rate_hz < MIN_CYCLES:
+        raise SignalError(
+            f"{n} samples at {sample_rate_hz:g} Hz are {n * coarse_hz / sample_rate_hz:.1f} cycles of "
+            f"{coarse_hz:.1f} Hz; at least {MIN_CYCLES:g} are needed for a frequency"
+        )
+    if coarse_hz > MAX_FREQUENCY_OF_RATE * sample_rate_hz:
+        raise SignalError(
+            f"{coarse_hz:.1f} Hz sampled at {sample_rate_hz:g} Hz; at least {1 / MAX_FREQUENCY_OF_RATE:.1f} "
+            "samples a cycle are needed"
+        )
+    return _refine(space_vector, coarse_hz, sample_rate_hz, search_hz)
+
+
+def _spectral_peak(
+    space_vector: NDArray[np.complex128], sample_rate_hz: float, search_hz: tuple[float, float]
+) -> float:
+    """Frequency of the strongest line in either sequence, to a few hundredths of a DFT bin [Hz]."""
+    n = space_vector.size
+    size = 4 * max(n, 16)
+    spectrum = np.fft.fft((space_vector - space_vector.mean()) * np.hanning(n), size)
+    half = size // 2
+    power = np.abs(spectrum[1:half]) ** 2 + np.abs(spectrum[: size - half : -1]) ** 2
+    first, last = (round(f * size / sample_rate_hz) - 1 for f in search_hz)
+    band = power[max(first, 0) : max(last, 0)]
+    peak = int(np.argmax(band)) if band.size else 0
+    if not 0 < peak < band.size - 1 or band[peak - 1 : peak + 2].min() <= 0:
+        raise SignalError(
+            f"no spectral line between {search_hz[0]:g} and {search_hz[1]:g} Hz: is the supply connected?"
+        )
+    left, centre, right = np.log(band[peak - 1 : peak + 2])
+    offset = 0.5 * (left - right) / (left - 2 * centre + right)
+    return float((max(first, 0) + peak + 1 + offset) * sample_rate_hz / size)
+
+
+def _refine(
+    space_vector: NDArray[np.complex128],
+    frequency_hz: float,
+    sample_rate_hz: float,
+    search_hz: tuple[float, float],
+) -> float:
+    n = space_vector.size
+    # Time from the middle of the record: the derivative is then nearly orthogonal to the amplitudes.
+    angle = 2 * pi / sample_rate_hz * (np.arange(n, dtype=np.float64) - (n - 1) / 2)  # of 1 Hz
+    orders = _orders_below_nyquist(frequency_hz, sample_rate_hz)
+    for _ in range(_MAX_ITERATIONS):
+        basis = _rotating_vectors(frequency_hz * angle, orders)
+        gram = _inner_products(2 * pi * frequency_hz / sample_rate_hz, n, orders)
+        amplitudes = _coefficients(basis, gram, space_vector)
+        residual = space_vector - _combine(amplitudes, basis)
+        slope = 1j * angle * _combine(orders * amplitudes, basis)
+        gradient = slope - _combine(_coefficients(basis, gram, slope), basis)
+        step_hz = float(np.vdot(gradient, residual).real / np.vdot(gradient, gradient).real)
+        frequency_hz += step_hz
+        if not search_hz[0] <= frequency_hz <= search_hz[1]:
+            break
+        if abs(step_hz) * n / sample_rate_hz < _CONVERGED_CYCLES:
+            _check_dominant(frequency_hz, amplitudes[np.abs(orders) == 1], space_vector)
+            return frequency_hz
+    raise SignalError(
+        f"the fundamental between {search_hz[0]:g} and {search_hz[1]:g} Hz does not settle: "
+        "the voltages are not periodic at one frequency"
+    )
+
+
+def _check_dominant(
+    frequency_hz: float, fundamental: NDArray[np.complex128], space_vector: NDArray[np.complex128]
+) -> None:
+    power = float(np.mean(np.abs(space_vector - space_vector.mean()) ** 2))
+    share = float(np.sum(np.abs(fundamental) ** 2)) / power
+    if share < MIN_FUNDAMENTAL_SHARE:
+        raise SignalError(
+            f"the strongest line, {frequency_hz:.2f} Hz, holds {share:.0%} of the voltages' energy; "
+            f"a supply's fundamental holds at least {MIN_FUNDAMENTAL_SHARE:.0%}"
+        )
+
+
+# einsum, not @: BLAS hands products of this size to its threads, and where the cores are busy the wait
+# for them (milliseconds a product) is a hundred times the work.
+def _coefficients(
+    basis: NDArray[np.complex128], gram: NDArray[np.float64], x: NDArray[np.complex128]
+) -> NDArray[np.complex128]:
+    """Least-squares coefficients of x (n) in the basis (orders, n)."""
+    return np.asarray(np.linalg.solve(gram, np.einsum("kn,n->k", basis.conj(), x)), dtype=np.complex128)
+
+
+def _combine(weights: NDArray[np.complex128], basis: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    return np.asarray(np.einsum("k,kn->n", weights, basis))
+
+
+def _orders_below_nyquist(frequency_hz: float, sample_rate_hz: float) -> NDArray[np.int64]:
+    """Signed orders of the space vector that the sampling resolves: 0, +-1, +-3, ..."""
+    usable = [
+        k
+        for k in HARMONICS_OF_A_SUPPLY
+        if k == 1 or k * frequency_hz < MAX_FREQUENCY_OF_RATE * sample_rate_hz
+    ]
+    return np.array([0, *usable, *(-k for k in usable)], dtype=np.int64)
+
+
+def _rotating_vectors(theta: NDArray[np.float64], orders: NDArray[np.int64]) -> NDArray[np.complex128]:
+    """exp(j k theta) of each order k, shape (orders, n)."""
+    powers = [np.ones(theta.size, dtype=np.complex128)]
+    once = np.exp(1j * theta)
+    for _ in range(int(orders.max())):
+        powers.append(powers[-1] * once)
+    return np.array([powers[k] if k >= 0 else powers[-k].conj() for k in orders])
+
+
+def _inner_products(step: float, n: int, orders: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Gram matrix of the rotating vectors over n samples centred on 0: Dirichlet kernels, hence real."""
+    half_angle = (orders[:, None] - orders) * step / 2
+    same = half_angle == 0
+    sine = np.where(same, 1.0, np.sin(half_angle))
+    return np.where(same, float(n), np.sin(n * half_angle) / sine)

@@ -1,0 +1,172 @@
+"""What the machine models need of a recording: terminal currents, and terminal voltages in Clarke axes."""
+
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.recordings.errors import RecordingError
+from core.recordings.waveform import Channel, Quantity, Recording
+from core.signals.clarke import clarke, clarke_from_line_voltages
+
+PHASES = ("a", "b", "c")
+LINES = ("ab", "bc", "ca")
+
+_WORDS = {
+    Quantity.CURRENT: "phase current",
+    Quantity.PHASE_VOLTAGE: "phase voltage",
+    Quantity.LINE_VOLTAGE: "line voltage",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Terminals:
+    """Quantities at the motor's terminals, on the time base of the recording.
+
+    current_abc: line currents of a, b, c, shape (3, n) [A].
+    voltage_ab: voltages in power-invariant Clarke axes, shape (2, n) [V]; None if the recording has none.
+    current_channels, voltage_channels: the channels taken (three currents; three voltages, two where
+    the third line voltage follows from Kirchhoff's law, none without voltages).
+    Missing samples stay NaN.
+    """
+
+    current_abc: NDArray[np.float64]
+    voltage_ab: NDArray[np.float64] | None
+    sample_rate_hz: float
+    current_channels: tuple[Channel, ...]
+    voltage_channels: tuple[Channel, ...]
+
+
+def terminals(
+    recording: Recording,
+    *,
+    currents: tuple[str, str, str] | None = None,
+    phase_voltages: tuple[str, str, str] | None = None,
+    line_voltages: tuple[str, str, str] | None = None,
+) -> Terminals:
+    """Pick the terminal quantities by channel name, or by quantity and phase where no names are given.
+
+    currents: names of the channels of i_a, i_b, i_c; phase_voltages: v_a, v_b, v_c; line_voltages: v_ab,
+    v_bc, v_ca. Voltages: phase voltages if named, else line voltages if named, else a complete set of
+    phase voltages, else of line voltages (two suffice: they sum to zero), else None.
+
+    Raises RecordingError naming the channel that is missing, ambiguous or of the wrong unit.
+    """
+    chosen_currents = (
+        _by_name(recording, Quantity.CURRENT, currents) if currents else _find_currents(recording)
+    )
+    voltage_ab, voltage_rows = _voltages(recording, phase_voltages, line_voltages)
+    return Terminals(
+        current_abc=recording.samples[list(chosen_currents)],
+        voltage_ab=voltage_ab,
+        sample_rate_hz=recording.sample_rate_hz,
+        current_channels=tuple(recording.channels[row] for row in chosen_currents),
+        voltage_channels=tuple(recording.channels[row] for row in voltage_rows),
+    )
+
+
+def _voltages(
+    recording: Recording,
+    phase_voltages: tuple[str, str, str] | None,
+    line_voltages: tuple[str, str, str] | None,
+) -> tuple[NDArray[np.float64] | None, tuple[int, ...]]:
+    if phase_voltages:
+        rows = _by_name(recording, Quantity.PHASE_VOLTAGE, phase_voltages)
+        return clarke(recording.samples[list(rows)]), rows
+    if line_voltages:
+        rows = _by_name(recording, Quantity.LINE_VOLTAGE, line_voltages)
+        return clarke_from_line_voltages(recording.samples[list(rows)]), rows
+    by_phase = _find(recording, Quantity.PHASE_VOLTAGE, PHASES)
+    if len(by_phase) == len(PHASES):
+        rows = tuple(by_phase[phase] for phase in PHASES)
+        return clarke(recording.samples[list(rows)]), rows
+    by_line = _find(recording, Quantity.LINE_VOLTAGE, LINES)
+    if len(by_line) >= 2:
+        return clarke_from_line_voltages(_close_triangle(recording, by_line)), tuple(by_line.values())
+    if by_phase or by_line:
+        raise RecordingError(
+            recording.source,
+            "voltages",
+            expected="three phase voltages, or at least two line voltages",
+            found=_listing(recording, [*by_phase.values(), *by_line.values()]),
+        )
+    return None, ()
+
+
+def _close_triangle(recording: Recording, by_line: dict[str, int]) -> NDArray[np.float64]:
+    """Line voltages (3, n) [V]; one that was not recorded is minus the sum of the others."""
+    v_line = np.zeros((3, recording.samples.shape[1]))
+    for k, line in enumerate(LINES):
+        if line in by_line:
+            v_line[k] = recording.samples[by_line[line]]
+    for k, line in enumerate(LINES):
+        if line not in by_line:
+            v_line[k] = -v_line.sum(axis=0)
+    return v_line
+
+
+def _find_currents(recording: Recording) -> tuple[int, ...]:
+    found = _find(recording, Quantity.CURRENT, PHASES)
+    missing = [phase for phase in PHASES if phase not in found]
+    if missing:
+        raise RecordingError(
+            recording.source,
+            f"current of phase {', '.join(missing)}",
+            expected="one current channel for each of phases a, b, c (or name them in the motor's channels)",
+            found=_listing(recording, range(len(recording.channels))),
+        )
+    return tuple(found[phase] for phase in PHASES)
+
+
+def _find(recording: Recording, quantity: Quantity, phases: tuple[str, str, str]) -> dict[str, int]:
+    """Row of the one channel of each phase there is; two channels of one phase are an error."""
+    rows = [
+        (phases.index(channel.phase), row)
+        for row, channel in enumerate(recording.channels)
+        if channel.quantity is quantity and channel.phase in phases
+    ]
+    found: dict[str, int] = {}
+    for index, group in groupby(sorted(rows), key=lambda item: item[0]):
+        candidates = [row for _, row in group]
+        if len(candidates) > 1:
+            raise RecordingError(
+                recording.source,
+                f"{_WORDS[quantity]} {phases[index]}",
+                expected="one channel (name the motor's own in its channels)",
+                found=_listing(recording, candidates),
+            )
+        found[phases[index]] = candidates[0]
+    return found
+
+
+def _by_name(recording: Recording, quantity: Quantity, names: tuple[str, str, str]) -> tuple[int, ...]:
+    return tuple(_row_of(recording, quantity, name) for name in names)
+
+
+def _row_of(recording: Recording, quantity: Quantity, name: str) -> int:
+    rows = [row for row, channel in enumerate(recording.channels) if channel.name == name]
+    if len(rows) != 1:
+        raise RecordingError(
+            recording.source,
+            f"channel {name!r}",
+            expected="exactly one channel of this name",
+            found=_listing(recording, rows or range(len(recording.channels))),
+        )
+    unit = "A" if quantity is Quantity.CURRENT else "V"
+    channel = recording.channels[rows[0]]
+    if channel.unit != unit:
+        raise RecordingError(
+            recording.source,
+            f"channel {name!r}",
+            expected=f"a {_WORDS[quantity]} in {unit}",
+            found=f"unit {channel.unit!r}",
+        )
+    return rows[0]
+
+
+def _listing(recording: Recording, rows: list[int] | range) -> str:
+    channels = [recording.channels[row] for row in rows]
+    return ", ".join(f"{c.name!r} [{c.unit}]" for c in channels[:12]) + (
+        ", ..." if len(channels) > 12 else ""
+    )

@@ -1,0 +1,85 @@
+"""Names, phase fields and units as relays of several makes write them."""
+
+import pytest
+
+from core.recordings import Quantity
+from core.recordings.channel_roles import channel_roles
+
+CURRENT, PHASE_VOLTAGE, LINE_VOLTAGE, OTHER = Quantity
+
+
+def roles(*channels: tuple[str, str, str]) -> list[tuple[Quantity, str | None]]:
+    return [(role.quantity, role.phase) for role in channel_roles(channels)]
+
+
+@pytest.mark.parametrize(
+    ("name", "phase_field", "unit", "quantity", "phase"),
+    [
+        ("IA", "A", "A", CURRENT, "a"),
+        ("IB", "", "A", CURRENT, "b"),
+        ("Ic", "", "kA", CURRENT, "c"),
+        ("F1-IA", "A", "A", CURRENT, "a"),
+        ("IB_G1", "B", "A", CURRENT, "b"),
+        ("Popular Ic", "", "A", CURRENT, "c"),
+        ("IL1", "", "A", CURRENT, "a"),
+        ("I_L2", "L2", "A", CURRENT, "b"),
+        ("i-L3", "L3", "A", CURRENT, "c"),
+        ("IR", "R", "A", CURRENT, "a"),
+        ("Current 1", "T", "A", CURRENT, "c"),
+        ("IN", "N", "A", CURRENT, "n"),
+        ("3I0", "", "A", CURRENT, None),
+        ("IG", "G", "A", CURRENT, None),
+        ("Ia", "1", "A", CURRENT, "a"),
+        ("IA", "B", "A", CURRENT, None),
+        ("IA", "AB", "A", CURRENT, None),
+        ("VA", "A", "V", PHASE_VOLTAGE, "a"),
+        ("Popular Va-g", "", "kV", PHASE_VOLTAGE, "a"),
+        ("VCN", "", "V", PHASE_VOLTAGE, "c"),
+        ("UL2E", "", "V", PHASE_VOLTAGE, "b"),
+        ("U_L3", "", "V", PHASE_VOLTAGE, "c"),
+        ("UL1-N", "", "V", PHASE_VOLTAGE, "a"),
+        ("Ua_1", "A", "kV", PHASE_VOLTAGE, "a"),
+        ("Voltage", "B-N", "V", PHASE_VOLTAGE, "b"),
+        ("VAB", "", "V", LINE_VOLTAGE, "ab"),
+        ("VAB", "A", "V", LINE_VOLTAGE, "ab"),
+        ("V_BC", "BC", "kV", LINE_VOLTAGE, "bc"),
+        ("UL1-L2", "", "V", LINE_VOLTAGE, "ab"),
+        ("U23", "", "V", LINE_VOLTAGE, "bc"),
+        ("UL31", "", "V", LINE_VOLTAGE, "ca"),
+        ("Voltage", "C-A", "V", LINE_VOLTAGE, "ca"),
+        ("VAB", "BC", "V", OTHER, None),
+        ("U21", "", "V", OTHER, None),  # V1 - V2 with one maker, V2 - V1 with others
+        ("Battery", "", "V", OTHER, None),
+        ("VA", "A", "A", CURRENT, "a"),
+        ("SRC 1 Ia Mag", "A", "A", OTHER, None),
+        ("SRC 1 Va Angle", "", "deg", OTHER, None),
+        ("IA rms", "A", "A", OTHER, None),
+        ("Speed", "", "rpm", OTHER, None),
+        ("IA", "A", "MA", OTHER, None),
+        ("Via", "", "V", OTHER, None),
+    ],
+)
+def test_one_channel(name: str, phase_field: str, unit: str, quantity: Quantity, phase: str | None) -> None:
+    assert roles((name, phase_field, unit)) == [(quantity, phase)]
+
+
+def test_numbered_phases_need_all_three() -> None:
+    sepam = [("I1", "7", "A"), ("I2", "8", "A"), ("I3", "9", "A")]
+    assert roles(*sepam) == [(CURRENT, "a"), (CURRENT, "b"), (CURRENT, "c")]
+    sequence = [("I0", "", "A"), ("I1", "", "A"), ("I2", "", "A")]
+    assert roles(*sequence) == [(CURRENT, None)] * 3
+    assert roles(("I1", "A", "A"), ("I2", "B", "A")) == [(CURRENT, "a"), (CURRENT, "b")], "told by the field"
+    assert roles(("V1", "", "V"), ("V2", "", "V"), ("V3", "", "V"))[1] == (PHASE_VOLTAGE, "b")
+
+
+@pytest.mark.parametrize(
+    ("unit", "si_unit", "scale"),
+    [
+        *(("A", "A", 1), ("kA", "A", 1e3), ("mA", "A", 1e-3)),
+        *(("kV", "V", 1e3), ("KV", "V", 1e3), ("mV", "V", 1e-3), ("MV", "V", 1e6)),
+        *(("rpm", "rpm", 1), ("", "", 1)),
+    ],
+)
+def test_units_become_si(unit: str, si_unit: str, scale: float) -> None:
+    (role,) = channel_roles([("IA", "A", unit)])
+    assert (role.unit, role.scale) == (si_unit, scale)
