@@ -14,9 +14,9 @@ from core.diagnosis.refinement import (
     FAULT_LEVEL,
     LOAD_LEVEL,
     PATH_RATIO,
+    TIME_OFFSET,
     Fit,
     refine,
-    time_offset,
 )
 from core.diagnosis.search import Starts
 from core.machines.playback import Candidates, Playback
@@ -25,8 +25,14 @@ GAIN_TOLERANCE = 0.01
 """Ratio error of a protection current transformer at rated current (IEC 61869-2, class 5P): 1 %."""
 SHARE_UNEXPLAINED = 0.25
 """Of the asymmetry a winding's fit removes, what it may leave: parameters are known to some per cent only."""
+PATH_WORTH, PATH_WORTH_SHARE = 0.007, 0.02
+"""Unexplained current, of the forward one (what gains within their class can leave) and of the asymmetry,
+beyond which a resistive path is tried."""
 SIGNIFICANT = 3.0
-"""Standard errors that an angle must be known by before a path resistance is fitted."""
+"""Standard errors beyond which a level or a path counts as seen."""
+PATH_START = 0.5
+"""Path ratio that a fit starts from; beside it the least level a fit starts from, for its angle to count."""
+LEVEL_START = 0.005
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,38 +55,58 @@ class Explanation:
 def explain(case: Case, playback: Playback, starts: Starts) -> Explanation:
     """Refine every winding's best point and the healthy machine; choose the winding with the least residual.
 
-    All windings have equally many unknowns, so the least residual is also the greatest likelihood.
+    All windings have equally many unknowns, so the least residual is also the greatest likelihood. Turns
+    bridged by a resistance draw a current nearer to the voltage's direction: where dead-shorted turns leave
+    much unexplained, the path's resistance is fitted too, and taken where it is seen.
     """
-    offset = time_offset(case.frequency_hz)
-    unknowns = (FAULT_LEVEL, LOAD_LEVEL, offset)
+    unknowns = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
     fits = [refine(case, playback, start, unknowns) for start in starts.by_winding]
-    winding = int(np.argmin([fit.squared_error for fit in fits]))
+    winding = _likeliest(fits)
     fit = fits[winding]
-    healthy = refine(case, playback, _without_fault(fit), (LOAD_LEVEL, offset))
-    evaluations = sum(one.evaluations for one in (*fits, healthy))
+    healthy = refine(
+        case, playback, replace(fit.candidate, fault_level=np.zeros(1)), (LOAD_LEVEL, TIME_OFFSET)
+    )
+    tried = [*fits, healthy]
 
     explained, before, after = _accounts_for_asymmetry(case, healthy, fit)
-    if not explained and _is_significant(fit):
-        through_path = refine(case, playback, fit.candidate, (*unknowns, PATH_RATIO))
-        evaluations += through_path.evaluations
-        path_explains, _, path_leaves = _accounts_for_asymmetry(case, healthy, through_path)
-        if path_explains and FAULT_LEVEL.name in through_path.standard_error:
-            fit, explained, after = through_path, True, path_leaves
-    return Explanation(winding, fit, healthy, before, after, explained, evaluations)
+    if playback.model.knows_path and after > max(PATH_WORTH, PATH_WORTH_SHARE * before):
+        through = [refine(case, playback, _with_path(one), (*unknowns, PATH_RATIO)) for one in fits]
+        tried += through
+        likeliest = _likeliest(through)
+        path_explains, _, path_leaves = _accounts_for_asymmetry(case, healthy, through[likeliest])
+        if (
+            path_explains
+            and _is_seen(through[likeliest], FAULT_LEVEL)
+            and _is_seen(through[likeliest], PATH_RATIO)
+        ):
+            winding, fit, explained, after = likeliest, through[likeliest], True, path_leaves
+    return Explanation(winding, fit, healthy, before, after, explained, sum(one.evaluations for one in tried))
 
 
-def _without_fault(fit: Fit) -> Candidates:
-    return replace(fit.candidate, fault_level=np.zeros(1))
+def _likeliest(fits: list[Fit]) -> int:
+    """The winding with the least residual among those with a level above zero; no winding has fewer turns
+    shorted than none, so a level below zero only stands where there is no other."""
+    possible = [fit.squared_error if fit.value(FAULT_LEVEL) > 0.0 else np.inf for fit in fits]
+    return int(np.argmin(possible if np.isfinite(min(possible)) else [fit.squared_error for fit in fits]))
 
 
-def _is_significant(fit: Fit) -> bool:
-    error = fit.standard_error.get(FAULT_LEVEL.name)
-    return error is not None and fit.value(FAULT_LEVEL.name) > SIGNIFICANT * error
+def _with_path(fit: Fit) -> Candidates:
+    return replace(
+        fit.candidate,
+        fault_level=np.maximum(fit.candidate.fault_level, LEVEL_START),
+        path_ratio=np.full(1, PATH_START),
+    )
+
+
+def _is_seen(fit: Fit, name: str) -> bool:
+    error = fit.standard_error.get(name)
+    return error is not None and fit.value(name) > SIGNIFICANT * error
 
 
 def _accounts_for_asymmetry(case: Case, healthy: Fit, fit: Fit) -> tuple[bool, float, float]:
     measured = case.space_vector(case.current_ab[:, case.window.first : case.window.last])
     forward = abs(case.positive_sequence(measured))
     before = abs(case.negative_sequence(case.space_vector(healthy.residual_ab))) / forward
-    after = abs(case.negative_sequence(case.space_vector(fit.residual_ab))) / forward
+    shorted = fit if fit.value(FAULT_LEVEL) > 0.0 else healthy
+    after = abs(case.negative_sequence(case.space_vector(shorted.residual_ab))) / forward
     return after <= max(GAIN_TOLERANCE, SHARE_UNEXPLAINED * before), before, after

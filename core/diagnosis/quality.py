@@ -29,9 +29,11 @@ HIGHEST_CURRENT = 3.0
 CLIPPED_SHARE = 0.001
 HELD_RUN_CYCLES = 0.15
 """Longest run of equal samples: a quarter cycle holds the crest of a sine at least to the last digit."""
-PHASE_LOSS = 0.6
-"""Share of negative in positive sequence current beyond which a phase is open or a channel is missing or
-turned round: an open phase gives 1."""
+PHASE_LOSS = 0.1
+"""Least over greatest of the three phase currents, below which one is missing or open."""
+SWAPPED_SHARE = 0.6
+"""Backward over forward current: a lightly loaded motor on an unbalanced supply may come near 1, but then the
+currents' sequence says nothing; swapped phases leave a small share."""
 ZERO_SEQUENCE = 0.25
 """Share of the currents' sum in their mean rms: a three-wire motor's currents add up to nothing."""
 DRIFT = 0.15
@@ -125,13 +127,22 @@ def _electrical_checks(
         f"{amps:.0%} of the rated current: the motor is off, starting, or the currents are scaled wrongly",
     )  # fmt: skip
 
-    same = current.sequence is voltage.sequence
-    share = weak / strong if strong > 0.0 else np.inf
+    magnitudes = np.abs(fundamental_phasors(terminals.current_abc, frequency, rate))
+    least = float(magnitudes.min() / max(magnitudes.max(), 1e-12))
     yield _finding(
-        "phases", share, PHASE_LOSS, "I2/I1", same and share <= PHASE_LOSS,
-        "the currents turn against the voltages: two phases are swapped"
-        if not same
-        else "a current phase is missing or reversed",
+        "phase loss",
+        least,
+        PHASE_LOSS,
+        "of the greatest",
+        least >= PHASE_LOSS,
+        "a current phase is missing or open",
+    )
+
+    share = weak / max(strong, 1e-12)
+    swapped = current.sequence is not voltage.sequence and share < SWAPPED_SHARE
+    yield _finding(
+        "phase order", share, SWAPPED_SHARE, "backward over forward", not swapped,
+        "the currents turn against the voltages: two phases are swapped",
     )  # fmt: skip
 
     total = float(np.std(terminals.current_abc.sum(axis=0)))

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.stats import t as student_t
 
 from core.diagnosis.case import Case
-from core.machines.base import Array
+from core.machines.base import Array, StatorModel
 from core.machines.playback import Candidates, Playback
 
 CONFIDENCE = 0.95
@@ -30,14 +30,21 @@ class Unknown:
     upper: float
 
 
-FAULT_LEVEL = Unknown("fault_level", 2e-4, -0.05, 0.5)
-LOAD_LEVEL = Unknown("load_level", 2e-3, -0.2, 2.0)
-PATH_RATIO = Unknown("path_ratio", 2e-3, 0.0, 20.0)
+FAULT_LEVEL = "fault_level"
+LOAD_LEVEL = "load_level"
+TIME_OFFSET = "time_offset_s"
+PATH_RATIO = "path_ratio"
 
 
-def time_offset(frequency_hz: float) -> Unknown:
-    """T_d within half a cycle either way: it is known only modulo one cycle."""
-    return Unknown("time_offset_s", 1e-4 / frequency_hz, -0.5 / frequency_hz, 0.5 / frequency_hz)
+def unknown(name: str, case: Case, model: StatorModel) -> Unknown:
+    """Range and step of an unknown; T_d within half a cycle either way, as it is known modulo one cycle."""
+    cycle = 1.0 / case.frequency_hz
+    return {
+        FAULT_LEVEL: Unknown(FAULT_LEVEL, 2e-4, model.lowest_level, 0.5),
+        LOAD_LEVEL: Unknown(LOAD_LEVEL, 2e-3, -0.2, 2.0),
+        TIME_OFFSET: Unknown(TIME_OFFSET, 1e-4 * cycle, -0.5 * cycle, 0.5 * cycle),
+        PATH_RATIO: Unknown(PATH_RATIO, 2e-3, 0.0, 20.0),
+    }[name]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,15 +70,18 @@ class Fit:
         return float(getattr(self.candidate, name)[0])
 
     def interval(self, name: str) -> tuple[float, float]:
-        """95 % confidence interval of an unknown."""
+        """95 % confidence interval of an unknown; its bound alone where it ended on one."""
+        if name in self.at_bound:
+            return self.value(name), self.value(name)
         reach = (
             float(student_t.ppf(0.5 + CONFIDENCE / 2.0, self.degrees_of_freedom)) * self.standard_error[name]
         )
         return self.value(name) - reach, self.value(name) + reach
 
 
-def refine(case: Case, playback: Playback, start: Candidates, unknowns: tuple[Unknown, ...]) -> Fit:
-    """Minimise the squared residual from one candidate over `unknowns`, the others held."""
+def refine(case: Case, playback: Playback, start: Candidates, names: tuple[str, ...]) -> Fit:
+    """Minimise the squared residual from one candidate over the named unknowns, the others held."""
+    unknowns = tuple(unknown(name, case, playback.model) for name in names)
     candidate, evaluations = start, 0
     residual, jacobian = _linearise(case, playback, candidate, unknowns)
     evaluations += 1 + 2 * len(unknowns)
@@ -98,14 +108,14 @@ def refine(case: Case, playback: Playback, start: Candidates, unknowns: tuple[Un
             break
     free = _free(candidate, unknowns, case, residual, jacobian)
     scatter, blocks = _covariance(case, residual, jacobian[free])
-    names = [unknown.name for unknown, is_free in zip(unknowns, free, strict=True) if is_free]
+    seen = [name for name, is_free in zip(names, free, strict=True) if is_free]
     return Fit(
         candidate=candidate,
         squared_error=error,
         residual_ab=residual,
-        standard_error=dict(zip(names, np.sqrt(np.diag(scatter)).tolist(), strict=True)),
+        standard_error=dict(zip(seen, np.sqrt(np.diag(scatter)).tolist(), strict=True)),
         degrees_of_freedom=blocks - 1,
-        at_bound=tuple(unknown.name for unknown, is_free in zip(unknowns, free, strict=True) if not is_free),
+        at_bound=tuple(name for name in names if name not in seen),
         evaluations=evaluations,
     )
 
@@ -122,15 +132,16 @@ def _linearise(
         time_offset_s=np.repeat(candidate.time_offset_s, rows),
         path_ratio=np.repeat(candidate.path_ratio, rows),
     )
-    for k, unknown in enumerate(unknowns):
-        values = getattr(batch, unknown.name)
-        values[1 + 2 * k] += unknown.step
-        values[2 + 2 * k] -= unknown.step
+    steps = np.empty(len(unknowns))
+    for k, one in enumerate(unknowns):
+        values = getattr(batch, one.name)
+        values[1 + 2 * k] = min(values[0] + one.step, one.upper)
+        values[2 + 2 * k] = max(values[0] - one.step, one.lower)
+        steps[k] = values[1 + 2 * k] - values[2 + 2 * k]
     current = playback.trajectories(batch).current
     window = case.window
     residual = case.current_ab[:, window.first : window.last] - current[0]
-    steps = np.array([unknown.step for unknown in unknowns])
-    jacobian = (current[1::2] - current[2::2]) / (2.0 * steps[:, np.newaxis, np.newaxis])
+    jacobian = (current[1::2] - current[2::2]) / steps[:, np.newaxis, np.newaxis]
     return residual, jacobian
 
 
@@ -140,25 +151,25 @@ def _free(
     """Unknowns that are inside their range, or at its edge with the cost falling inwards."""
     free = np.ones(len(unknowns), dtype=np.bool_)
     target = _flat(case, residual)
-    for k, unknown in enumerate(unknowns):
-        value = float(getattr(candidate, unknown.name)[0])
+    for k, one in enumerate(unknowns):
+        value = float(getattr(candidate, one.name)[0])
         descent = float(_stack(case, jacobian[k : k + 1])[:, 0] @ target)
-        outwards = (value <= unknown.lower and descent < 0.0) or (value >= unknown.upper and descent > 0.0)
+        outwards = (value <= one.lower and descent < 0.0) or (value >= one.upper and descent > 0.0)
         free[k] = not outwards
     return free
 
 
 def _moved(candidate: Candidates, unknowns: tuple[Unknown, ...], step: Array) -> Candidates:
-    for unknown, change in zip(unknowns, step.tolist(), strict=True):
-        value = np.clip(getattr(candidate, unknown.name) + change, unknown.lower, unknown.upper)
-        candidate = replace(candidate, **{unknown.name: value})
+    for one, change in zip(unknowns, step.tolist(), strict=True):
+        value = np.clip(getattr(candidate, one.name) + change, one.lower, one.upper)
+        candidate = replace(candidate, **{one.name: value})
     return candidate
 
 
 def _covariance(case: Case, residual: Array, jacobian: Array) -> tuple[Array, int]:
     """Covariance of the free unknowns and the number of cycles it rests on."""
     stacked = _stack(case, jacobian)
-    bread = np.linalg.inv(stacked.T @ stacked)
+    bread = _inverse(stacked.T @ stacked)
     offset = case.window.compare_from - case.window.first
     scores = (jacobian[:, :, offset:] * residual[:, offset:]).sum(axis=1)
     per_cycle = case.sample_rate_hz / case.frequency_hz
@@ -168,6 +179,14 @@ def _covariance(case: Case, residual: Array, jacobian: Array) -> tuple[Array, in
     centred = sums - sums.mean(axis=1, keepdims=True)
     filling = centred @ centred.T * (blocks / (blocks - 1))
     return bread @ filling @ bread, blocks
+
+
+def _inverse(information: Array) -> Array:
+    """Inverse of the information matrix; infinite where the record does not tell the unknowns apart."""
+    try:
+        return np.asarray(np.linalg.inv(information), dtype=np.float64)
+    except np.linalg.LinAlgError:
+        return np.full_like(information, np.inf)
 
 
 def _stack(case: Case, jacobian: Array) -> Array:

@@ -8,7 +8,7 @@ from core.diagnosis.case import Case, case_of
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.hypotheses import Explanation, explain
 from core.diagnosis.quality import electrical_condition, no_frequency, sampled_well
-from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL
+from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET
 from core.diagnosis.search import METHODS, search
 from core.diagnosis.verdict import Diagnosis, QualityFinding, Verdict
 from core.machines.base import Array, StatorModel
@@ -24,6 +24,8 @@ from core.signals.terminals import Terminals, terminals
 
 MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
 PHASES = ("a", "b", "c")
+UNEXPLAINED_LIMIT = 0.02
+"""Backward-turning current, of the forward one, that sensors within their class can no longer account for."""
 
 
 def diagnose(
@@ -61,15 +63,15 @@ def diagnose(
     explanation = explain(case, playback, starts)
     verdict, reasons = judge(case, explanation)
     fit = explanation.fit
-    found = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and explanation.explained)
-    low, high = (max(0.0, bound) for bound in fit.interval(FAULT_LEVEL.name))
+    named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and _is_shorted_turns(explanation))
+    low, high = (max(0.0, bound) for bound in fit.interval(FAULT_LEVEL))
     return Diagnosis(
         verdict=verdict,
-        mu_f=max(0.0, fit.value(FAULT_LEVEL.name)),
+        mu_f=max(0.0, fit.value(FAULT_LEVEL)),
         mu_f_ci95=(low, high),
-        theta_f=case.terminal_winding(explanation.winding) if found else None,
-        load_level=fit.value(LOAD_LEVEL.name),
-        time_offset_s=fit.value("time_offset_s"),
+        theta_f=case.terminal_winding(explanation.winding) if named else None,
+        load_level=fit.value(LOAD_LEVEL),
+        time_offset_s=fit.value(TIME_OFFSET),
         residual_rms_A=_residual_rms(case, explanation),
         evaluations=starts.evaluations + explanation.evaluations,
         compute_seconds=perf_counter() - begun,
@@ -84,26 +86,32 @@ def judge(case: Case, explanation: Explanation) -> tuple[Verdict, list[str]]:
     """Verdict and its reasons in words."""
     limit = case.motor.limits.fault_level
     fit = explanation.fit
-    low, high = fit.interval(FAULT_LEVEL.name)
+    low, high = fit.interval(FAULT_LEVEL)
     phase = PHASES[case.terminal_winding(explanation.winding)]
-    level = f"{fit.value(FAULT_LEVEL.name):.2%} (95 % interval {max(0.0, low):.2%} to {max(0.0, high):.2%})"
+    level = f"{fit.value(FAULT_LEVEL):.2%} (95 % interval {max(0.0, low):.2%} to {max(0.0, high):.2%})"
     backward = (
         f"backward-turning current that the supply does not cause is {explanation.asymmetry:.2%} of the "
         f"forward one; shorted turns in phase {phase} leave {explanation.unexplained:.2%}"
     )
+    path = fit.value(PATH_RATIO)
+    bridged = f", bridged by {path:.2g} times the turns' own resistance" if path > 0.0 else ""
     if low > limit and explanation.explained:
         return Verdict.FAULT, [
-            f"shorted turns in phase {phase}: {level}, above the limit of {limit:.2%}",
+            f"shorted turns in phase {phase}: {level}, above the limit of {limit:.2%}{bridged}",
             backward,
         ]
-    if low > limit:
-        return Verdict.WATCH, [f"an asymmetry that shorted turns in no phase explain: {backward}"]
+    if explanation.unexplained > UNEXPLAINED_LIMIT or low > limit:
+        return Verdict.WATCH, ["an asymmetry that shorted turns in no phase explain", backward]
     if high > limit:
         return Verdict.WATCH, [
-            f"shorted turns in phase {phase} cannot be excluded: {level}, limit {limit:.2%}",
+            f"shorted turns in phase {phase} cannot be excluded: {level}, limit {limit:.2%}{bridged}",
             backward,
         ]
     return Verdict.HEALTHY, [f"no shorted turns above the limit of {limit:.2%}: best fit {level}", backward]
+
+
+def _is_shorted_turns(explanation: Explanation) -> bool:
+    return explanation.explained and explanation.unexplained <= UNEXPLAINED_LIMIT
 
 
 def _gate(measured: Terminals, voltage_ab: Array, motor: Motor) -> tuple[Case | None, list[QualityFinding]]:

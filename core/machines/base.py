@@ -39,6 +39,16 @@ class StatorModel(Protocol):
         """As written on the command line: "split-winding"."""
         ...
 
+    @property
+    def lowest_level(self) -> float:
+        """Least fault level the equations can be continued to: below zero an estimate is free of bias."""
+        ...
+
+    @property
+    def knows_path(self) -> bool:
+        """Whether the resistance of the path that bridges the turns can be told from their level."""
+        ...
+
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
     ) -> Circuits:

@@ -11,6 +11,8 @@ class HealthyMachine:
     """No fault: the fifth circuit is an idle winding of its own, decaying and coupled to nothing."""
 
     name = "healthy"
+    lowest_level = 0.0
+    knows_path = False
 
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array

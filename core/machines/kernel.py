@@ -60,7 +60,7 @@ def advance(  # noqa: C901 - one loop body, kept whole so that the compiler sees
     u, u_next = np.empty((2, LANES)), np.empty((2, LANES))
     w, w_reference, cosine, sine = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
     x[:], w[:], w_reference[:] = state, speed, reference_speed
-    distance = np.empty(LANES)
+    distance, kick = np.empty(LANES), np.empty(LANES)
     distance[:] = error
     half = 0.5 * step
     recorded = current.shape[1] > 0
@@ -111,12 +111,13 @@ def advance(  # noqa: C901 - one loop body, kept whole so that the compiler sees
             # T_e / p = psi_r_beta i_r_alpha - psi_r_alpha i_r_beta: torque on the rotor, whatever the stator
             torque = x[3, b] * i[2, b] - x[2, b] * i[3, b]
             demand = load[0, b] + w[b] * (load[1, b] + w[b] * load[2, b])
-            w[b] += acceleration * (torque - demand)
+            kick[b] = acceleration * (torque - demand)
+            w[b] += kick[b]
         if recorded:
             for b in range(lanes):
                 current[0, k, b] = i[0, b]
                 current[1, k, b] = i[1, b]
-                speed_out[k, b] = w[b]
+                speed_out[k, b] = w[b] - 0.5 * kick[b]
         if compared and k % substeps == 0:
             i_alpha, i_beta = measured[k // substeps, 0], measured[k // substeps, 1]
             for b in range(lanes):

@@ -22,6 +22,8 @@ class ShortedWinding:
     """
 
     name = "shorted-winding"
+    lowest_level = 0.0
+    knows_path = False
 
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array

@@ -28,6 +28,8 @@ class SplitWinding:
     """
 
     name = "split-winding"
+    lowest_level = -0.05
+    knows_path = True
 
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array

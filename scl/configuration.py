@@ -1,0 +1,171 @@
+"""A whole configuration file: its IEDs, where they are reached and which motor each one protects."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from ipaddress import ip_address
+from pathlib import Path
+
+from scl.data_model import Ied
+from scl.errors import Finding, SclError
+
+MMS_PORT = 102
+
+
+@dataclass(frozen=True, slots=True)
+class Address:
+    """Where an IED's MMS server listens: an IP address and a TCP port."""
+
+    host: str
+    port: int = MMS_PORT
+
+
+@dataclass(frozen=True, slots=True)
+class Header:
+    """edition: "1", "2" or "2.1", from the version, revision and release of the SCL element."""
+
+    id: str
+    version: str
+    revision: str
+    tool: str
+    edition: str
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectedAccessPoint:
+    """An access point on a subnetwork; `parameters` are its P elements by type ("IP", "MMS-Port")."""
+
+    ied: str
+    access_point: str
+    subnetwork: str
+    parameters: Mapping[str, str]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class SubNetwork:
+    name: str
+    type: str
+    connected_access_points: tuple[ConnectedAccessPoint, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Equipment:
+    """Primary equipment and the IEDs whose logical nodes are attached to it; type "MOT" is a motor."""
+
+    name: str
+    type: str
+    description: str
+    ieds: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Bay:
+    """A bay; `ieds` are those attached to the bay itself."""
+
+    name: str
+    description: str
+    voltage_level: str
+    equipment: tuple[Equipment, ...]
+    ieds: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Substation:
+    name: str
+    description: str
+    bays: tuple[Bay, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MotorFeeder:
+    """A motor, the relay that protects it, and the site and bay they stand in."""
+
+    site: str
+    site_description: str
+    bay: str
+    motor: str
+    motor_description: str
+    ied: str
+
+
+@dataclass(frozen=True, slots=True)
+class Scl:
+    """An SCL file (ICD, CID, IID, SCD). `warnings` are oddities that did not keep it from being read."""
+
+    path: Path
+    header: Header
+    ieds: tuple[Ied, ...]
+    communication: tuple[SubNetwork, ...]
+    substations: tuple[Substation, ...]
+    warnings: tuple[Finding, ...]
+
+    def ied(self, name: str) -> Ied:
+        """The IED of a name; SclError when the file has none."""
+        for ied in self.ieds:
+            if ied.name == name:
+                return ied
+        known = ", ".join(ied.name for ied in self.ieds[:20]) or "none at all"
+        raise SclError(self.path, element="<IED>", expected=f'an IED with name="{name}"', found=known)
+
+    def address(self, ied_name: str) -> Address:
+        """Where the IED's MMS server is reached: the P elements IP and MMS-Port (102 where there is none).
+
+        An IED on several subnetworks is reached where an access point has a server and an IP address.
+        """
+        connected = self.connected_access_point(ied_name)
+        host = connected.parameters["IP"]
+        port = connected.parameters.get("MMS-Port", str(MMS_PORT))
+        try:
+            ip_address(host)
+        except ValueError:
+            raise self._address_error(connected, "IP", "an IPv4 or IPv6 address", host) from None
+        if not (port.isascii() and port.isdecimal() and len(port) <= 5 and 0 < int(port) < 65536):
+            raise self._address_error(connected, "MMS-Port", "a port from 1 to 65535", port)
+        return Address(host, int(port))
+
+    def connected_access_point(self, ied_name: str) -> ConnectedAccessPoint:
+        """The ConnectedAP whose address clients use; SclError when no access point has an IP address."""
+        ied = self.ied(ied_name)
+        serving = {point.name for point in ied.access_points if point.logical_devices}
+        candidates = [
+            connected
+            for network in self.communication
+            for connected in network.connected_access_points
+            if connected.ied == ied_name and "IP" in connected.parameters
+        ]
+        candidates.sort(key=lambda connected: connected.access_point not in serving)
+        if not candidates:
+            raise SclError(
+                self.path,
+                element="<Communication>",
+                expected=f'a ConnectedAP with iedName="{ied_name}" and an address with <P type="IP">',
+                found="none",
+            )
+        return candidates[0]
+
+    def feeders(self) -> tuple[MotorFeeder, ...]:
+        """Every motor (ConductingEquipment, type MOT) with the IED attached to it or else to its bay."""
+        return tuple(self._feeders())
+
+    def _feeders(self) -> Iterator[MotorFeeder]:
+        for substation in self.substations:
+            for bay in substation.bays:
+                for motor in bay.equipment:
+                    ieds = motor.ieds or bay.ieds
+                    if motor.type == "MOT" and motor.name and ieds:
+                        yield MotorFeeder(
+                            site=substation.name,
+                            site_description=substation.description,
+                            bay=bay.name,
+                            motor=motor.name,
+                            motor_description=motor.description,
+                            ied=ieds[0],
+                        )
+
+    def _address_error(
+        self, connected: ConnectedAccessPoint, kind: str, expected: str, found: str
+    ) -> SclError:
+        element = f'<P type="{kind}"> of <ConnectedAP iedName="{connected.ied}">'
+        return SclError(
+            self.path, line=connected.line, element=element, expected=expected, found=repr(found[:60])
+        )

@@ -1,0 +1,182 @@
+"""One XML file of the Substation Configuration Language: safe parsing, and places in it for messages.
+
+The file is hostile until proven otherwise: no document type, no entities, no network, bounded size and depth.
+"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from lxml import etree
+
+from scl.errors import Finding, SclError
+
+NAMESPACE = "http://www.iec.ch/61850/2003/SCL"
+LARGEST_FILE_BYTES = 256 * 1024 * 1024
+NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
+IED_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
+IDENTITY = ("name", "id", "inst", "iedName", "apName", "prefix", "lnClass", "lnType", "type", "doName")
+EXCERPT = 60
+
+
+def parse(path: Path) -> etree._ElementTree:
+    """The XML tree of a file, without comments; SclError when it is no well-formed and safe XML."""
+    try:
+        with path.open("rb") as file:
+            data = file.read(LARGEST_FILE_BYTES + 1)
+    except OSError as error:
+        raise SclError(path, expected="a readable file", found=error.strerror or str(error)) from error
+    except ValueError as error:  # a NUL in the path
+        raise SclError(path, expected="a file name", found=str(error)) from error
+    if len(data) > LARGEST_FILE_BYTES:
+        raise SclError(path, expected=f"at most {LARGEST_FILE_BYTES} bytes", found="a larger file")
+    parser = etree.XMLParser(
+        resolve_entities=False,
+        load_dtd=False,
+        no_network=True,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+    )
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as error:
+        raise SclError(path, line=error.lineno, expected="well-formed XML", found=str(error.msg)) from error
+    tree = root.getroottree()
+    if tree.docinfo.doctype:
+        raise SclError(
+            path, expected="no document type declaration (it can define entities)", found=tree.docinfo.doctype
+        )
+    return tree
+
+
+def excerpt(element: etree._Element) -> str:
+    """The start tag for a message: its name and the attributes that identify it, shortened."""
+    name = etree.QName(element).localname
+    identity = [f'{key}="{element.get(key)}"' for key in IDENTITY if element.get(key) is not None]
+    text = " ".join([name, *identity])
+    return f"<{text if len(text) <= EXCERPT else text[:EXCERPT] + '...'}>"
+
+
+class Document:
+    """An SCL file being read: typed access to elements and attributes, and the findings collected so far."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.findings: list[Finding] = []
+        self.root = parse(path).getroot()
+        name = etree.QName(self.root)
+        self._prefix = f"{{{NAMESPACE}}}" if name.namespace else ""
+        if name.localname != "SCL" or name.namespace not in (NAMESPACE, None):
+            raise self.error(self.root, f"a root element SCL of {NAMESPACE}", str(self.root.tag))
+        if not name.namespace:
+            self.note(self.root, f"no namespace: read as {NAMESPACE}")
+
+    def error(self, element: etree._Element, expected: str, found: str) -> SclError:
+        return SclError(
+            self.path,
+            line=_line(element),
+            element=excerpt(element),
+            expected=expected,
+            found=found if len(found) <= 2 * EXCERPT else found[: 2 * EXCERPT] + "...",
+        )
+
+    def note(self, element: etree._Element, message: str) -> None:
+        self.findings.append(Finding(_line(element), excerpt(element), message))
+
+    def children(self, element: etree._Element | None, *tags: str) -> Iterator[etree._Element]:
+        """Children of the SCL namespace with one of the tags, in file order."""
+        if element is not None:
+            yield from element.iterchildren(*(self._prefix + tag for tag in tags))
+
+    def descendants(self, element: etree._Element, tag: str) -> Iterator[etree._Element]:
+        """Elements of a tag at any depth, in file order, but for those inside a Private element."""
+        pending = [element]
+        while pending:
+            current = pending.pop()
+            if current is not element and current.tag == self._prefix + tag:
+                yield current
+            if current.tag != f"{self._prefix}Private":
+                pending.extend(current.iterchildren(etree.Element, reversed=True))
+
+    def child(self, element: etree._Element | None, tag: str) -> etree._Element | None:
+        return next(self.children(element, tag), None)
+
+    def add(self, parent: etree._Element, tag: str, **attributes: str) -> etree._Element:
+        """Append a child of the SCL namespace."""
+        return etree.SubElement(parent, self._prefix + tag, attributes)
+
+    def required(self, element: etree._Element, attribute: str) -> str:
+        value = element.get(attribute)
+        if value is None:
+            raise self.error(element, f"an attribute {attribute}", "none")
+        return value
+
+    def label(self, element: etree._Element, attribute: str) -> str:
+        """A name outside the data model; an empty one, with a finding, where it is missing."""
+        value = element.get(attribute)
+        if not value:
+            self.note(element, f"no {attribute}")
+        return value or ""
+
+    def name(self, element: etree._Element, attribute: str, *, default: str | None = None) -> str:
+        """An attribute that becomes part of a reference: letters, digits, _ and - only."""
+        value = element.get(attribute, default)
+        if value is None:
+            raise self.error(element, f"an attribute {attribute}", "none")
+        if value != value.strip():
+            self.note(element, f"blanks around {attribute}={value!r} are passed over")
+            value = value.strip()
+        if value != default and not NAME.fullmatch(value):
+            raise self.error(
+                element, f"{attribute} of 1 to 64 letters, digits, underscores and hyphens", repr(value)
+            )
+        return value
+
+    def integer(
+        self, element: etree._Element, attribute: str, default: int, *, maximum: int = 2**32 - 1
+    ) -> int:
+        """A number from 0 to maximum; the default, with a finding, where it cannot be one."""
+        text = element.get(attribute)
+        number = default if text is None else decimal(text)
+        if number is None or not 0 <= number <= maximum:
+            self.note(element, f"{attribute}={text!r} is no number from 0 to {maximum}: taken as {default}")
+            return default
+        return number
+
+    def boolean(self, element: etree._Element | None, attribute: str, *, default: bool = False) -> bool:
+        text = None if element is None else element.get(attribute)
+        if element is None or text is None:
+            return default
+        value = {"true": True, "1": True, "false": False, "0": False}.get(text.strip().lower())
+        if value is None:
+            self.note(
+                element, f"{attribute}={text!r} is neither true nor false: taken as {str(default).lower()}"
+            )
+            return default
+        return value
+
+
+def node_name(document: Document, element: etree._Element, inst: str) -> tuple[str, str, str]:
+    """Prefix, class and instance number of an LN, LN0, LNode or FCDA; `inst` is the number's attribute."""
+    is_node_zero = etree.QName(element).localname == "LN0"
+    return (
+        document.name(element, "prefix", default=""),
+        document.name(element, "lnClass", default="LLN0" if is_node_zero else None),
+        document.name(element, inst, default=""),
+    )
+
+
+def decimal(text: str) -> int | None:
+    """A decimal number of at most 19 digits; None for anything else."""
+    stripped = text.strip()
+    return int(stripped) if re.fullmatch(r"[0-9]{1,19}", stripped) else None
+
+
+def content(element: etree._Element) -> str:
+    """Text of an element, without surrounding blanks."""
+    return (element.text or "").strip()
+
+
+def _line(element: etree._Element) -> int:
+    return element.sourceline or 0

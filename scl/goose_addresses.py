@@ -1,0 +1,58 @@
+"""Multicast addresses of GOOSE control blocks, from the GSE elements of the communication section."""
+
+import re
+from collections.abc import Mapping
+
+from lxml import etree
+
+from scl.data_model import GooseAddress
+from scl.document import Document, content, decimal
+
+MAC = re.compile(r"(?:[0-9A-Fa-f]{2}[-:]?){5}[0-9A-Fa-f]{2}")
+
+GooseAddresses = Mapping[tuple[str, str, str], GooseAddress]
+"""By IED name, logical device inst and control block name."""
+
+
+def goose_addresses(document: Document) -> GooseAddresses:
+    """The addresses of a document; unusable ones become findings."""
+    addresses: dict[tuple[str, str, str], GooseAddress] = {}
+    for section in document.children(document.root, "Communication"):
+        for connected in document.descendants(section, "ConnectedAP"):
+            for element in document.children(connected, "GSE"):
+                key = connected.get("iedName", ""), element.get("ldInst", ""), element.get("cbName", "")
+                address = _address(document, element)
+                if address is not None:
+                    addresses.setdefault(key, address)
+    return addresses
+
+
+def _address(document: Document, element: etree._Element) -> GooseAddress | None:
+    parameters = {
+        parameter.get("type", ""): content(parameter)
+        for parameter in document.children(document.child(element, "Address"), "P")
+    }
+    mac = parameters.get("MAC-Address", "")
+    application_id = _hexadecimal(parameters.get("APPID", "0"))
+    vlan_id = _hexadecimal(parameters.get("VLAN-ID", "0"))
+    vlan_priority = decimal(parameters.get("VLAN-PRIORITY", "4"))
+    if not MAC.fullmatch(mac) or application_id is None or vlan_id is None or vlan_priority is None:
+        document.note(element, "no usable multicast address: left out")
+        return None
+    return GooseAddress(
+        mac=bytes.fromhex(re.sub("[-:]", "", mac)),
+        application_id=application_id,
+        vlan_id=vlan_id & 0xFFF,
+        vlan_priority=vlan_priority & 7,
+        minimum_time_ms=_milliseconds(document, element, "MinTime"),
+        maximum_time_ms=_milliseconds(document, element, "MaxTime"),
+    )
+
+
+def _hexadecimal(text: str) -> int | None:
+    return int(text, 16) if re.fullmatch("[0-9A-Fa-f]{1,4}", text) else None
+
+
+def _milliseconds(document: Document, element: etree._Element, tag: str) -> int | None:
+    child = document.child(element, tag)
+    return None if child is None else decimal(content(child))

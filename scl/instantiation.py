@@ -1,0 +1,97 @@
+"""Writing configuration files: the IED of an ICD under a new name, and copies with other addresses."""
+
+from collections.abc import Mapping
+from ipaddress import ip_address
+from pathlib import Path
+
+from lxml import etree
+
+from scl.configuration import Address
+from scl.document import IED_NAME, Document
+from scl.errors import SclError
+from scl.reader import read
+
+
+def instantiate(
+    path_in: Path | str, path_out: Path | str, ied_name: str, address: Address | None = None
+) -> None:
+    """Write a CID: the one IED of an ICD under a name, and at an address, of its own.
+
+    The name replaces the ICD's (TEMPLATE by convention) wherever the file refers to it.
+    """
+    document = Document(Path(path_in))
+    rename_ied(document, ied_name)
+    if address is not None:
+        set_address(document, ied_name, address)
+    write(document, Path(path_out))
+
+
+def with_addresses(path_in: Path | str, path_out: Path | str, addresses: Mapping[str, Address]) -> None:
+    """Write a copy of an SCL file in which the named IEDs have other addresses (P elements IP and MMS-Port).
+
+    Every named IED must be in the file; of its access points the one that `Scl.address` reports is changed.
+    """
+    document = Document(Path(path_in))
+    scl = read(path_in)
+    for name, address in addresses.items():
+        set_address(document, name, address, scl.connected_access_point(name).access_point)
+    write(document, Path(path_out))
+
+
+def rename_ied(document: Document, name: str) -> None:
+    """Give the only IED of a document (an ICD) another name, in the IED and wherever it is referred to."""
+    if not IED_NAME.fullmatch(name):
+        raise SclError(
+            document.path,
+            element="<IED>",
+            expected="an IED name of letters, digits and underscores that begins with a letter",
+            found=repr(name),
+        )
+    ieds = list(document.children(document.root, "IED"))
+    if len(ieds) != 1:
+        raise document.error(document.root, "exactly one IED (an ICD)", f"{len(ieds)}")
+    old_name = document.required(ieds[0], "name")
+    ieds[0].set("name", name)
+    for element in document.root.iter(etree.Element):
+        if element.get("iedName") == old_name:
+            element.set("iedName", name)
+
+
+def set_address(document: Document, ied_name: str, address: Address, access_point: str | None = None) -> None:
+    """Change the address of an IED's ConnectedAP, of one access point or of all."""
+    _check(document.path, address)
+    found = [
+        element
+        for element in document.descendants(document.root, "ConnectedAP")
+        if element.get("iedName") == ied_name and access_point in (None, element.get("apName"))
+    ]
+    if not found:
+        raise document.error(document.root, f'a ConnectedAP with iedName="{ied_name}"', "none")
+    for element in found:
+        _set_parameter(document, element, "IP", address.host)
+        _set_parameter(document, element, "MMS-Port", str(address.port))
+
+
+def write(document: Document, path: Path) -> None:
+    """Write a document as UTF-8; comments are not kept."""
+    path.write_bytes(etree.tostring(document.root, xml_declaration=True, encoding="UTF-8", pretty_print=True))
+
+
+def _set_parameter(document: Document, connected: etree._Element, kind: str, value: str) -> None:
+    section = document.child(connected, "Address")
+    if section is None:
+        section = document.add(connected, "Address")
+        connected.insert(0, section)
+    parameter = next((each for each in document.children(section, "P") if each.get("type") == kind), None)
+    if parameter is None:
+        parameter = document.add(section, "P", type=kind)
+    parameter.text = value
+
+
+def _check(path: Path, address: Address) -> None:
+    try:
+        ip_address(address.host)
+    except ValueError:
+        raise SclError(path, expected="an IPv4 or IPv6 address", found=repr(address.host)) from None
+    if not 0 < address.port < 65536:
+        raise SclError(path, expected="a port from 1 to 65535", found=str(address.port))

@@ -1,0 +1,302 @@
+"""The data model of an IED as the .cfg text that libiec61850's ConfigFileParser reads.
+
+The parser knows no escapes: it reads lines of less than 1024 bytes, ends a word at a blank and a string at
+the first quote, and takes a line that ends in "{" for the start of a block. What the text cannot carry is
+left out (initial values of bit strings, say) or refused (names longer than the parser's buffers).
+"""
+
+import math
+from collections.abc import Iterator
+
+from scl.configuration import Scl
+from scl.data_model import (
+    DataAttribute,
+    DataObject,
+    DataSetMember,
+    FunctionalConstraint,
+    GooseControl,
+    Ied,
+    LogControl,
+    LogicalDevice,
+    LogicalNode,
+    ReportControl,
+)
+from scl.errors import SclError
+
+LONGEST_WORD = 128
+LONGEST_LINE_BYTES = 1000
+MOST_LINES = 1_000_000
+TRANSIENT = 128
+OWNER_SHOWN = 64
+
+# libiec61850's numbers, enum FunctionalConstraint and enum DataAttributeType
+CONSTRAINTS = {constraint: number for number, constraint in enumerate(FunctionalConstraint)}
+TYPES = {
+    "BOOLEAN": 0,
+    "INT8": 1,
+    "INT16": 2,
+    "INT24": 3,
+    "INT32": 3,
+    "INT64": 4,
+    "INT128": 5,
+    "INT8U": 6,
+    "INT16U": 7,
+    "INT24U": 8,
+    "INT32U": 9,
+    "FLOAT32": 10,
+    "FLOAT64": 11,
+    "Enum": 12,
+    "Octet64": 13,
+    "Octet6": 14,
+    "EntryID": 15,
+    "VisString32": 16,
+    "VisString64": 17,
+    "VisString65": 18,
+    "VisString129": 19,
+    "ObjRef": 19,
+    "VisString255": 20,
+    "Unicode255": 21,
+    "Timestamp": 22,
+    "Quality": 23,
+    "Check": 24,
+    "Dbpos": 25,
+    "Tcmd": 25,
+    "Struct": 27,
+    "EntryTime": 28,
+    "PhyComAddr": 29,
+    "Currency": 30,
+    "OptFlds": 31,
+    "TrgOps": 32,
+}
+INTEGER_RANGES = {
+    "INT8": (-(2**7), 2**7 - 1),
+    "INT16": (-(2**15), 2**15 - 1),
+    "INT24": (-(2**23), 2**23 - 1),
+    # the parser reads every signed number into 32 bits
+    "INT32": (-(2**31), 2**31 - 1),
+    "INT64": (-(2**31), 2**31 - 1),
+    "INT128": (-(2**31), 2**31 - 1),
+    "INT8U": (0, 2**8 - 1),
+    "INT16U": (0, 2**16 - 1),
+    "INT24U": (0, 2**24 - 1),
+    "INT32U": (0, 2**32 - 1),
+}
+STRING_LENGTHS = {
+    "VisString32": 32,
+    "VisString64": 64,
+    "VisString65": 65,
+    "VisString129": 129,
+    "VisString255": 255,
+    "Unicode255": 255,
+    "ObjRef": 129,
+    "Currency": 3,
+}
+
+
+def model_text(scl: Scl, ied_name: str) -> str:
+    """The .cfg text of one IED's servers, every access point's logical devices together.
+
+    SclError when the file has no such IED, it serves no data, or a name is too long for the parser.
+    """
+    ied = scl.ied(ied_name)
+    if not ied.logical_devices:
+        raise SclError(
+            scl.path,
+            element=f'<IED name="{ied_name}">',
+            expected="an access point with a Server and LDevices",
+            found="none",
+        )
+    lines: list[str] = []
+    for line in _model(ied):
+        words = line.partition("=")[0].split()
+        if (
+            len(line.encode()) > LONGEST_LINE_BYTES
+            or max(map(len, words)) > LONGEST_WORD
+            or len(lines) >= MOST_LINES
+        ):
+            raise SclError(
+                scl.path,
+                element=f'<IED name="{ied_name}">',
+                expected=f"a model of at most {MOST_LINES} lines, {LONGEST_WORD} characters a name",
+                found=f"more, at {line[:60]}",
+            )
+        lines.append(line)
+    return "\n".join(lines) + "\n"
+
+
+def _model(ied: Ied) -> Iterator[str]:
+    yield f"MODEL({ied.name}){{"
+    for device in ied.logical_devices:
+        yield f"LD({device.inst} {device.name}){{" if device.named else f"LD({device.inst}){{"
+        for node in device.logical_nodes:
+            yield from _node(ied, device, node)
+        yield "}"
+    yield "}"
+
+
+def _node(ied: Ied, device: LogicalDevice, node: LogicalNode) -> Iterator[str]:
+    yield f"LN({node.name}){{"
+    if node.setting_groups is not None and node.ln_class == "LLN0":
+        yield f"SG({node.setting_groups.active} {node.setting_groups.number})"
+    for data_object in node.data_objects:
+        yield from _object(data_object, transient=False)
+    for data_set in node.data_sets:
+        yield f"DS({data_set.name}){{"
+        for member in data_set.members:
+            yield from _member(ied, device, member)
+        yield "}"
+    for report in node.report_controls:
+        yield from _report(report, owner=ied.reports_show_owner)
+    for log_control in node.log_controls:
+        yield _log_control(device, node, log_control)
+    for log in node.logs:
+        yield f"LOG({log});"
+    for goose in node.goose_controls:
+        yield from _goose(goose)
+    yield "}"
+
+
+def _object(data_object: DataObject, *, transient: bool) -> Iterator[str]:
+    transient = transient or data_object.transient
+    yield f"DO({data_object.name} {data_object.count}){{"
+    for part in data_object.objects:
+        yield from _object(part, transient=transient)
+    for attribute in data_object.attributes:
+        if attribute.fc is FunctionalConstraint.SE:
+            # an editable setting is also read as the active group's: libiec61850 wants both, SG first
+            yield from _attribute(attribute, FunctionalConstraint.SG, transient=transient)
+        yield from _attribute(attribute, attribute.fc, transient=transient)
+    yield "}"
+
+
+def _attribute(
+    attribute: DataAttribute, constraint: FunctionalConstraint, *, transient: bool
+) -> Iterator[str]:
+    kind = TYPES.get(attribute.basic_type)
+    if kind is None:
+        return
+    triggers = attribute.trigger_options.value | (TRANSIENT if transient else 0)
+    head = f"DA({attribute.name} {attribute.count} {kind} {CONSTRAINTS[constraint]} {triggers} 0)"
+    if attribute.basic_type == "Struct":
+        yield f"{head}{{"
+        for part in attribute.attributes:
+            yield from _attribute(part, constraint, transient=transient)
+        yield "}"
+        return
+    value = _initial_value(attribute)
+    yield f"{head};" if value is None else f"{head}={value};"
+
+
+def _initial_value(attribute: DataAttribute) -> str | None:
+    """The value in the parser's notation; None where there is none, or none of its type, or no notation."""
+    text, kind = attribute.value, attribute.basic_type
+    if text is None:
+        return None
+    if kind == "Enum":
+        ordinal = attribute.ordinal
+        return str(ordinal) if ordinal is not None and abs(ordinal) < 2**31 else None
+    if kind == "BOOLEAN":
+        return {"true": "1", "1": "1", "false": "0", "0": "0"}.get(text.strip().lower())
+    if kind in INTEGER_RANGES:
+        return _integer(text, *INTEGER_RANGES[kind])
+    if kind in ("FLOAT32", "FLOAT64"):
+        return _float(text)
+    if kind in STRING_LENGTHS:
+        return _string(text, STRING_LENGTHS[kind], ascii_only=kind != "Unicode255")
+    return None
+
+
+def _integer(text: str, lowest: int, highest: int) -> str | None:
+    try:
+        number = int(text)
+    except ValueError:
+        return None
+    return str(number) if lowest <= number <= highest else None
+
+
+def _float(text: str) -> str | None:
+    try:
+        number = float(text)
+    except ValueError:
+        return None
+    return repr(number) if math.isfinite(number) else None
+
+
+def _string(text: str, longest: int, *, ascii_only: bool) -> str:
+    """A string without what would end it early; VisibleString is ISO 646, cut to its length in bytes."""
+    clean = "".join("'" if char == '"' else char for char in text.strip() if char.isprintable())
+    encoded = clean.encode("ascii", "replace") if ascii_only else clean.encode()
+    return f'"{encoded[:longest].decode(errors="ignore").rstrip("{")}"'
+
+
+def _member(ied: Ied, device: LogicalDevice, member: DataSetMember) -> Iterator[str]:
+    """A data set entry, LN$FC$DO$DA [array element [component]]; one that names no data is left out."""
+    if ied.resolve(member) is None:
+        return
+    names = member.path.split(".")
+    array = _array_depth(ied, member, names)
+    words = ["$".join((member.logical_node, member.fc, *names[:array]))]
+    if member.logical_device != device.inst:
+        words[0] = f"{member.logical_device}/{words[0]}"
+    if member.index is not None and array is not None:
+        words += [str(member.index), "$".join(names[array:])]
+    yield f"DE({' '.join(words).rstrip()});"
+
+
+def _array_depth(ied: Ied, member: DataSetMember, names: list[str]) -> int | None:
+    """How many names of a member's path lead to the array its index counts in; None without an array."""
+    if member.index is None:
+        return None
+    node = f"{member.logical_device}/{member.logical_node}"
+    for depth in range(1, len(names) + 1):
+        found = ied.find(f"{node}.{'.'.join(names[:depth])}")
+        if found is not None and found.count:
+            return depth
+    return None
+
+
+def _report(report: ReportControl, *, owner: bool) -> Iterator[str]:
+    triggers = report.trigger_options.value | (OWNER_SHOWN if owner else 0)
+    data_set = "-" if report.data_set is None else report.data_set.name
+    for instance in report.instances:
+        yield (
+            f"RC({instance} {_word(report.report_id)} {int(report.buffered)} {data_set} "
+            f"{report.configuration_revision} {triggers} {report.optional_fields.value} "
+            f"{report.buffer_time_ms} {report.integrity_period_ms});"
+        )
+
+
+def _log_control(device: LogicalDevice, node: LogicalNode, log: LogControl) -> str:
+    reference = "-" if log.log is None else f"{device.inst}/{node.name}${log.log}"
+    return (
+        f"LC({log.name} {log.data_set or '-'} {reference} {log.trigger_options.value} "
+        f"{log.integrity_period_ms} {int(log.enabled)} {int(log.reason_code)});"
+    )
+
+
+def _goose(goose: GooseControl) -> Iterator[str]:
+    if goose.data_set is None:
+        return
+    address = goose.address
+    times = (None, None) if address is None else (address.minimum_time_ms, address.maximum_time_ms)
+    minimum, maximum = (-1 if time is None else time for time in times)
+    yield (
+        f"GC({goose.name} {_word(goose.application_id)} {goose.data_set} {goose.configuration_revision} "
+        f"{int(goose.fixed_offsets)} {minimum} {maximum} ){{"
+    )
+    if address is not None:
+        yield (f"PA({address.vlan_priority} {address.vlan_id} {address.application_id} {address.mac.hex()});")
+    yield "}"
+
+
+def _word(text: str | None) -> str:
+    """A free text as one word of the parser; "-", which is none, where it cannot be one."""
+    if (
+        text is None
+        or len(text) > LONGEST_WORD
+        or not text.isascii()
+        or not text.isprintable()
+        or " " in text
+    ):
+        return "-"
+    return text or "-"

@@ -1,0 +1,165 @@
+"""Reads SCL files of editions 1, 2 and 2.1 (IEC 61850-6) into plain frozen dataclasses.
+
+Private elements and foreign namespaces are passed over. What is odd but clear becomes a finding with its
+line; what leaves the data model in doubt is an SclError.
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from lxml import etree
+
+from scl.configuration import (
+    Bay,
+    ConnectedAccessPoint,
+    Equipment,
+    Header,
+    Scl,
+    SubNetwork,
+    Substation,
+)
+from scl.data_model import Ied
+from scl.document import Document, content
+from scl.goose_addresses import goose_addresses
+from scl.ied_section import IedSection
+from scl.templates import Templates
+
+
+def read(path: Path | str) -> Scl:
+    """Read an ICD, CID, IID or SCD; SclError when it is missing, no safe XML or its model is unclear."""
+    document = Document(Path(path))
+    templates = Templates(document)
+    addresses = goose_addresses(document)
+    ieds: dict[str, Ied] = {}
+    for element in document.children(document.root, "IED"):
+        ied = IedSection(document, element, templates, addresses).read()
+        if ied.name in ieds:
+            raise document.error(element, "one IED of each name", "a second one")
+        ieds[ied.name] = ied
+    communication = _communication(document, ieds)
+    substations = _substations(document, ieds)
+    header = _header(document)
+    return Scl(
+        path=document.path,
+        header=header,
+        ieds=tuple(ieds.values()),
+        communication=communication,
+        substations=substations,
+        warnings=tuple(document.findings),
+    )
+
+
+def _header(document: Document) -> Header:
+    root = document.root
+    header = document.child(root, "Header")
+    if header is None:
+        document.note(root, "no Header")
+        header = etree.Element("Header")
+    if root.get("version") is None:
+        edition = "1"
+    else:
+        edition = "2.1" if document.integer(root, "release", 1) >= 4 else "2"
+    return Header(
+        id=header.get("id", ""),
+        version=header.get("version", ""),
+        revision=header.get("revision", ""),
+        tool=header.get("toolID", ""),
+        edition=edition,
+    )
+
+
+def _communication(document: Document, ieds: dict[str, Ied]) -> tuple[SubNetwork, ...]:
+    return tuple(
+        SubNetwork(
+            name=network.get("name", ""),
+            type=network.get("type", ""),
+            connected_access_points=tuple(
+                _connected_access_point(document, network, element, ieds)
+                for element in document.children(network, "ConnectedAP")
+            ),
+        )
+        for section in document.children(document.root, "Communication")
+        for network in document.children(section, "SubNetwork")
+    )
+
+
+def _connected_access_point(
+    document: Document, network: etree._Element, element: etree._Element, ieds: dict[str, Ied]
+) -> ConnectedAccessPoint:
+    ied = document.label(element, "iedName")
+    if ied not in ieds:
+        document.note(element, "names an IED this file does not hold")
+    return ConnectedAccessPoint(
+        ied=ied,
+        access_point=document.label(element, "apName"),
+        subnetwork=network.get("name", ""),
+        parameters=_address_parameters(document, element),
+        line=element.sourceline or 0,
+    )
+
+
+def _address_parameters(document: Document, element: etree._Element) -> dict[str, str]:
+    """The P elements of an Address by type, with or without xsi:type; the first of a type counts."""
+    parameters: dict[str, str] = {}
+    for parameter in document.children(document.child(element, "Address"), "P"):
+        parameters.setdefault(document.label(parameter, "type"), content(parameter))
+    return parameters
+
+
+def _substations(document: Document, ieds: dict[str, Ied]) -> tuple[Substation, ...]:
+    return tuple(
+        Substation(
+            name=document.label(substation, "name"),
+            description=substation.get("desc", ""),
+            bays=tuple(
+                _bay(document, level, bay, ieds)
+                for level in document.children(substation, "VoltageLevel")
+                for bay in document.children(level, "Bay")
+            ),
+        )
+        for substation in document.children(document.root, "Substation")
+    )
+
+
+def _bay(document: Document, level: etree._Element, bay: etree._Element, ieds: dict[str, Ied]) -> Bay:
+    attached = _attached(document, document.children(bay, "LNode"), ieds)
+    return Bay(
+        name=document.label(bay, "name"),
+        description=bay.get("desc", ""),
+        voltage_level=level.get("name", ""),
+        equipment=tuple(
+            _equipment(document, element, ieds, attached)
+            for element in document.children(bay, "ConductingEquipment")
+        ),
+        ieds=attached,
+    )
+
+
+def _equipment(
+    document: Document, element: etree._Element, ieds: dict[str, Ied], of_bay: tuple[str, ...]
+) -> Equipment:
+    attached = _attached(document, document.descendants(element, "LNode"), ieds)
+    equipment = Equipment(
+        name=document.label(element, "name"),
+        type=document.label(element, "type"),
+        description=element.get("desc", ""),
+        ieds=attached,
+    )
+    relays = attached or of_bay
+    if equipment.type == "MOT" and not relays:
+        document.note(element, "a motor without an LNode that names its IED: not watched")
+    elif equipment.type == "MOT" and len(relays) > 1:
+        document.note(element, f"a motor with several IEDs ({', '.join(relays)}): the first one is used")
+    return equipment
+
+
+def _attached(document: Document, nodes: Iterable[etree._Element], ieds: dict[str, Ied]) -> tuple[str, ...]:
+    """IEDs that LNodes name, each once; "None" is the standard's word for a function not yet assigned."""
+    names: dict[str, None] = {}
+    for node in nodes:
+        name = node.get("iedName", "None")
+        if name in ieds:
+            names[name] = None
+        elif name != "None":
+            document.note(node, "names an IED this file does not hold")
+    return tuple(names)

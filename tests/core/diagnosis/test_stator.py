@@ -1,0 +1,209 @@
+"""Diagnoses of recordings made by independent phase circuits: verdict, phase, level, load, and refusals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.diagnosis.errors import DiagnosisError
+from core.diagnosis.stator import diagnose
+from core.diagnosis.verdict import Diagnosis, Verdict
+from core.machines.parameters import Motor
+from core.recordings import Channel, Quantity, Recording, RecordingError
+from core.signals.clarke import clarke
+from tests.core.motors import ALL, LARGE, MEDIUM, REFERENCE
+from tests.core.phase_circuits import Fault, recording, running
+
+IDS = [motor.name for motor in ALL]
+
+
+def healthy_record() -> Recording:
+    return recording(running(REFERENCE, 0.5), noise=0.005)
+
+
+@pytest.mark.parametrize("motor", ALL, ids=IDS)
+@pytest.mark.parametrize("reverse", [False, True], ids=["abc", "acb"])
+@pytest.mark.parametrize("winding", [0, 1, 2])
+def test_shorted_turns_are_found_in_their_phase(motor: Motor, reverse: bool, winding: int) -> None:
+    truth = running(motor, 0.6, fault=Fault(0.06, winding), unbalance=0.01, reverse=reverse)
+    result = diagnose(recording(truth, noise=0.01, current_delay_s=40e-6), motor)
+    assert result.verdict is Verdict.FAULT
+    assert result.theta_f == winding
+    assert result.phase == "abc"[winding]
+    assert result.mu_f == pytest.approx(0.06, abs=0.001)
+    assert result.load_level == pytest.approx(0.6, abs=0.02)
+    assert result.time_offset_s == pytest.approx(40e-6, abs=20e-6)
+    assert result.mu_f is not None
+    assert result.mu_f_ci95 is not None
+    assert result.mu_f_ci95[0] < result.mu_f < result.mu_f_ci95[1]
+
+
+@pytest.mark.parametrize("motor", ALL, ids=IDS)
+def test_turns_bridged_by_a_resistance_count_by_their_equivalent_level(motor: Motor) -> None:
+    level, ratio = 0.06, 0.5
+    fault = Fault(level, 1, ratio * level * motor.parameters.stator_resistance_ohm)
+    result = diagnose(recording(running(motor, 0.6, fault=fault), noise=0.005), motor)
+    assert result.verdict is Verdict.FAULT
+    assert result.phase == "b"
+    assert result.mu_f == pytest.approx(level / (1 + ratio), abs=0.001)
+
+
+@pytest.mark.parametrize("motor", ALL, ids=IDS)
+@pytest.mark.parametrize("load", [0.0, 0.1, 0.8])
+@pytest.mark.parametrize("unbalance", [0.0, 0.03, 0.05j])
+def test_an_unbalanced_supply_is_no_fault(motor: Motor, load: float, unbalance: complex) -> None:
+    truth = running(motor, load, unbalance=unbalance)
+    result = diagnose(recording(truth, noise=0.01, current_gains=(1.002, 0.998, 1.001)), motor)
+    assert result.verdict is Verdict.HEALTHY
+    assert result.theta_f is None
+    assert result.mu_f is not None
+    assert result.mu_f < 0.002
+    assert result.load_level == pytest.approx(load, abs=0.03)
+
+
+def test_a_current_sensor_out_of_class_is_an_asymmetry_and_no_fault() -> None:
+    result = diagnose(
+        recording(running(REFERENCE, 0.5), noise=0.002, current_gains=(1.0, 0.88, 1.0)), REFERENCE
+    )
+    assert result.verdict is Verdict.WATCH
+    assert result.theta_f is None
+    assert "no phase explain" in result.reasons[0]
+
+
+def test_the_thesis_model_finds_the_phase_too() -> None:
+    truth = running(REFERENCE, 0.5, fault=Fault(0.05, 2))
+    result = diagnose(recording(truth, noise=0.005), REFERENCE, model="shorted-winding")
+    assert result.model == "shorted-winding"
+    assert result.theta_f == 2
+
+
+def test_line_voltages_serve_as_well_as_phase_voltages() -> None:
+    record = recording(running(MEDIUM, 0.5, fault=Fault(0.03, 1)), noise=0.002)
+    samples = record.samples.copy()
+    samples[3:] = record.samples[3:] - np.roll(record.samples[3:], -1, axis=0)
+    lines = tuple(Channel("V" + p.upper(), Quantity.LINE_VOLTAGE, p, "V") for p in ("ab", "bc", "ca"))
+    result = diagnose(replace(record, samples=samples, channels=record.channels[:3] + lines), MEDIUM)
+    assert result.verdict is Verdict.FAULT
+    assert result.mu_f == pytest.approx(0.03, abs=0.001)
+
+
+@pytest.mark.parametrize("rate", [960.0, 1_600.0, 8_000.0])
+def test_slower_relays_serve_too(rate: float) -> None:
+    truth = running(REFERENCE, 0.5, fault=Fault(0.04, 0))
+    result = diagnose(recording(truth, noise=0.005, sample_rate_hz=rate), REFERENCE)
+    assert result.verdict is Verdict.FAULT
+    assert result.phase == "a"
+    assert result.mu_f == pytest.approx(0.04, abs=0.002)
+
+
+def test_intervals_cover_the_truth() -> None:
+    """White noise, 40 records: intervals of 95 % miss more than 6 times in one of a hundred such tests."""
+    truth = running(REFERENCE, 0.5, fault=Fault(0.05, 1))
+    misses = 0
+    for seed in range(40):
+        result = diagnose(recording(truth, noise=0.05, seconds=0.3, seed=seed), REFERENCE)
+        assert result.mu_f_ci95 is not None
+        misses += not result.mu_f_ci95[0] <= 0.05 <= result.mu_f_ci95[1]
+    assert misses <= 6
+
+
+def spoilt(kind: str) -> Recording:  # noqa: C901 - one case a check
+    """A healthy recording with one thing wrong."""
+    record = healthy_record()
+    x, channels = record.samples.copy(), list(record.channels)
+    match kind:
+        case "missing samples":
+            x[1, 300] = np.nan
+        case "duration":
+            x = x[:, :1000]
+        case "clipping IA":
+            x[0] = np.clip(x[0], -1.0, 1.0)
+            channels[0] = replace(channels[0], full_scale=1.0)
+        case "held samples IB":
+            x[1] = np.repeat(x[1, ::100], 100)
+        case "frequency":
+            t = np.arange(6000) / 10_000.0
+            x = np.sqrt(2) * np.cos(2 * np.pi * 35.0 * t - np.array([[0, 2, 4, 0, 2, 4]]).T * np.pi / 3)
+            x[3:] *= 220
+        case "voltage":
+            x[3:] *= 0.1
+        case "current":
+            x[:3] *= 0.001
+        case "phase order":
+            x[[1, 2]] = x[[2, 1]]
+        case "phase loss":
+            x[2] *= 0.02
+        case "current sum":
+            x[2] *= 0.4
+        case "power direction":
+            x[:3] *= -1
+        case "steadiness":
+            x[:3] *= np.linspace(1.0, 1.6, x.shape[1])
+    return replace(record, samples=x, channels=tuple(channels))
+
+
+@pytest.mark.parametrize(
+    "check",
+    [
+        "missing samples", "duration", "clipping IA", "held samples IB", "frequency", "voltage", "current",
+        "phase order", "phase loss",
+        "current sum", "power direction", "steadiness",
+    ],
+)  # fmt: skip
+def test_the_gate_refuses_with_name_figure_and_reason(check: str) -> None:
+    result = diagnose(spoilt(check), REFERENCE)
+    assert result.verdict is Verdict.UNDIAGNOSABLE
+    assert result.mu_f is None
+    assert result.evaluations == 0
+    failed = [finding for finding in result.quality if not finding.passed]
+    assert check in [finding.name for finding in failed]
+    assert all(finding.message for finding in failed)
+    assert any(reason.startswith(check) for reason in result.reasons)
+
+
+def test_silence_is_undiagnosable() -> None:
+    record = healthy_record()
+    result = diagnose(replace(record, samples=np.zeros_like(record.samples)), REFERENCE)
+    assert result.verdict is Verdict.UNDIAGNOSABLE
+
+
+def test_missing_voltages_are_a_recording_error() -> None:
+    record = healthy_record()
+    currents_only = replace(record, samples=record.samples[:3], channels=record.channels[:3])
+    with pytest.raises(RecordingError, match="voltages: expected three phase voltages"):
+        diagnose(currents_only, REFERENCE)
+
+
+def test_unknown_method_and_model_name_the_known_ones() -> None:
+    with pytest.raises(DiagnosisError, match="known: hcpa"):
+        diagnose(healthy_record(), REFERENCE, method="dowsing")
+    with pytest.raises(DiagnosisError, match="split-winding"):
+        diagnose(healthy_record(), REFERENCE, model="perfect")
+
+
+def test_the_document_has_the_keys_of_the_contract() -> None:
+    document = diagnose(healthy_record(), REFERENCE).as_dict()
+    assert list(document) == [
+        "verdict", "mu_f", "mu_f_ci95", "theta_f", "phase", "load_level", "time_offset_s", "residual_rms_A",
+        "evaluations", "compute_seconds", "quality", "reasons", "model", "method",
+    ]  # fmt: skip
+    assert document["method"] == "hcpa"
+
+
+def test_residual_of_a_delta_is_given_in_line_amperes() -> None:
+    """White noise on the lines: the residual over both axes is sqrt 2 times the noise of one."""
+    clean = recording(running(LARGE, 0.6))
+    samples = clean.samples.copy()
+    samples[:3] += np.random.default_rng(3).standard_normal((3, samples.shape[1]))
+    record = replace(clean, samples=samples)
+    result = diagnose(record, LARGE)
+    noise = np.std(clarke(record.samples[:3] - clean.samples[:3]))
+    assert result.residual_rms_A == pytest.approx(np.sqrt(2) * noise, rel=0.05)
+
+
+def test_a_diagnosis_is_repeatable() -> None:
+    def figures(result: Diagnosis) -> tuple[object, ...]:
+        return result.mu_f, result.load_level, result.evaluations
+
+    record = healthy_record()
+    assert figures(diagnose(record, REFERENCE)) == figures(diagnose(record, REFERENCE))

@@ -1,0 +1,88 @@
+"""MOTOR.toml: what it accepts, and how it says what it refuses."""
+
+from pathlib import Path
+
+import pytest
+
+from core.machines.motor_file import MotorFileError, read_motor
+from core.machines.parameters import Connection
+
+COMPLETE = """
+[nameplate]
+rated_power_W = 800
+rated_voltage_V = 380
+rated_frequency_Hz = 50
+pole_pairs = 2
+connection = "delta"
+
+[parameters]
+stator_resistance_ohm = 8.4
+rotor_resistance_ohm = 8.2
+stator_leakage_H = 0.0328
+rotor_leakage_H = 0.0328
+stator_self_inductance_H = 0.4377
+inertia_kgm2 = 0.0229
+
+[channels]
+ia = "I1"
+ib = "I2"
+ic = "I3"
+
+[limits]
+fault_level = 0.01
+"""
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "PUMP-7.toml"
+    path.write_text(text, "utf-8")
+    return path
+
+
+def test_reads_every_field(tmp_path: Path) -> None:
+    motor = read_motor(written(tmp_path, COMPLETE))
+    assert motor.name == "PUMP-7"
+    assert motor.nameplate.connection is Connection.DELTA
+    assert motor.nameplate.rated_torque_Nm == pytest.approx(5.093, abs=1e-3)
+    assert motor.parameters.magnetising_inductance_H == pytest.approx(0.65655)
+    assert motor.channels.currents == ("I1", "I2", "I3")
+    assert motor.channels.phase_voltages is None
+    assert motor.limits.fault_level == 0.01
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "field", "expected"),
+    [
+        ("rated_power_W = 800", "", "[nameplate] rated_power_W", "a number above zero"),
+        ("rated_power_W = 800", "rated_power_W = -1", "[nameplate] rated_power_W", "a number above zero"),
+        ("rated_power_W = 800", "rated_power_W = true", "[nameplate] rated_power_W", "a number above zero"),
+        ("rated_power_W = 800", "rated_power_W = nan", "[nameplate] rated_power_W", "a number above zero"),
+        ("pole_pairs = 2", "pole_pairs = 1.5", "[nameplate] pole_pairs", "a whole number"),
+        ('"delta"', '"zigzag"', "[nameplate] connection", '"star" or "delta"'),
+        ('ib = "I2"', "", "[channels] ib", "a channel name"),
+        ('ib = "I2"', "ib = 2", "[channels] ib", "a channel name"),
+        ("[limits]", "[limit]", "limit", "one of the tables"),
+        ("fault_level", "fault_levle", "[limits] fault_levle", "one of"),
+        ("[parameters]", "[[parameters]]", "[parameters]", "a table"),
+        ("[parameters]", "[parameters", "file", "valid TOML"),
+    ],
+)
+def test_refusal_names_file_field_and_expectation(
+    tmp_path: Path, old: str, new: str, field: str, expected: str
+) -> None:
+    assert old in COMPLETE
+    with pytest.raises(MotorFileError) as refusal:
+        read_motor(written(tmp_path, COMPLETE.replace(old, new, 1)))
+    assert refusal.value.field == field
+    assert expected in refusal.value.expected
+    assert "PUMP-7.toml" in str(refusal.value)
+
+
+def test_a_missing_file_and_a_missing_table_are_named(tmp_path: Path) -> None:
+    with pytest.raises(MotorFileError, match="readable TOML file"):
+        read_motor(tmp_path / "nowhere.toml")
+    with pytest.raises(MotorFileError, match=r"\[nameplate\]: expected a table, found nothing"):
+        read_motor(written(tmp_path, ""))
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(MotorFileError, match="valid TOML in UTF-8"):
+        read_motor(tmp_path / "binary.toml")

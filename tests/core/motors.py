@@ -1,0 +1,20 @@
+"""Three motors of different rating, the first the thesis's (Table 3.2)."""
+
+from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
+
+REFERENCE = Motor(
+    "reference",
+    Nameplate(rated_power_W=800.0, rated_voltage_V=380.0, rated_frequency_Hz=50.0, pole_pairs=2),
+    MachineParameters(8.4, 8.2, 0.0328, 0.0328, 0.4377, 0.0229),
+)
+MEDIUM = Motor(
+    "medium",
+    Nameplate(rated_power_W=7_500.0, rated_voltage_V=400.0, rated_frequency_Hz=50.0, pole_pairs=2),
+    MachineParameters(0.7384, 0.7402, 0.003045, 0.003045, 0.08273, 0.0343),
+)
+LARGE = Motor(
+    "large",
+    Nameplate(37_000.0, 400.0, 50.0, pole_pairs=2, connection=Connection.DELTA),
+    MachineParameters(0.247, 0.1509, 0.002172, 0.002172, 0.05422, 0.37),
+)
+ALL = (REFERENCE, MEDIUM, LARGE)

@@ -1,0 +1,384 @@
+"""What the reader makes of an SCL file: types resolved, instances laid over them, oddities reported."""
+
+import pickle
+from pathlib import Path
+
+import pytest
+
+import scl
+from scl import SclError
+from scl.data_model import DataAttribute, FunctionalConstraint, TriggerOptions
+from tests.scl.documents import COMMUNICATION, NODE_ZERO, TEMPLATES, scl_text, write_scl
+
+
+def read(tmp_path: Path, **parts: str) -> scl.Scl:
+    return scl.read(write_scl(tmp_path / "relay.cid", scl_text(**parts)))
+
+
+def attribute(read_scl: scl.Scl, reference: str) -> DataAttribute:
+    found = read_scl.ied("R1").find(reference)
+    assert isinstance(found, DataAttribute)
+    return found
+
+
+def messages(read_scl: scl.Scl) -> str:
+    return "\n".join(map(str, read_scl.warnings))
+
+
+def test_components_of_a_struct_take_constraint_and_triggers_of_the_attribute(tmp_path: Path) -> None:
+    magnitude = attribute(read(tmp_path), "LD0/GGIO1.AnIn1.mag.f")
+    assert magnitude.fc is FunctionalConstraint.MX
+    assert magnitude.trigger_options is TriggerOptions.DATA_CHANGE
+
+
+def test_instance_values_stand_over_type_defaults(tmp_path: Path) -> None:
+    read_scl = read(
+        tmp_path,
+        nodes="""<LN lnClass="GGIO" inst="1" lnType="GGIO">
+          <DOI name="Ind1"><DAI name="d"><Val>from the instance</Val></DAI></DOI>
+          <DOI name="AnIn1"><SDI name="units"><DAI name="SIUnit"><Val>V</Val></DAI></SDI></DOI>
+        </LN><LN lnClass="GGIO" inst="2" lnType="GGIO"/>""",
+    )
+    assert read_scl.warnings == ()
+    assert attribute(read_scl, "R1LD0/GGIO1.Ind1.d").value == "from the instance"
+    assert attribute(read_scl, "LD0/GGIO1.AnIn1.units.SIUnit").ordinal == 29
+    assert attribute(read_scl, "LD0/GGIO2.Ind1.d").value == "from the type"
+    assert attribute(read_scl, "LD0/GGIO2.AnIn1.units.SIUnit").ordinal == 5
+
+
+def test_value_of_the_first_setting_group_is_taken(tmp_path: Path) -> None:
+    node = """<LN lnClass="GGIO" inst="1" lnType="GGIO"><DOI name="Ind1"><DAI name="d">
+      <Val sGroup="1">one</Val><Val sGroup="2">two</Val></DAI></DOI></LN>"""
+    assert attribute(read(tmp_path, nodes=node), "LD0/GGIO1.Ind1.d").value == "one"
+
+
+@pytest.mark.parametrize(
+    ("attributes", "edition"),
+    [
+        ("", "1"),
+        ('version="2007" revision="A"', "2"),
+        ('version="2007" revision="B"', "2"),
+        ('version="2007" revision="B" release="4"', "2.1"),
+    ],
+)
+def test_editions(tmp_path: Path, attributes: str, edition: str) -> None:
+    read_scl = read(tmp_path, root=f'xmlns="http://www.iec.ch/61850/2003/SCL" {attributes}')
+    assert read_scl.header.edition == edition
+
+
+def test_private_and_foreign_parts_are_passed_over(tmp_path: Path) -> None:
+    read_scl = read(
+        tmp_path,
+        root='xmlns="http://www.iec.ch/61850/2003/SCL" xmlns:x="urn:vendor" version="2007"',
+        services='<Private type="x"><x:IED name="R2"/><LDevice/></Private><x:AccessPoint name="no"/>',
+        nodes="""<!-- comment --><?instruction?><x:LN/>
+          <LN lnClass="GGIO" inst="1" lnType="GGIO"><Private type="x"><x:Val>3</x:Val></Private></LN>""",
+    )
+    assert read_scl.warnings == ()
+    assert [node.name for node in read_scl.ied("R1").logical_nodes()] == ["LLN0", "GGIO1"]
+
+
+def test_file_without_namespace_is_read_with_a_warning(tmp_path: Path) -> None:
+    read_scl = read(tmp_path, root='version="2007"')
+    assert attribute(read_scl, "LD0/GGIO1.Ind1.q").basic_type == "Quality"
+    assert "no namespace" in messages(read_scl)
+
+
+def test_ld_name_is_the_domain_and_data_sets_follow_it(tmp_path: Path) -> None:
+    node_zero = """<LN0 lnClass="LLN0" inst="" lnType="LLN0"><DataSet name="DS1">
+        <FCDA ldInst="LD0" lnClass="GGIO" lnInst="1" doName="AnIn1" daName="mag.f" fc="MX"/>
+      </DataSet></LN0>"""
+    ied = read(tmp_path, device='inst="LD0" ldName="Motor7"', node_zero=node_zero).ied("R1")
+    assert [device.name for device in ied.logical_devices] == ["Motor7"]
+    (data_set,) = ied.data_sets(covering="Motor7/GGIO1.AnIn1")
+    assert data_set.reference == "Motor7/LLN0.DS1"
+    assert not data_set.covers("Motor7/GGIO1.AnIn10")
+    assert not data_set.covers("Motor7/GGIO1.AnIn1.q")
+
+
+def test_indexed_reports_have_one_control_block_a_client(tmp_path: Path) -> None:
+    node_zero = """<LN0 lnClass="LLN0" lnType="LLN0">
+      <ReportControl name="Meas" buffered="false" confRev="3" intgPd="1000" bufTime="20">
+        <TrgOps period="true"/><OptFields seqNum="true" bufOvfl="false"/><RptEnabled max="3"/></ReportControl>
+      <ReportControl name="Ev" indexed="false" buffered="true" confRev="1"><OptFields/></ReportControl>
+    </LN0>"""
+    metering, events = read(tmp_path, node_zero=node_zero).ied("R1").report_controls()
+    assert metering.instances == ("Meas01", "Meas02", "Meas03")
+    assert metering.references[2] == "R1LD0/LLN0.RP.Meas03"
+    assert metering.trigger_options == TriggerOptions.INTEGRITY | TriggerOptions.GENERAL_INTERROGATION
+    assert (metering.integrity_period_ms, metering.buffer_time_ms) == (1000, 20)
+    assert events.references == ("R1LD0/LLN0.BR.Ev",)
+    assert events.data_set is None
+
+
+def test_logs_settings_and_goose(tmp_path: Path) -> None:
+    node_zero = """<LN0 lnClass="LLN0" lnType="LLN0">
+      <DataSet name="DS1"><FCDA ldInst="LD0" lnClass="GGIO" lnInst="1" doName="Ind1" fc="ST"/></DataSet>
+      <LogControl name="EventLog" datSet="DS1" logName="GeneralLog"/><SettingControl numOfSGs="3" actSG="2"/>
+      <GSEControl name="Trip" appID="R1 trip" datSet="DS1" confRev="7"/>
+      <GSEControl name="Old" type="GSSE" appID="x"/><Log/></LN0>"""
+    communication = """<Communication><SubNetwork name="N"><ConnectedAP iedName="R1" apName="S1">
+      <GSE ldInst="LD0" cbName="Trip"><Address><P type="MAC-Address">01-0C-CD-01-00-03</P>
+        <P type="APPID">3001</P><P type="VLAN-ID">00A</P><P type="VLAN-PRIORITY">4</P></Address>
+        <MinTime unit="s" multiplier="m">4</MinTime></GSE>
+      <GSE ldInst="LD0" cbName="Old"><Address><P type="MAC-Address">everywhere</P></Address></GSE>
+      </ConnectedAP></SubNetwork></Communication>"""
+    read_scl = read(tmp_path, node_zero=node_zero, communication=communication)
+    node = read_scl.ied("R1").logical_nodes("LLN0")[0]
+    assert node.setting_groups is not None
+    assert (node.setting_groups.number, node.setting_groups.active) == (3, 2)
+    assert node.logs == ("GeneralLog",)
+    assert (node.log_controls[0].data_set, node.log_controls[0].log) == ("DS1", "GeneralLog")
+    (goose,) = node.goose_controls
+    assert goose.address is not None
+    assert goose.address.mac == bytes.fromhex("010CCD010003")
+    assert (goose.address.application_id, goose.address.vlan_id) == (0x3001, 10)
+    assert (goose.address.minimum_time_ms, goose.address.maximum_time_ms) == (4, None)
+    assert "no usable multicast address" in messages(read_scl)
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        ({"header": ""}, "no Header"),
+        ({"templates": TEMPLATES.replace('DA name="q"', 'DA name="q "')}, "blanks around name='q '"),
+        ({"nodes": '<LN lnClass="GGIO" inst="1" lnType="GGIO"/>' * 2}, "a second logical node GGIO1"),
+        ({"node_zero": ""}, "no LN0"),
+        (
+            {"node_zero": '<LN0 lnType="LLN0"><ReportControl name="R" datSet="gone"/></LN0>'},
+            "no DataSet 'gone'",
+        ),
+        (
+            {"node_zero": '<LN0 lnType="LLN0"><ReportControl name="R" bufTime="soon" buffered="si"/></LN0>'},
+            "bufTime='soon' is no number",
+        ),
+        (
+            {
+                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
+                '<FCDA ldInst="LD9" lnClass="GGIO" doName="Ind1" fc="ST"/></DataSet></LN0>'
+            },
+            "no LDevice 'LD9'",
+        ),
+        (
+            {
+                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D"><FCDA lnClass="GGIO" fc="ST"/></DataSet>'
+                '<DataSet name="D"/></LN0>'
+            },
+            "names no data without doName",
+        ),
+        (
+            {
+                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
+                '<FCDA lnClass="GGIO" lnInst="1" doName="Ind1" fc="MX"/></DataSet></LN0>'
+            },
+            "the data model has no R1LD0/GGIO1.Ind1 [MX]",
+        ),
+        (
+            {"nodes": '<LN lnClass="GGIO" lnType="GGIO"><DOI name="Ind9"/><DOI name="Ind9"/></LN>'},
+            "the data type has nothing of this name",
+        ),
+        (
+            {"nodes": '<LN lnClass="GGIO" lnType="GGIO"><DOI name="Ind1" ix="3"/></LN>'},
+            "values of single array elements",
+        ),
+        (
+            {"templates": TEMPLATES.replace('bType="Quality"', 'bType="Quantity"')},
+            "'Quantity' is no basic type",
+        ),
+        ({"templates": TEMPLATES.replace('ord="5"', 'ord="five"')}, "ord='five' is no number"),
+        ({"templates": TEMPLATES.replace('EnumType id="Mode"', 'EnumType id="Mood"')}, "no EnumType 'Mode'"),
+        ({"templates": TEMPLATES + '<EnumType id="Mode"/>'}, "a second type of this id"),
+        (
+            {"templates": TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="Ind1" type="MV"/>')},
+            "a second member of this name",
+        ),
+        ({"templates": TEMPLATES.replace('type="Mod"/>', 'type="Mod" count="n"/>')}, "array count 'n'"),
+        ({"communication": COMMUNICATION.replace('apName="S1"', "")}, 'iedName="R1">: no apName'),
+        (
+            {
+                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
+                '<FCDA lnClass="GGIO" lnInst="1" doName="Ind1" ix="i" fc="ST"/></DataSet></LN0>'
+            },
+            "ix='i' is no number",
+        ),
+        ({"communication": COMMUNICATION.replace("R1", "R7")}, "names an IED this file does not hold"),
+    ],
+)
+def test_oddities_become_warnings_with_a_line(tmp_path: Path, parts: dict[str, str], message: str) -> None:
+    read_scl = read(tmp_path, **parts)
+    assert message in messages(read_scl)
+    assert all(finding.line > 0 for finding in read_scl.warnings)
+    assert read_scl.ied("R1").logical_nodes()
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        (
+            {"nodes": '<LN lnClass="GGIO" lnType="gone"/>'},
+            'line 10: <LN lnClass="GGIO" lnType="gone">: expected a LNodeType with id="gone"',
+        ),
+        ({"nodes": '<LN lnClass="GGIO"/>'}, "expected an attribute lnType"),
+        ({"nodes": '<LN lnClass="G G" lnType="GGIO"/>'}, "lnClass of 1 to 64 letters"),
+        ({"templates": TEMPLATES.replace('type="SPS"', 'type="gone"')}, 'a DOType with id="gone"'),
+        ({"templates": TEMPLATES.replace(' fc="DC"', "")}, "expected an attribute fc"),
+        ({"templates": TEMPLATES.replace('fc="DC"', 'fc="XX"')}, "fc, one of ST, MX"),
+        ({"device": 'inst="LD/0"'}, "inst of 1 to 64 letters"),
+        ({"device": ""}, "expected an attribute inst"),
+        ({"device": f'inst="{"L" * 64}"'}, "at most 64 characters together"),
+        (
+            {"nodes": f'<LN prefix="{"P" * 40}" lnClass="GGIO" inst="{"1" * 40}" lnType="GGIO"/>'},
+            "a name of at most 64 characters",
+        ),
+        (
+            {
+                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
+                f'<FCDA lnClass="GGIO" doName="{"x" * 130}" fc="ST"/></DataSet></LN0>'
+            },
+            "a reference of at most 129 characters",
+        ),
+        ({"nodes": '</LDevice><LDevice inst="LD0">' + NODE_ZERO}, "one LDevice of each inst"),
+        ({"root": 'xmlns="urn:something"'}, "a root element SCL"),
+    ],
+)
+def test_an_unclear_data_model_is_an_error_with_place(
+    tmp_path: Path, parts: dict[str, str], message: str
+) -> None:
+    with pytest.raises(SclError) as caught:
+        read(tmp_path, **parts)
+    assert message in str(caught.value)
+    assert "relay.cid" in str(caught.value)
+    assert caught.value.line
+    assert caught.value.expected
+    assert caught.value.found
+
+
+def test_two_ieds_of_one_name_are_refused(tmp_path: Path) -> None:
+    text = scl_text().replace("</IED>", '</IED><IED name="R1"/>')
+    with pytest.raises(SclError, match="one IED of each name"):
+        scl.read(write_scl(tmp_path / "plant.scd", text))
+
+
+def test_missing_file_and_folder_are_named(tmp_path: Path) -> None:
+    with pytest.raises(SclError, match=r"absent\.scd: expected a readable file, found No such file"):
+        scl.read(tmp_path / "absent.scd")
+    with pytest.raises(SclError, match="readable file"):
+        scl.read(tmp_path)
+    with pytest.raises(SclError, match="file name"):
+        scl.read("a\0b")
+
+
+def test_truncated_file_names_the_line(tmp_path: Path) -> None:
+    path = write_scl(tmp_path / "cut.scd", scl_text()[:900])
+    with pytest.raises(SclError, match="expected well-formed XML") as caught:
+        scl.read(path)
+    assert caught.value.line
+
+
+def test_error_survives_the_way_between_processes() -> None:
+    error = SclError("a.scd", line=3, element="<LN>", expected="this", found="that")
+    copy = pickle.loads(pickle.dumps(error))  # noqa: S301
+    assert str(copy) == str(error) == "a.scd: line 3: <LN>: expected this, found that"
+
+
+# Communication and substation
+
+
+@pytest.mark.parametrize(
+    ("parameters", "address"),
+    [
+        ('<P type="IP">10.0.0.7</P>', scl.Address("10.0.0.7", 102)),
+        ('<P type="IP">fd00::7</P><P type="MMS-Port">10210</P>', scl.Address("fd00::7", 10210)),
+        (
+            '<P xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" type="IP" xsi:type="tP_IP">'
+            " 10.0.0.7 </P>",
+            scl.Address("10.0.0.7"),
+        ),
+    ],
+)
+def test_address(tmp_path: Path, parameters: str, address: scl.Address) -> None:
+    communication = COMMUNICATION.replace('<P type="IP">10.0.0.7</P>', parameters)
+    assert read(tmp_path, communication=communication).address("R1") == address
+
+
+@pytest.mark.parametrize(
+    ("parameters", "message"),
+    [
+        ("", 'a ConnectedAP with iedName="R1"'),
+        ('<P type="IP">relay.example</P>', "an IPv4 or IPv6 address, found 'relay.example'"),
+        ('<P type="IP">10.0.0.7</P><P type="MMS-Port">70000</P>', "a port from 1 to 65535, found '70000'"),
+        ('<P type="IP">10.0.0.7</P><P type="MMS-Port">x</P>', "a port from 1 to 65535"),
+    ],
+)
+def test_no_usable_address(tmp_path: Path, parameters: str, message: str) -> None:
+    communication = COMMUNICATION.replace('<P type="IP">10.0.0.7</P>', parameters)
+    read_scl = read(tmp_path, communication=communication)
+    with pytest.raises(SclError, match=message):
+        read_scl.address("R1")
+
+
+def test_the_access_point_with_the_server_is_the_address(tmp_path: Path) -> None:
+    other = '<ConnectedAP iedName="R1" apName="P1"><Address><P type="IP">10.9.9.9</P></Address></ConnectedAP>'
+    communication = COMMUNICATION.replace('type="8-MMS">', f'type="8-MMS">{other}')
+    assert read(tmp_path, communication=communication).address("R1").host == "10.0.0.7"
+
+
+def substation(bay: str) -> str:
+    return (
+        '<Substation name="S" desc="Site"><VoltageLevel name="LV"><Bay name="B1">'
+        f"{bay}</Bay></VoltageLevel></Substation>"
+    )
+
+
+@pytest.mark.parametrize(
+    ("bay", "motors", "warning"),
+    [
+        (
+            '<ConductingEquipment name="M-1" type="MOT"><LNode iedName="R1" lnClass="PTRC"/>'
+            "</ConductingEquipment>",
+            [("M-1", "R1")],
+            "",
+        ),
+        (
+            '<LNode iedName="R1" lnClass="PTRC"/><ConductingEquipment name="M-1" type="MOT"/>'
+            '<ConductingEquipment name="Q1" type="CBR"/>',
+            [("M-1", "R1")],
+            "",
+        ),
+        (
+            '<ConductingEquipment name="M-1" type="MOT"><EqFunction name="F">'
+            '<LNode iedName="R1" lnClass="PTRC"/><LNode iedName="None" lnClass="ZMOT"/>'
+            "</EqFunction></ConductingEquipment>",
+            [("M-1", "R1")],
+            "",
+        ),
+        ('<ConductingEquipment name="M-1" type="MOT"/>', [], "a motor without an LNode"),
+        (
+            '<LNode iedName="R1" lnClass="PTRC"/><ConductingEquipment type="MOT"/>',
+            [],
+            'type="MOT">: no name',
+        ),
+        (
+            '<ConductingEquipment name="M-1" type="MOT"><LNode iedName="R9" lnClass="PTRC"/>'
+            "</ConductingEquipment>",
+            [],
+            "names an IED this file does not hold",
+        ),
+    ],
+)
+def test_motor_feeders(tmp_path: Path, bay: str, motors: list[tuple[str, str]], warning: str) -> None:
+    read_scl = read(tmp_path, substation=substation(bay))
+    assert [(feeder.motor, feeder.ied) for feeder in read_scl.feeders()] == motors
+    assert warning in messages(read_scl)
+    assert bool(warning) == bool(read_scl.warnings)
+
+
+def test_motor_with_two_relays_takes_the_first_and_says_so(tmp_path: Path) -> None:
+    bay = (
+        '<ConductingEquipment name="M-1" type="MOT"><LNode iedName="R2" lnClass="PTRC"/>'
+        '<LNode iedName="R1" lnClass="PTRC"/></ConductingEquipment>'
+    )
+    text = scl_text(substation=substation(bay)).replace("</IED>", '</IED><IED name="R2"/>')
+    read_scl = scl.read(write_scl(tmp_path / "plant.scd", text))
+    assert [feeder.ied for feeder in read_scl.feeders()] == ["R2"]
+    assert "several IEDs (R2, R1)" in messages(read_scl)
