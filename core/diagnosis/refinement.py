@@ -169,7 +169,7 @@ def _moved(candidate: Candidates, unknowns: tuple[Unknown, ...], step: Array) ->
 def _covariance(case: Case, residual: Array, jacobian: Array) -> tuple[Array, int]:
     """Covariance of the free unknowns and the number of cycles it rests on."""
     stacked = _stack(case, jacobian)
-    bread = _inverse(stacked.T @ stacked)
+    information = stacked.T @ stacked
     offset = case.window.compare_from - case.window.first
     scores = (jacobian[:, :, offset:] * residual[:, offset:]).sum(axis=1)
     per_cycle = case.sample_rate_hz / case.frequency_hz
@@ -178,15 +178,12 @@ def _covariance(case: Case, residual: Array, jacobian: Array) -> tuple[Array, in
     sums = np.add.reduceat(scores, edges, axis=1)
     centred = sums - sums.mean(axis=1, keepdims=True)
     filling = centred @ centred.T * (blocks / (blocks - 1))
-    return bread @ filling @ bread, blocks
-
-
-def _inverse(information: Array) -> Array:
-    """Inverse of the information matrix; infinite where the record does not tell the unknowns apart."""
     try:
-        return np.asarray(np.linalg.inv(information), dtype=np.float64)
+        bread = np.linalg.inv(information)
     except np.linalg.LinAlgError:
-        return np.full_like(information, np.inf)
+        # The record does not tell the unknowns apart: no value of theirs is better than another.
+        return np.full_like(information, np.inf), blocks
+    return bread @ filling @ bread, blocks
 
 
 def _stack(case: Case, jacobian: Array) -> Array:

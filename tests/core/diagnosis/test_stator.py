@@ -9,8 +9,12 @@ from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose
 from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.parameters import Motor
+from core.machines.playback import Candidates, Playback, window_of_record
+from core.machines.shorted_winding import ShortedWinding
+from core.machines.supply import supply
 from core.recordings import Channel, Quantity, Recording, RecordingError
-from core.signals.clarke import clarke
+from core.signals.clarke import clarke, inverse_clarke
+from core.signals.phasors import fundamental_phasors
 from tests.core.motors import ALL, LARGE, MEDIUM, REFERENCE
 from tests.core.phase_circuits import Fault, recording, running
 
@@ -70,11 +74,30 @@ def test_a_current_sensor_out_of_class_is_an_asymmetry_and_no_fault() -> None:
     assert "no phase explain" in result.reasons[0]
 
 
-def test_the_thesis_model_finds_the_phase_too() -> None:
-    truth = running(REFERENCE, 0.5, fault=Fault(0.05, 2))
-    result = diagnose(recording(truth, noise=0.005), REFERENCE, model="shorted-winding")
+def test_the_thesis_model_diagnoses_machines_of_its_own_kind_only() -> None:
+    """An extra resistive winding is not the same as dead-shorted turns, and the verdict says so."""
+    record = recording(running(REFERENCE, 0.5), seconds=1.0)
+    volts = clarke(record.samples[3:])
+    feed = supply(volts, 10_000.0, 50.0, np.sqrt(2) * fundamental_phasors(volts, 50.0, 10_000.0))
+    playback = Playback(
+        ShortedWinding(), REFERENCE, feed, window_of_record(volts.shape[1], 10_000.0, 50.0, 1.0)
+    )
+    one = np.ones(1)
+    truth = Candidates(0.05 * one, np.array([2]), 0.5 * one, 0.0 * one, 0.0 * one)
+    window = playback.window
+    samples = record.samples[:, window.first : window.last].copy()
+    samples[:3] = inverse_clarke(playback.trajectories(truth).current[0])
+
+    result = diagnose(replace(record, samples=samples), REFERENCE, model="shorted-winding")
     assert result.model == "shorted-winding"
+    assert result.verdict is Verdict.FAULT
     assert result.theta_f == 2
+    assert result.mu_f == pytest.approx(0.05, abs=1e-4)
+
+    dead = recording(running(REFERENCE, 0.5, fault=Fault(0.05, 2)), noise=0.005)
+    result = diagnose(dead, REFERENCE, model="shorted-winding")
+    assert result.verdict is Verdict.WATCH
+    assert "no phase explain" in result.reasons[0]
 
 
 def test_line_voltages_serve_as_well_as_phase_voltages() -> None:

@@ -1,0 +1,60 @@
+"""Puts the API together."""
+
+from importlib.metadata import version
+
+from fastapi import APIRouter, FastAPI
+from fastapi.openapi.utils import get_openapi
+
+from service.api import diagnoses, event_reports, motors, probes, problems, recordings
+from service.api.context import ApiContext
+from service.api.guard import Guard
+
+PREFIX = "/api/v1"
+DESCRIPTION = """Stator condition of every motor of the plant, from the protection relays it already has.
+
+Times are RFC 3339 in UTC. Lists come in pages: pass `next_cursor` as `cursor` for the next one.
+Every error is a problem document (RFC 9457)."""
+
+
+def create_app(context: ApiContext) -> FastAPI:
+    """The ASGI application on a plant that is in the database already."""
+    app = FastAPI(
+        title="StatorWatch",
+        version=version("statorwatch"),
+        description=DESCRIPTION,
+        openapi_url=f"{PREFIX}/openapi.json",
+        docs_url=None,  # its page would run a script from the internet, with the rights of this API
+        redoc_url=None,
+    )
+    app.state.context = context
+    api = APIRouter(prefix=PREFIX)
+    for part in (motors, event_reports, recordings, diagnoses):
+        api.include_router(part.router)
+    app.include_router(api)
+    app.include_router(probes.router)
+    problems.install(app)
+    app.add_middleware(
+        Guard,
+        hosts=[str(context.settings.bind_address), *context.settings.allowed_hosts],
+        max_body_bytes=context.settings.max_upload_bytes,
+    )
+    _document_problems(app)
+    return app
+
+
+def _document_problems(app: FastAPI) -> None:
+    """Adds the schema that the routes' error responses point to."""
+
+    def openapi() -> dict[str, object]:
+        if not app.openapi_schema:
+            schema = get_openapi(
+                title=app.title, version=app.version, description=app.description, routes=app.routes
+            )
+            problem = problems.Problem.model_json_schema(ref_template="#/components/schemas/{model}")
+            schemas = schema.setdefault("components", {}).setdefault("schemas", {})
+            schemas.update(problem.pop("$defs", {}))
+            schemas["Problem"] = problem
+            app.openapi_schema = schema
+        return app.openapi_schema
+
+    app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way to extend the schema

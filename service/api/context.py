@@ -1,0 +1,39 @@
+"""What the routes stand on."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from fastapi import Depends, Request
+
+from service.recordings import RecordingStore
+from service.settings import Settings
+from service.storage.repository import Repository
+
+Problem = Callable[[], str | None]
+"""Says what keeps a part of the service from working, None when it works."""
+
+
+def _nothing() -> None:
+    """For an API without a job runner of its own."""
+
+
+@dataclass(frozen=True, slots=True)
+class ApiContext:
+    """readiness: a check for each part besides the database. on_new_job: tells the runner not to wait."""
+
+    settings: Settings
+    repository: Repository
+    store: RecordingStore
+    readiness: Mapping[str, Problem] = field(default_factory=dict)
+    on_new_job: Callable[[], None] = _nothing
+
+
+def _context_of(request: Request) -> ApiContext:
+    context = request.app.state.context
+    if not isinstance(context, ApiContext):
+        raise TypeError("the application was not made by create_app")
+    return context
+
+
+Context = Annotated[ApiContext, Depends(_context_of)]

@@ -1,0 +1,62 @@
+"""Diagnoses of a recording: those made, and asking for another."""
+
+import time
+from http import HTTPStatus
+from uuid import UUID
+
+from fastapi import APIRouter, Request, Response
+
+from service.api.context import ApiContext, Context
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
+from service.api.problems import problems
+from service.api.schemas import Diagnosis, DiagnosisRequest, DiagnosisRun
+from service.storage.records import Job
+
+router = APIRouter(prefix="/recordings/{recording_id}/diagnoses", tags=["recordings"])
+
+
+@router.post(
+    "",
+    status_code=HTTPStatus.ACCEPTED,
+    responses=problems(400, 404, 409, 413)
+    | {202: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The diagnosis."}}}},
+)
+def request_diagnosis(
+    context: Context,
+    request: Request,
+    response: Response,
+    recording_id: UUID,
+    wanted: DiagnosisRequest | None = None,
+) -> DiagnosisRun:
+    """Queues another diagnosis of a stored recording; when done, it takes the place of the earlier one."""
+    wanted = wanted or DiagnosisRequest()
+    job = context.repository.request_diagnosis(
+        str(recording_id), method=wanted.method, model=wanted.model, now_ns=time.time_ns()
+    )
+    context.on_new_job()
+    path = request.url_for("get_diagnosis", recording_id=recording_id, diagnosis_id=job.id).path
+    response.headers["Location"] = path
+    return DiagnosisRun.model_validate(job)
+
+
+@router.get("", responses=problems(404))
+def list_diagnoses(
+    context: Context, recording_id: UUID, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
+) -> Page[DiagnosisRun]:
+    """Diagnoses of a recording, latest first."""
+    jobs = context.repository.jobs(str(recording_id), limit=limit, after=decode(cursor, int, str))
+    return page(jobs, lambda job: _run(context, job))
+
+
+@router.get("/{diagnosis_id}", responses=problems(404))
+def get_diagnosis(context: Context, recording_id: UUID, diagnosis_id: UUID) -> DiagnosisRun:
+    """One diagnosis of a recording."""
+    return _run(context, context.repository.job(str(recording_id), str(diagnosis_id)))
+
+
+def _run(context: ApiContext, job: Job) -> DiagnosisRun:
+    run = DiagnosisRun.model_validate(job)
+    entry = context.repository.diagnosis_of_job(job.id)
+    if entry is None:
+        return run
+    return run.model_copy(update={"result": Diagnosis.model_validate(entry.document)})

@@ -1,0 +1,83 @@
+"""Keeps out what comes by way of somebody's web browser, and what is too large.
+
+The API has no passwords: it trusts those who can reach its address, by default programs on this computer. A
+web page in a browser there could reach it too. A browser tells on it: a page of another site sends its
+Origin, and a site that pretends to be at our address (DNS rebinding) sends its own name as Host.
+"""
+
+from collections.abc import Collection
+from http import HTTPStatus
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.api.problems import problem_response
+
+
+class Guard:
+    """ASGI middleware. `hosts`: names this service goes by; "*" for any."""
+
+    def __init__(self, app: ASGIApp, *, hosts: Collection[str], max_body_bytes: int) -> None:
+        self._app = app
+        self._hosts = {host.lower() for host in hosts}
+        self._max_body_bytes = max_body_bytes
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        refusal = self._refusal(Headers(scope=scope))
+        if refusal is None:
+            await self._app(scope, self._limited(receive), send)
+            return
+        status, detail = refusal
+        await problem_response(scope["path"], status, detail)(scope, receive, send)
+
+    def _refusal(self, headers: Headers) -> tuple[HTTPStatus, str] | None:
+        host = headers.get("host", "")
+        if not self._is_ours(host):
+            return (
+                HTTPStatus.MISDIRECTED_REQUEST,
+                f"this service does not go by the name {host[:100]!r}; see allowed_hosts in docs/settings.md",
+            )
+        origin = headers.get("origin")
+        if origin is not None and _network_location(origin) != host.lower():
+            return HTTPStatus.FORBIDDEN, f"requests from web pages of {origin[:100]!r} are refused"
+        length = headers.get("content-length", "0")
+        if length.isdecimal() and int(length) > self._max_body_bytes:
+            return HTTPStatus.REQUEST_ENTITY_TOO_LARGE, self._too_large()
+        return None
+
+    def _is_ours(self, host: str) -> bool:
+        if "*" in self._hosts:
+            return True
+        try:
+            return (urlsplit(f"//{host}").hostname or "") in self._hosts
+        except ValueError:
+            return False
+
+    def _limited(self, receive: Receive) -> Receive:
+        """Counts what a body without Content-Length brings."""
+        received = 0
+
+        async def limited() -> Message:
+            nonlocal received
+            message = await receive()
+            received += len(message.get("body", b""))
+            if received > self._max_body_bytes:
+                raise HTTPException(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, self._too_large())
+            return message
+
+        return limited
+
+    def _too_large(self) -> str:
+        return f"expected at most {self._max_body_bytes} bytes; see max_upload_bytes in docs/settings.md"
+
+
+def _network_location(origin: str) -> str:
+    try:
+        return urlsplit(origin).netloc.lower()
+    except ValueError:
+        return ""

@@ -1,0 +1,101 @@
+"""Sites, relays, motors; their condition."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from service.api.context import Context
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
+from service.api.problems import problems
+from service.api.schemas import Diagnosis, Health, Ied, Motor, Name, Recording, Site, TrendPoint
+from service.api.times import TimeParameter, rfc3339
+from service.storage.records import MotorHealth, Quantity
+
+router = APIRouter()
+
+
+@router.get("/sites", responses=problems(), tags=["plant"])
+def list_sites(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Site]:
+    """Sites (substations of the plant's SCD), by name."""
+    return page(context.repository.sites(limit=limit, after=decode(cursor, str)), Site.model_validate)
+
+
+@router.get("/ieds", responses=problems(), tags=["plant"])
+def list_ieds(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Ied]:
+    """Relays and the state of their links, by name."""
+    return page(context.repository.ieds(limit=limit, after=decode(cursor, str)), Ied.model_validate)
+
+
+@router.get("/ieds/{name}", responses=problems(404), tags=["plant"])
+def get_ied(context: Context, name: Name) -> Ied:
+    """One relay."""
+    return Ied.model_validate(context.repository.ied(name))
+
+
+@router.get("/motors", responses=problems(), tags=["plant"])
+def list_motors(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Motor]:
+    """Motors, by name."""
+    return page(context.repository.motors(limit=limit, after=decode(cursor, str)), Motor.model_validate)
+
+
+@router.get("/motors/{name}", responses=problems(404), tags=["plant"])
+def get_motor(context: Context, name: Name) -> Motor:
+    """One motor."""
+    return Motor.model_validate(context.repository.motor(name))
+
+
+@router.get("/motors/{name}/health", responses=problems(404), tags=["condition"])
+def get_health(context: Context, name: Name) -> Health:
+    """The condition of a motor as of its latest recording, and whether its relay answers."""
+    return _health(context.repository.health(name))
+
+
+@router.get("/motors/{name}/trend", responses=problems(404), tags=["condition"])
+def get_trend(
+    context: Context,
+    name: Name,
+    quantity: Quantity = "mu_f",
+    from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
+    to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
+) -> Page[TrendPoint]:
+    """One figure for each recording of a motor, oldest first."""
+    points = context.repository.trend(
+        name, quantity, from_ns=from_, to_ns=to, limit=limit, after=decode(cursor, int, str)
+    )
+    return page(points, TrendPoint.model_validate)
+
+
+@router.get("/motors/{name}/recordings", responses=problems(404), tags=["recordings"])
+def list_recordings_of_motor(
+    context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
+) -> Page[Recording]:
+    """Recordings of a motor, latest first."""
+    context.repository.motor(name)
+    recordings = context.repository.recordings(motor=name, limit=limit, after=decode(cursor, int, str))
+    return page(recordings, Recording.model_validate)
+
+
+def _health(health: MotorHealth) -> Health:
+    entry = health.diagnosis
+    diagnosis = None if entry is None else Diagnosis.model_validate(entry.document)
+    link = health.ied
+    last = health.last_recording
+    return Health(
+        motor=health.motor.name,
+        site=health.motor.site,
+        ied=health.motor.ied,
+        verdict=None if diagnosis is None else diagnosis.verdict,
+        mu_f=None if diagnosis is None else diagnosis.mu_f,
+        mu_f_ci95=None if diagnosis is None else diagnosis.mu_f_ci95,
+        phase=None if diagnosis is None else diagnosis.phase,
+        load_level=None if diagnosis is None else diagnosis.load_level,
+        reasons=[] if diagnosis is None else diagnosis.reasons,
+        recording_id=None if entry is None else entry.recording_id,
+        recorded_time=None if entry is None else rfc3339(entry.recorded_ns),
+        link_state=link.link_state,
+        link_reason=link.link_reason,
+        last_success_time=None if link.last_success_ns is None else rfc3339(link.last_success_ns),
+        last_recording=None if last is None else Recording.model_validate(last),
+    )

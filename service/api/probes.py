@@ -1,0 +1,80 @@
+"""For whoever keeps the service running: alive, ready, and in figures."""
+
+from collections.abc import Iterator, Mapping
+from http import HTTPStatus
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import JSONResponse, PlainTextResponse
+from prometheus_client import CollectorRegistry
+from prometheus_client.core import GaugeMetricFamily
+from prometheus_client.exposition import CONTENT_TYPE_LATEST, generate_latest
+from prometheus_client.registry import Collector
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.api.context import ApiContext, Context
+from service.api.problems import problem_response, problems
+from service.api.schemas import Status
+from service.storage.repository import Repository
+
+router = APIRouter(tags=["operation"])
+
+
+@router.get("/healthz")
+def get_health_of_service() -> Status:
+    """The service answers."""
+    return Status(status="ok")
+
+
+@router.get("/readyz", response_model=Status, responses={503: problems(503)[503]})
+def get_readiness(context: Context, request: Request) -> Status | JSONResponse:
+    """All parts of the service work; otherwise 503 and which part does not, and why."""
+    parts = _parts(context)
+    failing = {part: problem for part, problem in parts.items() if problem is not None}
+    if not failing:
+        return Status(status="ready", parts=dict.fromkeys(parts, "ready"))
+    return problem_response(
+        request.url.path,
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        "; ".join(f"{part}: {problem}" for part, problem in failing.items()),
+        parts={part: problem or "ready" for part, problem in parts.items()},
+    )
+
+
+@router.get("/metrics", response_class=PlainTextResponse)
+def get_metrics(context: Context) -> Response:
+    """How many links, event reports, recordings and jobs are in each state; Prometheus text format."""
+    registry = CollectorRegistry()
+    registry.register(_StateCollector(context.repository))
+    return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
+
+
+def _parts(context: ApiContext) -> dict[str, str | None]:
+    parts: dict[str, str | None] = {"database": None}
+    try:
+        context.repository.check()
+    except SQLAlchemyError as error:
+        parts["database"] = f"does not answer: {error}"
+    return parts | {part: problem() for part, problem in context.readiness.items()}
+
+
+class _StateCollector(Collector):
+    """Asks the database when it is asked, so that the figures are those of all processes."""
+
+    def __init__(self, repository: Repository) -> None:
+        self._repository = repository
+
+    def collect(self) -> Iterator[GaugeMetricFamily]:
+        counts = self._repository.counts()
+        families: Mapping[str, Mapping[str, int]] = {
+            "links": {str(state): count for state, count in counts.links.items()},
+            "event_reports": {str(state): count for state, count in counts.event_reports.items()},
+            "recordings": {str(state): count for state, count in counts.recordings.items()},
+            "jobs": {str(state): count for state, count in counts.jobs.items()},
+        }
+        for name, by_state in families.items():
+            family = GaugeMetricFamily(
+                f"mcc_{name}", f"Number of {name.replace('_', ' ')} by state", labels=["state"]
+            )
+            for state, count in sorted(by_state.items()):
+                family.add_metric([state], count)
+            yield family

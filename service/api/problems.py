@@ -1,0 +1,131 @@
+"""Every error is a problem document (RFC 9457, application/problem+json), whoever raised it."""
+
+from collections.abc import Mapping
+from http import HTTPStatus
+
+import structlog
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import JSONResponse
+from pydantic import BaseModel
+from starlette.exceptions import HTTPException
+from structlog.typing import FilteringBoundLogger
+
+from service.recordings import RecordingStoreError
+from service.storage.errors import NotFoundError, StateConflictError
+
+log: FilteringBoundLogger = structlog.get_logger(__name__)
+
+MEDIA_TYPE = "application/problem+json"
+
+
+class FieldError(BaseModel):
+    """What is wrong with one part of a request; `location` is the way to it, "query.limit"."""
+
+    location: str
+    message: str
+
+
+class Problem(BaseModel):
+    """RFC 9457 problem details. `errors` for requests that are not as documented, `parts` for readiness."""
+
+    type: str = "about:blank"
+    title: str
+    status: int
+    detail: str
+    instance: str
+    errors: list[FieldError] | None = None
+    parts: dict[str, str] | None = None
+
+
+class ProblemError(Exception):
+    """An answer other than success, from within a route."""
+
+    def __init__(self, status: HTTPStatus, detail: str, *, errors: list[FieldError] | None = None) -> None:
+        self.status = status
+        self.detail = detail
+        self.errors = errors
+        super().__init__(detail)
+
+
+def problems(*statuses: int) -> dict[int | str, dict[str, object]]:
+    """OpenAPI's description of the errors a route answers with; 422 is always among them."""
+    return {
+        int(status): {
+            "description": HTTPStatus(status).phrase,
+            "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
+        }
+        for status in (*statuses, HTTPStatus.UNPROCESSABLE_ENTITY)
+    }
+
+
+def problem_response(
+    path: str,
+    status: int,
+    detail: str,
+    *,
+    errors: list[FieldError] | None = None,
+    parts: dict[str, str] | None = None,
+    headers: Mapping[str, str] | None = None,
+) -> JSONResponse:
+    problem = Problem(
+        title=HTTPStatus(status).phrase,
+        status=status,
+        detail=detail,
+        instance=path,
+        errors=errors,
+        parts=parts,
+    )
+    return JSONResponse(
+        problem.model_dump(exclude_none=True),
+        status_code=status,
+        headers=dict(headers or {}),
+        media_type=MEDIA_TYPE,
+    )
+
+
+def install(app: FastAPI) -> None:
+    """Makes `app` answer every error with a problem document."""
+
+    @app.exception_handler(ProblemError)
+    def _problem(request: Request, error: ProblemError) -> JSONResponse:
+        return problem_response(request.url.path, error.status, error.detail, errors=error.errors)
+
+    @app.exception_handler(HTTPException)
+    def _http(request: Request, error: HTTPException) -> JSONResponse:
+        detail = error.detail
+        if error.status_code == HTTPStatus.NOT_FOUND:
+            detail = f"nothing is at {request.url.path}; /api/v1/openapi.json says what there is"
+        if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+            detail = f"{request.method} is not possible here"
+        return problem_response(request.url.path, error.status_code, detail, headers=error.headers)
+
+    @app.exception_handler(NotFoundError)
+    def _not_found(request: Request, error: NotFoundError) -> JSONResponse:
+        return problem_response(request.url.path, HTTPStatus.NOT_FOUND, str(error))
+
+    @app.exception_handler(StateConflictError)
+    def _conflict(request: Request, error: StateConflictError) -> JSONResponse:
+        return problem_response(request.url.path, HTTPStatus.CONFLICT, str(error))
+
+    @app.exception_handler(RecordingStoreError)
+    def _damaged(request: Request, error: RecordingStoreError) -> JSONResponse:
+        log.error("recording store is damaged", error=str(error))
+        return problem_response(request.url.path, HTTPStatus.INTERNAL_SERVER_ERROR, str(error))
+
+    @app.exception_handler(RequestValidationError)
+    def _validation(request: Request, error: RequestValidationError) -> JSONResponse:
+        errors = [
+            FieldError(location=".".join(str(part) for part in found["loc"]), message=found["msg"])
+            for found in error.errors()
+        ]
+        detail = "; ".join(f"{found.location}: {found.message}" for found in errors[:3])
+        return problem_response(
+            request.url.path, HTTPStatus.UNPROCESSABLE_ENTITY, detail[:1000], errors=errors[:100]
+        )
+
+    @app.exception_handler(Exception)
+    def _unexpected(request: Request, error: Exception) -> JSONResponse:
+        log.error("request failed", path=request.url.path, exc_info=error)
+        detail = "the service failed to answer; its log says why"
+        return problem_response(request.url.path, HTTPStatus.INTERNAL_SERVER_ERROR, detail)

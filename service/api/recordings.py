@@ -1,0 +1,169 @@
+"""Recordings: list, look at, take away, bring."""
+
+import shutil
+import tempfile
+import time
+import zipfile
+from collections.abc import Iterator
+from http import HTTPStatus
+from pathlib import PurePosixPath
+from typing import Annotated, BinaryIO
+from uuid import UUID
+
+from fastapi import APIRouter, File, Form, Query, Request, Response, UploadFile
+from fastapi.responses import StreamingResponse
+
+from core.recordings import RecordingError, read
+from service.api.context import ApiContext, Context
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
+from service.api.problems import FieldError, ProblemError, problems
+from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile, Waveform
+from service.api.waveform import waveform_of
+from service.recordings import ENTRY_SUFFIXES, RecordingStoreError, StoredRecording
+from service.storage.records import RecordingEntry
+from service.storage.states import RecordingState
+
+router = APIRouter(tags=["recordings"])
+
+UPLOAD_SUFFIXES = {*ENTRY_SUFFIXES, ".DAT", ".HDR", ".INF"}
+MAX_UPLOAD_FILES = 4
+CHUNK_BYTES = 1 << 16
+
+
+@router.get("/recordings", responses=problems())
+def list_recordings(
+    context: Context,
+    motor: Annotated[str | None, Query(max_length=200)] = None,
+    state: RecordingState | None = None,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
+) -> Page[Recording]:
+    """Recordings, of one motor or of all, in one state or in any, latest first."""
+    recordings = context.repository.recordings(
+        motor=motor, state=state, limit=limit, after=decode(cursor, int, str)
+    )
+    return page(recordings, Recording.model_validate)
+
+
+@router.post(
+    "/recordings",
+    status_code=HTTPStatus.CREATED,
+    responses=problems(400, 404, 413)
+    | {
+        200: {"model": RecordingDetails, "description": "These files were uploaded for this motor before."},
+        201: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The recording."}}},
+    },
+)
+def upload_recording(
+    context: Context,
+    request: Request,
+    response: Response,
+    motor: Annotated[str, Form(min_length=1, max_length=200, description="Name of the motor recorded.")],
+    files: Annotated[list[UploadFile], File(description="COMTRADE (.CFG and .DAT, or .CFF) or .CEV files.")],
+) -> RecordingDetails:
+    """Stores the files of one recording and queues its diagnosis."""
+    context.repository.motor(motor)
+    stored = _store_upload(context, files)
+    added = context.repository.add_recording(stored, motor=motor, now_ns=time.time_ns())
+    context.on_new_job()
+    if not added.created:
+        response.status_code = HTTPStatus.OK
+    response.headers["Location"] = request.url_for("get_recording", recording_id=added.recording.id).path
+    return _details(context, added.recording)
+
+
+@router.get("/recordings/{recording_id}", responses=problems(404))
+def get_recording(context: Context, recording_id: UUID) -> RecordingDetails:
+    """One recording with its files and its latest diagnosis."""
+    return _details(context, context.repository.recording(str(recording_id)))
+
+
+@router.get("/recordings/{recording_id}/waveform", responses=problems(404, 409))
+def get_waveform(
+    context: Context,
+    recording_id: UUID,
+    points: Annotated[int, Query(ge=2, le=20_000, description="Most intervals a channel.")] = 2000,
+) -> Waveform:
+    """The samples of a recording, as the smallest and largest value of up to `points` intervals."""
+    entry = context.repository.recording(str(recording_id))
+    path = context.store.entry(_digest(entry))
+    try:
+        return waveform_of(entry.id, read(path), points)
+    except RecordingError as error:
+        raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
+
+
+@router.get(
+    "/recordings/{recording_id}/file",
+    response_class=StreamingResponse,
+    responses=problems(404, 409)
+    | {200: {"content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}}}},
+)
+def download_recording(context: Context, recording_id: UUID) -> StreamingResponse:
+    """The files of a recording as they came from the relay, in a ZIP archive."""
+    entry = context.repository.recording(str(recording_id))
+    stored = context.store.find(_digest(entry))
+    return StreamingResponse(
+        _archive(stored),
+        media_type="application/zip",
+        headers={"Content-Disposition": f'attachment; filename="{stored.name}.zip"'},
+    )
+
+
+def _digest(entry: RecordingEntry) -> str:
+    if entry.digest is None:
+        reason = "" if entry.reason is None else f": {entry.reason}"
+        raise ProblemError(HTTPStatus.CONFLICT, f"the recording is {entry.state}, not stored{reason}")
+    return entry.digest
+
+
+def _details(context: ApiContext, entry: RecordingEntry) -> RecordingDetails:
+    diagnosis = context.repository.current_diagnosis(entry.id)
+    files = context.repository.recording_files(entry.id)
+    return RecordingDetails(
+        **Recording.model_validate(entry).model_dump(),
+        files=[RecordingFile.model_validate(file) for file in files],
+        diagnosis=None if diagnosis is None else Diagnosis.model_validate(diagnosis.document),
+    )
+
+
+def _store_upload(context: ApiContext, files: list[UploadFile]) -> StoredRecording:
+    if len(files) > MAX_UPLOAD_FILES:
+        raise _refused(f"expected at most {MAX_UPLOAD_FILES} files of one recording, found {len(files)}")
+    names = [file.filename or "" for file in files]
+    suffixes = sorted(PurePosixPath(name).suffix.upper() for name in names)
+    for name, suffix in zip(names, (PurePosixPath(name).suffix.upper() for name in names), strict=True):
+        if suffix not in UPLOAD_SUFFIXES:
+            raise _refused(f"{name[:100]!r}: expected a file ending in {', '.join(sorted(UPLOAD_SUFFIXES))}")
+    if ".CFG" in suffixes and ".DAT" not in suffixes:
+        raise _refused("expected the .DAT file that belongs to the .CFG file, found none")
+    try:
+        with context.store.incoming() as incoming:
+            for name, file in zip(names, files, strict=True):
+                with incoming.create(name) as sink:
+                    shutil.copyfileobj(file.file, sink)
+            return incoming.keep()
+    except RecordingStoreError as error:
+        raise _refused(str(error)) from error
+
+
+def _refused(message: str) -> ProblemError:
+    return ProblemError(
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        f"body.files: {message}",
+        errors=[FieldError(location="body.files", message=message)],
+    )
+
+
+def _archive(stored: StoredRecording) -> Iterator[bytes]:
+    with tempfile.TemporaryFile() as archive:
+        _write_archive(stored, archive)
+        archive.seek(0)
+        while chunk := archive.read(CHUNK_BYTES):
+            yield chunk
+
+
+def _write_archive(stored: StoredRecording, archive: BinaryIO) -> None:
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as zipped:
+        for file in stored.files:
+            zipped.write(stored.directory / file.name, arcname=file.name)

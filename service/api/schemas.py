@@ -1,0 +1,213 @@
+"""Documents of the API. Fields that are null are not known (yet)."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+
+from core.diagnosis.verdict import Verdict
+from core.recordings import Quantity
+from service.api.times import Time
+from service.storage.states import EventReportState, JobState, LinkState, RecordingSource, RecordingState
+
+Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00/]+$")]
+"""Name of a site, IED or motor in a path."""
+
+Method = Literal["hcpa", "genetic", "pattern-search"]
+Model = Literal["shorted-winding", "split-winding"]
+
+
+class Document(BaseModel):
+    model_config = ConfigDict(from_attributes=True, validate_by_name=True)
+
+
+class Site(Document):
+    name: str
+    description: str
+
+
+class Ied(Document):
+    """A relay; `last_success_time` is when it last answered."""
+
+    name: str
+    site: str
+    host: str
+    port: int
+    manufacturer: str
+    type: str
+    link_state: LinkState
+    link_reason: str | None
+    link_changed_time: Time | None = Field(validation_alias="link_changed_ns")
+    last_success_time: Time | None = Field(validation_alias="last_success_ns")
+
+
+class Motor(Document):
+    name: str
+    description: str
+    site: str
+    ied: str
+
+
+class QualityFinding(Document):
+    """One check of the quality gate: the figure it measured, its limit and what that means."""
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+    passed: bool
+    message: str
+
+
+class Diagnosis(Document):
+    """The result for one recording, as `mcc diagnose --json` prints it.
+
+    mu_f: equivalent fault level, fraction of the phase turns. theta_f: 0, 1, 2 = winding on terminals
+    a, b, c. load_level: load torque over rated torque.
+    """
+
+    verdict: Verdict
+    mu_f: float | None
+    mu_f_ci95: tuple[float, float] | None
+    theta_f: int | None
+    phase: Literal["a", "b", "c"] | None
+    load_level: float | None
+    time_offset_s: float | None
+    residual_rms_A: float | None
+    evaluations: int
+    compute_seconds: float
+    quality: list[QualityFinding]
+    reasons: list[str]
+    model: str
+    method: str
+
+
+class EventReport(Document):
+    """An event recording somebody asked a relay for, with the time of each state it went through."""
+
+    id: str
+    motor: str
+    ied: str
+    state: EventReportState
+    reason: str | None
+    recording_id: str | None
+    requested_time: Time = Field(validation_alias="requested_ns")
+    triggered_time: Time | None = Field(validation_alias="triggered_ns")
+    recorded_time: Time | None = Field(validation_alias="recorded_ns")
+    fetched_time: Time | None = Field(validation_alias="fetched_ns")
+    diagnosed_time: Time | None = Field(validation_alias="diagnosed_ns")
+    failed_time: Time | None = Field(validation_alias="failed_ns")
+
+
+class Recording(Document):
+    """A recording. `recorded_time` is the trigger time written in the record, known once it was read."""
+
+    id: str
+    motor: str
+    ied: str | None
+    source: RecordingSource
+    name: str
+    size_bytes: int
+    state: RecordingState
+    reason: str | None
+    announced_time: Time = Field(validation_alias="announced_ns")
+    fetched_time: Time | None = Field(validation_alias="fetched_ns")
+    recorded_time: Time | None = Field(validation_alias="recorded_ns")
+
+
+class RecordingFile(Document):
+    name: str
+    size_bytes: int
+    sha256: str
+
+
+class RecordingDetails(Recording):
+    """A recording with its files and its latest diagnosis."""
+
+    files: list[RecordingFile]
+    diagnosis: Diagnosis | None
+
+
+class DiagnosisRun(Document):
+    """A diagnosis asked for: queued, running, done with its `result`, or failed with its `error`."""
+
+    id: str
+    recording_id: str
+    method: str
+    model: str
+    state: JobState
+    attempts: int
+    error: str | None
+    created_time: Time = Field(validation_alias="created_ns")
+    started_time: Time | None = Field(validation_alias="started_ns")
+    finished_time: Time | None = Field(validation_alias="finished_ns")
+    result: Diagnosis | None = None
+
+
+class DiagnosisRequest(BaseModel):
+    """How to diagnose: the optimiser and the machine model."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    method: Method = "hcpa"
+    model: Model = "split-winding"
+
+
+class Health(Document):
+    """What is known of a motor now: the diagnosis of its latest recording, its relay's link, its recordings.
+
+    verdict, mu_f, phase and reasons repeat the diagnosis; null and empty before the first one.
+    """
+
+    motor: str
+    site: str
+    ied: str
+    verdict: Verdict | None
+    mu_f: float | None
+    mu_f_ci95: tuple[float, float] | None
+    phase: Literal["a", "b", "c"] | None
+    load_level: float | None
+    reasons: list[str]
+    recording_id: str | None
+    recorded_time: Time | None
+    link_state: LinkState
+    link_reason: str | None
+    last_success_time: Time | None
+    last_recording: Recording | None
+
+
+class TrendPoint(Document):
+    """One recording's figure; `value` is null where the recording does not tell it; `ci95` is of mu_f."""
+
+    time: Time = Field(validation_alias="recorded_ns")
+    value: float | None
+    ci95: tuple[float, float] | None
+    verdict: Verdict
+    recording_id: str
+
+
+class WaveformChannel(Document):
+    """Smallest and largest sample of each interval, in `unit`; null where the recorder missed them all."""
+
+    name: str
+    quantity: Quantity
+    phase: str | None
+    unit: str
+    minimum: list[float | None]
+    maximum: list[float | None]
+
+
+class Waveform(Document):
+    """Channels over time; `time_s` is where each interval begins, in seconds after `start_time`."""
+
+    recording_id: str
+    start_time: Time
+    trigger_time: Time
+    sample_rate_hz: float
+    samples: int
+    time_s: list[float]
+    channels: list[WaveformChannel]
+
+
+class Status(BaseModel):
+    status: Literal["ok", "ready"]
+    parts: dict[str, str] = {}

@@ -1,0 +1,49 @@
+"""Times: integer nanoseconds inside, RFC 3339 in UTC outside."""
+
+import re
+from datetime import UTC, datetime
+from typing import Annotated
+
+from pydantic import BeforeValidator, WithJsonSchema
+
+SECOND_NS = 1_000_000_000
+MAX_NS = 2**63 - 1
+"""Largest time the database can hold, in the year 2262."""
+
+_RFC3339 = re.compile(r"(\d{4}-\d\d-\d\d)[Tt](\d\d:\d\d:\d\d)(?:\.(\d+))?([Zz]|[+-]\d\d:\d\d)", re.ASCII)
+
+
+def rfc3339(time_ns: int) -> str:
+    """2026-01-31T12:00:00.123456789Z; all nine digits, so that nothing is lost on the way out and in."""
+    seconds, nanoseconds = divmod(time_ns, SECOND_NS)
+    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%dT%H:%M:%S}.{nanoseconds:09d}Z"
+
+
+def nanoseconds(text: str) -> int:
+    """UTC [ns] of an RFC 3339 time; times the database cannot hold are moved to the first or last it can.
+
+    Raises ValueError.
+    """
+    match = _RFC3339.fullmatch(text)
+    if match is None:
+        raise ValueError("expected an RFC 3339 time such as 2026-01-31T12:00:00Z")
+    date, clock, fraction, zone = match.groups()
+    leap = clock.endswith(":60")
+    whole = datetime.fromisoformat(f"{date}T{clock[:-2] + '59' if leap else clock}{zone.upper()}")
+    since_1970 = whole - datetime(1970, 1, 1, tzinfo=UTC)
+    seconds = since_1970.days * 86_400 + since_1970.seconds + leap
+    time_ns = seconds * SECOND_NS + int((fraction or "0")[:9].ljust(9, "0"))
+    return max(-MAX_NS, min(MAX_NS, time_ns))
+
+
+def _outside(value: object) -> object:
+    return rfc3339(value) if isinstance(value, int) else value
+
+
+Time = Annotated[str, BeforeValidator(_outside), WithJsonSchema({"type": "string", "format": "date-time"})]
+"""Field of a response, filled from nanoseconds."""
+
+TimeParameter = Annotated[
+    int, BeforeValidator(nanoseconds), WithJsonSchema({"type": "string", "format": "date-time"})
+]
+"""Query parameter, in nanoseconds for whom it concerns."""

@@ -1,0 +1,207 @@
+"""Takes jobs from the database, has them done in worker processes, writes the results back."""
+
+import multiprocessing
+import os
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from concurrent.futures import BrokenExecutor, Future
+from dataclasses import dataclass
+from functools import partial
+
+import structlog
+from pebble import ProcessExpired, ProcessPool
+from sqlalchemy.exc import DBAPIError, SQLAlchemyError, StatementError
+from structlog.typing import FilteringBoundLogger
+
+from core.machines.parameters import Motor
+from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
+from service.jobs.worker_process import follow_service
+from service.recordings import RecordingStore, RecordingStoreError
+from service.storage.records import ClaimedJob
+from service.storage.repository import Repository
+
+log: FilteringBoundLogger = structlog.get_logger(__name__)
+
+STOP_TIMEOUT_S = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class JobLimits:
+    """How many at once, how long each [s], how often, how soon again [s]."""
+
+    workers: int = 2
+    job_timeout_s: float = 60.0
+    attempts: int = 3
+    retry_delay_s: float = 2.0
+
+
+class JobRunner:
+    """One thread that feeds a pool of worker processes.
+
+    A worker that dies or takes too long costs its own job an attempt and nothing else. Whatever was running
+    when the service was killed is queued again by `start`.
+    """
+
+    def __init__(
+        self,
+        repository: Repository,
+        store: RecordingStore,
+        motors: Mapping[str, Motor],
+        task: Task,
+        *,
+        limits: JobLimits,
+        prepare_worker: Callable[[], None] = follow_service,
+        poll_period_s: float = 0.2,
+    ) -> None:
+        self._repository = repository
+        self._store = store
+        self._motors = motors
+        self._task = task
+        self._limits = limits
+        self._poll_period_s = poll_period_s
+        self._pool = ProcessPool(
+            max_workers=limits.workers,
+            initializer=prepare_worker,
+            context=multiprocessing.get_context("spawn"),
+        )
+        self._in_flight: dict[str, Future[Outcome]] = {}
+        self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()
+        self._wake_up = threading.Event()
+        self._stopping = threading.Event()
+        self._problem: str | None = "the job runner has not started"
+        self._thread = threading.Thread(target=self._run, name="job-runner")
+
+    def start(self) -> None:
+        """Queues interrupted jobs again and starts the thread and the workers."""
+        self._repository.requeue_interrupted_jobs(now_ns=time.time_ns(), max_attempts=self._limits.attempts)
+        self._pool.schedule(os.getpid)  # the pool starts its workers with its first task: let them load now
+        self._problem = None
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Stops the workers; their jobs go back to the queue as if they had not been claimed."""
+        self._stopping.set()
+        self._wake_up.set()
+        if self._thread.is_alive():
+            self._thread.join()
+
+    def wake(self) -> None:
+        """Looks for jobs now instead of at the next poll."""
+        self._wake_up.set()
+
+    def problem(self) -> str | None:
+        """Why no jobs are being done at present; None when all is well."""
+        return self._problem
+
+    def _run(self) -> None:
+        try:
+            while not self._stopping.is_set():
+                self._step()
+                self._wake_up.wait(self._poll_period_s)
+                self._wake_up.clear()
+        except Exception as error:  # the end of this thread must show in the readiness, whatever ended it
+            self._problem = f"the job runner stopped: {error}"
+            log.exception("job runner stopped")
+        finally:
+            self._shut_down()
+
+    def _step(self) -> None:
+        try:
+            while self._results:
+                self._settle(*self._results[0])
+                self._results.popleft()
+            while len(self._in_flight) < self._limits.workers and self._claim():
+                pass
+        except SQLAlchemyError as error:
+            self._problem = f"the database does not answer: {error}"
+            log.warning("database does not answer, trying again", error=str(error))
+        else:
+            self._problem = None
+
+    def _claim(self) -> bool:
+        claimed = self._repository.claim_job(now_ns=time.time_ns())
+        if claimed is None:
+            return False
+        job = claimed.job
+        motor = self._motors.get(claimed.motor)
+        if motor is None:
+            reason = f"motor {claimed.motor} is not in the plant: its parameters are unknown"
+            self._repository.reject_recording(job.id, reason, now_ns=time.time_ns())
+            return True
+        try:
+            entry = self._store.entry(claimed.digest)
+        except RecordingStoreError as error:
+            self._repository.reject_recording(job.id, str(error), now_ns=time.time_ns())
+            return True
+        task = DiagnosisTask(entry, motor, job.method, job.model)
+        future = self._pool.schedule(self._task, args=(task,), timeout=self._limits.job_timeout_s)
+        self._in_flight[job.id] = future
+        future.add_done_callback(partial(self._done, claimed))
+        return True
+
+    def _done(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
+        """Called by a thread of the pool: hands over to ours."""
+        self._results.append((claimed, future))
+        self._wake_up.set()
+
+    def _settle(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
+        """Writes a result back. Raises SQLAlchemyError (the database does not answer): to be tried again."""
+        job_id = claimed.job.id
+        error = None if future.cancelled() else future.exception()
+        if future.cancelled() or isinstance(error, BrokenExecutor):  # the pool's end, not the job's fault
+            self._repository.release_job(job_id)
+        elif error is None:
+            self._keep(claimed, future.result())
+        elif isinstance(error, TimeoutError):
+            self._retry(claimed, f"took longer than {self._limits.job_timeout_s:g} s")
+        elif isinstance(error, ProcessExpired):
+            self._retry(claimed, f"the worker process died (exit code {error.exitcode})")
+        else:
+            self._retry(claimed, f"{type(error).__name__}: {error}")
+        self._in_flight.pop(job_id, None)
+
+    def _keep(self, claimed: ClaimedJob, outcome: Outcome) -> None:
+        job = claimed.job
+        match outcome:
+            case Rejected(reason):
+                self._repository.reject_recording(job.id, reason, now_ns=time.time_ns())
+                log.warning("recording rejected", recording=job.recording_id, reason=reason)
+            case Diagnosed(diagnosis, recorded_ns):
+                try:
+                    self._repository.finish_job(
+                        job.id, diagnosis, recorded_ns=recorded_ns, now_ns=time.time_ns()
+                    )
+                except StatementError as error:
+                    if isinstance(error, DBAPIError):
+                        raise
+                    self._retry(claimed, f"the diagnosis cannot be stored: {error.orig}")
+                    return
+                log.info(
+                    "recording diagnosed",
+                    recording=job.recording_id,
+                    motor=claimed.motor,
+                    verdict=str(diagnosis.verdict),
+                )
+
+    def _retry(self, claimed: ClaimedJob, error: str) -> None:
+        state = self._repository.retry_or_fail_job(
+            claimed.job.id,
+            error,
+            now_ns=time.time_ns(),
+            max_attempts=self._limits.attempts,
+            retry_delay_ns=round(self._limits.retry_delay_s * 1e9),
+        )
+        log.warning("diagnosis failed", recording=claimed.job.recording_id, error=error, job=str(state))
+
+    def _shut_down(self) -> None:
+        self._pool.stop()  # type: ignore[no-untyped-call]  # pebble annotates the rest of its pool
+        self._pool.join(timeout=STOP_TIMEOUT_S)
+        try:
+            while self._results:
+                self._settle(*self._results.popleft())
+            for job_id in self._in_flight:
+                self._repository.release_job(job_id)
+        except SQLAlchemyError:
+            log.exception("jobs were not put back; the next start queues them again")

@@ -1,0 +1,38 @@
+"""What goes to a worker process and what comes back; all of it can be pickled."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.diagnosis.verdict import Diagnosis
+from core.machines.parameters import Motor
+
+
+@dataclass(frozen=True, slots=True)
+class DiagnosisTask:
+    """One recording to diagnose: the file a reader starts from, its motor, and how."""
+
+    entry: Path
+    motor: Motor
+    method: str
+    model: str
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosed:
+    """recorded_ns: trigger time written in the record, UTC [ns]."""
+
+    diagnosis: Diagnosis
+    recorded_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Rejected:
+    """The record cannot be read, or not be diagnosed as asked; trying again would give the same."""
+
+    reason: str
+
+
+Outcome = Diagnosed | Rejected
+Task = Callable[[DiagnosisTask], Outcome]
+"""A module-level function, because worker processes find it by name."""

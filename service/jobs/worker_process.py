@@ -1,0 +1,21 @@
+"""A worker process and the service it belongs to."""
+
+import multiprocessing
+import os
+import signal
+import threading
+from multiprocessing.connection import wait
+
+
+def follow_service() -> None:
+    """Ties a worker to the service: the service decides when it stops, and its death is the worker's too."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole process group
+    service = multiprocessing.parent_process()
+    if service is None:
+        raise RuntimeError("this is no worker process: it has no parent among Python's processes")
+    threading.Thread(target=_end_with, args=(service.sentinel,), name="service-watch", daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait([sentinel])
+    os._exit(1)  # whatever the worker computes now, nobody is left to take it

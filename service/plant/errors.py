@@ -1,0 +1,14 @@
+"""What the plant's files got wrong, and where."""
+
+from pathlib import Path
+
+
+class PlantError(ValueError):
+    """The plant's files do not make a plant: which file, which field, what was expected and found."""
+
+    def __init__(self, path: Path, field: str, *, expected: str, found: str) -> None:
+        self.path = path
+        self.field = field
+        self.expected = expected
+        self.found = found
+        super().__init__(f"{path}: {field}: expected {expected}, found {found}")

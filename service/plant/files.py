@@ -1,0 +1,173 @@
+"""Makes the plant of its two files.
+
+The SCD says which relay protects which motor, where it answers and what it offers; the motors file gives
+nameplate and equivalent circuit of each motor. Both must name the same motors.
+"""
+
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+
+import scl
+from core.machines.motor_file import MotorFileError, motor_from_table
+from core.machines.parameters import Motor
+from scl.data_model import Ied
+from service.plant.errors import PlantError
+from service.plant.model import Plant, PlantMotor, Relay, Site
+from service.settings import Settings, SettingsError
+
+TRIGGER_CONTROL = "RBGGIO1.SPCSO01"
+"""Remote bit RB01 of the SEL-700 family, which the relay's event report trigger equation (ER) listens to."""
+
+
+def read_plant(settings: Settings) -> Plant:
+    """The plant of the settings' two files. Raises PlantError, or SettingsError where one is not set."""
+    return plant_of_files(
+        _given(settings.scd, "scd", "the path of the plant's SCD file"),
+        _given(settings.motors, "motors", "the path of the plant's motors file (TOML)"),
+    )
+
+
+def plant_of_files(scd_path: Path, motors_path: Path) -> Plant:
+    """Raises PlantError: which file, which field, what was expected and what was found."""
+    try:
+        return _plant(scl.read(scd_path), _motors(motors_path), motors_path)
+    except scl.SclError as error:
+        line = "" if error.line is None else f"line {error.line}: "
+        raise PlantError(
+            error.path, f"{line}{error.element or 'file'}", expected=error.expected, found=error.found
+        ) from error
+
+
+def _given(path: Path | None, name: str, expected: str) -> Path:
+    if path is None:
+        raise SettingsError("settings", name, expected=expected, found="nothing")
+    return path
+
+
+def _motors(path: Path) -> dict[str, Motor]:
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise PlantError(
+            path, "file", expected="a TOML file with [[motor]] tables", found="no file"
+        ) from error
+    except OSError as error:
+        raise PlantError(path, "file", expected="a readable file", found=str(error)) from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise PlantError(path, "file", expected="valid TOML in UTF-8", found=str(error)) from error
+    tables = document.pop("motor", None)
+    if document or not isinstance(tables, list):
+        found = ", ".join(document) or "none"
+        raise PlantError(path, "top level", expected="[[motor]] tables and nothing else", found=found)
+    motors: dict[str, Motor] = {}
+    for number, table in enumerate(tables, start=1):
+        name = table.pop("name", None)
+        if not isinstance(name, str) or not name:
+            raise PlantError(path, f"motor {number}: name", expected="the motor's name", found=repr(name))
+        if name in motors:
+            raise PlantError(path, f"motor {number}: name", expected="each motor once", found=f"{name} again")
+        try:
+            motors[name] = motor_from_table(table, name=name, source=str(path))
+        except MotorFileError as error:
+            raise PlantError(
+                path, f"motor {name}: {error.field}", expected=error.expected, found=error.found
+            ) from error
+    return motors
+
+
+def _plant(configuration: scl.Scl, motors: dict[str, Motor], motors_path: Path) -> Plant:
+    path = configuration.path
+    feeders = configuration.feeders()
+    if not feeders:
+        raise PlantError(
+            path,
+            "<Substation>",
+            expected='motors (ConductingEquipment type="MOT" with an LNode of their relay)',
+            found="none",
+        )
+    _once(path, "motor", (feeder.motor for feeder in feeders))
+    _once(path, "relay", (feeder.ied for feeder in feeders))
+    names = {feeder.motor for feeder in feeders}
+    for missing in sorted(names - motors.keys()):
+        raise PlantError(
+            motors_path,
+            f"motor {missing}",
+            expected=f"its [[motor]] table, as {path.name} has it",
+            found="none",
+        )
+    for unknown in sorted(motors.keys() - names):
+        known = ", ".join(sorted(names))
+        raise PlantError(
+            motors_path,
+            f"motor {unknown}",
+            expected=f"a motor of {path.name} ({known})",
+            found="another name",
+        )
+    sites = {feeder.site: Site(feeder.site, feeder.site_description) for feeder in feeders}
+    return Plant(
+        sites=tuple(sites.values()),
+        relays=tuple(_relay(configuration, feeder) for feeder in feeders),
+        motors=tuple(
+            PlantMotor(motors[feeder.motor], feeder.motor_description, feeder.site, feeder.ied)
+            for feeder in feeders
+        ),
+    )
+
+
+def _once(path: Path, kind: str, names: Iterable[str]) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            raise PlantError(
+                path, f"{kind} {name}", expected="one motor for one relay", found=f"{name} twice"
+            )
+        seen.add(name)
+
+
+def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
+    """The references the service uses, found in the relay's own model."""
+    ied = configuration.ied(feeder.ied)
+    address = configuration.address(feeder.ied)
+
+    def required(reference: str | None, expected: str) -> str:
+        if reference is None:
+            raise PlantError(configuration.path, f"relay {ied.name}", expected=expected, found="none")
+        return reference
+
+    controls = (placed.reference for placed in ied.data_objects(common_data_class="SPC"))
+    trigger = _first(reference for reference in controls if reference.endswith(f"/{TRIGGER_CONTROL}"))
+    record_made = required(
+        _first(placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdMade")),
+        "a disturbance recorder's RcdMade (logical node class RDRE)",
+    )
+    reports = ied.report_controls(buffered=True, covering=record_made)
+    return Relay(
+        name=ied.name,
+        site=feeder.site,
+        host=address.host,
+        port=address.port,
+        manufacturer=ied.manufacturer,
+        type=ied.type,
+        trigger_control=required(
+            trigger, f"the remote bit {TRIGGER_CONTROL} (CDC SPC) that triggers a record"
+        ),
+        record_made=record_made,
+        fault_number=_first(placed.reference for placed in ied.data_objects(ln_class="RDRE", name="FltNum")),
+        report_control=required(
+            _first(reference for report in reports for reference in report.references),
+            f"a buffered report control whose data set holds {record_made}",
+        ),
+        metering_data_set=_metering_data_set(ied),
+    )
+
+
+def _metering_data_set(ied: Ied) -> str | None:
+    currents = _first(placed.reference for placed in ied.data_objects(ln_class="MMXU", name="A"))
+    if currents is None:
+        return None
+    return _first(data_set.reference for data_set in ied.data_sets() if data_set.covers(currents))
+
+
+def _first(references: Iterable[str]) -> str | None:
+    return next(iter(references), None)

@@ -1,0 +1,67 @@
+"""Sites, relays and motors as plain values."""
+
+from dataclasses import dataclass
+
+from core.machines.parameters import Motor
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    name: str
+    description: str
+
+
+@dataclass(frozen=True, slots=True)
+class Relay:
+    """A motor relay: where it answers and the IEC 61850 references the service uses.
+
+    trigger_control: control whose operation makes an event recording, "A1_SEL710CON/RBGGIO1.SPCSO01".
+    record_made, fault_number: status the relay sets when a record is ready; fault_number may be absent.
+    report_control: buffered report "A1_SEL710CFG/LLN0.BR.BRep01" whose data set holds record_made.
+    metering_data_set: data set with the measured currents, None where the relay offers none.
+    """
+
+    name: str
+    site: str
+    host: str
+    port: int
+    manufacturer: str
+    type: str
+    trigger_control: str
+    record_made: str
+    fault_number: str | None
+    report_control: str
+    metering_data_set: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlantMotor:
+    """A motor where it stands: `motor` is what the diagnosis needs, `relay` the name of its relay."""
+
+    motor: Motor
+    description: str
+    site: str
+    relay: str
+
+    @property
+    def name(self) -> str:
+        return self.motor.name
+
+
+@dataclass(frozen=True, slots=True)
+class Plant:
+    sites: tuple[Site, ...]
+    relays: tuple[Relay, ...]
+    motors: tuple[PlantMotor, ...]
+
+    def motor(self, name: str) -> PlantMotor:
+        """Raises KeyError for a motor the plant does not have."""
+        return {motor.name: motor for motor in self.motors}[name]
+
+    def relay(self, name: str) -> Relay:
+        """Raises KeyError for a relay the plant does not have."""
+        return {relay.name: relay for relay in self.relays}[name]
+
+    def motor_of(self, relay: str) -> PlantMotor:
+        """The motor a relay protects. Raises KeyError for a relay the plant does not have."""
+        return {motor.relay: motor for motor in self.motors}[relay]

@@ -1,0 +1,210 @@
+"""The files of event recordings, in folders named by their content.
+
+    <root>/<digest[:2]>/<digest>/C_0001.CFG, C_0001.DAT, C_0001.HDR
+    <root>/incoming/<random>/...      while they arrive
+
+The digest is the SHA-256 of the list of (name, SHA-256 of the content), so the same record is stored once
+however often it is pulled. A folder appears under its digest complete and on disk (fsync) or not at all: rows
+in the database may point to it from then on.
+"""
+
+import os
+import re
+import shutil
+import uuid
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from hashlib import file_digest, sha256
+from pathlib import Path
+from typing import BinaryIO
+
+ENTRY_SUFFIXES = (".CFG", ".CEV", ".CFF")
+MAX_NAME_LENGTH = 100
+_DIGEST = re.compile(r"[0-9a-f]{64}")
+
+
+class RecordingStoreError(ValueError):
+    """Files that cannot be stored, or are not stored: what was asked for and why it cannot be."""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredFile:
+    """One file of a record: its name as stored, size [bytes] and SHA-256 (hexadecimal)."""
+
+    name: str
+    size_bytes: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRecording:
+    """A complete record on disk."""
+
+    digest: str
+    directory: Path
+    files: tuple[StoredFile, ...]
+
+    @property
+    def size_bytes(self) -> int:
+        """Sum over the files [bytes]."""
+        return sum(file.size_bytes for file in self.files)
+
+    @property
+    def name(self) -> str:
+        """Name of the record: that of its leading file without suffix."""
+        return self.entry.stem
+
+    @property
+    def entry(self) -> Path:
+        """The file a reader starts from (.CFG, .CEV or .CFF)."""
+        return _entry(self.directory, (file.name for file in self.files))
+
+
+class Incoming:
+    """Files of one record while they arrive; `keep` moves them to their place."""
+
+    def __init__(self, directory: Path, root: Path) -> None:
+        self._directory = directory
+        self._root = root
+
+    @contextmanager
+    def create(self, name: str) -> Iterator[BinaryIO]:
+        """A new file to stream into, on disk when the block ends. Raises RecordingStoreError (bad name)."""
+        path = self._directory / safe_name(name)
+        try:
+            sink = path.open("xb")
+        except FileExistsError as error:
+            raise RecordingStoreError(f"{name!r}: this record already has a file {path.name}") from error
+        with sink:
+            yield sink
+            sink.flush()
+            os.fsync(sink.fileno())
+
+    def keep(self) -> StoredRecording:
+        """Moves the files to the folder of their content; the same content twice is one folder."""
+        files = _describe(self._directory)
+        _entry(self._directory, (file.name for file in files))
+        digest = manifest_digest(files)
+        directory = _content_directory(self._root, digest)
+        if not directory.is_dir():
+            directory.parent.mkdir(exist_ok=True)
+            _sync_directory(self._directory)
+            _sync_directory(self._root)
+            try:
+                self._directory.rename(directory)
+            except OSError:
+                if not directory.is_dir():  # otherwise another process stored the same content first
+                    raise
+        _sync_directory(directory.parent)
+        return StoredRecording(digest, directory, files)
+
+
+class RecordingStore:
+    """Content-addressed folders below `root`; several processes may store at once."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self._incoming = root / "incoming"
+        self._incoming.mkdir(parents=True, exist_ok=True)
+
+    @contextmanager
+    def incoming(self) -> Iterator[Incoming]:
+        """A place for the files of one record; what was not kept is removed when the block ends."""
+        directory = self._incoming / uuid.uuid4().hex
+        directory.mkdir()
+        try:
+            yield Incoming(directory, self.root)
+        finally:
+            shutil.rmtree(directory, ignore_errors=True)
+
+    def store(self, files: Mapping[str, Path | bytes]) -> StoredRecording:
+        """Stores the files (name in the record -> content or a file to copy) as one record."""
+        with self.incoming() as incoming:
+            for name, content in files.items():
+                with incoming.create(name) as sink:
+                    if isinstance(content, bytes):
+                        sink.write(content)
+                    else:
+                        with content.open("rb") as source:
+                            shutil.copyfileobj(source, sink)
+            return incoming.keep()
+
+    def find(self, digest: str) -> StoredRecording:
+        """The record of this digest. Raises RecordingStoreError when its files are gone or were changed."""
+        directory = self._present(digest)
+        files = _describe(directory)
+        if manifest_digest(files) != digest:
+            raise RecordingStoreError(f"recording {digest}: its files in {directory} are not those stored")
+        return StoredRecording(digest, directory, files)
+
+    def entry(self, digest: str) -> Path:
+        """The file a reader starts from, without hashing anything. Raises RecordingStoreError."""
+        directory = self._present(digest)
+        return _entry(directory, (path.name for path in directory.iterdir()))
+
+    def discard_incoming(self) -> int:
+        """Removes what an earlier run left half arrived; for the start, before anything is pulled."""
+        left_over = list(self._incoming.iterdir())
+        for directory in left_over:
+            shutil.rmtree(directory)
+        return len(left_over)
+
+    def _present(self, digest: str) -> Path:
+        directory = _content_directory(self.root, digest)
+        if not directory.is_dir():
+            raise RecordingStoreError(f"recording {digest}: its files are missing from {self.root}")
+        return directory
+
+
+def safe_name(name: str) -> str:
+    """The file name to store under: last part of a relay's path, upper case, letters of a portable set only.
+
+    Names come from relays and uploads and are not to be trusted: they never leave the record's folder.
+    """
+    last = re.split(r"[\\/]", name)[-1]
+    safe = re.sub(r"[^A-Z0-9._-]", "_", last.upper())
+    if not safe.strip("._") or safe.startswith(".") or len(safe) > MAX_NAME_LENGTH:
+        raise RecordingStoreError(
+            f"{name[:200]!r}: expected a file name of 1 to {MAX_NAME_LENGTH} characters such as C_0001.CFG"
+        )
+    return safe
+
+
+def manifest_digest(files: tuple[StoredFile, ...]) -> str:
+    """SHA-256 over the sorted (name, SHA-256) of the files, hexadecimal."""
+    lines = sorted(f"{file.name}\t{file.sha256}\n" for file in files)
+    return sha256("".join(lines).encode("ascii")).hexdigest()
+
+
+def _content_directory(root: Path, digest: str) -> Path:
+    if not _DIGEST.fullmatch(digest):
+        raise RecordingStoreError(f"{digest[:80]!r}: expected a SHA-256 digest of 64 hexadecimal digits")
+    return root / digest[:2] / digest
+
+
+def _describe(directory: Path) -> tuple[StoredFile, ...]:
+    files = []
+    for path in sorted(directory.iterdir()):
+        with path.open("rb") as stream:
+            digest = file_digest(stream, "sha256").hexdigest()
+        files.append(StoredFile(path.name, path.stat().st_size, digest))
+    return tuple(files)
+
+
+def _entry(directory: Path, names: Iterator[str]) -> Path:
+    entries = sorted(name for name in names if Path(name).suffix in ENTRY_SUFFIXES)
+    if len(entries) != 1:
+        raise RecordingStoreError(
+            f"a record has exactly one file that ends in {', '.join(ENTRY_SUFFIXES)}; "
+            f"found {', '.join(entries) or 'none'}"
+        )
+    return directory / entries[0]
+
+
+def _sync_directory(directory: Path) -> None:
+    descriptor = os.open(directory, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,107 @@
+"""Settings of the service: built-in values, a TOML file, the environment (MCC_...), command line options.
+
+The later one wins. Every setting is explained in docs/settings.md; a test fails when one is missing there.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from ipaddress import IPv4Address, IPv6Address
+from pathlib import Path
+from typing import Annotated, Self
+
+from pydantic import AfterValidator, Field, ValidationError
+from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDict
+
+AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
+PATHS = ("data_directory", "scd", "motors")
+
+
+class SettingsError(ValueError):
+    """A setting cannot be used: which one, where it came from, what was expected and what was found."""
+
+    def __init__(self, source: str, field: str, *, expected: str, found: str) -> None:
+        self.source = source
+        self.field = field
+        self.expected = expected
+        self.found = found
+        super().__init__(f"{source}: {field}: expected {expected}, found {found}")
+
+
+def sqlite_url(data_directory: Path) -> str:
+    """SQLAlchemy URL of the SQLite file in a data directory."""
+    return f"sqlite:///{data_directory / 'statorwatch.sqlite'}"
+
+
+class Settings(BaseSettings):
+    """All settings, validated. Times are in seconds, sizes in bytes."""
+
+    model_config = SettingsConfigDict(env_prefix="MCC_", extra="forbid", frozen=True)
+
+    data_directory: AbsolutePath = Field(default=Path("data"), validate_default=True)
+    scd: AbsolutePath | None = None
+    motors: AbsolutePath | None = None
+
+    bind_address: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
+    port: int = Field(default=8710, ge=0, le=65535)
+    allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "::1")
+    max_upload_bytes: int = Field(default=64 * 1024**2, gt=0)
+
+    database_url: str = Field(default_factory=lambda known: sqlite_url(known["data_directory"]), repr=False)
+
+    workers: int = Field(default=2, ge=1, le=256)
+    job_timeout_s: float = Field(default=60.0, gt=0, le=3600)
+    job_attempts: int = Field(default=3, ge=1, le=20)
+    job_retry_delay_s: float = Field(default=2.0, ge=0)
+
+    events_directory: str = "EVENTS"
+    connect_timeout_s: float = Field(default=5.0, gt=0)
+    request_timeout_s: float = Field(default=5.0, gt=0)
+    record_timeout_s: float = Field(default=30.0, gt=0)
+    poll_period_s: float = Field(default=5.0, gt=0)
+    max_file_bytes: int = Field(default=64 * 1024**2, gt=0)
+
+    @property
+    def recordings_directory(self) -> Path:
+        return self.data_directory / "recordings"
+
+    @classmethod
+    def load(cls, config: Path | None = None, options: Mapping[str, object] | None = None) -> Self:
+        """Settings from a TOML file (may be None), the environment and `options` of the command line.
+
+        Relative paths in the file are meant from the file's own folder. Options that are None were not given.
+        Raises SettingsError.
+        """
+        table = {} if config is None else _read_table(config)
+
+        given = {name: value for name, value in (options or {}).items() if value is not None}
+        try:
+            return cls.model_validate({**table, **EnvSettingsSource(cls)(), **given})
+        except ValidationError as error:
+            raise _first_problem(error, config) from error
+
+
+def _read_table(config: Path) -> dict[str, object]:
+    try:
+        table: dict[str, object] = tomllib.loads(config.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise SettingsError(str(config), "file", expected="a TOML file", found="no file") from error
+    except OSError as error:
+        raise SettingsError(str(config), "file", expected="a readable file", found=str(error)) from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise SettingsError(str(config), "file", expected="valid TOML in UTF-8", found=str(error)) from error
+    for name in PATHS:
+        value = table.get(name)
+        if isinstance(value, str):
+            table[name] = config.absolute().parent / value
+    return table
+
+
+def _first_problem(error: ValidationError, config: Path | None) -> SettingsError:
+    problem = error.errors(include_url=False)[0]
+    source = "settings" if config is None else f"settings ({config}, environment, options)"
+    field = ".".join(str(part) for part in problem["loc"][:1])
+    if problem["type"] == "extra_forbidden":
+        return SettingsError(
+            source, field, expected="a setting named in docs/settings.md", found="another name"
+        )
+    return SettingsError(source, field, expected=problem["msg"], found=repr(problem["input"]))

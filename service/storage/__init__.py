@@ -1,0 +1,8 @@
+"""What the service remembers: tables, their migrations and the only code that touches them."""
+
+from service.storage.engine import connect
+from service.storage.errors import NotFoundError, StateConflictError, StorageError
+from service.storage.migrations import migrate
+from service.storage.repository import Repository
+
+__all__ = ["NotFoundError", "Repository", "StateConflictError", "StorageError", "connect", "migrate"]

@@ -1,0 +1,25 @@
+"""Errors of the storage, in words for the person who asked."""
+
+
+class StorageError(Exception):
+    """The database refused what was asked of it."""
+
+
+class NotFoundError(StorageError):
+    """There is no such thing: `kind` ("motor", "recording", ...) and the name or id asked for."""
+
+    def __init__(self, kind: str, name: str) -> None:
+        self.kind = kind
+        self.name = name
+        super().__init__(f"there is no {kind} {name[:100]!r}")
+
+
+class StateConflictError(StorageError):
+    """A step that does not follow from the present state, e.g. a failed event report cannot be triggered."""
+
+    def __init__(self, kind: str, name: str, *, present: str, wanted: str) -> None:
+        self.kind = kind
+        self.name = name
+        self.present = present
+        self.wanted = wanted
+        super().__init__(f"{kind} {name} is {present} and cannot become {wanted}")

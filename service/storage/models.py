@@ -1,0 +1,206 @@
+"""Tables. Times are UTC, integer nanoseconds since 1970 (columns ..._ns); ids are random UUIDs as text."""
+
+from collections.abc import Mapping
+from enum import StrEnum
+
+from sqlalchemy import JSON, BigInteger, Enum, ForeignKey, Index, LargeBinary, MetaData, String, text
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
+
+from core.diagnosis.verdict import Verdict
+from service.storage.states import EventReportState, JobState, LinkState, RecordingSource, RecordingState
+
+
+def _words(enum: type[StrEnum]) -> Enum:
+    """Column of the enum's values, as text: readable in any database tool, no migration to grow."""
+    return Enum(
+        enum,
+        values_callable=lambda members: [member.value for member in members],
+        native_enum=False,
+        create_constraint=False,
+        length=16,
+    )
+
+
+class Base(DeclarativeBase):
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "ck": "ck_%(table_name)s_%(constraint_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {  # noqa: RUF012  # SQLAlchemy's own declaration style
+        int: BigInteger,
+        LinkState: _words(LinkState),
+        EventReportState: _words(EventReportState),
+        RecordingState: _words(RecordingState),
+        RecordingSource: _words(RecordingSource),
+        JobState: _words(JobState),
+        Verdict: _words(Verdict),
+        Mapping[str, object]: JSON,
+    }
+
+
+class SiteRow(Base):
+    __tablename__ = "sites"
+
+    name: Mapped[str] = mapped_column(primary_key=True)
+    description: Mapped[str]
+    in_service: Mapped[bool]
+
+
+class IedRow(Base):
+    __tablename__ = "ieds"
+
+    name: Mapped[str] = mapped_column(primary_key=True)
+    site: Mapped[str] = mapped_column(ForeignKey("sites.name"))
+    host: Mapped[str]
+    port: Mapped[int]
+    manufacturer: Mapped[str]
+    type: Mapped[str]
+    in_service: Mapped[bool]
+    link_state: Mapped[LinkState]
+    link_reason: Mapped[str | None]
+    link_changed_ns: Mapped[int | None]
+    last_success_ns: Mapped[int | None]
+    entry_id: Mapped[bytes | None] = mapped_column(LargeBinary)
+
+
+class MotorRow(Base):
+    __tablename__ = "motors"
+
+    name: Mapped[str] = mapped_column(primary_key=True)
+    description: Mapped[str]
+    site: Mapped[str] = mapped_column(ForeignKey("sites.name"))
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), index=True)
+    in_service: Mapped[bool]
+
+
+class RecordingRow(Base):
+    __tablename__ = "recordings"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    ied: Mapped[str | None] = mapped_column(ForeignKey("ieds.name"))
+    source: Mapped[RecordingSource]
+    name: Mapped[str]
+    digest: Mapped[str | None] = mapped_column(String(64))
+    size_bytes: Mapped[int]
+    remote_modified_ns: Mapped[int | None]
+    state: Mapped[RecordingState]
+    reason: Mapped[str | None]
+    attempts: Mapped[int]
+    announced_ns: Mapped[int]
+    fetched_ns: Mapped[int | None]
+    recorded_ns: Mapped[int | None]
+
+    __table_args__ = (
+        Index("ux_recordings_relay", "ied", "name", "digest", unique=True),
+        # NULLs differ from each other in a unique index: uploads, which have no IED, need one of their own.
+        Index(
+            "ux_recordings_upload",
+            "motor",
+            "name",
+            "digest",
+            unique=True,
+            sqlite_where=text("ied IS NULL"),
+            postgresql_where=text("ied IS NULL"),
+        ),
+        Index("ix_recordings_announced_ns_id", "announced_ns", "id"),
+        Index("ix_recordings_motor_announced_ns_id", "motor", "announced_ns", "id"),
+    )
+
+
+class RemoteRecordRow(Base):
+    """A record as its relay lists it, and the recording it became: what is here is not pulled again."""
+
+    __tablename__ = "remote_records"
+
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), primary_key=True)
+    name: Mapped[str] = mapped_column(primary_key=True)
+    size_bytes: Mapped[int] = mapped_column(primary_key=True)
+    modified_ns: Mapped[int] = mapped_column(primary_key=True)
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), index=True)
+
+
+class RecordingFileRow(Base):
+    __tablename__ = "recording_files"
+
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), primary_key=True)
+    name: Mapped[str] = mapped_column(primary_key=True)
+    size_bytes: Mapped[int]
+    sha256: Mapped[str] = mapped_column(String(64))
+
+
+class EventReportRow(Base):
+    __tablename__ = "event_reports"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"))
+    state: Mapped[EventReportState]
+    reason: Mapped[str | None]
+    idempotency_key: Mapped[str | None]
+    recording_id: Mapped[str | None] = mapped_column(ForeignKey("recordings.id"), index=True)
+    requested_ns: Mapped[int]
+    triggered_ns: Mapped[int | None]
+    recorded_ns: Mapped[int | None]
+    fetched_ns: Mapped[int | None]
+    diagnosed_ns: Mapped[int | None]
+    failed_ns: Mapped[int | None]
+
+    __table_args__ = (
+        Index("ux_event_reports_key", "motor", "idempotency_key", unique=True),
+        Index("ix_event_reports_ied_state_requested_ns", "ied", "state", "requested_ns"),
+        Index("ix_event_reports_requested_ns_id", "requested_ns", "id"),
+    )
+
+
+class JobRow(Base):
+    __tablename__ = "jobs"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"))
+    method: Mapped[str]
+    model: Mapped[str]
+    state: Mapped[JobState]
+    attempts: Mapped[int]
+    not_before_ns: Mapped[int]
+    created_ns: Mapped[int]
+    started_ns: Mapped[int | None]
+    finished_ns: Mapped[int | None]
+    error: Mapped[str | None]
+
+    __table_args__ = (
+        Index("ix_jobs_state_not_before_ns", "state", "not_before_ns"),
+        Index("ix_jobs_recording_id_created_ns_id", "recording_id", "created_ns", "id"),
+    )
+
+
+class DiagnosisRow(Base):
+    """The result of one job. `current` marks the latest of a recording: that one is in the trend."""
+
+    __tablename__ = "diagnoses"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey("jobs.id"), unique=True)
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), index=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    current: Mapped[bool]
+    created_ns: Mapped[int]
+    recorded_ns: Mapped[int]
+    verdict: Mapped[Verdict]
+    mu_f: Mapped[float | None]
+    mu_f_ci95_low: Mapped[float | None]
+    mu_f_ci95_high: Mapped[float | None]
+    theta_f: Mapped[int | None]
+    load_level: Mapped[float | None]
+    method: Mapped[str]
+    model: Mapped[str]
+    document: Mapped[Mapping[str, object]]
+
+    __table_args__ = (
+        Index("ix_diagnoses_motor_current_recorded_ns_id", "motor", "current", "recorded_ns", "id"),
+    )

@@ -1,0 +1,161 @@
+"""Event reports: what somebody asked a relay to record, followed to its end."""
+
+import uuid
+from collections.abc import Collection
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from service.storage.errors import StateConflictError
+from service.storage.models import EventReportRow, MotorRow
+from service.storage.records import Cursor, EventReport, Page
+from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
+from service.storage.states import EventReportState
+
+OPEN = (EventReportState.REQUESTED, EventReportState.TRIGGERED, EventReportState.RECORDED)
+ENDED = (EventReportState.DIAGNOSED, EventReportState.FAILED)
+
+
+class EventReportRows(Sessions):
+    def request_event_report(
+        self, motor: str, *, now_ns: int, idempotency_key: str | None = None
+    ) -> EventReport:
+        """A new wish for an event recording of a motor; the same key again gives the first one's report.
+
+        Raises NotFoundError.
+        """
+        with self._write() as session:
+            where = found(session, MotorRow, motor, "motor")
+            if idempotency_key is not None:
+                same = select(EventReportRow).where(
+                    EventReportRow.motor == motor, EventReportRow.idempotency_key == idempotency_key
+                )
+                earlier = only(session, same)
+                if earlier is not None:
+                    return event_report(earlier)
+            row = EventReportRow(
+                id=str(uuid.uuid4()),
+                motor=motor,
+                ied=where.ied,
+                state=EventReportState.REQUESTED,
+                idempotency_key=idempotency_key,
+                requested_ns=now_ns,
+            )
+            session.add(row)
+            session.flush()
+            return event_report(row)
+
+    def event_report(self, report_id: str) -> EventReport:
+        """Raises NotFoundError."""
+        with self._read() as session:
+            return event_report(found(session, EventReportRow, report_id, "event report"))
+
+    def event_reports(
+        self, *, limit: int, after: Cursor | None = None, motor: str | None = None
+    ) -> Page[EventReport]:
+        """Latest first; of one motor or of all."""
+        query = select(EventReportRow)
+        if motor is not None:
+            query = query.where(EventReportRow.motor == motor)
+        order: Order = [EventReportRow.requested_ns, EventReportRow.id]
+        with self._read() as session:
+            return page_of(session, query, order, event_report, limit=limit, after=after, descending=True)
+
+    def ieds_with_requests(self) -> tuple[str, ...]:
+        """Relays that have a trigger to be given."""
+        query = (
+            select(EventReportRow.ied).where(EventReportRow.state == EventReportState.REQUESTED).distinct()
+        )
+        with self._read() as session:
+            return tuple(session.scalars(query))
+
+    def pending_event_report(self, ied: str) -> EventReport | None:
+        """The oldest report of a relay that waits for its trigger."""
+        waiting = self.open_event_reports(ied, states=[EventReportState.REQUESTED])
+        return waiting[0] if waiting else None
+
+    def open_event_reports(
+        self, ied: str, *, states: Collection[EventReportState] = OPEN
+    ) -> tuple[EventReport, ...]:
+        """Reports of a relay that have no recording yet, oldest first: what to go on with after a restart."""
+        query = (
+            select(EventReportRow)
+            .where(EventReportRow.ied == ied, EventReportRow.state.in_(states))
+            .order_by(EventReportRow.requested_ns, EventReportRow.id)
+        )
+        with self._read() as session:
+            return tuple(event_report(row) for row in session.scalars(query))
+
+    def mark_triggered(self, report_id: str, *, now_ns: int) -> EventReport:
+        """The relay accepted the trigger. Raises NotFoundError, StateConflictError."""
+        with self._write() as session:
+            row = found(session, EventReportRow, report_id, "event report")
+            if _advances(row, {EventReportState.REQUESTED}, EventReportState.TRIGGERED):
+                row.triggered_ns = now_ns
+            return event_report(row)
+
+    def mark_recorded(self, report_id: str, *, now_ns: int) -> EventReport:
+        """The relay reported the record. Raises NotFoundError, StateConflictError."""
+        with self._write() as session:
+            row = found(session, EventReportRow, report_id, "event report")
+            before = {EventReportState.REQUESTED, EventReportState.TRIGGERED}
+            if _advances(row, before, EventReportState.RECORDED):
+                row.recorded_ns = now_ns
+            return event_report(row)
+
+    def fail_event_report(self, report_id: str, reason: str, *, now_ns: int) -> EventReport:
+        """Gives a report up, with the reason. Raises NotFoundError, StateConflictError (has ended)."""
+        with self._write() as session:
+            row = found(session, EventReportRow, report_id, "event report")
+            fail_row(row, reason, now_ns)
+            return event_report(row)
+
+
+def _advances(row: EventReportRow, before: set[EventReportState], wanted: EventReportState) -> bool:
+    """Moves a report on; False when it is there already, so that a repeated step changes nothing."""
+    if row.state is wanted:
+        return False
+    if row.state not in before:
+        raise StateConflictError("event report", row.id, present=row.state, wanted=wanted)
+    row.state = wanted
+    return True
+
+
+def fetch_row(row: EventReportRow, recording_id: str, now_ns: int) -> None:
+    """The report's recording is stored. Raises StateConflictError."""
+    if row.recording_id == recording_id:
+        return
+    if _advances(row, set(OPEN), EventReportState.FETCHED):
+        row.recording_id = recording_id
+        row.fetched_ns = now_ns
+
+
+def diagnose_rows(session: Session, recording_id: str, now_ns: int) -> None:
+    """Ends the reports that waited for this recording's diagnosis."""
+    for row in _waiting_for(session, recording_id):
+        row.state = EventReportState.DIAGNOSED
+        row.diagnosed_ns = now_ns
+
+
+def fail_rows(session: Session, recording_id: str, reason: str, now_ns: int) -> None:
+    """Ends the reports that waited for this recording, with the reason it has no diagnosis."""
+    for row in _waiting_for(session, recording_id):
+        fail_row(row, reason, now_ns)
+
+
+def fail_row(row: EventReportRow, reason: str, now_ns: int) -> None:
+    before = set(EventReportState) - set(ENDED)
+    if _advances(row, before, EventReportState.FAILED):
+        row.reason = reason
+        row.failed_ns = now_ns
+
+
+def _waiting_for(session: Session, recording_id: str) -> list[EventReportRow]:
+    query = select(EventReportRow).where(
+        EventReportRow.recording_id == recording_id, EventReportRow.state.not_in(ENDED)
+    )
+    return list(session.scalars(query))
+
+
+def event_report(row: EventReportRow) -> EventReport:
+    return record_of(EventReport, row)

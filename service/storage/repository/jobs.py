@@ -1,0 +1,210 @@
+"""The queue of diagnoses to be made, and their results."""
+
+import uuid
+
+from sqlalchemy import select, update
+from sqlalchemy.orm import Session
+
+from core.diagnosis.verdict import Diagnosis
+from service.storage.errors import StateConflictError
+from service.storage.models import DiagnosisRow, JobRow, RecordingRow
+from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, Page
+from service.storage.repository.event_reports import diagnose_rows, fail_rows
+from service.storage.repository.recordings import DEFAULT_METHOD, DEFAULT_MODEL, new_job
+from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
+from service.storage.states import JobState, RecordingState
+
+MAX_ATTEMPTS = 3
+RETRY_DELAY_NS = 2_000_000_000
+
+
+class JobRows(Sessions):
+    def request_diagnosis(
+        self, recording_id: str, *, now_ns: int, method: str = DEFAULT_METHOD, model: str = DEFAULT_MODEL
+    ) -> Job:
+        """Queues a new diagnosis of a recording. Raises NotFoundError, StateConflictError (not stored)."""
+        with self._write() as session:
+            recording = found(session, RecordingRow, recording_id, "recording")
+            if recording.digest is None:
+                raise StateConflictError(
+                    "recording", recording_id, present=recording.state, wanted=RecordingState.DIAGNOSED
+                )
+            row = new_job(recording_id, method, model, now_ns)
+            session.add(row)
+            session.flush()
+            return job(row)
+
+    def claim_job(self, *, now_ns: int) -> ClaimedJob | None:
+        """Takes the next job that is due: it is running from now on, one attempt more."""
+        query = (
+            select(JobRow)
+            .where(JobRow.state == JobState.QUEUED, JobRow.not_before_ns <= now_ns)
+            .order_by(JobRow.not_before_ns, JobRow.id)
+            .with_for_update(skip_locked=True)
+        )
+        with self._write() as session:
+            row = only(session, query)
+            if row is None:
+                return None
+            row.state = JobState.RUNNING
+            row.attempts += 1
+            row.started_ns = now_ns
+            recording = found(session, RecordingRow, row.recording_id, "recording")
+            if recording.digest is None:
+                raise StateConflictError(
+                    "recording", recording.id, present=recording.state, wanted="diagnosed"
+                )
+            return ClaimedJob(job(row), recording.motor, recording.digest)
+
+    def release_job(self, job_id: str) -> None:
+        """Puts a running job back as if it had not been claimed: for a clean stop. Raises NotFoundError."""
+        with self._write() as session:
+            row = found(session, JobRow, job_id, "job")
+            if row.state is JobState.RUNNING:
+                row.state = JobState.QUEUED
+                row.attempts -= 1
+
+    def finish_job(self, job_id: str, diagnosis: Diagnosis, *, recorded_ns: int, now_ns: int) -> None:
+        """Keeps the result: diagnosis, job, recording, event report in one transaction; again: no change.
+
+        recorded_ns: trigger time written in the record. Raises NotFoundError.
+        """
+        with self._write() as session:
+            row = found(session, JobRow, job_id, "job")
+            if row.state is JobState.DONE:
+                return
+            recording = found(session, RecordingRow, row.recording_id, "recording")
+            session.execute(
+                update(DiagnosisRow).where(DiagnosisRow.recording_id == recording.id).values(current=False)
+            )
+            session.add(_diagnosis_row(row, recording.motor, diagnosis, recorded_ns, now_ns))
+            _end(row, JobState.DONE, None, now_ns)
+            recording.state = RecordingState.DIAGNOSED
+            recording.reason = None
+            recording.recorded_ns = recorded_ns
+            session.flush()
+            diagnose_rows(session, recording.id, now_ns)
+
+    def reject_recording(self, job_id: str, reason: str, *, now_ns: int) -> None:
+        """The record cannot be read as it is; trying again would not help. Raises NotFoundError."""
+        with self._write() as session:
+            _give_up(session, found(session, JobRow, job_id, "job"), RecordingState.REJECTED, reason, now_ns)
+
+    def retry_or_fail_job(
+        self,
+        job_id: str,
+        error: str,
+        *,
+        now_ns: int,
+        max_attempts: int = MAX_ATTEMPTS,
+        retry_delay_ns: int = RETRY_DELAY_NS,
+    ) -> JobState:
+        """Queues a job again, each time after twice the delay, or gives it up after `max_attempts`.
+
+        Returns the state the job is in now. Raises NotFoundError.
+        """
+        with self._write() as session:
+            row = found(session, JobRow, job_id, "job")
+            _retry_or_give_up(session, row, error, now_ns, max_attempts, retry_delay_ns)
+            return row.state
+
+    def requeue_interrupted_jobs(self, *, now_ns: int, max_attempts: int = MAX_ATTEMPTS) -> int:
+        """Jobs a killed service left running are queued again; for the start, before any is claimed.
+
+        Their attempt counts: a recording that takes the service down with it every time is given up at last.
+        """
+        with self._write() as session:
+            rows = session.scalars(select(JobRow).where(JobRow.state == JobState.RUNNING)).all()
+            for row in rows:
+                error = "the service ended during the diagnosis"
+                _retry_or_give_up(session, row, error, now_ns, max_attempts, retry_delay_ns=0)
+            return len(rows)
+
+    def job(self, recording_id: str, job_id: str) -> Job:
+        """A job of this recording. Raises NotFoundError."""
+        query = select(JobRow).where(JobRow.id == job_id, JobRow.recording_id == recording_id)
+        with self._read() as session:
+            found(session, RecordingRow, recording_id, "recording")
+            row = only(session, query)
+            return job(row if row is not None else found(session, JobRow, job_id, "diagnosis"))
+
+    def jobs(self, recording_id: str, *, limit: int, after: Cursor | None = None) -> Page[Job]:
+        """Jobs of a recording, latest first. Raises NotFoundError."""
+        query = select(JobRow).where(JobRow.recording_id == recording_id)
+        order: Order = [JobRow.created_ns, JobRow.id]
+        with self._read() as session:
+            found(session, RecordingRow, recording_id, "recording")
+            return page_of(session, query, order, job, limit=limit, after=after, descending=True)
+
+    def diagnosis_of_job(self, job_id: str) -> DiagnosisEntry | None:
+        """The result of a job, None while there is none."""
+        with self._read() as session:
+            row = only(session, select(DiagnosisRow).where(DiagnosisRow.job_id == job_id))
+            return None if row is None else record_of(DiagnosisEntry, row)
+
+    def current_diagnosis(self, recording_id: str) -> DiagnosisEntry | None:
+        """The latest result for a recording, None without one."""
+        query = select(DiagnosisRow).where(DiagnosisRow.recording_id == recording_id, DiagnosisRow.current)
+        with self._read() as session:
+            row = only(session, query)
+            return None if row is None else record_of(DiagnosisEntry, row)
+
+
+def _end(row: JobRow, state: JobState, error: str | None, now_ns: int) -> None:
+    row.state = state
+    row.error = error
+    row.finished_ns = now_ns
+
+
+def _give_up(session: Session, row: JobRow, state: RecordingState, reason: str, now_ns: int) -> None:
+    """Ends a job without a result. A recording that has an earlier diagnosis keeps it."""
+    if row.state in (JobState.DONE, JobState.FAILED):
+        return
+    _end(row, JobState.FAILED, reason, now_ns)
+    recording = found(session, RecordingRow, row.recording_id, "recording")
+    if recording.state is not RecordingState.DIAGNOSED:
+        recording.state = state
+        recording.reason = reason
+    fail_rows(session, recording.id, reason, now_ns)
+
+
+def _retry_or_give_up(
+    session: Session, row: JobRow, error: str, now_ns: int, max_attempts: int, retry_delay_ns: int
+) -> None:
+    if row.state is not JobState.RUNNING:
+        return
+    if row.attempts >= max_attempts:
+        reason = f"gave up after {row.attempts} attempts: {error}"
+        _give_up(session, row, RecordingState.FAILED, reason, now_ns)
+        return
+    row.state = JobState.QUEUED
+    row.error = error
+    row.not_before_ns = now_ns + retry_delay_ns * 2 ** (row.attempts - 1)
+
+
+def _diagnosis_row(
+    row: JobRow, motor: str, diagnosis: Diagnosis, recorded_ns: int, now_ns: int
+) -> DiagnosisRow:
+    low, high = diagnosis.mu_f_ci95 or (None, None)
+    return DiagnosisRow(
+        id=str(uuid.uuid4()),
+        job_id=row.id,
+        recording_id=row.recording_id,
+        motor=motor,
+        current=True,
+        created_ns=now_ns,
+        recorded_ns=recorded_ns,
+        verdict=diagnosis.verdict,
+        mu_f=diagnosis.mu_f,
+        mu_f_ci95_low=low,
+        mu_f_ci95_high=high,
+        theta_f=diagnosis.theta_f,
+        load_level=diagnosis.load_level,
+        method=diagnosis.method,
+        model=diagnosis.model,
+        document=diagnosis.as_dict(),
+    )
+
+
+def job(row: JobRow) -> Job:
+    return record_of(Job, row)

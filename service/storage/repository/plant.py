@@ -1,0 +1,108 @@
+"""Sites, relays and motors, and how the relays' links are doing."""
+
+from sqlalchemy import select, update
+
+from service.plant import Plant
+from service.storage.models import IedRow, MotorRow, SiteRow
+from service.storage.records import Cursor, IedEntry, MotorEntry, Page, SiteEntry
+from service.storage.repository.sessions import Sessions, found, page_of, record_of
+from service.storage.states import LinkState
+
+
+class PlantRows(Sessions):
+    def sync_plant(self, plant: Plant) -> None:
+        """Makes the tables say what the plant's files say.
+
+        What left the plant is put out of service, not deleted: its recordings stay.
+        """
+        with self._write() as session:
+            for table in (SiteRow, IedRow, MotorRow):
+                session.execute(update(table).values(in_service=False))
+            for site in plant.sites:
+                session.merge(SiteRow(name=site.name, description=site.description, in_service=True))
+            session.flush()
+            for relay in plant.relays:
+                row = session.get(IedRow, relay.name)
+                if row is None:
+                    row = IedRow(name=relay.name, link_state=LinkState.UNKNOWN)
+                    session.add(row)
+                row.site, row.host, row.port = relay.site, relay.host, relay.port
+                row.manufacturer, row.type, row.in_service = relay.manufacturer, relay.type, True
+            session.flush()
+            for motor in plant.motors:
+                session.merge(
+                    MotorRow(
+                        name=motor.name,
+                        description=motor.description,
+                        site=motor.site,
+                        ied=motor.relay,
+                        in_service=True,
+                    )
+                )
+
+    def set_link_state(self, ied: str, state: LinkState, reason: str | None, *, now_ns: int) -> None:
+        """Notes whether a relay answers, and why not. Raises NotFoundError."""
+        with self._write() as session:
+            row = found(session, IedRow, ied, "IED")
+            if row.link_state is not state:
+                row.link_changed_ns = now_ns
+            row.link_state = state
+            row.link_reason = reason
+            if state is LinkState.UP:
+                row.last_success_ns = now_ns
+
+    def reset_links(self, *, now_ns: int) -> None:
+        """Sets every link to unknown: for the start, and when the collector is gone."""
+        with self._write() as session:
+            session.execute(
+                update(IedRow)
+                .where(IedRow.link_state != LinkState.UNKNOWN)
+                .values(link_state=LinkState.UNKNOWN, link_reason=None, link_changed_ns=now_ns)
+            )
+
+    def entry_id(self, ied: str) -> bytes | None:
+        """EntryID of the last buffered report whose records are safe here. Raises NotFoundError."""
+        with self._read() as session:
+            return found(session, IedRow, ied, "IED").entry_id
+
+    def save_entry_id(self, ied: str, entry_id: bytes) -> None:
+        """Remembers where to resume the buffered report. Raises NotFoundError."""
+        with self._write() as session:
+            found(session, IedRow, ied, "IED").entry_id = entry_id
+
+    def sites(self, *, limit: int, after: Cursor | None = None) -> Page[SiteEntry]:
+        with self._read() as session:
+            query = select(SiteRow).where(SiteRow.in_service)
+            return page_of(session, query, [SiteRow.name], _site, limit=limit, after=after)
+
+    def ieds(self, *, limit: int, after: Cursor | None = None) -> Page[IedEntry]:
+        with self._read() as session:
+            query = select(IedRow).where(IedRow.in_service)
+            return page_of(session, query, [IedRow.name], _ied, limit=limit, after=after)
+
+    def ied(self, name: str) -> IedEntry:
+        """Raises NotFoundError."""
+        with self._read() as session:
+            return _ied(found(session, IedRow, name, "IED"))
+
+    def motors(self, *, limit: int, after: Cursor | None = None) -> Page[MotorEntry]:
+        with self._read() as session:
+            query = select(MotorRow).where(MotorRow.in_service)
+            return page_of(session, query, [MotorRow.name], _motor, limit=limit, after=after)
+
+    def motor(self, name: str) -> MotorEntry:
+        """Raises NotFoundError."""
+        with self._read() as session:
+            return _motor(found(session, MotorRow, name, "motor"))
+
+
+def _site(row: SiteRow) -> SiteEntry:
+    return record_of(SiteEntry, row)
+
+
+def _ied(row: IedRow) -> IedEntry:
+    return record_of(IedEntry, row)
+
+
+def _motor(row: MotorRow) -> MotorEntry:
+    return record_of(MotorEntry, row)

@@ -1,0 +1,282 @@
+"""Recordings: announced by a relay or uploaded, stored, and queued for diagnosis in the same transaction."""
+
+import uuid
+from dataclasses import dataclass
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from service.recordings import StoredRecording
+from service.storage.models import (
+    EventReportRow,
+    IedRow,
+    JobRow,
+    MotorRow,
+    RecordingFileRow,
+    RecordingRow,
+    RemoteRecordRow,
+)
+from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
+from service.storage.repository.event_reports import diagnose_rows, fail_row, fail_rows, fetch_row
+from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
+from service.storage.states import JobState, RecordingSource, RecordingState
+
+DEFAULT_METHOD = "hcpa"
+DEFAULT_MODEL = "split-winding"
+
+
+@dataclass(frozen=True, slots=True)
+class AddedRecording:
+    """`created` is False when the same record was stored before: nothing was doubled."""
+
+    recording: RecordingEntry
+    created: bool
+
+
+class RecordingRows(Sessions):
+    def known_remote_records(self, ied: str) -> frozenset[RemoteRecord]:
+        """Records of a relay that are stored or refused already: no need to pull them again."""
+        query = (
+            select(RemoteRecordRow)
+            .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
+            .where(RemoteRecordRow.ied == ied, RecordingRow.state != RecordingState.ANNOUNCED)
+        )
+        with self._read() as session:
+            return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
+
+    def announce_recording(
+        self, ied: str, motor: str, remote: RemoteRecord, *, now_ns: int
+    ) -> RecordingEntry:
+        """The recording of what a relay lists, announced unless it is known. Raises NotFoundError."""
+        with self._write() as session:
+            return recording(_announced(session, ied, motor, remote, now_ns))
+
+    def note_failed_pull(
+        self, ied: str, motor: str, remote: RemoteRecord, reason: str, *, now_ns: int
+    ) -> int:
+        """Counts a pull that did not succeed and will be tried again; returns how many there were."""
+        with self._write() as session:
+            row = _announced(session, ied, motor, remote, now_ns)
+            if row.state is RecordingState.ANNOUNCED:
+                row.attempts += 1
+                row.reason = reason
+            return row.attempts
+
+    def reject_remote_record(
+        self,
+        ied: str,
+        motor: str,
+        remote: RemoteRecord,
+        reason: str,
+        *,
+        now_ns: int,
+        event_report_id: str | None = None,
+    ) -> RecordingEntry:
+        """Refuses a record for good without storing it (too large, incomplete): it is not pulled again.
+
+        The event report that waited for it fails with the same reason.
+        """
+        with self._write() as session:
+            row = _announced(session, ied, motor, remote, now_ns)
+            if row.state is RecordingState.ANNOUNCED:
+                row.state = RecordingState.REJECTED
+                row.reason = reason
+            if event_report_id is not None:
+                fail_row(found(session, EventReportRow, event_report_id, "event report"), reason, now_ns)
+            return recording(row)
+
+    def add_recording(
+        self,
+        stored: StoredRecording,
+        *,
+        motor: str,
+        now_ns: int,
+        ied: str | None = None,
+        remote: RemoteRecord | None = None,
+        event_report_id: str | None = None,
+        method: str = DEFAULT_METHOD,
+        model: str = DEFAULT_MODEL,
+    ) -> AddedRecording:
+        """A record whose files are stored: its row, its first job and its event report, all or nothing.
+
+        From a relay: `ied` and `remote`; uploaded: neither. Identity is relay (or motor), name and digest:
+        the same record again changes nothing but the event report. Raises NotFoundError, StateConflictError.
+        """
+        if (ied is None) != (remote is None):
+            raise ValueError("a recording comes from a relay (ied and remote) or is uploaded (neither)")
+        with self._write() as session:
+            found(session, MotorRow, motor, "motor")
+            row = _stored_before(session, motor, ied, remote.name if remote else stored.name, stored.digest)
+            created = row is None
+            if row is None:
+                if ied is None or remote is None:
+                    row = _uploaded(session, motor, stored.name, now_ns)
+                else:
+                    row = _to_fill(session, ied, motor, remote, now_ns)
+                _fill(session, row, stored, now_ns)
+                session.add(new_job(row.id, method, model, now_ns))
+            elif ied is not None and remote is not None:
+                _link_remote(session, ied, remote, row)
+            if event_report_id is not None:
+                _attach(session, event_report_id, row, now_ns)
+            return AddedRecording(recording(row), created)
+
+    def recording(self, recording_id: str) -> RecordingEntry:
+        """Raises NotFoundError."""
+        with self._read() as session:
+            return recording(found(session, RecordingRow, recording_id, "recording"))
+
+    def recording_files(self, recording_id: str) -> tuple[RecordingFile, ...]:
+        query = (
+            select(RecordingFileRow)
+            .where(RecordingFileRow.recording_id == recording_id)
+            .order_by(RecordingFileRow.name)
+        )
+        with self._read() as session:
+            return tuple(record_of(RecordingFile, row) for row in session.scalars(query))
+
+    def recordings(
+        self,
+        *,
+        limit: int,
+        after: Cursor | None = None,
+        motor: str | None = None,
+        state: RecordingState | None = None,
+    ) -> Page[RecordingEntry]:
+        """Latest first; of one motor or of all, in one state or in any."""
+        query = select(RecordingRow)
+        if motor is not None:
+            query = query.where(RecordingRow.motor == motor)
+        if state is not None:
+            query = query.where(RecordingRow.state == state)
+        order: Order = [RecordingRow.announced_ns, RecordingRow.id]
+        with self._read() as session:
+            return page_of(session, query, order, recording, limit=limit, after=after, descending=True)
+
+
+def new_job(recording_id: str, method: str, model: str, now_ns: int) -> JobRow:
+    return JobRow(
+        id=str(uuid.uuid4()),
+        recording_id=recording_id,
+        method=method,
+        model=model,
+        state=JobState.QUEUED,
+        attempts=0,
+        not_before_ns=now_ns,
+        created_ns=now_ns,
+    )
+
+
+def _stored_before(
+    session: Session, motor: str, ied: str | None, name: str, digest: str
+) -> RecordingRow | None:
+    same = select(RecordingRow).where(RecordingRow.name == name, RecordingRow.digest == digest)
+    if ied is None:
+        return only(session, same.where(RecordingRow.ied.is_(None), RecordingRow.motor == motor))
+    return only(session, same.where(RecordingRow.ied == ied))
+
+
+def _announced(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
+    """The recording of what the relay lists, whatever became of it; a new announcement the first time."""
+    link = _link(session, ied, remote)
+    if link is None:
+        return _announce(session, ied, motor, remote, now_ns)
+    return found(session, RecordingRow, link.recording_id, "recording")
+
+
+def _to_fill(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
+    """The recording that new content belongs to: not one which holds other content already."""
+    row = _announced(session, ied, motor, remote, now_ns)
+    return row if row.digest is None else _announce(session, ied, motor, remote, now_ns)
+
+
+def _announce(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
+    found(session, IedRow, ied, "IED")
+    found(session, MotorRow, motor, "motor")
+    row = RecordingRow(
+        id=str(uuid.uuid4()),
+        motor=motor,
+        ied=ied,
+        source=RecordingSource.RELAY,
+        name=remote.name,
+        size_bytes=remote.size_bytes,
+        remote_modified_ns=remote.modified_ns,
+        state=RecordingState.ANNOUNCED,
+        attempts=0,
+        announced_ns=now_ns,
+    )
+    session.add(row)
+    session.flush()
+    _link_remote(session, ied, remote, row)
+    return row
+
+
+def _link(session: Session, ied: str, remote: RemoteRecord) -> RemoteRecordRow | None:
+    return session.get(RemoteRecordRow, (ied, remote.name, remote.size_bytes, remote.modified_ns))
+
+
+def _link_remote(session: Session, ied: str, remote: RemoteRecord, row: RecordingRow) -> None:
+    """Ties what the relay lists to the recording; an announcement it replaces goes."""
+    link = _link(session, ied, remote)
+    if link is None:
+        session.add(
+            RemoteRecordRow(
+                ied=ied,
+                name=remote.name,
+                size_bytes=remote.size_bytes,
+                modified_ns=remote.modified_ns,
+                recording_id=row.id,
+            )
+        )
+    elif link.recording_id != row.id:
+        replaced = found(session, RecordingRow, link.recording_id, "recording")
+        link.recording_id = row.id
+        session.flush()
+        if replaced.state is RecordingState.ANNOUNCED:
+            session.delete(replaced)
+    session.flush()
+
+
+def _uploaded(session: Session, motor: str, name: str, now_ns: int) -> RecordingRow:
+    row = RecordingRow(
+        id=str(uuid.uuid4()),
+        motor=motor,
+        source=RecordingSource.UPLOAD,
+        name=name,
+        size_bytes=0,
+        state=RecordingState.ANNOUNCED,
+        attempts=0,
+        announced_ns=now_ns,
+    )
+    session.add(row)
+    return row
+
+
+def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: int) -> None:
+    row.digest = stored.digest
+    row.size_bytes = stored.size_bytes
+    row.state = RecordingState.FETCHED
+    row.reason = None
+    row.fetched_ns = now_ns
+    session.flush()
+    for file in stored.files:
+        session.add(
+            RecordingFileRow(
+                recording_id=row.id, name=file.name, size_bytes=file.size_bytes, sha256=file.sha256
+            )
+        )
+    session.flush()
+
+
+def _attach(session: Session, event_report_id: str, row: RecordingRow, now_ns: int) -> None:
+    """Gives the event report its recording, and its end where the recording has come to one already."""
+    fetch_row(found(session, EventReportRow, event_report_id, "event report"), row.id, now_ns)
+    session.flush()
+    if row.state is RecordingState.DIAGNOSED:
+        diagnose_rows(session, row.id, now_ns)
+    elif row.state in (RecordingState.REJECTED, RecordingState.FAILED):
+        fail_rows(session, row.id, row.reason or str(row.state), now_ns)
+
+
+def recording(row: RecordingRow) -> RecordingEntry:
+    return record_of(RecordingEntry, row)

@@ -1,0 +1,92 @@
+"""Transactions, and the step from table rows to plain values."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import fields
+from typing import TYPE_CHECKING, TypeVar
+
+from sqlalchemy import ColumnElement, Engine, Select, text, tuple_
+from sqlalchemy.orm import InstrumentedAttribute, Session
+
+from service.storage.engine import WRITES
+from service.storage.errors import NotFoundError
+from service.storage.models import Base
+from service.storage.records import Cursor, Page
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    Record = TypeVar("Record", bound=DataclassInstance)
+
+Row = TypeVar("Row", bound=Base)
+Item = TypeVar("Item")
+Order = Sequence[InstrumentedAttribute[str] | InstrumentedAttribute[int]]
+
+
+class Sessions:
+    """What every part of the repository stands on."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._reading = engine
+        self._writing = engine.execution_options(**{WRITES: True})
+
+    def check(self) -> None:
+        """One round trip to the database. Raises sqlalchemy.exc.SQLAlchemyError when it does not answer."""
+        with self._read() as session:
+            session.execute(text("SELECT 1"))
+
+    @contextmanager
+    def _read(self) -> Iterator[Session]:
+        with Session(self._reading) as session:
+            yield session
+
+    @contextmanager
+    def _write(self) -> Iterator[Session]:
+        with Session(self._writing) as session, session.begin():
+            yield session
+
+
+def found(session: Session, row_type: type[Row], key: str, kind: str) -> Row:
+    """The row of this key. Raises NotFoundError."""
+    row = session.get(row_type, key)
+    if row is None:
+        raise NotFoundError(kind, key)
+    return row
+
+
+def record_of(record_type: "type[Record]", row: Base) -> "Record":
+    """The dataclass whose fields are columns of the row, by name."""
+    return record_type(**{field.name: getattr(row, field.name) for field in fields(record_type)})
+
+
+def page_of(
+    session: Session,
+    query: Select[Row],
+    order: Order,
+    to_item: Callable[[Row], Item],
+    *,
+    limit: int,
+    after: Cursor | None,
+    descending: bool = False,
+) -> Page[Item]:
+    """One page of `query` in the order of unique `order` columns, from behind the sort key `after`.
+
+    Keys, not offsets: rows that come or go meanwhile neither repeat nor hide others.
+    """
+    if after is not None:
+        position: ColumnElement[bool] = (
+            tuple_(*order) < tuple_(*after) if descending else tuple_(*order) > tuple_(*after)
+        )
+        query = query.where(position)
+    query = query.order_by(*(column.desc() if descending else column.asc() for column in order))
+    rows = session.scalars(query.limit(limit + 1)).all()
+    last = rows[limit - 1] if len(rows) > limit else None
+    return Page(
+        items=tuple(to_item(row) for row in rows[:limit]),
+        next=None if last is None else tuple(getattr(last, column.key) for column in order),
+    )
+
+
+def only(session: Session, query: Select[Row]) -> Row | None:
+    """The first row of a query, None without one."""
+    return session.scalars(query.limit(1)).first()

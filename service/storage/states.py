@@ -1,0 +1,48 @@
+"""States of what is stored. The words are part of the REST contract."""
+
+from enum import StrEnum
+
+
+class LinkState(StrEnum):
+    """Whether a relay answers."""
+
+    UNKNOWN = "unknown"
+    UP = "up"
+    DOWN = "down"
+
+
+class EventReportState(StrEnum):
+    """An event report somebody asked for, from the wish to the diagnosis."""
+
+    REQUESTED = "requested"
+    TRIGGERED = "triggered"
+    RECORDED = "recorded"
+    FETCHED = "fetched"
+    DIAGNOSED = "diagnosed"
+    FAILED = "failed"
+
+
+class RecordingState(StrEnum):
+    """announced by the relay -> fetched (stored) -> diagnosed; rejected and failed carry a reason."""
+
+    ANNOUNCED = "announced"
+    FETCHED = "fetched"
+    DIAGNOSED = "diagnosed"
+    REJECTED = "rejected"
+    FAILED = "failed"
+
+
+class RecordingSource(StrEnum):
+    """Where a recording came from."""
+
+    RELAY = "relay"
+    UPLOAD = "upload"
+
+
+class JobState(StrEnum):
+    """A diagnosis to be made."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    DONE = "done"
+    FAILED = "failed"

@@ -1,0 +1,35 @@
+from collections.abc import Iterator, MutableMapping
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+import structlog
+
+from service.api import ApiContext, create_app
+from service.recordings import RecordingStore
+from service.settings import Settings
+from service.storage import Repository
+from tests.service.api.serving import serving
+from tests.service.fixtures import database_url, engine, repository, store
+
+__all__ = ["database_url", "engine", "repository", "store"]
+
+
+@pytest.fixture(autouse=True)
+def logs() -> Iterator[list[MutableMapping[str, Any]]]:
+    """What the service logs, kept from the screen: tracebacks for people take seconds to draw."""
+    with structlog.testing.capture_logs() as entries:
+        yield entries
+
+
+@pytest.fixture
+def context(repository: Repository, store: RecordingStore, tmp_path: Path) -> ApiContext:
+    settings = Settings(data_directory=tmp_path, max_upload_bytes=200_000)
+    return ApiContext(settings, repository, store)
+
+
+@pytest.fixture
+def client(context: ApiContext) -> Iterator[httpx.Client]:
+    with serving(create_app(context)) as client:
+        yield client

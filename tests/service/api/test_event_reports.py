@@ -1,0 +1,34 @@
+import httpx
+
+from service.storage import Repository
+from tests.service.plants import NOW_NS
+
+POST = "/api/v1/motors/PUMP-A1/event-reports"
+
+
+def test_a_report_is_accepted_and_can_be_followed(client: httpx.Client, repository: Repository) -> None:
+    accepted = client.post(POST)
+    assert accepted.status_code == 202
+    report = accepted.json()
+    assert (report["state"], report["motor"], report["ied"]) == ("requested", "PUMP-A1", "A1_SEL710")
+    location = accepted.headers["location"]
+    assert location == f"/api/v1/event-reports/{report['id']}"
+    assert client.get(location).json() == report
+
+    repository.fail_event_report(report["id"], "relay A1_SEL710 is down", now_ns=NOW_NS)
+    failed = client.get(location).json()
+    assert (failed["state"], failed["reason"]) == ("failed", "relay A1_SEL710 is down")
+    assert failed["failed_time"] == "2025-10-09T08:53:20.000000000Z"
+
+
+def test_the_same_key_asks_once(client: httpx.Client) -> None:
+    ids = [client.post(POST, headers={"Idempotency-Key": key}).json()["id"] for key in "aab"]
+    assert ids[0] == ids[1] != ids[2]
+    listed = client.get("/api/v1/event-reports", params={"motor": "PUMP-A1"}).json()["items"]
+    assert {report["id"] for report in listed} == set(ids)
+
+
+def test_unknown_names(client: httpx.Client) -> None:
+    assert client.post("/api/v1/motors/NOPE/event-reports").json()["detail"] == "there is no motor 'NOPE'"
+    unknown = client.get("/api/v1/event-reports/00000000-0000-0000-0000-000000000000")
+    assert unknown.status_code == 404

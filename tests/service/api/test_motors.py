@@ -1,0 +1,90 @@
+import httpx
+import pytest
+
+from service.recordings import RecordingStore
+from service.storage import Repository
+from service.storage.states import LinkState
+from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+
+FIRST = "2025-10-09T08:53:20.000000000Z"
+
+
+@pytest.fixture
+def diagnosed(repository: Repository, store: RecordingStore) -> list[str]:
+    """Three recordings of PUMP-A1, a second apart."""
+    ids = []
+    for i, diagnosis in enumerate([fault(0.01), fault(0.02), undiagnosable()]):
+        stored = store.store({f"E{i}.CEV": b"samples"})
+        added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS + i)
+        claimed = repository.claim_job(now_ns=NOW_NS + i)
+        assert claimed is not None
+        repository.finish_job(
+            claimed.job.id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + SECOND_NS
+        )
+        ids.append(added.recording.id)
+    return ids
+
+
+def test_the_plant_is_listed(client: httpx.Client) -> None:
+    assert client.get("/api/v1/sites").json() == {
+        "items": [{"name": "FACTORY_A", "description": "Factory A"}],
+        "next_cursor": None,
+    }
+    assert [ied["name"] for ied in client.get("/api/v1/ieds").json()["items"]] == ["A1_SEL710", "A2_SEL710"]
+    motors = client.get("/api/v1/motors").json()["items"]
+    assert [motor["name"] for motor in motors] == ["FAN-A2", "PUMP-A1"]
+    assert client.get("/api/v1/motors/FAN-A2").json() == motors[0]
+
+
+def test_a_relay_tells_its_link(client: httpx.Client, repository: Repository) -> None:
+    repository.set_link_state("A1_SEL710", LinkState.DOWN, "connection refused", now_ns=NOW_NS)
+    ied = client.get("/api/v1/ieds/A1_SEL710").json()
+    assert (ied["link_state"], ied["link_reason"]) == ("down", "connection refused")
+    assert (ied["link_changed_time"], ied["last_success_time"]) == (FIRST, None)
+
+
+def test_pages_lead_through_the_list(client: httpx.Client) -> None:
+    first = client.get("/api/v1/motors", params={"limit": 1}).json()
+    second = client.get("/api/v1/motors", params={"limit": 1, "cursor": first["next_cursor"]}).json()
+    assert [first["items"][0]["name"], second["items"][0]["name"]] == ["FAN-A2", "PUMP-A1"]
+    assert second["next_cursor"] is None
+
+
+def test_health_before_and_after_a_diagnosis(client: httpx.Client, diagnosed: list[str]) -> None:
+    health = client.get("/api/v1/motors/PUMP-A1/health").json()
+    assert (health["verdict"], health["reasons"], health["recording_id"]) == (
+        "undiagnosable",
+        ["clipped currents"],
+        diagnosed[-1],
+    )
+    assert (health["link_state"], health["last_recording"]["name"]) == ("unknown", "E2")
+    idle = client.get("/api/v1/motors/FAN-A2/health").json()
+    assert (idle["verdict"], idle["reasons"], idle["last_recording"]) == (None, [], None)
+
+
+def test_trend(client: httpx.Client, diagnosed: list[str]) -> None:
+    url = "/api/v1/motors/PUMP-A1/trend"
+    items = client.get(url).json()["items"]
+    assert items[0] == {
+        "time": FIRST,
+        "value": 0.01,
+        "ci95": [pytest.approx(0.009), pytest.approx(0.011)],
+        "verdict": "fault",
+        "recording_id": diagnosed[0],
+    }
+    assert [item["value"] for item in items] == [0.01, 0.02, None]
+    window = {"from": items[1]["time"], "to": items[2]["time"]}
+    assert client.get(url, params=window).json()["items"] == [items[1]]
+    page = client.get(url, params={"limit": 2}).json()
+    rest = client.get(url, params={"limit": 2, "cursor": page["next_cursor"]}).json()
+    assert page["items"] + rest["items"] == items
+    theta = client.get(url, params={"quantity": "theta_f"}).json()["items"]
+    assert [(item["value"], item["ci95"]) for item in theta] == [(1, None), (1, None), (None, None)]
+
+
+def test_recordings_of_a_motor_latest_first(client: httpx.Client, diagnosed: list[str]) -> None:
+    items = client.get("/api/v1/motors/PUMP-A1/recordings").json()["items"]
+    assert [item["id"] for item in items] == diagnosed[::-1]
+    assert client.get("/api/v1/motors/FAN-A2/recordings").json()["items"] == []
+    assert client.get("/api/v1/recordings", params={"motor": "PUMP-A1"}).json()["items"] == items
+    assert client.get("/api/v1/recordings", params={"state": "failed"}).json()["items"] == []

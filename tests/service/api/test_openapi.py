@@ -1,0 +1,68 @@
+"""The API is what its OpenAPI document says: requests made from the document, answers checked against it."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+import schemathesis
+from hypothesis import HealthCheck, given, settings
+from schemathesis import BaseSchema, Case, GenerationMode
+from schemathesis.core.result import Ok
+from schemathesis.specs.openapi.checks import positive_data_acceptance
+
+from service.api import ApiContext, create_app
+from service.recordings import RecordingStore
+from service.settings import Settings, sqlite_url
+from service.storage import Repository, connect, migrate
+from tests.service.api.comtrade_files import CFG, DAT
+from tests.service.api.serving import serving
+from tests.service.plants import NOW_NS, fault, two_motor_plant
+
+NO_WRONG_REQUESTS = {
+    "GET /healthz",
+    "GET /readyz",
+    "GET /metrics",
+    "GET /api/v1/ieds/{name}",
+    "GET /api/v1/motors/{name}",
+    "GET /api/v1/motors/{name}/health",
+}
+"""Routes that take nothing but a name: any text is one."""
+
+
+@pytest.fixture(scope="module")
+def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BaseSchema]:
+    """A running API with something in every table."""
+    data: Path = tmp_path_factory.mktemp("api")
+    migrate(sqlite_url(data))
+    engine = connect(sqlite_url(data))
+    repository = Repository(engine)
+    repository.sync_plant(two_motor_plant())
+    store = RecordingStore(data / "recordings")
+    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    stored = store.store({"EVENT.CFG": CFG, "EVENT.DAT": DAT})
+    repository.add_recording(stored, motor="PUMP-A1", event_report_id=report.id, now_ns=NOW_NS)
+    claimed = repository.claim_job(now_ns=NOW_NS)
+    assert claimed is not None
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    context = ApiContext(Settings(data_directory=data), repository, store)
+    with serving(create_app(context)) as client:
+        yield schemathesis.openapi.from_url(f"{client.base_url}/api/v1/openapi.json")
+    engine.dispose()
+
+
+@pytest.mark.parametrize("mode", [GenerationMode.POSITIVE, GenerationMode.NEGATIVE])
+def test_answers_are_as_documented(documented_api: BaseSchema, mode: GenerationMode) -> None:
+    for result in documented_api.get_all_operations():
+        assert isinstance(result, Ok), result
+        operation = result.ok()
+        if mode is GenerationMode.NEGATIVE and operation.label in NO_WRONG_REQUESTS:
+            continue
+
+        @given(case=operation.as_strategy(generation_mode=mode))
+        @settings(max_examples=12, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+        def answers_as_documented(case: Case[Any]) -> None:
+            # A cursor or a file name that fits its schema need not be one of ours: 422 is an answer too.
+            case.call_and_validate(excluded_checks=[positive_data_acceptance])
+
+        answers_as_documented()

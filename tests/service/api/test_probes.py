@@ -1,0 +1,41 @@
+from dataclasses import replace
+
+import httpx
+from sqlalchemy import create_engine
+
+from service.api import ApiContext, create_app
+from service.storage import Repository
+from tests.service.api.serving import serving
+from tests.service.plants import NOW_NS
+
+
+def test_alive_and_ready(context: ApiContext) -> None:
+    app = create_app(replace(context, readiness={"collector": lambda: None}))
+    with serving(app) as client:
+        assert client.get("/healthz").json()["status"] == "ok"
+        assert client.get("/readyz").json() == {
+            "status": "ready",
+            "parts": {"database": "ready", "collector": "ready"},
+        }
+
+
+def test_what_is_not_ready_is_named(context: ApiContext) -> None:
+    unreachable = Repository(create_engine("sqlite:////nowhere/at/all.sqlite"))
+    readiness = {"collector": lambda: "ended with exit code 1", "jobs": lambda: None}
+    app = create_app(replace(context, repository=unreachable, readiness=readiness))
+    with serving(app) as client:
+        assert client.get("/healthz").status_code == 200
+        response = client.get("/readyz")
+    assert response.status_code == 503
+    assert response.headers["content-type"] == "application/problem+json"
+    parts = response.json()["parts"]
+    assert (parts["collector"], parts["jobs"]) == ("ended with exit code 1", "ready")
+    assert "does not answer" in parts["database"]
+
+
+def test_metrics(client: httpx.Client, repository: Repository) -> None:
+    repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    response = client.get("/metrics")
+    assert response.headers["content-type"].startswith("text/plain")
+    assert 'mcc_event_reports{state="requested"} 1.0' in response.text
+    assert 'mcc_links{state="unknown"} 2.0' in response.text

@@ -1,0 +1,137 @@
+"""A plant of one scripted relay, a real database and recording store, and sessions to run against them."""
+
+import socket
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Thread
+
+import pytest
+
+from core.machines.parameters import MachineParameters, Motor, Nameplate
+from service.collector.relay_session import RelaySession
+from service.plant import Plant, PlantMotor, Relay, Site
+from service.recordings import RecordingStore
+from service.settings import Settings
+from service.storage import Repository, connect, migrate
+from service.storage.records import EventReport, RecordingEntry
+from service.storage.states import EventReportState, LinkState
+from tests.service.collector.scripted_relay import (
+    CONTROL,
+    FAULT_NUMBER,
+    NAME,
+    RECORD_MADE,
+    REPORT_CONTROL,
+    ScriptedRelay,
+)
+
+MOTOR = "PUMP-A1"
+
+
+def eventually(condition: Callable[[], bool], within_s: float = 10.0) -> bool:
+    """Whether the condition comes true in time."""
+    deadline_s = time.monotonic() + within_s
+    while time.monotonic() < deadline_s:
+        if condition():
+            return True
+        time.sleep(0.02)
+    return condition()
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+@dataclass
+class Bench:
+    """The service's side of one relay."""
+
+    relay: Relay
+    repository: Repository
+    store: RecordingStore
+    settings: Settings
+    relay_root: Path
+
+    def start_relay(self) -> ScriptedRelay:
+        return ScriptedRelay(self.relay_root, self.relay.port)
+
+    @contextmanager
+    def session(self) -> Iterator[RelaySession]:
+        """A running session; the block's end is the collector's end."""
+        session = RelaySession(self.relay, MOTOR, self.repository, self.store, self.settings)
+        thread = Thread(target=session.run)
+        thread.start()
+        try:
+            yield session
+        finally:
+            session.stop()
+            thread.join(15)
+            assert not thread.is_alive()
+
+    def request(self) -> str:
+        return self.repository.request_event_report(MOTOR, now_ns=time.time_ns()).id
+
+    def report(self, report_id: str) -> EventReport:
+        return self.repository.event_report(report_id)
+
+    def reaches(self, report_id: str, state: EventReportState) -> bool:
+        return eventually(lambda: self.report(report_id).state is state)
+
+    def recordings(self) -> list[RecordingEntry]:
+        return list(self.repository.recordings(limit=100).items)
+
+    def link(self) -> LinkState:
+        return self.repository.ied(NAME).link_state
+
+
+@pytest.fixture
+def bench(tmp_path: Path) -> Bench:
+    settings = Settings(
+        data_directory=tmp_path / "data",
+        record_timeout_s=2.0,
+        poll_period_s=0.3,
+        connect_timeout_s=2.0,
+        request_timeout_s=2.0,
+        max_file_bytes=100_000,
+    )
+    settings.data_directory.mkdir()
+    migrate(settings.database_url)
+    relay = Relay(
+        name=NAME,
+        site="FACTORY_A",
+        host="127.0.0.1",
+        port=free_port(),
+        manufacturer="SEL",
+        type="SEL-710",
+        trigger_control=CONTROL,
+        record_made=RECORD_MADE,
+        fault_number=FAULT_NUMBER,
+        report_control=REPORT_CONTROL,
+        metering_data_set=None,
+    )
+    motor = Motor(
+        MOTOR,
+        Nameplate(800, 380, 50, 2),
+        MachineParameters(8.4, 8.2, 0.0328, 0.0328, 0.4377, 0.0229),
+    )
+    plant = Plant(
+        sites=(Site("FACTORY_A", "Factory A"),),
+        relays=(relay,),
+        motors=(PlantMotor(motor, "pump", "FACTORY_A", NAME),),
+    )
+    repository = Repository(connect(settings.database_url))
+    repository.sync_plant(plant)
+    store = RecordingStore(settings.recordings_directory)
+    return Bench(relay, repository, store, settings, tmp_path / "relay")
+
+
+@pytest.fixture
+def relay(bench: Bench) -> Iterator[ScriptedRelay]:
+    scripted = bench.start_relay()
+    yield scripted
+    scripted.stop()

@@ -1,0 +1,70 @@
+"""A relay for the collector's tests: the real model over real MMS, doing exactly what the test says."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import scl
+from mms import AddCause, ControlAction, Server
+from scl.model_text import model_text
+
+NAME = "A1_SEL710"
+CONTROL = f"{NAME}CON/RBGGIO1.SPCSO01"
+RECORD_MADE = f"{NAME}PRO/FLTRDRE1.RcdMade"
+FAULT_NUMBER = f"{NAME}PRO/FLTRDRE1.FltNum"
+REPORT_CONTROL = f"{NAME}CFG/LLN0.BR.BRep01"
+
+
+@dataclass
+class ScriptedRelay:
+    """Writes a record at each rising edge of RB01, unless told to refuse or to stay silent."""
+
+    root: Path
+    port: int
+    refuses: bool = False
+    silent: bool = False
+    edges: int = 0
+    records: int = 0
+    server: Server = field(init=False)
+    _bit: bool = False
+
+    def __post_init__(self) -> None:
+        self.events.mkdir(parents=True, exist_ok=True)
+        text = model_text(scl.read(scl.DEMO_PLANT_SCD), NAME)
+        self.server = Server(text, port=self.port, file_root=self.root)
+        self.server.on_operate(CONTROL, self._operated)
+        self.server.start()
+
+    @property
+    def events(self) -> Path:
+        return self.root / "EVENTS"
+
+    def stop(self) -> None:
+        self.server.stop()
+
+    def write_record(self, name: str, data: bytes = b"samples", *, report: bool = True) -> None:
+        """A finished record, announced by a report."""
+        self.write_file(f"{name}.DAT", data)
+        self.write_file(f"{name}.CFG", f"configuration of {name}".encode())
+        self.records += 1
+        if report:
+            self.announce()
+
+    def write_file(self, name: str, content: bytes) -> None:
+        (self.events / name).write_bytes(content)
+
+    def announce(self) -> None:
+        """RcdMade and FltNum, as a relay sets them when a record is ready."""
+        self.server.update_many({f"{RECORD_MADE}.stVal": False})
+        self.server.update_many({f"{RECORD_MADE}.stVal": True, f"{FAULT_NUMBER}.stVal": self.records})
+
+    def _operated(self, action: ControlAction) -> "bool | AddCause":
+        if self.refuses:
+            return AddCause.BLOCKED_BY_SWITCHING_HIERARCHY
+        rising = action.value is True and not self._bit
+        self._bit = action.value is True
+        self.server.update(f"{CONTROL}.stVal", self._bit)
+        if rising:
+            self.edges += 1
+            if not self.silent:
+                self.write_record(f"HR_{10000 + self.edges}", f"record {self.edges}".encode())
+        return True

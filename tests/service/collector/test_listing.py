@@ -1,0 +1,107 @@
+"""A relay's directory listing, friendly and hostile."""
+
+from dataclasses import dataclass
+
+import pytest
+
+from service.collector.listing import ListedRecord, understand
+from service.collector.settling import Settling
+
+
+@dataclass(frozen=True)
+class Entry:
+    name: str
+    size: int = 100
+    modified_ns: int = 5
+
+
+def listed(*names: str) -> list[Entry]:
+    return [Entry(name) for name in names]
+
+
+def test_the_files_of_a_record_are_one_record() -> None:
+    listing = understand(listed("HR_1.CFG", "HR_1.DAT", "HR_1.HDR", "HR_2.cfg", "HR_2.dat"), "EVENTS")
+    assert [record.name for record in listing.records] == ["HR_1", "HR_2"]
+    assert [len(record.files) for record in listing.records] == [3, 2]
+    assert all(record.missing == () for record in listing.records)
+    assert listing.refused == ()
+
+
+def test_size_and_time_are_those_of_the_whole_record() -> None:
+    (record,) = understand([Entry("X.CFG", 10, 7), Entry("X.DAT", 1000, 9)], "EVENTS").records
+    assert (record.size_bytes, record.modified_ns) == (1010, 9)
+
+
+@pytest.mark.parametrize(
+    ("listed_name", "asked_for"),
+    [
+        ("X.CFG", "EVENTS/X.CFG"),
+        ("EVENTS/X.CFG", "EVENTS/X.CFG"),
+        ("EVENTS\\X.CFG", "EVENTS\\X.CFG"),
+        ("/EVENTS/X.CFG", "/EVENTS/X.CFG"),
+    ],
+)
+def test_names_come_with_or_without_their_path(listed_name: str, asked_for: str) -> None:
+    (record,) = understand([Entry(listed_name)], "EVENTS").records
+    assert record.files[0].remote_name == asked_for
+    assert record.files[0].local_name == "X.CFG"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../../etc/X.CFG",
+        "..\\..\\X.CFG",
+        "SETTINGS/X.CFG",
+        "EVENTS/../X.CFG",
+        "EVENTS/.CFG",
+        ".hidden.CFG",
+        "X\x00.CFG",
+        "X\n.CFG",
+        "X\u202e.CFG",
+        'X".CFG',
+        "X" * 200 + ".CFG",
+    ],
+)
+def test_hostile_names_are_refused_and_safe_to_print(name: str) -> None:
+    listing = understand([Entry(name), *listed("GOOD.CFG", "GOOD.DAT")], "EVENTS")
+    assert [record.name for record in listing.records] == ["GOOD"]
+    (refused,) = listing.refused
+    assert refused.reason
+    assert refused.name.isprintable()
+
+
+def test_two_files_that_claim_one_name_do_not_overwrite_each_other() -> None:
+    listing = understand([Entry("X.CFG", 1), Entry("x.cfg", 2), Entry("X.DAT", 3)], "EVENTS")
+    (record,) = listing.records
+    assert [file.size for file in record.files] == [1, 3]
+    assert "two files" in listing.refused[0].reason
+
+
+def test_other_files_are_passed_over() -> None:
+    assert understand(listed("C4_1.CEV", "HISTORY.TXT", "SUBFOLDER/", ""), "EVENTS").records == ()
+
+
+def test_a_record_tells_what_it_lacks() -> None:
+    (record,) = understand(listed("X.CFG", "X.HDR"), "EVENTS").records
+    assert record.missing == (".DAT",)
+
+
+def whole(size: int = 100) -> ListedRecord:
+    return understand([Entry("X.CFG", size), Entry("X.DAT", size)], "EVENTS").records[0]
+
+
+def test_a_record_is_ready_once_it_stands_still() -> None:
+    settling = Settling(settle_s=0.25, patience_s=30)
+    assert settling.look([whole(10)], 0.0).waiting == (whole(10),)
+    assert settling.look([whole(20)], 0.3).waiting == (whole(20),), "it grew: wait again"
+    assert settling.look([whole(20)], 0.4).waiting == (whole(20),)
+    assert settling.look([whole(20)], 0.6).ready == (whole(20),)
+
+
+def test_a_record_without_its_data_is_given_up_in_the_end() -> None:
+    (half,) = understand(listed("X.CFG"), "EVENTS").records
+    settling = Settling(settle_s=0.25, patience_s=30)
+    assert settling.look([half], 0.0).waiting == (half,)
+    assert settling.look([half], 29.0).waiting == (half,)
+    assert settling.look([half], 30.0).incomplete == (half,)

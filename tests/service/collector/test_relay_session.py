@@ -1,0 +1,236 @@
+"""One relay and its session, over real MMS."""
+
+import os
+import time
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from mms import Client
+from service.recordings import Incoming
+from service.storage.states import EventReportState, LinkState, RecordingState
+from tests.service.collector.conftest import Bench, eventually
+from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
+
+
+def test_a_wish_becomes_a_stored_record(bench: Bench, relay: ScriptedRelay) -> None:
+    with bench.session() as session:
+        assert eventually(lambda: bench.link() is LinkState.UP)
+        report_id = bench.request()
+        session.wake()
+        assert bench.reaches(report_id, EventReportState.FETCHED)
+    report = bench.report(report_id)
+    (recording,) = bench.recordings()
+    assert report.recording_id == recording.id
+    assert report.triggered_ns is not None
+    assert recording.digest is not None
+    stored = bench.store.find(recording.digest)
+    assert (stored.directory / "HR_10001.DAT").read_bytes() == b"record 1"
+    assert relay.edges == 1
+    assert relay.server.read(f"{CONTROL}.stVal") is False, "the bit is ready for the next edge"
+
+
+def test_records_made_before_the_service_came_are_pulled(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.write_record("HR_1", b"first")
+    relay.write_record("HR_2", b"second")
+    with bench.session():
+        assert eventually(lambda: len(bench.recordings()) == 2)
+    assert relay.edges == 0
+
+
+def test_a_report_hurries_the_next_record(bench: Bench, relay: ScriptedRelay) -> None:
+    slow = bench.settings.model_copy(update={"poll_period_s": 60.0})
+    bench.settings = slow
+    with bench.session():
+        assert eventually(lambda: bench.link() is LinkState.UP)
+        relay.write_record("HR_7")
+        assert eventually(lambda: len(bench.recordings()) == 1)
+        assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
+
+
+def test_each_wish_gets_its_own_record_one_at_a_time(bench: Bench, relay: ScriptedRelay) -> None:
+    wishes = [bench.request() for _ in range(3)]
+    with bench.session():
+        assert all(bench.reaches(wish, EventReportState.FETCHED) for wish in wishes)
+    reports = [bench.report(wish) for wish in wishes]
+    assert len({report.recording_id for report in reports}) == 3
+    for earlier, later in pairwise(reports):
+        assert earlier.fetched_ns is not None
+        assert later.triggered_ns is not None
+        assert earlier.fetched_ns <= later.triggered_ns
+    assert relay.edges == 3
+
+
+def test_a_remote_bit_left_set_is_cleared_first(bench: Bench, relay: ScriptedRelay) -> None:
+    with Client.connect("127.0.0.1", relay.port) as client:
+        relay.silent = True
+        client.operate(CONTROL, True)  # noqa: FBT003 - the value of a control
+        relay.silent = False
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FETCHED)
+    assert relay.edges == 2
+
+
+def test_a_refused_trigger_says_why_and_the_link_stays(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.refuses = True
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert eventually(lambda: bench.link() is LinkState.UP)
+    assert "refuses the trigger" in (bench.report(report_id).reason or "")
+
+
+def test_a_trigger_without_record_fails_at_its_time_limit(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.silent = True
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FAILED)
+    assert "expected a record within 2 s" in (bench.report(report_id).reason or "")
+    assert relay.edges == 1
+
+
+def test_a_crash_between_trigger_and_record_neither_triggers_twice_nor_loses_it(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    relay.silent = True
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+    assert eventually(lambda: relay.edges == 1)
+    relay.write_record("HR_10001", b"made while the collector was away")
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FETCHED)
+    assert relay.edges == 1
+    assert len(bench.recordings()) == 1
+
+
+def test_a_crash_just_before_the_operation_costs_the_wish_and_nothing_else(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    report_id = bench.request()
+    bench.repository.mark_triggered(report_id, now_ns=time.time_ns())
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FAILED)
+    assert relay.edges == 0
+
+
+def test_a_restart_doubles_nothing(bench: Bench, relay: ScriptedRelay) -> None:
+    for number in range(3):
+        relay.write_record(f"HR_{number}", bytes([number]))
+    for _ in range(3):
+        with bench.session():
+            assert eventually(lambda: len(bench.recordings()) == 3)
+    assert len(bench.recordings()) == 3
+
+
+def test_the_same_record_under_a_new_time_is_not_doubled(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.write_record("HR_1")
+    with bench.session():
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
+        for file in relay.events.iterdir():
+            os.utime(file, (1_000_000_000, 1_000_000_000))
+        relay.write_record("HR_2")
+        assert eventually(lambda: {r.name for r in bench.recordings()} == {"HR_1", "HR_2"})
+        assert eventually(lambda: all(r.state is RecordingState.FETCHED for r in bench.recordings()))
+    assert len(bench.recordings()) == 2
+
+
+def test_a_relay_that_is_down_says_so_and_comes_back(bench: Bench) -> None:
+    report_id = bench.request()
+    with bench.session():
+        assert eventually(lambda: bench.link() is LinkState.DOWN)
+        assert str(bench.relay.port) in (bench.repository.ied(NAME).link_reason or "")
+        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert "does not answer" in (bench.report(report_id).reason or "")
+        relay = bench.start_relay()
+        try:
+            assert eventually(lambda: bench.link() is LinkState.UP, within_s=15)
+        finally:
+            relay.stop()
+        assert eventually(lambda: bench.link() is LinkState.DOWN)
+
+
+def test_a_record_without_its_data_is_rejected_and_fails_nothing_else(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    relay.write_file("HR_1.CFG", b"configuration alone")
+    relay.write_record("HR_2")
+    with bench.session():
+        assert eventually(lambda: {r.state for r in bench.recordings()} >= {RecordingState.REJECTED})
+    states = {recording.name: recording for recording in bench.recordings()}
+    assert states["HR_2"].state is RecordingState.FETCHED
+    assert states["HR_1"].reason == "HR_1: expected a .DAT file in EVENTS, found none"
+
+
+def test_a_record_that_grows_is_pulled_whole(bench: Bench, relay: ScriptedRelay) -> None:
+    with bench.session():
+        relay.write_file("HR_1.CFG", b"configuration")
+        for size in range(1, 8):
+            relay.write_file("HR_1.DAT", b"x" * size)
+            time.sleep(0.06)  # the relay writes slowly; the session looks in between
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
+    (recording,) = bench.recordings()
+    assert recording.digest is not None
+    assert (bench.store.find(recording.digest).directory / "HR_1.DAT").read_bytes() == b"x" * 7
+
+
+def test_a_record_too_large_is_rejected_with_its_event_report(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.silent = True
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        relay.write_record("HR_1", b"x" * 200_000)
+        assert bench.reaches(report_id, EventReportState.FAILED)
+    (recording,) = bench.recordings()
+    assert recording.state is RecordingState.REJECTED
+    assert "HR_1.DAT: expected at most 100000 bytes" in (recording.reason or "")
+
+
+def test_a_record_listed_before_the_trigger_is_not_the_triggered_one(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    relay.write_record("HR_1", b"a trip of its own", report=False)
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FETCHED)
+    recordings = {recording.name: recording.id for recording in bench.recordings()}
+    assert bench.report(report_id).recording_id == recordings["HR_10001"]
+    assert set(recordings) == {"HR_1", "HR_10001"}
+
+
+def test_the_entry_id_is_saved_only_when_its_record_is_safe(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def disk_full(incoming: Incoming) -> None:
+        raise OSError(28, "No space left on device")
+
+    relay.write_record("HR_1")
+    with monkeypatch.context() as full, bench.session():
+        full.setattr(Incoming, "keep", disk_full)
+        assert eventually(lambda: bench.link() is LinkState.DOWN)
+        assert "No space left" in (bench.repository.ied(NAME).link_reason or "")
+        assert bench.repository.entry_id(NAME) is None
+    with bench.session():
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
+        assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
+
+
+def test_without_the_report_control_block_the_directory_is_polled(bench: Bench, relay: ScriptedRelay) -> None:
+    with bench.session():
+        assert eventually(lambda: bench.link() is LinkState.UP)
+        with bench.session():
+            relay.write_record("HR_1")
+            assert eventually(lambda: len(bench.recordings()) == 1)
+
+
+def test_a_link_out_of_the_events_folder_is_refused(
+    bench: Bench, relay: ScriptedRelay, tmp_path: Path
+) -> None:
+    secret = tmp_path / "secret"
+    secret.write_bytes(b"not the relay's to give")
+    (relay.events / "HR_1.DAT").symlink_to(secret)
+    relay.write_file("HR_1.CFG", b"configuration")
+    with bench.session():
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.REJECTED])

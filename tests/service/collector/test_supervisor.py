@@ -1,0 +1,50 @@
+"""The collector process is kept running, and never outlives its parent."""
+
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+
+from service.collector.supervisor import CollectorSupervisor
+from service.settings import Settings
+from tests.service.collector.conftest import eventually
+
+OBEDIENT = "import sys; sys.stdin.readline(); sys.stdin.read()"
+STUBBORN = "import time; time.sleep(60)"
+
+
+def supervisor(script: str, directory: Path) -> CollectorSupervisor:
+    return CollectorSupervisor(Settings(data_directory=directory), (sys.executable, "-c", script))
+
+
+def test_a_collector_that_crashes_is_started_again(tmp_path: Path) -> None:
+    supervised = supervisor(OBEDIENT, tmp_path)
+    supervised.start()
+    try:
+        assert eventually(lambda: supervised.process_id is not None)
+        first = supervised.process_id
+        assert first is not None
+        os.kill(first, signal.SIGKILL)
+        assert eventually(lambda: supervised.process_id not in (None, first))
+    finally:
+        supervised.stop()
+    assert supervised.process_id is None
+
+
+def test_stopping_twice_is_stopping(tmp_path: Path) -> None:
+    supervised = supervisor(OBEDIENT, tmp_path)
+    supervised.start()
+    supervised.stop()
+    supervised.stop()
+    assert supervised.process_id is None
+
+
+def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.collector.supervisor.STOP_PATIENCE_S", 0.1)
+    supervised = supervisor(STUBBORN, tmp_path)
+    supervised.start()
+    assert eventually(lambda: supervised.process_id is not None)
+    supervised.stop()
+    assert supervised.process_id is None

@@ -1,0 +1,38 @@
+"""A migrated SQLite file, a repository on it that knows the small plant, and a recording store."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from sqlalchemy import Engine
+
+from service.recordings import RecordingStore
+from service.settings import sqlite_url
+from service.storage import Repository, connect, migrate
+from tests.service.plants import two_motor_plant
+
+
+@pytest.fixture
+def database_url(tmp_path: Path) -> str:
+    url = sqlite_url(tmp_path)
+    migrate(url)
+    return url
+
+
+@pytest.fixture
+def engine(database_url: str) -> Iterator[Engine]:
+    engine = connect(database_url)
+    yield engine
+    engine.dispose()
+
+
+@pytest.fixture
+def repository(engine: Engine) -> Repository:
+    repository = Repository(engine)
+    repository.sync_plant(two_motor_plant())
+    return repository
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> RecordingStore:
+    return RecordingStore(tmp_path / "recordings")

@@ -1,0 +1,175 @@
+"""The job runner with real worker processes."""
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from sqlalchemy import Engine
+
+from service.jobs import JobRunner
+from service.jobs.runner import JobLimits
+from service.jobs.worker_process import follow_service
+from service.recordings import RecordingStore
+from service.storage import Repository, connect
+from service.storage.states import EventReportState, JobState, RecordingState
+from tests.service.jobs.stand_ins import act_as_told, fail_to_start
+from tests.service.jobs.waiting import wait_until
+from tests.service.plants import motor
+
+LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, retry_delay_s=0.01)
+MOTORS = {"PUMP-A1": motor("PUMP-A1")}
+
+
+@contextmanager
+def running(
+    repository: Repository,
+    store: RecordingStore,
+    limits: JobLimits = LIMITS,
+    prepare_worker: Callable[[], None] = follow_service,
+) -> Iterator[JobRunner]:
+    runner = JobRunner(
+        repository,
+        store,
+        MOTORS,
+        act_as_told,
+        limits=limits,
+        prepare_worker=prepare_worker,
+        poll_period_s=0.05,
+    )
+    runner.start()
+    try:
+        yield runner
+    finally:
+        runner.stop()
+
+
+def add(repository: Repository, store: RecordingStore, told: str, motor_name: str = "PUMP-A1") -> str:
+    stored = store.store({"E.CEV": told.encode()})
+    return repository.add_recording(stored, motor=motor_name, now_ns=time.time_ns()).recording.id
+
+
+def ended(repository: Repository, *recording_ids: str) -> bool:
+    waiting = (RecordingState.ANNOUNCED, RecordingState.FETCHED)
+    return all(repository.recording(id_).state not in waiting for id_ in recording_ids)
+
+
+def test_every_recording_comes_to_its_end_whatever_the_workers_do(
+    repository: Repository, store: RecordingStore
+) -> None:
+    """One run for all of it: worker processes take a second to start."""
+    told = ("fine", "reject", "raise", "not a number", "die", "die once")
+    ids = {what: add(repository, store, what) for what in told}
+    ids["foreign"] = add(repository, store, "fine too", "FAN-A2")
+    ids["lost"] = add(repository, store, "lost")
+    lost = repository.recording(ids["lost"]).digest
+    assert lost is not None
+    store.entry(lost).unlink()
+    with running(repository, store) as runner:
+        wait_until(lambda: ended(repository, *ids.values()), timeout_s=60)
+        assert runner.problem() is None
+    recordings = {what: repository.recording(id_) for what, id_ in ids.items()}
+    assert {what: str(recording.state) for what, recording in recordings.items()} == {
+        "fine": "diagnosed",
+        "reject": "rejected",
+        "raise": "failed",
+        "not a number": "failed",
+        "die": "failed",
+        "die once": "diagnosed",
+        "foreign": "rejected",
+        "lost": "rejected",
+    }
+    reasons = {what: recording.reason or "" for what, recording in recordings.items()}
+    assert reasons["reject"] == "E.CEV: line 1: expected a FID, found nothing"
+    assert reasons["raise"] == "gave up after 2 attempts: ArithmeticError: no such number"
+    assert "not JSON compliant" in reasons["not a number"]
+    assert "the worker process died" in reasons["die"]
+    assert "FAN-A2 is not in the plant" in reasons["foreign"]
+    assert "exactly one file" in reasons["lost"]
+
+
+def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: RecordingStore) -> None:
+    report = repository.request_event_report("PUMP-A1", now_ns=time.time_ns())
+    stored = store.store({"E.CEV": b"hang"})
+    repository.add_recording(stored, motor="PUMP-A1", event_report_id=report.id, now_ns=time.time_ns())
+    limits = JobLimits(workers=1, job_timeout_s=0.3, attempts=1)
+    with running(repository, store, limits):
+        wait_until(lambda: repository.event_report(report.id).state is EventReportState.FAILED)
+    assert repository.event_report(report.id).reason == "gave up after 1 attempts: took longer than 0.3 s"
+
+
+def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: RecordingStore) -> None:
+    recording_id = add(repository, store, "hang once")
+    with running(repository, store):
+        wait_until(lambda: worker_of(store))
+    (job,) = repository.jobs(recording_id, limit=5).items
+    assert (job.state, job.attempts) == (JobState.QUEUED, 0)
+    with running(repository, store):
+        wait_until(lambda: ended(repository, recording_id))
+
+
+def serve_and_hang(url: str, root: Path) -> None:
+    store = RecordingStore(root)
+    with running(Repository(connect(url)), store):
+        time.sleep(600)
+
+
+def worker_of(store: RecordingStore) -> int | None:
+    """Process id of the worker that hangs."""
+    for path in store.root.rglob("*.tried"):
+        text = path.read_text()
+        return int(text) if text else None
+    return None
+
+
+def alive(process_id: int) -> bool:
+    try:
+        os.kill(process_id, 0)
+    except ProcessLookupError:
+        return False
+    # A process that has ended but was not waited for (a container without an init) is dead to us.
+    return "\nState:\tZ" not in Path(f"/proc/{process_id}/status").read_text()
+
+
+def test_a_killed_service_loses_no_job_and_leaves_no_worker(
+    repository: Repository, store: RecordingStore, database_url: str
+) -> None:
+    recording_id = add(repository, store, "hang once")
+    context = multiprocessing.get_context("spawn")
+    service = context.Process(target=serve_and_hang, args=(database_url, store.root))
+    service.start()
+    wait_until(lambda: worker_of(store))
+    worker = worker_of(store)
+    assert worker is not None
+    assert service.pid is not None
+    os.kill(service.pid, signal.SIGKILL)
+    service.join()
+    (job,) = repository.jobs(recording_id, limit=5).items
+    assert job.state is JobState.RUNNING
+    with running(repository, store):
+        wait_until(lambda: ended(repository, recording_id))
+    assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
+    assert len(repository.trend("PUMP-A1", "mu_f", limit=5).items) == 1
+    wait_until(lambda: not alive(worker))
+
+
+def test_a_database_that_does_not_answer_is_a_problem_not_the_end(
+    repository: Repository, store: RecordingStore, engine: Engine, tmp_path: Path
+) -> None:
+    with running(repository, store) as runner:
+        with engine.begin() as connection:
+            connection.exec_driver_sql("ALTER TABLE jobs RENAME TO jobs_away")
+        wait_until(lambda: "the database does not answer" in (runner.problem() or ""))
+        with engine.begin() as connection:
+            connection.exec_driver_sql("ALTER TABLE jobs_away RENAME TO jobs")
+        wait_until(lambda: runner.problem() is None)
+
+
+def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, store: RecordingStore) -> None:
+    add(repository, store, "fine")
+    with running(repository, store, prepare_worker=fail_to_start) as runner:
+        wait_until(lambda: runner.problem())
+        assert "the job runner stopped" in (runner.problem() or "")

@@ -1,0 +1,87 @@
+"""The task of the worker processes, with real files and the real diagnosis."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.diagnosis.verdict import Verdict
+from core.recordings import Channel, Quantity, Recording
+from core.recordings.comtrade_writer import write
+from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Rejected
+from service.jobs.runner import JobLimits
+from service.jobs.worker import diagnose_recording, prepare_worker
+from service.recordings import RecordingStore
+from service.storage import Repository
+from tests.service.jobs.waiting import wait_until
+from tests.service.plants import NOW_NS, motor
+
+TRIGGER_INDEX = 400
+
+
+def recording(*, voltages: bool = True) -> Recording:
+    """0.5 s at 4 kHz of a balanced 380 V, 50 Hz supply and a balanced load that is no motor in particular."""
+    angle = 2 * np.pi * (50 * np.arange(2000) / 4000 - np.array([[0], [1], [2]]) / 3)
+    currents = [Channel(f"I{p.upper()}", Quantity.CURRENT, p, "A", 20.0) for p in "abc"]
+    phase_voltages = [Channel(f"V{p.upper()}", Quantity.PHASE_VOLTAGE, p, "V", 800.0) for p in "abc"]
+    samples = np.vstack([2.0 * np.sin(angle - 0.6), 310.0 * np.sin(angle)])
+    return Recording(
+        samples=samples if voltages else samples[:3],
+        sample_rate_hz=4000.0,
+        start_time_ns=NOW_NS,
+        channels=tuple(currents + phase_voltages if voltages else currents),
+        trigger_index=TRIGGER_INDEX,
+        nominal_frequency_hz=50.0,
+        station="FACTORY A",
+        device="A1_SEL710",
+    )
+
+
+def task(entry: Path, method: str = "hcpa") -> DiagnosisTask:
+    return DiagnosisTask(entry, motor("PUMP-A1"), method, "split-winding")
+
+
+def test_a_record_is_diagnosed_as_of_its_trigger(tmp_path: Path) -> None:
+    outcome = diagnose_recording(task(write(tmp_path / "EVENT", recording())))
+    assert isinstance(outcome, Diagnosed)
+    assert outcome.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000
+    assert (outcome.diagnosis.method, outcome.diagnosis.model) == ("hcpa", "split-winding")
+
+
+def test_what_would_fail_again_is_rejected(tmp_path: Path) -> None:
+    without_voltages = write(tmp_path / "CURRENTS", recording(voltages=False))
+    truncated = write(tmp_path / "SHORT", recording())
+    samples = truncated.with_suffix(".DAT")
+    samples.write_bytes(samples.read_bytes()[:-10])
+    unknown_method = task(write(tmp_path / "EVENT", recording()), method="guess")
+    outcomes = [diagnose_recording(t) for t in (task(without_voltages), task(truncated), unknown_method)]
+    reasons = [outcome.reason for outcome in outcomes if isinstance(outcome, Rejected)]
+    assert len(reasons) == 3
+    assert "voltages" in reasons[0]
+    assert "SHORT" in reasons[1]
+    assert "'guess' is unknown" in reasons[2]
+
+
+@pytest.mark.timeout(180)
+def test_worker_processes_diagnose(repository: Repository, store: RecordingStore, tmp_path: Path) -> None:
+    entry = write(tmp_path / "EVENT", recording())
+    stored = store.store({path.name: path for path in (entry, entry.with_suffix(".DAT"))})
+    added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS)
+    motors = {"PUMP-A1": motor("PUMP-A1")}
+    runner = JobRunner(
+        repository,
+        store,
+        motors,
+        diagnose_recording,
+        limits=JobLimits(workers=1, job_timeout_s=120.0),
+        prepare_worker=prepare_worker,
+    )
+    runner.start()
+    try:
+        wait_until(lambda: repository.current_diagnosis(added.recording.id), timeout_s=120)
+    finally:
+        runner.stop()
+    health = repository.health("PUMP-A1")
+    assert health.diagnosis is not None
+    assert health.diagnosis.verdict in set(Verdict)
+    assert health.diagnosis.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000

@@ -1,0 +1,163 @@
+from dataclasses import replace
+
+import pytest
+from sqlalchemy.exc import StatementError
+
+from service.recordings import RecordingStore
+from service.storage import NotFoundError, Repository, StateConflictError
+from service.storage.records import ClaimedJob, RemoteRecord
+from service.storage.states import EventReportState, JobState, RecordingState
+from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+
+
+@pytest.fixture
+def recording_id(repository: Repository, store: RecordingStore) -> str:
+    stored = store.store({"E.CEV": b"samples"})
+    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    added = repository.add_recording(
+        stored,
+        motor="PUMP-A1",
+        ied="A1_SEL710",
+        remote=RemoteRecord("E", 7, 0),
+        event_report_id=report.id,
+        now_ns=NOW_NS,
+    )
+    return added.recording.id
+
+
+def claim(repository: Repository, now_ns: int = NOW_NS) -> ClaimedJob:
+    claimed = repository.claim_job(now_ns=now_ns)
+    assert claimed is not None
+    return claimed
+
+
+def report_state(repository: Repository) -> tuple[EventReportState, str | None]:
+    (report,) = repository.event_reports(limit=10).items
+    return report.state, report.reason
+
+
+def test_a_job_is_claimed_once(repository: Repository, recording_id: str) -> None:
+    claimed = claim(repository)
+    assert (claimed.job.state, claimed.job.attempts, claimed.job.recording_id) == ("running", 1, recording_id)
+    assert repository.claim_job(now_ns=NOW_NS) is None
+
+
+def test_a_result_ends_job_recording_and_report(repository: Repository, recording_id: str) -> None:
+    job_id = claim(repository).job.id
+    for _ in range(2):
+        repository.finish_job(job_id, fault(), recorded_ns=NOW_NS - SECOND_NS, now_ns=NOW_NS + SECOND_NS)
+    assert repository.job(recording_id, job_id).state is JobState.DONE
+    recording = repository.recording(recording_id)
+    assert (recording.state, recording.recorded_ns) == (RecordingState.DIAGNOSED, NOW_NS - SECOND_NS)
+    assert report_state(repository) == (EventReportState.DIAGNOSED, None)
+    diagnosis = repository.current_diagnosis(recording_id)
+    assert diagnosis is not None
+    assert diagnosis.document == fault().as_dict()
+    assert diagnosis == repository.diagnosis_of_job(job_id)
+    assert len(repository.trend("PUMP-A1", "mu_f", limit=10).items) == 1
+
+
+def test_an_unreadable_record_is_rejected_with_the_reason(repository: Repository, recording_id: str) -> None:
+    repository.reject_recording(claim(repository).job.id, "E.CEV: checksum", now_ns=NOW_NS)
+    recording = repository.recording(recording_id)
+    assert (recording.state, recording.reason) == (RecordingState.REJECTED, "E.CEV: checksum")
+    assert report_state(repository) == (EventReportState.FAILED, "E.CEV: checksum")
+    assert repository.claim_job(now_ns=NOW_NS + 1000 * SECOND_NS) is None
+
+
+def test_an_error_is_retried_later_and_given_up_at_last(repository: Repository, recording_id: str) -> None:
+    now_ns = NOW_NS
+    for delay_s in (2, 4):
+        job_id = claim(repository, now_ns).job.id
+        assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns) is JobState.QUEUED
+        assert repository.claim_job(now_ns=now_ns + delay_s * SECOND_NS - 1) is None
+        now_ns += delay_s * SECOND_NS
+    job_id = claim(repository, now_ns).job.id
+    assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns) is JobState.FAILED
+    reason = "gave up after 3 attempts: killed"
+    assert repository.recording(recording_id).state is RecordingState.FAILED
+    assert report_state(repository) == (EventReportState.FAILED, reason)
+    assert repository.retry_or_fail_job(job_id, "again", now_ns=now_ns) is JobState.FAILED
+
+
+def test_interrupted_jobs_are_queued_again_but_not_for_ever(
+    repository: Repository, recording_id: str
+) -> None:
+    for _ in range(3):
+        claim(repository)
+        assert repository.requeue_interrupted_jobs(now_ns=NOW_NS) == 1
+    assert repository.claim_job(now_ns=NOW_NS) is None
+    assert repository.recording(recording_id).state is RecordingState.FAILED
+    assert repository.requeue_interrupted_jobs(now_ns=NOW_NS) == 0
+
+
+def test_a_released_job_has_lost_no_attempt(repository: Repository, recording_id: str) -> None:
+    repository.release_job(claim(repository).job.id)
+    assert claim(repository).job.attempts == 1
+
+
+def test_the_latest_diagnosis_of_a_recording_counts(repository: Repository, recording_id: str) -> None:
+    repository.finish_job(claim(repository).job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    job = repository.request_diagnosis(recording_id, method="genetic", now_ns=NOW_NS + 1)
+    claimed = claim(repository, NOW_NS + 1)
+    assert (claimed.job.id, claimed.job.method) == (job.id, "genetic")
+    repository.finish_job(job.id, fault(0.06), recorded_ns=NOW_NS, now_ns=NOW_NS + 2)
+    (point,) = repository.trend("PUMP-A1", "mu_f", limit=10).items
+    assert point.value == 0.06
+    assert [job.method for job in repository.jobs(recording_id, limit=10).items] == ["genetic", "hcpa"]
+
+
+def test_a_failed_repetition_leaves_the_earlier_diagnosis(repository: Repository, recording_id: str) -> None:
+    repository.finish_job(claim(repository).job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.request_diagnosis(recording_id, now_ns=NOW_NS)
+    repository.reject_recording(claim(repository).job.id, "no longer readable", now_ns=NOW_NS)
+    assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
+    assert repository.current_diagnosis(recording_id) is not None
+
+
+def test_only_a_stored_recording_can_be_diagnosed(repository: Repository) -> None:
+    announced = repository.announce_recording("A1_SEL710", "PUMP-A1", RemoteRecord("X", 1, 1), now_ns=NOW_NS)
+    with pytest.raises(StateConflictError, match="is announced and cannot become diagnosed"):
+        repository.request_diagnosis(announced.id, now_ns=NOW_NS)
+    with pytest.raises(NotFoundError):
+        repository.job(announced.id, "nope")
+
+
+def test_a_result_that_is_no_json_is_refused(repository: Repository, recording_id: str) -> None:
+    job_id = claim(repository).job.id
+    broken = replace(fault(), residual_rms_A=float("nan"))
+    with pytest.raises(StatementError, match="not JSON compliant"):
+        repository.finish_job(job_id, broken, recorded_ns=NOW_NS, now_ns=NOW_NS)
+    assert repository.job(recording_id, job_id).state is JobState.RUNNING
+
+
+def test_trend_and_health(repository: Repository, store: RecordingStore) -> None:
+    for i, diagnosis in enumerate([fault(0.01), fault(0.02), undiagnosable()]):
+        repository.add_recording(store.store({f"U{i}.CEV": b"x"}), motor="FAN-A2", now_ns=NOW_NS + i)
+        job_id = claim(repository, NOW_NS + i).job.id
+        repository.finish_job(job_id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + 9)
+    points = repository.trend("FAN-A2", "mu_f", limit=10).items
+    assert [(p.recorded_ns, p.value, str(p.verdict)) for p in points] == [
+        (NOW_NS, 0.01, "fault"),
+        (NOW_NS + SECOND_NS, 0.02, "fault"),
+        (NOW_NS + 2 * SECOND_NS, None, "undiagnosable"),
+    ]
+    assert points[0].ci95 == pytest.approx((0.009, 0.011))
+    assert [p.value for p in repository.trend("FAN-A2", "theta_f", limit=10).items] == [1, 1, None]
+    window = repository.trend(
+        "FAN-A2", "load_level", from_ns=NOW_NS + 1, to_ns=NOW_NS + 2 * SECOND_NS, limit=10
+    )
+    assert [(p.value, p.ci95) for p in window.items] == [(0.48, None)]
+    first = repository.trend("FAN-A2", "mu_f", limit=2)
+    rest = repository.trend("FAN-A2", "mu_f", limit=2, after=first.next)
+    assert (first.items + rest.items, rest.next) == (points, None)
+
+    health = repository.health("FAN-A2")
+    assert health.diagnosis is not None
+    assert health.last_recording is not None
+    assert (str(health.diagnosis.verdict), health.last_recording.name) == ("undiagnosable", "U2")
+    idle = repository.health("PUMP-A1")
+    assert (idle.diagnosis, idle.last_recording, idle.ied.name) == (None, None, "A1_SEL710")
+    counts = repository.counts()
+    assert (counts.recordings, counts.jobs) == ({"diagnosed": 3}, {"done": 3})
+    assert (counts.links, counts.event_reports) == ({"unknown": 2}, {})

@@ -1,0 +1,40 @@
+from pathlib import Path
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.migration import MigrationContext
+from sqlalchemy import Engine, inspect, text
+
+from service.storage import StorageError, connect, migrate
+from service.storage.models import Base
+
+
+def test_migrations_make_the_tables_of_the_models(engine: Engine) -> None:
+    with engine.connect() as connection:
+        context = MigrationContext.configure(connection, opts={"compare_type": True})
+        assert compare_metadata(context, Base.metadata) == []
+
+
+def test_migrating_again_changes_nothing(database_url: str, engine: Engine) -> None:
+    migrate(database_url)
+    assert "recordings" in inspect(engine).get_table_names()
+
+
+def test_sqlite_is_shared_safely(engine: Engine) -> None:
+    with engine.connect() as connection:
+        pragmas = {
+            name: connection.scalar(text(f"PRAGMA {name}"))
+            for name in ("journal_mode", "synchronous", "foreign_keys", "busy_timeout")
+        }
+    assert pragmas == {"journal_mode": "wal", "synchronous": 2, "foreign_keys": 1, "busy_timeout": 30_000}
+
+
+@pytest.mark.parametrize("url", ["not a url", "sqlite://", "sqlite:///:memory:"])
+def test_a_url_that_cannot_be_shared_is_refused(url: str) -> None:
+    with pytest.raises(StorageError, match="database_url"):
+        connect(url)
+
+
+def test_a_path_with_a_percent_sign(tmp_path: Path) -> None:
+    migrate(f"sqlite:///{tmp_path / '100%.sqlite'}")
+    assert (tmp_path / "100%.sqlite").is_file()

@@ -1,0 +1,138 @@
+import pytest
+
+from service.recordings import RecordingStore, StoredRecording
+from service.storage import NotFoundError, Repository
+from service.storage.records import RemoteRecord
+from service.storage.states import EventReportState, RecordingState
+from tests.service.plants import NOW_NS, fault
+
+REMOTE = RemoteRecord("C_0001", 11, NOW_NS)
+
+
+def record(store: RecordingStore, content: bytes = b"samples") -> StoredRecording:
+    return store.store({"C_0001.CFG": b"config", "C_0001.DAT": content})
+
+
+def test_a_pulled_record_is_stored_and_queued_with_its_event_report(
+    repository: Repository, store: RecordingStore
+) -> None:
+    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    repository.mark_triggered(report.id, now_ns=NOW_NS)
+    announced = repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=NOW_NS)
+    assert announced.state is RecordingState.ANNOUNCED
+    assert repository.known_remote_records("A1_SEL710") == frozenset()
+
+    stored = record(store)
+    added = repository.add_recording(
+        stored,
+        motor="PUMP-A1",
+        ied="A1_SEL710",
+        remote=REMOTE,
+        event_report_id=report.id,
+        now_ns=NOW_NS + 1,
+    )
+    assert added.created
+    assert (added.recording.id, added.recording.state) == (announced.id, RecordingState.FETCHED)
+    assert repository.known_remote_records("A1_SEL710") == {REMOTE}
+    assert repository.event_report(report.id).state is EventReportState.FETCHED
+    assert repository.event_report(report.id).recording_id == announced.id
+    files = [(f.name, f.size_bytes, f.sha256) for f in repository.recording_files(announced.id)]
+    assert files == [(f.name, f.size_bytes, f.sha256) for f in stored.files]
+    claimed = repository.claim_job(now_ns=NOW_NS + 1)
+    assert claimed is not None
+    assert (claimed.motor, claimed.digest) == ("PUMP-A1", stored.digest)
+
+
+def test_pulled_twice_stored_once(repository: Repository, store: RecordingStore) -> None:
+    first, again = (
+        repository.add_recording(
+            record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS + i
+        )
+        for i in range(2)
+    )
+    assert (first.created, again.created) == (True, False)
+    assert first.recording == again.recording
+    assert len(repository.jobs(first.recording.id, limit=10).items) == 1
+
+
+def test_the_same_content_under_another_time_stamp_is_the_same_recording(
+    repository: Repository, store: RecordingStore
+) -> None:
+    touched = RemoteRecord(REMOTE.name, REMOTE.size_bytes, REMOTE.modified_ns + 5)
+    first = repository.add_recording(
+        record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
+    )
+    repository.announce_recording("A1_SEL710", "PUMP-A1", touched, now_ns=NOW_NS)
+    again = repository.add_recording(
+        record(store), motor="PUMP-A1", ied="A1_SEL710", remote=touched, now_ns=NOW_NS
+    )
+    assert again.recording.id == first.recording.id
+    assert repository.known_remote_records("A1_SEL710") == {REMOTE, touched}
+    assert len(repository.recordings(limit=10).items) == 1, "the announcement it replaced is gone"
+
+
+def test_other_content_under_the_same_listing_is_another_recording(
+    repository: Repository, store: RecordingStore
+) -> None:
+    ids = {
+        repository.add_recording(
+            record(store, content), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
+        ).recording.id
+        for content in (b"samples", b"SAMPLES")
+    }
+    assert len(ids) == 2
+
+
+def test_a_recording_diagnosed_before_ends_the_report_that_gets_it(
+    repository: Repository, store: RecordingStore
+) -> None:
+    repository.add_recording(record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS)
+    claimed = repository.claim_job(now_ns=NOW_NS)
+    assert claimed is not None
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    repository.add_recording(
+        record(store),
+        motor="PUMP-A1",
+        ied="A1_SEL710",
+        remote=REMOTE,
+        event_report_id=report.id,
+        now_ns=NOW_NS,
+    )
+    assert repository.event_report(report.id).state is EventReportState.DIAGNOSED
+
+
+def test_a_refused_record_is_not_pulled_again(repository: Repository) -> None:
+    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    assert repository.note_failed_pull("A1_SEL710", "PUMP-A1", REMOTE, "timeout", now_ns=NOW_NS) == 1
+    assert repository.note_failed_pull("A1_SEL710", "PUMP-A1", REMOTE, "timeout", now_ns=NOW_NS) == 2
+    assert repository.known_remote_records("A1_SEL710") == frozenset()
+    refused = repository.reject_remote_record(
+        "A1_SEL710", "PUMP-A1", REMOTE, "larger than 64 MB", event_report_id=report.id, now_ns=NOW_NS
+    )
+    assert (refused.state, refused.reason) == (RecordingState.REJECTED, "larger than 64 MB")
+    assert repository.known_remote_records("A1_SEL710") == {REMOTE}
+    assert repository.event_report(report.id).reason == "larger than 64 MB"
+    rejected = repository.recordings(limit=10, state=RecordingState.REJECTED)
+    assert [r.id for r in rejected.items] == [refused.id]
+
+
+def test_an_upload_is_one_recording_a_motor(repository: Repository, store: RecordingStore) -> None:
+    added = [
+        repository.add_recording(record(store), motor=motor, now_ns=NOW_NS)
+        for motor in ("PUMP-A1", "PUMP-A1", "FAN-A2")
+    ]
+    assert [a.created for a in added] == [True, False, True]
+    assert added[0].recording.source == "upload"
+    assert repository.recordings(limit=10, motor="FAN-A2").items == (added[2].recording,)
+
+
+def test_nothing_is_added_when_a_part_fails(repository: Repository, store: RecordingStore) -> None:
+    with pytest.raises(NotFoundError, match="there is no event report 'nope'"):
+        repository.add_recording(record(store), motor="PUMP-A1", event_report_id="nope", now_ns=NOW_NS)
+    assert repository.recordings(limit=10).items == ()
+    assert repository.claim_job(now_ns=NOW_NS) is None
+    with pytest.raises(NotFoundError, match="there is no motor 'X'"):
+        repository.add_recording(record(store), motor="X", now_ns=NOW_NS)
+    with pytest.raises(ValueError, match="ied and remote"):
+        repository.add_recording(record(store), motor="PUMP-A1", remote=REMOTE, now_ns=NOW_NS)

@@ -1,0 +1,28 @@
+"""docs/settings.md and docs/api.md name what there is, and nothing else."""
+
+import re
+from pathlib import Path
+
+from service.api import ApiContext, create_app
+from service.recordings import RecordingStore
+from service.settings import Settings
+from service.storage import Repository, connect
+
+DOCS = Path(__file__).parents[2] / "docs"
+
+
+def test_every_setting_is_documented() -> None:
+    rows = re.findall(r"^\| `(\w+)` \|", (DOCS / "settings.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert sorted(rows) == sorted(Settings.model_fields)
+
+
+def test_every_route_is_documented(tmp_path: Path) -> None:
+    repository = Repository(connect(f"sqlite:///{tmp_path / 'unused.sqlite'}"))
+    app = create_app(
+        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+    )
+    routes = {
+        f"{method.upper()} {path}" for path, methods in app.openapi()["paths"].items() for method in methods
+    }
+    rows = re.findall(r"^\| `([A-Z]+ /\S+)` \|", (DOCS / "api.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert sorted(rows) == sorted(routes)

@@ -1,0 +1,117 @@
+from pathlib import Path
+
+import pytest
+
+import scl
+from service.plant import PlantError, read_plant
+from service.settings import Settings, SettingsError
+
+DEMO_MOTORS = Path(__file__).parents[2] / "service" / "demo" / "motors.toml"
+
+
+@pytest.fixture
+def motors(tmp_path: Path) -> Path:
+    """A copy of the demo's motors file, to be changed."""
+    copy = tmp_path / "motors.toml"
+    copy.write_bytes(DEMO_MOTORS.read_bytes())
+    return copy
+
+
+def settings(motors: Path, plant: Path = scl.DEMO_PLANT_SCD) -> Settings:
+    return Settings(scd=plant, motors=motors)
+
+
+def test_the_demo_plant(motors: Path) -> None:
+    plant = read_plant(settings(motors))
+    assert [site.name for site in plant.sites] == ["FACTORY_A", "FACTORY_B"]
+    assert [motor.name for motor in plant.motors] == [
+        "PUMP-A1",
+        "FAN-A2",
+        "MILL-A3",
+        "CONVEYOR-B1",
+        "COMPRESSOR-B2",
+        "PUMP-B3",
+    ]
+    motor = plant.motor("FAN-A2")
+    assert (motor.site, motor.relay, motor.motor.nameplate.rated_power_W) == ("FACTORY_A", "A2_SEL710", 7500)
+    assert plant.motor_of("A2_SEL710") is motor
+    relay = plant.relay("A2_SEL710")
+    assert (relay.host, relay.port, relay.manufacturer) == ("127.0.0.1", 10211, "SEL")
+    assert relay.trigger_control == "A2_SEL710CON/RBGGIO1.SPCSO01"
+    assert relay.record_made == "A2_SEL710PRO/FLTRDRE1.RcdMade"
+    assert relay.fault_number == "A2_SEL710PRO/FLTRDRE1.FltNum"
+    assert relay.report_control == "A2_SEL710CFG/LLN0.BR.BRep01"
+    assert relay.metering_data_set == "A2_SEL710CFG/LLN0.DSet02"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('name = "FAN-A2"', 'name = "FAN-A3"', "motor FAN-A2: expected its [[motor]] table"),
+        (
+            'name = "FAN-A2"',
+            'name = "PUMP-A1"',
+            "motor 2: name: expected each motor once, found PUMP-A1 again",
+        ),
+        ('name = "FAN-A2"', "name = 2", "motor 2: name: expected the motor's name, found 2"),
+        ("rated_power_W = 7500", "rated_power_W = -1", "motor FAN-A2: [nameplate] rated_power_W: expected"),
+        (
+            "# The demo",
+            "motors = 6 # The demo",
+            "top level: expected [[motor]] tables and nothing else, found motors",
+        ),
+        ("[[motor]]", "[[motor", "expected valid TOML in UTF-8"),
+    ],
+)
+def test_what_is_wrong_in_the_motors_file_is_named(motors: Path, old: str, new: str, message: str) -> None:
+    content = motors.read_text()
+    assert old in content
+    motors.write_text(content.replace(old, new))
+    with pytest.raises(PlantError) as failure:
+        read_plant(settings(motors))
+    assert f"{motors}: " in str(failure.value)
+    assert message in str(failure.value)
+
+
+def test_a_motor_the_scd_does_not_have(motors: Path) -> None:
+    content = motors.read_text()
+    extra = content[content.index('name = "PUMP-A1"') : content.index('name = "FAN-A2"') - len("[[motor]]\n")]
+    motors.write_text(content + "\n[[motor]]\n" + extra.replace("PUMP-A1", "PUMP-Z9"))
+    with pytest.raises(
+        PlantError, match=r"motor PUMP-Z9: expected a motor of demo_plant\.scd \(COMPRESSOR-B2"
+    ):
+        read_plant(settings(motors))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('type="MOT"', 'type="CBR"', "expected motors (ConductingEquipment"),
+        ('name="FAN-A2"', 'name="PUMP-A1"', "motor PUMP-A1: expected one motor for one relay"),
+        ('<P type="IP">127.0.0.1</P>', '<P type="IP">here</P>', "expected an IPv4 or IPv6 address"),
+        ("RcdMade", "RcdMad", "relay A1_SEL710: expected a disturbance recorder's RcdMade"),
+        ("</SCL>", "", "expected"),
+    ],
+)
+def test_what_is_wrong_in_the_scd_is_named(
+    motors: Path, tmp_path: Path, old: str, new: str, message: str
+) -> None:
+    content = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
+    assert old in content
+    damaged = tmp_path / "damaged.scd"
+    damaged.write_text(content.replace(old, new), encoding="utf-8")
+    with pytest.raises(PlantError) as failure:
+        read_plant(settings(motors, damaged))
+    assert "damaged.scd" in str(failure.value)
+    assert message in str(failure.value)
+
+
+def test_files_that_are_not_there(motors: Path, tmp_path: Path) -> None:
+    with pytest.raises(PlantError, match=r"none\.toml: file: expected a TOML file .* found no file"):
+        read_plant(settings(tmp_path / "none.toml"))
+    with pytest.raises(PlantError, match="expected a readable file"):
+        read_plant(settings(tmp_path))
+    with pytest.raises(PlantError, match=r"none\.scd"):
+        read_plant(settings(motors, tmp_path / "none.scd"))
+    with pytest.raises(SettingsError, match="settings: scd: expected the path of the plant's SCD file"):
+        read_plant(Settings(motors=motors))

@@ -1,0 +1,65 @@
+from pathlib import Path
+
+import pytest
+
+from service.settings import Settings, SettingsError
+
+
+@pytest.fixture(autouse=True)
+def clean_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in Settings.model_fields:
+        monkeypatch.delenv(f"MCC_{name.upper()}", raising=False)
+
+
+def test_built_in_values_keep_to_the_loopback() -> None:
+    settings = Settings.load()
+    assert (str(settings.bind_address), settings.port) == ("127.0.0.1", 8710)
+    assert settings.data_directory == Path.cwd() / "data"
+    assert settings.database_url == f"sqlite:///{Path.cwd() / 'data' / 'statorwatch.sqlite'}"
+    assert settings.recordings_directory == Path.cwd() / "data" / "recordings"
+
+
+def test_options_win_over_the_environment_and_that_over_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text('port = 1\nworkers = 1\njob_attempts = 1\nscd = "plant.scd"\n')
+    monkeypatch.setenv("MCC_PORT", "2")
+    monkeypatch.setenv("MCC_WORKERS", "2")
+    settings = Settings.load(config, {"port": 3, "motors": None})
+    assert (settings.port, settings.workers, settings.job_attempts) == (3, 2, 1)
+    assert settings.scd == tmp_path / "plant.scd", "paths in the file are meant from its folder"
+    assert settings.motors is None
+
+
+def test_lists_in_the_environment_are_json(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MCC_ALLOWED_HOSTS", '["mcc.plant.example"]')
+    assert Settings.load().allowed_hosts == ("mcc.plant.example",)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ("prot = 1", "prot: expected a setting named in docs/settings.md"),
+        ("port = 99999", "port: expected Input should be less than or equal to 65535, found 99999"),
+        ("port = ", "expected valid TOML in UTF-8"),
+    ],
+)
+def test_what_is_wrong_is_named(tmp_path: Path, content: str, message: str) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text(content)
+    with pytest.raises(SettingsError, match=r"mcc\.toml") as failure:
+        Settings.load(config)
+    assert message in str(failure.value)
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(SettingsError, match=r"none\.toml: file: expected a TOML file, found no file"):
+        Settings.load(tmp_path / "none.toml")
+    with pytest.raises(SettingsError, match="expected a readable file"):
+        Settings.load(tmp_path)
+
+
+def test_a_password_in_the_url_is_not_shown() -> None:
+    settings = Settings(database_url="postgresql+psycopg://mcc:secret@db.example/mcc")
+    assert "secret" not in repr(settings)
