@@ -2,6 +2,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
+# Matrices are small here: threads of the linear algebra library only take cores from the tests' own processes.
+export OPENBLAS_NUM_THREADS ?= 1
 
 .PHONY: install demo test lint bench lock clean
 .DEFAULT_GOAL := install

@@ -81,7 +81,8 @@ def integrate(
     start: Array,
     speed: float,
     times: Array,
-    method: Literal["DOP853", "Radau"] = "DOP853",
+    method: Literal["DOP853", "Radau", "RK45"] = "DOP853",
+    rtol: float = 1e-10,
 ) -> tuple[Array, Array]:
     """Stator currents (2, times) and electrical speed (times,) from currents `start` (5,) at times[0]."""
     fluxes, drops = PAGES[model]

@@ -1,0 +1,16 @@
+"""Side-by-side measurements, ratios in one run: python -m benchmarks.run (make bench)."""
+
+from benchmarks import diagnosis, machine_models, recordings, transfer
+
+SUBJECTS = (machine_models, diagnosis, recordings, transfer)
+
+
+def main() -> None:
+    for subject in SUBJECTS:
+        print(f"\n{(subject.__doc__ or '').splitlines()[0]}")
+        for line in subject.measure():
+            print(f"  {line}")
+
+
+if __name__ == "__main__":
+    main()
