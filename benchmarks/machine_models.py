@@ -59,6 +59,7 @@ def measure() -> Iterator[str]:
             )  # fmt: skip
             seconds = best_of(20, lambda b=batch, p=playback: p.squared_error(b, measured)) / count  # type: ignore[misc]
             yield (
-                f"{model.name:16s} batch of {count:4d}: {seconds * 1e6:8.1f} us a candidate, {peer / seconds:8.0f} "
-                f"times faster than solve_ivp, {THESIS_SECONDS / seconds:8.0f} times faster than the thesis"
+                f"{model.name:16s} batch of {count:4d}: {seconds * 1e6:8.1f} us a candidate, "
+                f"{peer / seconds:8.0f} times faster than solve_ivp, "
+                f"{THESIS_SECONDS / seconds:8.0f} times faster than the thesis"
             )
