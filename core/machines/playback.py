@@ -7,10 +7,10 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from core.machines import kernel
 from core.machines.base import Array, StatorModel
+from core.machines.batch import find_steady_states, play
 from core.machines.parameters import Motor
-from core.machines.steady_state import SteadyState, fill_steady_state
+from core.machines.steady_state import SteadyState
 from core.machines.supply import Supply
 
 DELAY_MARGIN_COLUMNS = 3
@@ -90,10 +90,22 @@ class Playback:
         self.load_law = load_law
         self._first = window.first * supply.substeps
         self._last = (window.last - 1) * supply.substeps + 1
+        reach = DELAY_MARGIN_COLUMNS - 1
+        self._latest_delay = (self._first - reach) * supply.step_s
+        self._earliest_delay = -(supply.voltage.shape[0] - self._last - reach) * supply.step_s
+        nameplate, machine = motor.nameplate, motor.parameters
+        w_s, w_b = supply.angular_frequency, nameplate.rated_angular_frequency
+        self._phasor = supply.phasor * np.exp(1j * w_s * self._first * supply.step_s)
+        self._torque_per_pole_pair = nameplate.rated_torque_Nm / nameplate.pole_pairs / w_b**load_law.value
+        self._ripple_gain = nameplate.pole_pairs**2 / machine.inertia_kgm2
+        # Slip of the healthy machine's greatest torque: R_r' over the impedance of R_s and the leakages.
+        leakage = w_s * (machine.stator_leakage_H + machine.rotor_leakage_H)
+        impedance = float(np.hypot(machine.stator_resistance_ohm, leakage))
+        self._pull_out_slip = min(1.0, machine.rotor_resistance_ohm / impedance)
 
     def steady_state(self, candidates: Candidates) -> SteadyState:
         """Periodic steady state of every candidate at the window's first sample."""
-        return self._steady_state(candidates, *self._circuits(candidates))
+        return self._prepare(candidates).state
 
     def squared_error(self, candidates: Candidates, measured_ab: Array) -> Array:
         """Sum of squared distances of the model's to the measured current, (candidates,) [A^2] (6.25).
@@ -102,50 +114,24 @@ class Playback:
         """
         window = self.window
         measured = np.ascontiguousarray(measured_ab[:, window.first : window.last].T)
-        errors = np.empty(len(candidates))
-        for start in range(0, len(candidates), kernel.LANES):
-            rows = slice(start, min(start + kernel.LANES, len(candidates)))
-            error, _, _ = self._run(candidates.part(rows), measured, record=False)
-            errors[rows] = error
-        return errors
+        error = np.empty(len(candidates))
+        self._play(candidates, measured, error, np.empty((0, 2, 0)), np.empty((0, 0)))
+        return error
 
     def trajectories(self, candidates: Candidates) -> Trajectories:
         """Currents and speed of every candidate over the window."""
-        samples = self.window.last - self.window.first
-        currents, speeds = np.empty((len(candidates), 2, samples)), np.empty((len(candidates), samples))
-        for start in range(0, len(candidates), kernel.LANES):
-            rows = slice(start, min(start + kernel.LANES, len(candidates)))
-            lanes = rows.stop - rows.start
-            _, current, speed = self._run(candidates.part(rows), np.empty((0, 2)), record=True)
-            currents[rows] = current[:, :: self.supply.substeps, :lanes].transpose(2, 0, 1)
-            speeds[rows] = speed[:: self.supply.substeps, :lanes].T
-        return Trajectories(currents, speeds)
+        n, samples = len(candidates), self.window.last - self.window.first
+        current, speed = np.empty((n, 2, samples)), np.empty((n, samples))
+        self._play(candidates, np.empty((0, 2)), np.empty(n), current, speed)
+        return Trajectories(current, speed)
 
-    def _circuits(self, candidates: Candidates) -> tuple[Array, Array, Array]:
+    def _prepare(self, candidates: Candidates) -> "_Prepared":
+        n = len(candidates)
         circuits = self.model.circuits(
             self.motor, candidates.fault_level, candidates.winding, candidates.path_ratio
         )
-        inverse = np.linalg.inv(circuits.inductance)
-        decay = -circuits.resistance @ inverse
-        nameplate = self.motor.nameplate
-        exponent = int(self.load_law)
-        load = np.zeros((len(candidates), 3))
-        load[:, exponent] = (
-            candidates.load_level
-            * nameplate.rated_torque_Nm
-            / nameplate.pole_pairs
-            / nameplate.rated_angular_frequency**exponent
-        )
-        return decay, np.ascontiguousarray(inverse[:, :4, :]), load
-
-    def _steady_state(
-        self, candidates: Candidates, decay: Array, current_from_flux: Array, load: Array
-    ) -> SteadyState:
-        n = len(candidates)
-        supply, machine = self.supply, self.motor.parameters
-        w_s = supply.angular_frequency
-        arrival = np.exp(1j * w_s * (self._first * supply.step_s - candidates.time_offset_s))
-        voltage = arrival[:, np.newaxis] * supply.phasor
+        load = np.zeros((n, 3))
+        load[:, int(self.load_law)] = candidates.load_level * self._torque_per_pole_pair
         state = SteadyState(
             flux=np.empty((5, n)),
             speed=np.empty(n),
@@ -153,43 +139,41 @@ class Playback:
             current=np.empty((2, n), np.complex128),
             balanced=np.empty(n, np.bool_),
         )
-        fill_steady_state(
-            decay, current_from_flux, load, w_s, voltage, self._pull_out_slip(),
-            self.motor.nameplate.pole_pairs**2 / machine.inertia_kgm2,
-            state.flux, state.speed, state.mean_speed, state.current, state.balanced,
+        decay, current_from_flux = np.empty((n, 5, 5)), np.empty((n, 4, 5))
+        find_steady_states(
+            circuits.inductance, circuits.resistance, load, candidates.time_offset_s,
+            self.supply.angular_frequency, self._phasor, self._pull_out_slip, self._ripple_gain, decay,
+            current_from_flux, state.flux, state.speed, state.mean_speed, state.current, state.balanced,
         )  # fmt: skip
-        return state
+        return _Prepared(state, load, decay, current_from_flux)
 
-    def _pull_out_slip(self) -> float:
-        """Slip of the healthy machine's greatest torque, R_r' / |Z of the leakages and R_s| (Thevenin)."""
-        machine = self.motor.parameters
-        reactance = self.supply.angular_frequency * (machine.stator_leakage_H + machine.rotor_leakage_H)
-        return min(
-            1.0, machine.rotor_resistance_ohm / float(np.hypot(machine.stator_resistance_ohm, reactance))
-        )
-
-    def _run(self, candidates: Candidates, measured: Array, *, record: bool) -> tuple[Array, Array, Array]:
-        lanes = len(candidates)
-        decay, current_from_flux, load = self._circuits(candidates)
-        start = self._steady_state(candidates, decay, current_from_flux, load)
-        delays, source = np.unique(candidates.time_offset_s, return_inverse=True)
-        voltage = self.supply.delayed(delays)[:, self._first : self._last]
-        flux, speed = np.zeros((5, kernel.LANES)), np.zeros(kernel.LANES)
-        flux[:, :lanes], speed[:lanes] = start.flux, start.speed
-        output, loads = np.zeros((4, 5, kernel.LANES)), np.zeros((3, kernel.LANES))
-        output[:, :, :lanes], loads[:, :lanes] = current_from_flux.transpose(1, 2, 0), load.T
-        columns = voltage.shape[1] if record else 0
-        current, speed_out = np.empty((2, columns, kernel.LANES)), np.empty((columns, kernel.LANES))
-        error = np.zeros(kernel.LANES)
-        step = self.supply.step_s
-        compare_from = (self.window.compare_from - self.window.first) * self.supply.substeps
-        kernel.simulate(
-            voltage, source.astype(np.int64), step, decay, output, loads,
-            step * self.motor.nameplate.pole_pairs**2 / self.motor.parameters.inertia_kgm2,
-            flux, speed, measured, self.supply.substeps, max(1, compare_from), error, current, speed_out,
-            lanes,
+    def _play(
+        self, candidates: Candidates, measured: Array, error: Array, current: Array, speed: Array
+    ) -> None:
+        delays = candidates.time_offset_s
+        if delays.size and not (self._earliest_delay <= delays.min() and delays.max() <= self._latest_delay):
+            raise ValueError(
+                f"time offsets: expected {self._earliest_delay:g} to {self._latest_delay:g} s, for which this "
+                f"record has voltages, found {delays.min():g} to {delays.max():g} s"
+            )
+        prepared = self._prepare(candidates)
+        substeps, window = self.supply.substeps, self.window
+        play(
+            self.supply.voltage, self._first, self._last, self.supply.step_s, substeps, delays, prepared.decay,
+            prepared.current_from_flux, prepared.load, self._ripple_gain * self.supply.step_s,
+            prepared.state.flux, prepared.state.speed, measured,
+            max(1, (window.compare_from - window.first) * substeps), error, current, speed,
         )  # fmt: skip
-        return error[:lanes], current, speed_out
+
+
+@dataclass(frozen=True, slots=True)
+class _Prepared:
+    """What a batch is stepped with: its steady state and the arrays `find_steady_states` fills."""
+
+    state: SteadyState
+    load: Array
+    decay: Array
+    current_from_flux: Array
 
 
 def window_of_record(samples: int, sample_rate_hz: float, frequency_hz: float, longest_s: float) -> Window:

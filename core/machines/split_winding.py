@@ -8,6 +8,10 @@ from core.machines.healthy import symmetrical
 from core.machines.parameters import Connection, Motor
 
 
+WHOLE_PHASE = 1.0
+"""No more turns than the phase has can be shorted."""
+
+
 class SplitWinding:
     """A fraction mu of the phase's turns, bridged by a path of resistance r_f that carries i_f = j / mu.
 
@@ -43,7 +47,7 @@ class SplitWinding:
             machine.stator_resistance_ohm,
         )
         axis = CLARKE_PHASE * winding_axis(winding)
-        level = fault_level * (1.0 + path_ratio)
+        level = np.minimum(fault_level * (1.0 + path_ratio), WHOLE_PHASE)
         mu = level[:, np.newaxis]
         L[:, 0:2, 4] = -(L_ls + L_m) * axis
         L[:, 2:4, 4] = -L_m * axis

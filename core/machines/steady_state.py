@@ -113,28 +113,3 @@ def balance(
                 surplus_low *= 0.5
             side = -1
     return w, True
-
-
-@compiled
-def fill_steady_state(
-    decay: Array, current_from_flux: Array, load: Array, w_s: float, voltage: NDArray[np.complex128],
-    pull_out_slip: float, ripple_gain: float, flux_0: Array, speed_0: Array, mean_speed: Array,
-    current: NDArray[np.complex128], balanced: NDArray[np.bool_],
-) -> None:  # fmt: skip
-    """Every candidate of a batch. decay (n, 5, 5), current_from_flux (n, 4, 5), load (n, 3), voltage (n, 2);
-    ripple_gain is p^2 / J: speed ripple is the torque ripple integrated."""
-    flux, rotor = np.empty(5, np.complex128), np.empty(2, np.complex128)
-    for c in range(decay.shape[0]):
-        V_alpha, V_beta = voltage[c, 0], voltage[c, 1]
-        w, balanced[c] = balance(
-            decay[c], current_from_flux[c], load[c], w_s, V_alpha, V_beta, pull_out_slip, flux, rotor
-        )
-        ripple = 0.5 * (flux[3] * rotor[0] - flux[2] * rotor[1])
-        mean_speed[c] = w
-        speed_0[c] = w + (ripple_gain * ripple / (2j * w_s)).real
-        for i in range(5):
-            flux_0[i, c] = flux[i].real
-        for axis in range(2):
-            current[axis, c] = 0.0
-            for j in range(5):
-                current[axis, c] += current_from_flux[c, axis, j] * flux[j]

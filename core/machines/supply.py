@@ -1,4 +1,4 @@
-"""The measured voltages as the models' input: on a fine enough time base, and delayed as the sensors delay.
+"""The measured voltages as the models' input, on a fine enough time base.
 
 A step takes the voltage as a straight line between samples, which loses (w h)^2 / 12 of a sine's amplitude.
 Adding a twelfth of the second difference gives it back, so that the error left is of fourth order.
@@ -21,8 +21,8 @@ COARSEST_STEP_CYCLES = 1 / 80
 class Supply:
     """Stator voltage on the model's time base.
 
-    voltage: v_s on the Clarke axes, shape (2, samples * substeps), pre-emphasised [V].
-    step_s: time between its columns; `substeps` columns lie between two samples of the record.
+    voltage: v_s on the Clarke axes, shape (columns, 2), pre-emphasised [V].
+    step_s: time between columns; `substeps` of them make one sample of the record.
     angular_frequency: w_s of the fundamental [rad/s]; phasor: its peak phasors on both axes at column 0 [V].
     """
 
@@ -31,21 +31,6 @@ class Supply:
     substeps: int
     angular_frequency: float
     phasor: NDArray[np.complex128]
-
-    def delayed(self, delays_s: Array) -> Array:
-        """v_s(t - T_d) for each delay, shape (delays, columns, 2); cyclic at the ends of the record.
-
-        Between columns the voltage is taken through four of them (Lagrange's cubic).
-        """
-        columns = self.voltage.shape[1]
-        out = np.empty((delays_s.size, columns, 2))
-        for row, delay in enumerate(delays_s / self.step_s):
-            whole = ceil(delay)
-            fraction = whole - delay
-            weights = _lagrange(fraction)
-            taps = [np.roll(self.voltage, whole + 1 - m, axis=1) for m in range(4)]
-            out[row] = sum(weight * tap for weight, tap in zip(weights, taps, strict=True)).T  # type: ignore[union-attr]
-        return out
 
 
 def supply(
@@ -60,19 +45,9 @@ def supply(
     emphasised = voltage_ab.copy()
     emphasised[:, 1:-1] -= (voltage_ab[:, 2:] - 2.0 * voltage_ab[:, 1:-1] + voltage_ab[:, :-2]) / 12.0
     return Supply(
-        voltage=emphasised,
+        voltage=np.ascontiguousarray(emphasised.T),
         step_s=1.0 / (sample_rate_hz * substeps),
         substeps=substeps,
         angular_frequency=2.0 * pi * frequency_hz,
         phasor=phasor,
-    )
-
-
-def _lagrange(x: float) -> tuple[float, float, float, float]:
-    """Weights of the columns at -1, 0, 1, 2 for a value at x in [0, 1)."""
-    return (
-        -x * (x - 1.0) * (x - 2.0) / 6.0,
-        (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0,
-        -(x + 1.0) * x * (x - 2.0) / 2.0,
-        (x + 1.0) * x * (x - 1.0) / 6.0,
     )

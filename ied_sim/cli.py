@@ -1,0 +1,102 @@
+"""The command `ied-sim`: serve the simulated relays of a plant, or tell the truth about its motors."""
+
+import json
+import logging
+import signal
+import sys
+import tempfile
+import threading
+from pathlib import Path
+from types import FrameType
+from typing import Annotated
+
+import typer
+
+import scl
+from ied_sim import warm_up
+from ied_sim.errors import SimulatorError
+from ied_sim.scenario import RelayScenario, ScenarioError, healthy_reference, read_scenario
+from ied_sim.simulator import Simulator
+
+app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})
+
+
+@app.command()
+def ied_sim(
+    scd: Annotated[Path, typer.Option("--scd", help="SCD file with the relays and their addresses.")],
+    ied: Annotated[
+        list[str] | None, typer.Option("--ied", help="Serve this relay only; may be given again.")
+    ] = None,
+    scenario: Annotated[
+        Path | None, typer.Option(help="Motors, loads and faults (docs/scenario.md); healthy motors without.")
+    ] = None,
+    files: Annotated[
+        Path | None, typer.Option(help="Directory that keeps the relays' files; a temporary one without.")
+    ] = None,
+    truth: Annotated[
+        bool, typer.Option("--truth", help="Print the motors' true condition as JSON and stop.")
+    ] = False,
+    at: Annotated[
+        float, typer.Option(metavar="SECONDS", help="With --truth: time since the simulator's start.")
+    ] = 0.0,
+) -> None:
+    """Serve simulated motor relays over IEC 61850 MMS until interrupted."""
+    logging.basicConfig(stream=sys.stderr, level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
+    try:
+        document = scl.read(scd)
+        names = ied or [found.name for found in document.ieds]
+        scenarios = _scenarios(document, scenario)
+        if truth:
+            told = {name: scenarios[name].truth(at) for name in names if document.ied(name)}
+            _say(json.dumps(told))
+            return
+        _serve(document, names, scenarios, files)
+    except (SimulatorError, ScenarioError, scl.SclError, OSError) as error:
+        typer.echo(f"ied-sim: {error}", err=True)
+        raise typer.Exit(1) from error
+
+
+def main() -> None:
+    """Entry point of the command."""
+    app()
+
+
+def _scenarios(document: scl.Scl, path: Path | None) -> dict[str, RelayScenario]:
+    """A scenario for every IED of the file: that of the scenario file, or the healthy reference motor."""
+    scenarios = {found.name: healthy_reference(found.name) for found in document.ieds}
+    given = {} if path is None else read_scenario(path)
+    for name in given:
+        if name not in scenarios:
+            raise ScenarioError(
+                path or "",
+                f"[motor {name}] ied",
+                expected=f"an IED of {document.path} ({', '.join(scenarios)})",
+                found=name,
+            )
+    return scenarios | given
+
+
+def _serve(
+    document: scl.Scl, names: list[str], scenarios: dict[str, RelayScenario], files: Path | None
+) -> None:
+    stopping = threading.Event()
+
+    def stop(_signal: int, _frame: FrameType | None) -> None:
+        stopping.set()
+
+    signal.signal(signal.SIGTERM, stop)
+    signal.signal(signal.SIGINT, stop)
+    warm_up()
+    with (
+        tempfile.TemporaryDirectory(prefix="ied-sim-") as temporary,
+        Simulator(document, scenarios, files=files or Path(temporary), ieds=names) as simulator,
+    ):
+        for name, address in simulator.addresses.items():
+            _say(f"{name} {address.host} {address.port}")
+        _say("ready")
+        stopping.wait()
+
+
+def _say(line: str) -> None:
+    """Answer on stdout at once: programs that start this one read it through a pipe."""
+    print(line, flush=True)  # noqa: T201

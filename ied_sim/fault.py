@@ -1,0 +1,44 @@
+"""Shorted stator turns, as they are and as they develop."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+NEGLIGIBLE_LEVEL = 1e-5
+"""Equivalent level below which a fault draws less than the noise and would only stiffen the equations."""
+
+
+@dataclass(frozen=True, slots=True)
+class TurnFault:
+    """A path of `resistance_ohm` across the fraction `turns` (mu) of the turns of phase 0, 1 or 2 (a, b, c).
+
+    In a delta motor phase a is the winding between terminals a and b.
+    """
+
+    turns: float
+    phase: int
+    resistance_ohm: float = 0.0
+
+    def equivalent_level(self, stator_resistance_ohm: float) -> float:
+        """mu_eq = R_s / (r_f / mu^2 + R_s / mu): the level of the bolted short that looks alike."""
+        if self.turns == 0:
+            return 0.0
+        return self.turns / (1 + self.resistance_ohm / (self.turns * stator_resistance_ohm))
+
+
+@dataclass(frozen=True, slots=True)
+class FaultCourse:
+    """How a fault of one phase develops: (time [s] since the simulator's start, mu), straight in between."""
+
+    phase: int
+    course: tuple[tuple[float, float], ...]
+    resistance_ohm: float = 0.0
+
+    def at(self, time_s: float) -> TurnFault:
+        """The fault at one moment; before the first and after the last point it stays as there."""
+        return TurnFault(self._level(time_s), self.phase, self.resistance_ohm)
+
+    def _level(self, time_s: float) -> float:
+        for (begin_s, begin), (end_s, end) in pairwise(self.course):
+            if begin_s <= time_s < end_s:
+                return begin + (end - begin) * (time_s - begin_s) / (end_s - begin_s)
+        return self.course[0][1] if time_s < self.course[0][0] else self.course[-1][1]

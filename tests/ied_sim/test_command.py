@@ -1,0 +1,156 @@
+"""The command ied-sim as a process of its own."""
+
+import json
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+import scl
+from ied_sim.errors import SimulatorError
+from ied_sim.scenario import healthy_reference
+from ied_sim.simulator import Simulator
+from mms import Client
+from scl import Address
+from tests.ied_sim.serving import free_port, wait_until
+
+DEMO_SCENARIO = Path(__file__).parents[2] / "service" / "demo" / "scenario.toml"
+RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")
+
+
+@pytest.fixture
+def plant(tmp_path: Path) -> Path:
+    """The demo plant's SCD on free ports."""
+    path = tmp_path / "plant.scd"
+    scl.with_addresses(scl.DEMO_PLANT_SCD, path, {name: Address("127.0.0.1", free_port()) for name in RELAYS})
+    return path
+
+
+def run(*arguments: str | Path) -> tuple[int, str, str]:
+    """Exit code, stdout and stderr of a call that ends by itself."""
+    command = [sys.executable, "-m", "ied_sim", *map(str, arguments)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+@contextmanager
+def serving(*arguments: str | Path) -> Iterator[tuple[subprocess.Popen[str], list[str]]]:
+    """The command as a process, with what it printed until it was ready."""
+    command = [sys.executable, "-m", "ied_sim", *map(str, arguments)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        try:
+            lines: list[str] = []
+            while "ready" not in lines:
+                line = process.stdout.readline()
+                assert line, f"ended before it was ready: {process.stderr and process.stderr.read()}"
+                lines.append(line.strip())
+            yield process, lines
+        finally:
+            process.kill()
+
+
+@pytest.mark.parametrize("stop", [signal.SIGTERM, signal.SIGINT])
+def test_serves_until_it_is_told_to_stop(plant: Path, stop: signal.Signals) -> None:
+    with serving("--scd", plant, "--scenario", DEMO_SCENARIO) as (process, lines):
+        document = scl.read(plant)
+        addresses = {name: document.address(name) for name in RELAYS}
+        assert lines == [f"{name} {address.host} {address.port}" for name, address in addresses.items()] + [
+            "ready"
+        ]
+        for name, address in addresses.items():
+            with Client.connect(address.host, address.port) as client:
+                assert f"{name}CON" in client.logical_devices()
+        process.send_signal(stop)
+        assert process.wait(20) == 0
+
+
+def test_serves_only_the_relays_asked_for_and_keeps_their_files(plant: Path, tmp_path: Path) -> None:
+    with serving("--scd", plant, "--ied", "B1_SEL710", "--files", tmp_path / "files") as (process, lines):
+        assert [line.split()[0] for line in lines] == ["B1_SEL710", "ready"]
+        process.terminate()
+        assert process.wait(20) == 0
+    assert (tmp_path / "files" / "B1_SEL710" / "EVENTS").is_dir()
+
+
+def test_tells_the_truth(plant: Path) -> None:
+    code, answer, _ = run("--scd", plant, "--scenario", DEMO_SCENARIO, "--truth")
+    assert code == 0
+    truth = json.loads(answer)
+    assert tuple(truth) == RELAYS
+    assert truth["A2_SEL710"] == {"mu_f": 0.05, "theta_f": 1, "load_level": 0.65}
+    assert truth["A1_SEL710"]["theta_f"] is None
+
+
+def test_the_truth_without_a_scenario_is_healthy_and_may_be_of_one_relay(plant: Path) -> None:
+    code, answer, _ = run("--scd", plant, "--truth", "--ied", "A3_SEL710", "--at", "5")
+    assert code == 0
+    assert json.loads(answer) == {"A3_SEL710": {"mu_f": 0.0, "theta_f": None, "load_level": 0.5}}
+
+
+def test_a_taken_port_is_named_with_its_relay(plant: Path) -> None:
+    address = scl.read(plant).address("A3_SEL710")
+    with socket.socket() as other:
+        other.bind((address.host, address.port))
+        other.listen()
+        code, _, error = run("--scd", plant)
+    assert code == 1
+    assert f"A3_SEL710: cannot listen on 127.0.0.1 port {address.port}" in error
+
+
+@pytest.mark.parametrize("arguments", [("--truth",), ()])
+def test_an_unknown_relay_is_named(plant: Path, arguments: tuple[str, ...]) -> None:
+    code, _, error = run("--scd", plant, "--ied", "C9_SEL710", *arguments)
+    assert code == 1
+    assert "C9_SEL710" in error
+    assert "A1_SEL710" in error
+
+
+def test_a_missing_scd_is_named(tmp_path: Path) -> None:
+    code, _, error = run("--scd", tmp_path / "nowhere.scd")
+    assert code == 1
+    assert "nowhere.scd" in error
+
+
+def test_a_scenario_for_a_relay_that_is_not_there_is_refused(plant: Path, tmp_path: Path) -> None:
+    scenario = tmp_path / "scenario.toml"
+    scenario.write_text(
+        DEMO_SCENARIO.read_text(encoding="utf-8").replace("A1_SEL710", "A9_SEL710"), encoding="utf-8"
+    )
+    code, _, error = run("--scd", plant, "--scenario", scenario)
+    assert code == 1
+    assert "[motor A9_SEL710] ied: expected an IED of" in error
+
+
+def test_a_directory_that_cannot_be_made_is_named(plant: Path, tmp_path: Path) -> None:
+    (tmp_path / "taken").write_text("a file where the directory should be", encoding="utf-8")
+    code, _, error = run("--scd", plant, "--files", tmp_path / "taken")
+    assert code == 1
+    assert "taken" in error
+
+
+def test_meters_are_updated_while_serving(
+    plant: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ied_sim.simulator.METERING_PERIOD_S", 0.05)
+    scenarios = {"A1_SEL710": healthy_reference("A1_SEL710")}
+    with Simulator(scl.read(plant), scenarios, files=tmp_path, ieds=["A1_SEL710"]) as simulator:
+        server = simulator._relays[0].server
+        first = server.read("A1_SEL710MET/METMMXU1.Hz.t")
+        wait_until(lambda: server.read("A1_SEL710MET/METMMXU1.Hz.t") != first, "new meter values")
+
+
+def test_a_simulator_that_cannot_start_can_still_be_stopped(plant: Path, tmp_path: Path) -> None:
+    address = scl.read(plant).address("A1_SEL710")
+    simulator = Simulator(scl.read(plant), {}, files=tmp_path, ieds=["A1_SEL710"])
+    with socket.socket() as other:
+        other.bind((address.host, address.port))
+        other.listen()
+        with pytest.raises(SimulatorError, match="A1_SEL710"):
+            simulator.start()
+    simulator.stop()

@@ -1,0 +1,174 @@
+"""Scenario files: what they mean, and what is said of those that mean nothing."""
+
+import re
+import tomllib
+from math import sqrt
+from pathlib import Path
+
+import pytest
+from pydantic import BaseModel
+
+import scl
+from core.machines.parameters import Connection
+from ied_sim import scenario
+from ied_sim.scenario import ScenarioError, healthy_reference, read_scenario
+
+REPOSITORY = Path(__file__).parents[2]
+DEMO = REPOSITORY / "service" / "demo" / "scenario.toml"
+
+MINIMAL = """
+[[motor]]
+ied = "R1"
+[motor.nameplate]
+rated_power_W = 800
+rated_voltage_V = 380
+rated_frequency_Hz = 50
+pole_pairs = 2
+connection = "star"
+[motor.parameters]
+stator_resistance_ohm = 8.4
+rotor_resistance_ohm = 8.2
+stator_leakage_H = 0.0328
+rotor_leakage_H = 0.0328
+stator_self_inductance_H = 0.4377
+inertia_kgm2 = 0.0229
+"""
+
+
+def write(directory: Path, text: str) -> Path:
+    path = directory / "scenario.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_motor_without_more_is_healthy_at_half_load_on_its_rated_supply(tmp_path: Path) -> None:
+    relay = read_scenario(write(tmp_path, MINIMAL))["R1"]
+    assert relay.plant.fault is None
+    assert relay.plant.load.level == 0.5
+    assert relay.plant.supply.line_voltage_V == 380
+    assert relay.plant.supply.frequency_Hz == 50
+    assert relay.recorder.capacity == 20
+    assert relay.truth(0.0) == {"mu_f": 0.0, "theta_f": None, "load_level": 0.5}
+
+
+def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
+    page = (REPOSITORY / "docs" / "scenario.md").read_text(encoding="utf-8")
+    example, timeline = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
+    relay = read_scenario(write(tmp_path, example))["A2_SEL710"]
+    assert relay.plant.supply.harmonics[0].order == 5
+    assert relay.plant.sensors.current_delay_s == pytest.approx(41e-6)
+    assert relay.plant.sensors.full_scale_A == 260
+    assert relay.truth(0.0)["theta_f"] == 1
+    developing = read_scenario(write(tmp_path, MINIMAL + timeline))["R1"]
+    assert developing.truth(0.0) == {"mu_f": 0.0, "theta_f": None, "load_level": 0.5}
+    assert developing.truth(900.0)["mu_f"] == pytest.approx(8.4 / (0.1 / 0.08**2 + 8.4 / 0.08))
+
+
+def test_every_field_is_documented() -> None:
+    page = (REPOSITORY / "docs" / "scenario.md").read_text(encoding="utf-8")
+    sections: list[type[BaseModel]] = [scenario._Motor, scenario._Supply, scenario._Harmonic, scenario._Load]
+    sections += [scenario._Fault, scenario._TimelinePoint, scenario._Sensors, scenario._Recorder]
+    fields = {name for section in sections for name in section.model_fields}
+    assert {name for name in fields if not re.search(rf"\b{name}\b", page)} == set()
+
+
+def test_the_demo_plant_is_what_it_says() -> None:
+    scenarios = read_scenario(DEMO)
+    assert list(scenarios) == [ied.name for ied in scl.read(scl.DEMO_PLANT_SCD).ieds]
+    truths = {name: relay.truth(0.0) for name, relay in scenarios.items()}
+    faults = {name: (truth["mu_f"], truth["theta_f"]) for name, truth in truths.items()}
+    assert faults == {
+        "A1_SEL710": (0.0, None),
+        "A2_SEL710": (0.05, 1),
+        "A3_SEL710": (0.0, None),
+        "B1_SEL710": (0.02, 2),
+        "B2_SEL710": (0.1, 0),
+        "B3_SEL710": (0.0, None),
+    }
+    assert truths["A1_SEL710"]["load_level"] == 0.8
+    assert truths["B3_SEL710"]["load_level"] == 0.1
+    assert scenarios["A3_SEL710"].plant.supply.unbalance == 0.03
+    for name, relay in scenarios.items():
+        acb = relay.plant.supply.sequence == "acb"
+        assert acb == (name in {"B1_SEL710", "B3_SEL710"})
+
+
+def test_the_demo_motors_are_within_a_percent_of_the_motors_file() -> None:
+    feeders = {feeder.ied: feeder.motor for feeder in scl.read(scl.DEMO_PLANT_SCD).feeders()}
+    table = tomllib.loads((DEMO.parent / "motors.toml").read_text(encoding="utf-8"))
+    motors = {motor["name"]: motor for motor in table["motor"]}
+    for ied, relay in read_scenario(DEMO).items():
+        known = motors[feeders[ied]]
+        plant = relay.plant.motor
+        assert plant.nameplate.rated_power_W == known["nameplate"]["rated_power_W"]
+        assert plant.nameplate.connection == Connection(known["nameplate"]["connection"])
+        for name, value in known["parameters"].items():
+            assert getattr(plant.parameters, name) == pytest.approx(value, rel=0.0101)
+
+
+def test_full_scales_leave_room_for_a_start(tmp_path: Path) -> None:
+    sensors = read_scenario(write(tmp_path, MINIMAL))["R1"].plant.sensors
+    assert sensors.full_scale_A > 8 * 1.7 * sqrt(2)
+    assert sensors.full_scale_V > 1.5 * 380 * sqrt(2 / 3)
+
+
+def test_the_reference_motor_needs_no_file() -> None:
+    assert healthy_reference("X").plant.motor.nameplate.rated_power_W == 800
+
+
+@pytest.mark.parametrize(
+    ("text", "field", "words"),
+    [
+        ("motor = 3", "motor", "tuple"),
+        ("[[motor", "file", "TOML"),
+        ("", "motor", "this field"),
+        (MINIMAL.replace('ied = "R1"', ""), "[motor 1] ied", "this field"),
+        (MINIMAL + MINIMAL, "[motor R1] ied", "each IED once"),
+        (
+            MINIMAL.replace("pole_pairs = 2", "pole_pairs = 1.5"),
+            "[motor R1] [nameplate] pole_pairs",
+            "whole number",
+        ),
+        (MINIMAL.replace("inertia_kgm2 = 0.0229", ""), "[motor R1] [parameters] inertia_kgm2", "above zero"),
+        (MINIMAL + "[motor.load]\nlevel = -1", "[motor R1] load.level", "greater than or equal to 0"),
+        (MINIMAL + "[motor.load]\nleve = 1", "[motor R1] load.leve", "no such field"),
+        (MINIMAL + '[motor.supply]\nsequence = "bac"', "[motor R1] supply.sequence", "'abc' or 'acb'"),
+        (
+            MINIMAL + "[motor.supply]\nharmonics = [{ order = 9, fraction = 0.1 }]",
+            "[motor R1] supply.harmonics.0",
+            "three wires",
+        ),
+        (MINIMAL + '[motor.fault]\nphase = "d"\nlevel = 0.1', "[motor R1] fault.phase", "'a', 'b' or 'c'"),
+        (MINIMAL + '[motor.fault]\nphase = "a"', "[motor R1] fault", "either level or timeline"),
+        (
+            MINIMAL + '[motor.fault]\nphase = "a"\ntimeline = [{at_s=5, level=0.1}, {at_s=5, level=0.2}]',
+            "[motor R1] fault",
+            "at_s must rise",
+        ),
+        (
+            MINIMAL + '[motor.fault]\nphase = "a"\nlevel = 0.1\nresistance_ohm = 1e6',
+            "[motor R1] fault.resistance_ohm",
+            "at most",
+        ),
+        (MINIMAL + "[motor.sensors]\ngain_errors = [0.1]", "[motor R1] sensors.gain_errors.1", "this field"),
+        (
+            MINIMAL + "[motor.recorder]\ncapacity = 0",
+            "[motor R1] recorder.capacity",
+            "greater than or equal to 1",
+        ),
+    ],
+)
+def test_a_wrong_scenario_is_refused_with_the_field_at_fault(
+    tmp_path: Path, text: str, field: str, words: str
+) -> None:
+    path = write(tmp_path, text)
+    with pytest.raises(ScenarioError) as caught:
+        read_scenario(path)
+    assert caught.value.field == field
+    assert words in caught.value.expected
+    assert str(path) in str(caught.value)
+
+
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match=r"nowhere\.toml: file: expected a readable file"):
+        read_scenario(tmp_path / "nowhere.toml")
