@@ -55,8 +55,9 @@ def delay_voltage(voltage: Array, delay_columns: float, first: int, out: Array) 
 @compiled
 def find_steady_states(
     inductance: Array, resistance: Array, load: Array, delay_s: Array, w_s: float,
-    phasor: NDArray[np.complex128], pull_out_slip: float, ripple_gain: float, decay: Array, current_from_flux: Array, flux_0: Array,
-    speed_0: Array, mean_speed: Array, current: NDArray[np.complex128], balanced: NDArray[np.bool_],
+    phasor: NDArray[np.complex128], pull_out_slip: float, ripple_gain: float, decay: Array,
+    current_from_flux: Array, flux_0: Array, speed_0: Array, mean_speed: Array,
+    current: NDArray[np.complex128], balanced: NDArray[np.bool_],
 ) -> None:  # fmt: skip
     """Periodic steady state of every candidate (see steady_state.py), and the matrices it is stepped with.
 

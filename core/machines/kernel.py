@@ -21,7 +21,7 @@ REFERENCE_DRIFT = 20.0
 
 
 @compiled
-def advance(  # noqa: C901 - one loop body, kept whole so that the compiler sees all of it
+def advance(
     voltage: Array,
     source: NDArray[np.int64],
     first: int,
@@ -56,11 +56,10 @@ def advance(  # noqa: C901 - one loop body, kept whole so that the compiler sees
     E, G0, G1 = np.empty((5, 5, LANES)), np.empty((5, 2, LANES)), np.empty((5, 2, LANES))
     C, load = np.empty((4, 5, LANES)), np.empty((3, LANES))
     E[:], G0[:], G1[:], C[:], load[:] = E_in, G0_in, G1_in, C_in, load_in
-    x, z, i = np.empty((5, LANES)), np.empty((5, LANES)), np.empty((4, LANES))
-    u, u_next = np.empty((2, LANES)), np.empty((2, LANES))
-    w, w_reference, cosine, sine = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
+    x, i_s, kick = np.empty((5, LANES)), np.empty((2, LANES)), np.empty(LANES)
+    u, u_next, w, w_reference = np.empty((2, LANES)), np.empty((2, LANES)), np.empty(LANES), np.empty(LANES)
     x[:], w[:], w_reference[:] = state, speed, reference_speed
-    distance, kick = np.empty(LANES), np.empty(LANES)
+    distance = np.empty(LANES)
     distance[:] = error
     half = 0.5 * step
     recorded = current.shape[1] > 0
@@ -72,56 +71,52 @@ def advance(  # noqa: C901 - one loop body, kept whole so that the compiler sees
         for b in range(lanes):
             u_next[0, b] = voltage[source[b], k, 0]
             u_next[1, b] = voltage[source[b], k, 1]
+        # Everything of one candidate and step in one expression tree: values stay in registers.
         for b in range(lanes):
+            x0, x1, x2, x3, x4 = x[0, b], x[1, b], x[2, b], x[3, b], x[4, b]
+            u0, u1, y0, y1 = u[0, b], u[1, b], u_next[0, b], u_next[1, b]
             angle = half * (w[b] - w_reference[b])
             square = angle * angle
-            sine[b] = angle * (1.0 - square * (1.0 / 6.0))
-            cosine[b] = 1.0 - square * (0.5 - square * (1.0 / 24.0))
-            x2, x3 = x[2, b], x[3, b]
-            x[2, b] = cosine[b] * x2 - sine[b] * x3
-            x[3, b] = sine[b] * x2 + cosine[b] * x3
-        for n in range(5):
-            for b in range(lanes):
-                z[n, b] = (
-                    E[n, 0, b] * x[0, b]
-                    + E[n, 1, b] * x[1, b]
-                    + E[n, 2, b] * x[2, b]
-                    + E[n, 3, b] * x[3, b]
-                    + E[n, 4, b] * x[4, b]
-                    + G0[n, 0, b] * u[0, b]
-                    + G0[n, 1, b] * u[1, b]
-                    + G1[n, 0, b] * u_next[0, b]
-                    + G1[n, 1, b] * u_next[1, b]
-                )
-        for b in range(lanes):
-            x[0, b], x[1, b], x[4, b] = z[0, b], z[1, b], z[4, b]
-            x[2, b] = cosine[b] * z[2, b] - sine[b] * z[3, b]
-            x[3, b] = sine[b] * z[2, b] + cosine[b] * z[3, b]
-            u[0, b], u[1, b] = u_next[0, b], u_next[1, b]
-        for n in range(4):
-            for b in range(lanes):
-                i[n, b] = (
-                    C[n, 0, b] * x[0, b]
-                    + C[n, 1, b] * x[1, b]
-                    + C[n, 2, b] * x[2, b]
-                    + C[n, 3, b] * x[3, b]
-                    + C[n, 4, b] * x[4, b]
-                )
-        for b in range(lanes):
+            sine = angle * (1.0 - square * (1.0 / 6.0))
+            cosine = 1.0 - square * (0.5 - square * (1.0 / 24.0))
+            r2 = cosine * x2 - sine * x3
+            r3 = sine * x2 + cosine * x3
+            z0 = E[0, 0, b] * x0 + E[0, 1, b] * x1 + E[0, 2, b] * r2 + E[0, 3, b] * r3 + E[0, 4, b] * x4
+            z0 += G0[0, 0, b] * u0 + G0[0, 1, b] * u1 + G1[0, 0, b] * y0 + G1[0, 1, b] * y1
+            z1 = E[1, 0, b] * x0 + E[1, 1, b] * x1 + E[1, 2, b] * r2 + E[1, 3, b] * r3 + E[1, 4, b] * x4
+            z1 += G0[1, 0, b] * u0 + G0[1, 1, b] * u1 + G1[1, 0, b] * y0 + G1[1, 1, b] * y1
+            z2 = E[2, 0, b] * x0 + E[2, 1, b] * x1 + E[2, 2, b] * r2 + E[2, 3, b] * r3 + E[2, 4, b] * x4
+            z2 += G0[2, 0, b] * u0 + G0[2, 1, b] * u1 + G1[2, 0, b] * y0 + G1[2, 1, b] * y1
+            z3 = E[3, 0, b] * x0 + E[3, 1, b] * x1 + E[3, 2, b] * r2 + E[3, 3, b] * r3 + E[3, 4, b] * x4
+            z3 += G0[3, 0, b] * u0 + G0[3, 1, b] * u1 + G1[3, 0, b] * y0 + G1[3, 1, b] * y1
+            z4 = E[4, 0, b] * x0 + E[4, 1, b] * x1 + E[4, 2, b] * r2 + E[4, 3, b] * r3 + E[4, 4, b] * x4
+            z4 += G0[4, 0, b] * u0 + G0[4, 1, b] * u1 + G1[4, 0, b] * y0 + G1[4, 1, b] * y1
+            r2 = cosine * z2 - sine * z3
+            r3 = sine * z2 + cosine * z3
+            i_s_alpha = (
+                C[0, 0, b] * z0 + C[0, 1, b] * z1 + C[0, 2, b] * r2 + C[0, 3, b] * r3 + C[0, 4, b] * z4
+            )
+            i_s_beta = C[1, 0, b] * z0 + C[1, 1, b] * z1 + C[1, 2, b] * r2 + C[1, 3, b] * r3 + C[1, 4, b] * z4
+            i_r_alpha = (
+                C[2, 0, b] * z0 + C[2, 1, b] * z1 + C[2, 2, b] * r2 + C[2, 3, b] * r3 + C[2, 4, b] * z4
+            )
+            i_r_beta = C[3, 0, b] * z0 + C[3, 1, b] * z1 + C[3, 2, b] * r2 + C[3, 3, b] * r3 + C[3, 4, b] * z4
             # T_e / p = psi_r_beta i_r_alpha - psi_r_alpha i_r_beta: torque on the rotor, whatever the stator
-            torque = x[3, b] * i[2, b] - x[2, b] * i[3, b]
             demand = load[0, b] + w[b] * (load[1, b] + w[b] * load[2, b])
-            kick[b] = acceleration * (torque - demand)
+            kick[b] = acceleration * (r3 * i_r_alpha - r2 * i_r_beta - demand)
             w[b] += kick[b]
+            x[0, b], x[1, b], x[2, b], x[3, b], x[4, b] = z0, z1, r2, r3, z4
+            u[0, b], u[1, b] = y0, y1
+            i_s[0, b], i_s[1, b] = i_s_alpha, i_s_beta
         if recorded:
             for b in range(lanes):
-                current[0, k, b] = i[0, b]
-                current[1, k, b] = i[1, b]
+                current[0, k, b] = i_s[0, b]
+                current[1, k, b] = i_s[1, b]
                 speed_out[k, b] = w[b] - 0.5 * kick[b]
         if compared and k % substeps == 0:
             i_alpha, i_beta = measured[k // substeps, 0], measured[k // substeps, 1]
             for b in range(lanes):
-                distance[b] += (i[0, b] - i_alpha) ** 2 + (i[1, b] - i_beta) ** 2
+                distance[b] += (i_s[0, b] - i_alpha) ** 2 + (i_s[1, b] - i_beta) ** 2
     state[:], speed[:], error[:] = x, w, distance
 
 

@@ -153,15 +153,15 @@ class Playback:
         delays = candidates.time_offset_s
         if delays.size and not (self._earliest_delay <= delays.min() and delays.max() <= self._latest_delay):
             raise ValueError(
-                f"time offsets: expected {self._earliest_delay:g} to {self._latest_delay:g} s, for which this "
-                f"record has voltages, found {delays.min():g} to {delays.max():g} s"
+                f"time offsets: expected {self._earliest_delay:g} to {self._latest_delay:g} s, for which "
+                f"the record has voltages, found {delays.min():g} to {delays.max():g} s"
             )
         prepared = self._prepare(candidates)
         substeps, window = self.supply.substeps, self.window
         play(
-            self.supply.voltage, self._first, self._last, self.supply.step_s, substeps, delays, prepared.decay,
-            prepared.current_from_flux, prepared.load, self._ripple_gain * self.supply.step_s,
-            prepared.state.flux, prepared.state.speed, measured,
+            self.supply.voltage, self._first, self._last, self.supply.step_s, substeps, delays,
+            prepared.decay, prepared.current_from_flux, prepared.load,
+            self._ripple_gain * self.supply.step_s, prepared.state.flux, prepared.state.speed, measured,
             max(1, (window.compare_from - window.first) * substeps), error, current, speed,
         )  # fmt: skip
 

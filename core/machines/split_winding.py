@@ -7,7 +7,6 @@ from core.machines.base import CLARKE_PHASE, Array, Circuits, winding_axis
 from core.machines.healthy import symmetrical
 from core.machines.parameters import Connection, Motor
 
-
 WHOLE_PHASE = 1.0
 """No more turns than the phase has can be shorted."""
 

@@ -1,0 +1,161 @@
+# ruff: noqa: N818 (these names are what went wrong, in the words of the field)
+"""Errors of the MMS layer: what failed, at which relay, why, and the service code behind it.
+
+Service errors are those of ISO 9506-2 as IEC 61850-8-1 maps them; the numbers kept in `code` are
+libiec61850's.
+"""
+
+
+class MmsError(Exception):
+    """An MMS service did not do what was asked.
+
+    `host` is the peer as "address:port", `operation` the service and its object, `code` the library's number
+    (0 where the failure was found on our side) and `message` the reason in words.
+    """
+
+    def __init__(self, host: str, operation: str, code: int, message: str) -> None:
+        super().__init__(host, operation, code, message)
+        self.host = host
+        self.operation = operation
+        self.code = code
+        self.message = message
+
+    def __str__(self) -> str:
+        return f"{self.host}: {self.operation}: {self.message}"
+
+
+class ConnectFailed(MmsError):
+    """No association: name unknown, port refused, nobody answered, or the relay has no session left."""
+
+
+class ConnectionLost(MmsError):
+    """The association ended; nothing more can be asked of this client."""
+
+
+class Timeout(MmsError):
+    """The peer did not answer in time. The TCP connection may still stand: a frozen relay looks like this."""
+
+
+class AccessDenied(MmsError):
+    """The peer refuses this access."""
+
+
+class NotFound(MmsError):
+    """The peer has no such object or file."""
+
+
+class TemporarilyUnavailable(MmsError):
+    """The object or file is busy; a later attempt may succeed."""
+
+
+class ProtocolError(MmsError):
+    """The peer answered with something the service does not allow, or refused it for another reason."""
+
+
+class ControlRefused(MmsError):
+    """The relay refused to select, operate or complete a control; `add_cause` says why in words.
+
+    Source: IEC 61850-7-2, AddCause of the control class model.
+    """
+
+    def __init__(self, host: str, operation: str, code: int, message: str, add_cause: str) -> None:
+        super().__init__(host, operation, code, message)
+        self.args = (host, operation, code, message, add_cause)
+        self.add_cause = add_cause
+
+
+class ReportControlInUse(MmsError):
+    """The report control block is reserved or enabled by another client: one client a block."""
+
+
+class EntryNotFound(MmsError):
+    """The relay no longer holds the report entry asked for: reports were lost; start from the present."""
+
+
+class FileSizeMismatch(MmsError):
+    """A transfer ended with another number of bytes than announced."""
+
+    def __init__(
+        self, host: str, operation: str, code: int, message: str, expected: int, received: int
+    ) -> None:
+        super().__init__(host, operation, code, message)
+        self.args = (host, operation, code, message, expected, received)
+        self.expected = expected
+        self.received = received
+
+
+class ServerStartFailed(MmsError):
+    """The server cannot listen on its address and port."""
+
+
+class ModelError(ValueError):
+    """A data model text, a reference into it, or a value for one of its attributes is wrong.
+
+    `where` names the line or the reference, `expected` and `found` say why.
+    """
+
+    def __init__(self, where: str, expected: str, found: str) -> None:
+        super().__init__(where, expected, found)
+        self.where = where
+        self.expected = expected
+        self.found = found
+
+    def __str__(self) -> str:
+        return f"{self.where}: expected {self.expected}, found {self.found}"
+
+
+_CLIENT_ERRORS: dict[int, tuple[type[MmsError], str]] = {
+    1: (ConnectionLost, "not connected"),
+    2: (ProtocolError, "already connected"),
+    3: (ConnectionLost, "the connection was lost"),
+    4: (ProtocolError, "service not supported"),
+    5: (ConnectFailed, "the connection was rejected"),
+    6: (ProtocolError, "too many outstanding requests"),
+    11: (ProtocolError, "data set mismatch"),
+    12: (NotFound, "no object of this reference"),
+    13: (ProtocolError, "a value of an unexpected type was received"),
+    20: (Timeout, "no answer in time"),
+    21: (AccessDenied, "access denied"),
+    22: (NotFound, "no such object"),
+    23: (ProtocolError, "the object exists already"),
+    24: (AccessDenied, "this kind of access is not supported"),
+    25: (ProtocolError, "type inconsistent"),
+    26: (TemporarilyUnavailable, "temporarily unavailable"),
+    27: (NotFound, "the object is not defined"),
+    28: (NotFound, "invalid address"),
+    29: (ProtocolError, "hardware fault"),
+    30: (ProtocolError, "the data type is not supported"),
+    31: (ProtocolError, "the object's attributes are inconsistent"),
+    32: (ProtocolError, "the value is invalid"),
+    33: (NotFound, "the object was invalidated"),
+    34: (ProtocolError, "malformed message"),
+    35: (ProtocolError, "object constraint conflict"),
+    98: (ProtocolError, "service not implemented"),
+}
+
+_FILE_ERRORS: dict[int, tuple[type[MmsError], str]] = {
+    1: (ConnectFailed, "the connection was rejected"),
+    2: (ConnectionLost, "the connection was lost"),
+    3: (Timeout, "no answer in time"),
+    4: (ProtocolError, "malformed message"),
+    8: (ProtocolError, "too many outstanding requests"),
+    40: (TemporarilyUnavailable, "the file is busy, or too many files are open"),
+    81: (NotFound, "no such file"),
+    83: (AccessDenied, "access denied"),
+    92: (TemporarilyUnavailable, "the file is busy"),
+    93: (NotFound, "not a file name"),
+    96: (AccessDenied, "file access denied"),
+    97: (NotFound, "no such file"),
+}
+
+
+def client_error(host: str, operation: str, code: int) -> MmsError:
+    """The error for an IedClientError number of the library."""
+    kind, message = _CLIENT_ERRORS.get(code, (ProtocolError, f"the service failed (client error {code})"))
+    return kind(host, operation, code, message)
+
+
+def file_error(host: str, operation: str, code: int) -> MmsError:
+    """The error for an MmsError number of the library's file services (ISO 9506-2 ServiceError)."""
+    kind, message = _FILE_ERRORS.get(code, (ProtocolError, f"the file service failed (MMS error {code})"))
+    return kind(host, operation, code, message)

@@ -1,0 +1,163 @@
+"""Listing and fetching a relay's files (IEC 61850-7-2 clause 23, ISO 9506-2 FileOpen, Read, Close)."""
+
+import ctypes
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+from mms import errors
+from mms.callbacks import guarded
+from mms.connection import Connection
+from mms.prototypes import FileReadHandler
+
+log: Final = logging.getLogger("mms")
+
+_MILLISECOND_NS: Final = 1_000_000
+_LISTING_LIMIT: Final = 100_000
+
+
+class Sink(Protocol):
+    """Where a downloaded file's bytes go, in order: a binary file, a hash."""
+
+    def write(self, chunk: bytes, /) -> object: ...
+
+
+@dataclass(frozen=True, slots=True)
+class FileEntry:
+    """One file of a relay's listing: name as the relay gives it, size [bytes], last change [ns UTC]."""
+
+    name: str
+    size: int
+    modified_ns: int
+
+
+def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
+    """Every file of a directory, "" for the root. Relays send long listings in parts: all are asked for."""
+    operation = f"list files of {directory or 'the root'!r}"
+    entries: dict[str, FileEntry] = {}
+    last: str | None = None
+    while True:
+        part, more = _listing(connection, operation, directory, last)
+        known = len(entries)
+        entries.update((entry.name, entry) for entry in part)
+        if not more:
+            return tuple(entries.values())
+        if len(entries) == known or len(entries) > _LISTING_LIMIT:
+            reason = f"the listing never ends ({len(entries)} names so far)"
+            raise errors.ProtocolError(connection.host, operation, 0, reason)
+        last = part[-1].name
+
+
+def _listing(
+    connection: Connection, operation: str, directory: str, after: str | None
+) -> tuple[list[FileEntry], bool]:
+    """One part of a listing and whether more follows."""
+    lib = connection.lib
+    more = ctypes.c_bool()
+    found = connection.request(
+        operation,
+        lib.IedConnection_getFileDirectoryEx,
+        file_name(directory) or None,
+        None if after is None else file_name(after),
+        ctypes.byref(more),
+    )
+    if found is None:
+        raise errors.ProtocolError(connection.host, operation, 0, "no listing came")
+    entries = []
+    for item in connection.items(found):
+        name = lib.FileDirectoryEntry_getFileName(item).decode("latin-1")
+        changed_ns = int(lib.FileDirectoryEntry_getLastModified(item)) * _MILLISECOND_NS
+        entries.append(FileEntry(name, int(lib.FileDirectoryEntry_getFileSize(item)), changed_ns))
+        lib.FileDirectoryEntry_destroy(item)
+    lib.LinkedList_destroyStatic(found)
+    return entries, more.value
+
+
+def file_name(name: str) -> bytes:
+    """A file name for C: the bytes the relay gave, which listings read as Latin-1."""
+    octets = name.encode("latin-1")
+    if b"\0" in octets or len(octets) > 255:
+        raise ValueError(f"not a file name: {name!r}")
+    return octets
+
+
+def download(connection: Connection, name: str, sink: Sink, expected_size: int | None) -> int:
+    """Stream one file to `sink` in chunks of about 65 kB; the number of bytes.
+
+    FileSizeMismatch unless the bytes are `expected_size`, the size listed. Without it the size announced at
+    opening must do, which some relays also have for a directory: give the size wherever there is a listing.
+    """
+    operation = f"download {name!r}"
+    with _open_file(connection, operation, name) as (handle, announced):
+        expected = announced if expected_size is None else expected_size
+        received = 0
+        more = True
+        while more:
+            chunk, more = _read(connection, operation, handle)
+            received += len(chunk)
+            if received > expected:
+                break
+            sink.write(chunk)
+            if more and not chunk:
+                raise errors.ProtocolError(
+                    connection.host, operation, 0, "the relay sends empty parts without end"
+                )
+            if connection.closing:
+                raise errors.ConnectionLost(connection.host, operation, 0, "closed during the download")
+    if received != expected:
+        found = f"{received} bytes or more" if more else f"{received} bytes"
+        raise errors.FileSizeMismatch(
+            connection.host, operation, 0, f"expected {expected} bytes, received {found}", expected, received
+        )
+    return received
+
+
+@contextmanager
+def _open_file(connection: Connection, operation: str, name: str) -> Iterator[tuple[int, int]]:
+    lib = connection.lib
+    size = ctypes.c_uint32(0)
+    error = ctypes.c_int(0)
+    with connection.exclusive(operation) as pointer:
+        mms = lib.IedConnection_getMmsConnection(pointer)
+        handle = lib.MmsConnection_fileOpen(
+            mms, ctypes.byref(error), file_name(name), 0, ctypes.byref(size), None
+        )
+    if error.value:
+        raise connection.judged(errors.file_error(connection.host, operation, error.value))
+    try:
+        yield handle, size.value
+    finally:
+        _close_file(connection, operation, handle)
+
+
+def _close_file(connection: Connection, operation: str, handle: int) -> None:
+    """Give the file back: a relay has few handles. A lost connection, told elsewhere, holds none."""
+    error = ctypes.c_int(0)
+    try:
+        with connection.exclusive(operation) as pointer:
+            mms = connection.lib.IedConnection_getMmsConnection(pointer)
+            connection.lib.MmsConnection_fileClose(mms, ctypes.byref(error), handle)
+    except errors.ConnectionLost:
+        return
+    if error.value:
+        log.warning("%s", errors.file_error(connection.host, f"{operation}: close the file", error.value))
+
+
+def _read(connection: Connection, operation: str, handle: int) -> tuple[bytes, bool]:
+    """One FileRead: the bytes and whether more follow."""
+    lib = connection.lib
+    chunks: list[bytes] = []
+
+    def receive(_parameter: int | None, _handle: int, buffer: object, size: int) -> None:
+        chunks.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+
+    error = ctypes.c_int(0)
+    handler = FileReadHandler(guarded(receive, None))
+    with connection.exclusive(operation) as pointer:
+        mms = lib.IedConnection_getMmsConnection(pointer)
+        more = bool(lib.MmsConnection_fileRead(mms, ctypes.byref(error), handle, handler, None))
+    if error.value:
+        raise connection.judged(errors.file_error(connection.host, operation, error.value))
+    return b"".join(chunks), more

@@ -1,0 +1,66 @@
+"""Object references of IEC 61850-7-2 and the functional constraints, checked before they reach C.
+
+The library copies names into buffers sized by the standard and trusts them to fit: a name from a relay or a
+configuration file is checked here first.
+"""
+
+import re
+from enum import IntEnum
+from typing import Final
+
+
+class FunctionalConstraint(IntEnum):
+    """IEC 61850-7-2 functional constraints, with the library's numbers."""
+
+    ST = 0
+    MX = 1
+    SP = 2
+    SV = 3
+    CF = 4
+    DC = 5
+    SG = 6
+    SE = 7
+    SR = 8
+    OR = 9
+    BL = 10
+    EX = 11
+    CO = 12
+    US = 13
+    MS = 14
+    RP = 15
+    BR = 16
+    LG = 17
+    GO = 18
+
+
+_NAME_LIMIT: Final = 64  # an MMS domain or item name (IEC 61850-8-1 clause 8)
+_LOGICAL_DEVICE = re.compile(r"[A-Za-z0-9_]{1,64}")
+_OBJECT = re.compile(r"([A-Za-z0-9_]{1,64})/([A-Za-z0-9_]+(?:[.$][A-Za-z0-9_]+|\([0-9]{1,5}\))*)")
+
+
+def logical_device(name: str) -> bytes:
+    """A logical device (MMS domain) name for C; ValueError if it is none."""
+    if not _LOGICAL_DEVICE.fullmatch(name):
+        raise ValueError(
+            f"not a logical device name: {name!r} (letters, digits and _, at most {_NAME_LIMIT})"
+        )
+    return name.encode("ascii")
+
+
+def object_reference(reference: str, *, names: int = 1, room: int = len("$ST")) -> bytes:
+    """An object reference "LD/LN.DO.DA" for C; ValueError if it is none.
+
+    `names` is the least number of names after the slash, `room` what the service adds to the item name.
+    """
+    match = _OBJECT.fullmatch(reference)
+    if not match:
+        raise ValueError(f'not an object reference: {reference!r} (expected "LD/LN.DO.DA")')
+    item = match.group(2)
+    longest = _NAME_LIMIT - room
+    if len(item) > longest:
+        raise ValueError(
+            f"object reference too long: {reference!r} ({len(item)} > {longest} characters after the /)"
+        )
+    if len(re.split(r"[.$]", item)) < names:
+        raise ValueError(f"object reference too short: {reference!r} (expected {names} names after the /)")
+    return reference.encode("ascii")
