@@ -4,8 +4,8 @@ libiec61850's own threads cost about 0.6 % of a core a server; one thread over a
 Each round the pump looks at every server for data and serves it, then gives one server a turn, in which that
 server sends its reports. A server is due at once after an update, 10 ms after a request, then after 50, 100,
 200 ms and so on up to 5 ms times the number of servers (at least 50 ms). Between rounds the pump sleeps, the
-longer the quieter it is, never more than 3 ms. So a request waits a few milliseconds (measured p95: 5 ms with 6
-servers, 11 ms with 200), a run of requests (a file transfer) not at all.
+longer the quieter it is, never more than 3 ms. So a request waits a few milliseconds (measured p95: 5 ms with
+6 servers, 11 ms with 200), a run of requests (a file transfer) not at all.
 """
 
 import atexit

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import scl
-from mms import AddCause, ControlAction, Server
+from mms import AddCause, ControlAction, FileAnswer, FileOperation, FileRequest, Server
 from scl.model_text import model_text
 
 NAME = "A1_SEL710"
@@ -22,6 +22,7 @@ class ScriptedRelay:
     port: int
     refuses: bool = False
     silent: bool = False
+    busy: bool = False
     edges: int = 0
     records: int = 0
     server: Server = field(init=False)
@@ -30,7 +31,7 @@ class ScriptedRelay:
     def __post_init__(self) -> None:
         self.events.mkdir(parents=True, exist_ok=True)
         text = model_text(scl.read(scl.DEMO_PLANT_SCD), NAME)
-        self.server = Server(text, port=self.port, file_root=self.root)
+        self.server = Server(text, port=self.port, file_root=self.root, on_file_request=self._answer)
         self.server.on_operate(CONTROL, self._operated)
         self.server.start()
 
@@ -56,6 +57,10 @@ class ScriptedRelay:
         """RcdMade and FltNum, as a relay sets them when a record is ready."""
         self.server.update_many({f"{RECORD_MADE}.stVal": False})
         self.server.update_many({f"{RECORD_MADE}.stVal": True, f"{FAULT_NUMBER}.stVal": self.records})
+
+    def _answer(self, request: FileRequest) -> FileAnswer:
+        busy = self.busy and request.operation is FileOperation.OPEN
+        return FileAnswer.BUSY if busy else FileAnswer.SERVE
 
     def _operated(self, action: ControlAction) -> "bool | AddCause":
         if self.refuses:

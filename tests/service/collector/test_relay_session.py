@@ -234,3 +234,30 @@ def test_a_link_out_of_the_events_folder_is_refused(
     relay.write_file("HR_1.CFG", b"configuration")
     with bench.session():
         assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.REJECTED])
+
+
+def test_a_busy_relay_is_asked_again(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.busy = True
+    relay.write_record("HR_1")
+    with bench.session():
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.ANNOUNCED])
+        relay.busy = False
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
+
+
+def test_a_hostile_name_costs_its_own_file_only(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.write_file("HR_1\x1b[2J.CFG", b"clears the screen of whoever reads the log")
+    relay.write_record("HR_2")
+    with bench.session():
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
+    assert [recording.name for recording in bench.recordings()] == ["HR_2"]
+
+
+def test_a_relay_that_forgot_the_last_report_is_subscribed_anew(bench: Bench, relay: ScriptedRelay) -> None:
+    forgotten = bytes.fromhex("0000000012345678")
+    bench.repository.save_entry_id(NAME, forgotten)
+    with bench.session():
+        assert eventually(lambda: bench.link() is LinkState.UP)
+        relay.write_record("HR_1")
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
+        assert eventually(lambda: bench.repository.entry_id(NAME) not in (None, forgotten))

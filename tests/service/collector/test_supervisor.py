@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -48,3 +49,16 @@ def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path, monkeypatch:
     assert eventually(lambda: supervised.process_id is not None)
     supervised.stop()
     assert supervised.process_id is None
+
+
+def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> None:
+    ends: list[float] = []
+    supervised = CollectorSupervisor(
+        Settings(data_directory=tmp_path),
+        (str(tmp_path / "missing"),),
+        on_end=lambda: ends.append(time.monotonic()),
+    )
+    supervised.start()
+    assert eventually(lambda: len(ends) >= 2)
+    assert supervised.problem() == "the collector process is not running"
+    supervised.stop()

@@ -1,0 +1,8 @@
+"""`python -m service.cli`, the same as `mcc`."""
+
+import sys
+
+from service.cli.app import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,159 @@
+"""The commands of `mcc` and their options. What they do lives next door, imported when a command runs."""
+
+import sys
+from collections.abc import Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, one_line, print_failure
+
+app = typer.Typer(
+    name="mcc",
+    help="Stator condition of every induction motor in a plant, from the relays it already has.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout, also on failure.")]
+Url = Annotated[str, typer.Option("--url", envvar="MCC_URL", help="Address of the running service.")]
+MotorName = Annotated[str, typer.Argument(metavar="MOTOR", help="The motor's name in the plant's SCD.")]
+
+INTERRUPTED = 130
+"""What Typer makes of Ctrl-C."""
+
+DEFAULT_URL = "http://127.0.0.1:8710"
+
+
+class Method(StrEnum):
+    """How the fault is searched."""
+
+    HCPA = "hcpa"
+    GENETIC = "genetic"
+    PATTERN_SEARCH = "pattern-search"
+
+
+class Model(StrEnum):
+    """How shorted turns are modelled."""
+
+    SPLIT_WINDING = "split-winding"
+    SHORTED_WINDING = "shorted-winding"
+
+
+@app.command()
+def demo(
+    *,
+    once: Annotated[
+        bool, typer.Option("--once", help="Trigger every motor twice, print the diagnoses, stop.")
+    ] = False,
+    json_file: Annotated[
+        Path | None, typer.Option("--json", metavar="FILE", help="Write the results to FILE.")
+    ] = None,
+    data: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Keep the data here (default: a temporary folder).")
+    ] = None,
+) -> None:
+    """Run a simulated plant of two factories and the service that watches it."""
+    from service.cli.demonstrate import demonstrate
+
+    demonstrate(once=once, json_file=json_file, data=data)
+
+
+@app.command()
+def serve(
+    config: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Settings file (TOML); see docs/settings.md.")
+    ] = None,
+) -> None:
+    """Run the service: API, collectors and diagnosis workers. Ends on SIGTERM or Ctrl-C."""
+    from service.cli.run_service import run_service
+
+    run_service(config)
+
+
+@app.command()
+def diagnose(
+    record: Annotated[Path, typer.Argument(metavar="RECORD", help="A COMTRADE or CEV recording.")],
+    motor: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MOTOR.toml", help="The motor (default: RECORD's name with .toml, or motor.toml)."
+        ),
+    ] = None,
+    method: Method = Method.HCPA,
+    model: Model = Model.SPLIT_WINDING,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Tell from one recording whether a motor has shorted stator turns."""
+    from service.cli.diagnose import diagnose_recording
+
+    diagnose_recording(record, motor, method=method.value, model=model.value, as_json=as_json)
+
+
+@app.command()
+def trigger(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    wait: Annotated[
+        float, typer.Option(metavar="SECONDS", min=0, help="Wait this long for the diagnosis.")
+    ] = 0.0,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Have a motor's relay record an event report."""
+    from service.cli.remote import trigger_motor
+
+    trigger_motor(url, motor, wait_s=wait, as_json=as_json)
+
+
+@app.command()
+def motors(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
+    """List the motors the service watches."""
+    from service.cli.remote import list_motors
+
+    list_motors(url, as_json=as_json)
+
+
+@app.command()
+def health(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
+    """Show a motor's condition."""
+    from service.cli.remote import show_health
+
+    show_health(url, motor, as_json=as_json)
+
+
+@app.command("import-scl")
+def import_scl(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="An SCD, CID, IID or ICD file.")],
+    *,
+    as_json: Json = False,
+) -> None:
+    """Show what an SCL file describes: sites, motors, relays, report control blocks."""
+    from service.cli.scl_import import show_scl
+
+    show_scl(file, as_json=as_json)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command. Returns 0 done, 1 failed, 2 wrong use."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    # The demo's --json names a file, which the command writes itself.
+    in_json = "--json" in words and words[0] != "demo"
+    try:
+        outcome = app(words, prog_name="mcc", standalone_mode=False)
+    except CommandError as error:
+        print_failure(error, in_json=in_json)
+        return error.exit_code
+    except typer.TyperException as error:
+        message = one_line(error.format_message()) or "expected a command"
+        failure = CommandError(f"{message} (mcc --help tells the way)", details={"type": "WrongUse"})
+        print_failure(failure, in_json=in_json)
+        return WRONG_USE
+    if outcome == INTERRUPTED:
+        print_failure(CommandError("interrupted", details={"type": "Interrupted"}), in_json=in_json)
+        return FAILED
+    return outcome if isinstance(outcome, int) else DONE

@@ -1,0 +1,133 @@
+"""`mcc demo`: a simulated plant, watched; everything ends with the command."""
+
+import signal
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.text import Text
+
+from scl import SclError
+from service.cli.output import CommandError, as_json, failing_clearly, failure_document, progress, results
+from service.demo.plant import DemoPlant, NotReadyError, running_plant, wait_until_ready
+from service.demo.processes import ProgramError
+from service.demo.results import DemoMotor, document, table
+from service.demo.rounds import STATES, play_round
+from service.demo.truth import TruthError, ask_simulator
+from service.rest_client import ServiceClient, ServiceError
+
+ROUNDS = 2
+REST_S = 60.0
+"""Between rounds when the demo goes on until Ctrl-C."""
+
+
+def demonstrate(*, once: bool, json_file: Path | None, data: Path | None) -> None:
+    """Run the demo plant; with `once`, for two rounds of triggers, else until Ctrl-C.
+
+    Raises CommandError, and writes the same to `json_file`, where something did not work.
+    """
+    signal.signal(signal.SIGTERM, _stop)
+    try:
+        with (
+            failing_clearly(SclError, ProgramError, NotReadyError, ServiceError, TruthError, OSError),
+            _data_directory(data) as directory,
+        ):
+            if json_file is not None:
+                json_file.unlink(missing_ok=True)
+            _run(directory, once=once, json_file=json_file)
+    except CommandError as error:
+        if json_file is not None and not json_file.exists():
+            json_file.write_text(as_json(failure_document(error)) + "\n", encoding="utf-8")
+        raise
+
+
+def _run(data: Path, *, once: bool, json_file: Path | None) -> None:
+    started_s = time.monotonic()
+    console = progress()
+    console.print(f"starting two factories, six relays and the service (data and logs: {data})")
+    with running_plant(data) as plant, ServiceClient(plant.url) as service:
+        motors = _motors(plant, service)
+        if once:
+            _play(service, motors, ROUNDS)
+            _publish(motors, time.monotonic() - started_s, json_file)
+            _require_diagnoses(motors)
+            return
+        console.print(f"API: {plant.url}/api/v1/docs   end: Ctrl-C")
+        try:
+            while True:
+                for motor in motors:
+                    motor.diagnoses.clear()
+                _play(service, motors, 1)
+                _publish(motors, time.monotonic() - started_s, json_file)
+                _rest(plant)
+        except KeyboardInterrupt:
+            console.print("ending")
+
+
+def _motors(plant: DemoPlant, service: ServiceClient) -> list[DemoMotor]:
+    """The service's motors with the simulator's truth, once both are up."""
+    truths = ask_simulator(plant.scd, plant.scenario)
+    wait_until_ready(plant, service)
+    return [
+        DemoMotor(str(motor["name"]), str(motor["site"]), truths[str(motor["ied"])])
+        for motor in service.items("/motors")
+    ]
+
+
+def _play(service: ServiceClient, motors: Sequence[DemoMotor], rounds: int) -> None:
+    bar = Progress(
+        TextColumn("triggering, recording, diagnosing"),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeElapsedColumn(),
+        console=progress(),
+    )
+    with bar:
+        task = bar.add_task("diagnoses", total=rounds * len(motors) * len(STATES))
+        for _ in range(rounds):
+            play_round(service, motors, lambda steps: bar.advance(task, steps))
+
+
+def _publish(motors: Sequence[DemoMotor], seconds: float, json_file: Path | None) -> None:
+    console = results()
+    console.print(table(motors))
+    console.print(Text(f"{seconds:.1f} s in all"))
+    if json_file is not None:
+        json_file.write_text(as_json(document(motors, seconds)) + "\n", encoding="utf-8")
+
+
+def _require_diagnoses(motors: Sequence[DemoMotor]) -> None:
+    without = [
+        f"{motor.name} ({diagnosis.reason})"
+        for motor in motors
+        for diagnosis in motor.diagnoses
+        if diagnosis.document is None
+    ]
+    if without:
+        raise CommandError(f"no diagnosis of {', '.join(without)}")
+
+
+def _rest(plant: DemoPlant) -> None:
+    until_s = time.monotonic() + REST_S
+    while time.monotonic() < until_s:
+        plant.check()
+        time.sleep(1.0)
+
+
+@contextmanager
+def _data_directory(given: Path | None) -> Iterator[Path]:
+    if given is not None:
+        given.mkdir(parents=True, exist_ok=True)
+        yield given.absolute()
+        return
+    with tempfile.TemporaryDirectory(prefix="mcc-demo-") as temporary:
+        yield Path(temporary)
+
+
+def _stop(_number: int, _frame: FrameType | None) -> None:
+    """SIGTERM ends the programs of the demo in order, as Ctrl-C does."""
+    raise KeyboardInterrupt

@@ -1,0 +1,69 @@
+"""`mcc diagnose`: one recording, one motor, one verdict; no service needed."""
+
+from pathlib import Path
+
+from rich.table import Table
+from rich.text import Text
+
+from core.diagnosis.stator import diagnose
+from core.diagnosis.verdict import Diagnosis
+from core.machines.motor_file import MotorFileError, read_motor
+from core.recordings import RecordingError, read
+from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
+
+VERDICT_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red", "undiagnosable": "magenta"}
+
+
+def diagnose_recording(record: Path, motor: Path | None, *, method: str, model: str, as_json: bool) -> None:
+    """Read, diagnose, print.
+
+    Raises CommandError where the recording or the motor file cannot be used.
+    """
+    motor_path = motor or _motor_file_beside(record)
+    with failing_clearly(RecordingError, MotorFileError, OSError):
+        diagnosis = diagnose(read(record), read_motor(motor_path), method=method, model=model)
+    if as_json:
+        print_document(diagnosis.as_dict())
+    else:
+        results().print(_table(record, diagnosis))
+
+
+def _motor_file_beside(record: Path) -> Path:
+    candidates = (record.with_suffix(".toml"), record.with_name("motor.toml"))
+    for candidate in candidates:
+        if candidate.is_file():
+            return candidate
+    raise CommandError(
+        f"{record.name}: which motor is it? Name its file with --motor MOTOR.toml, "
+        f"or put {candidates[0].name} or {candidates[1].name} beside the recording",
+        details={"type": "MotorUnknown", "path": str(record)},
+        exit_code=WRONG_USE,
+    )
+
+
+def _table(record: Path, diagnosis: Diagnosis) -> Table:
+    table = Table(title=Text(record.name), title_justify="left", show_header=False)
+    colour = VERDICT_COLOURS[diagnosis.verdict]
+    table.add_row("verdict", f"[{colour}]{diagnosis.verdict}[/]")
+    if diagnosis.mu_f is not None:
+        table.add_row("equivalent fault level", percent(diagnosis.mu_f, diagnosis.mu_f_ci95))
+    if diagnosis.phase is not None:
+        table.add_row("phase", diagnosis.phase)
+    if diagnosis.load_level is not None:
+        table.add_row("load level", f"{diagnosis.load_level:.3f}")
+    if diagnosis.residual_rms_A is not None:
+        table.add_row("residual", f"{diagnosis.residual_rms_A:.4g} A rms")
+    table.add_row("model, method", f"{diagnosis.model}, {diagnosis.method}")
+    table.add_row("effort", f"{diagnosis.evaluations} evaluations, {diagnosis.compute_seconds:.3f} s")
+    for reason in diagnosis.reasons:
+        table.add_row("reason", Text(reason))
+    for finding in diagnosis.quality:
+        if not finding.passed:
+            table.add_row("quality", Text(finding.message))
+    return table
+
+
+def percent(mu_f: float, ci95: tuple[float, float] | None) -> str:
+    """A fault level as people say it: percent of the phase turns, with its 95 % interval."""
+    interval = "" if ci95 is None else f"  [{100 * ci95[0]:.2f} .. {100 * ci95[1]:.2f}]"
+    return f"{100 * mu_f:.2f} %{interval}"

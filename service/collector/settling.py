@@ -1,0 +1,45 @@
+"""When is a listed record ready to be pulled? When it is whole and has stopped growing."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from service.collector.listing import ListedRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Settled:
+    """What one look at the directory says.
+
+    ready: whole and unchanged since an earlier look.  incomplete: unchanged for so long that the missing
+    files are not coming.  waiting: neither yet; look again soon.
+    """
+
+    ready: tuple[ListedRecord, ...]
+    incomplete: tuple[ListedRecord, ...]
+    waiting: tuple[ListedRecord, ...]
+
+
+class Settling:
+    """Compares successive looks at one relay's directory.
+
+    settle_s: how long sizes and times must stand still.  patience_s: how long a record may lack a file.
+    """
+
+    def __init__(self, *, settle_s: float, patience_s: float) -> None:
+        self._settle_s = settle_s
+        self._patience_s = patience_s
+        self._since: dict[ListedRecord, float] = {}
+
+    def look(self, records: Iterable[ListedRecord], now_s: float) -> Settled:
+        """Judge the records that are new to the service. `now_s` is monotonic [s]."""
+        self._since = {record: self._since.get(record, now_s) for record in records}
+        ready, incomplete, waiting = [], [], []
+        for record, since_s in self._since.items():
+            unchanged_s = now_s - since_s
+            if record.missing and unchanged_s >= self._patience_s:
+                incomplete.append(record)
+            elif not record.missing and unchanged_s >= self._settle_s:
+                ready.append(record)
+            else:
+                waiting.append(record)
+        return Settled(ready=tuple(ready), incomplete=tuple(incomplete), waiting=tuple(waiting))

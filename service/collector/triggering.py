@@ -1,0 +1,114 @@
+"""Event reports somebody asked for: trigger the relay, wait for its record, or say why there is none.
+
+A report is marked triggered in the database BEFORE the relay is operated. Whatever happens in between, a
+crash included, the relay is operated at most once for it: its room for records is small, and each one more
+drives out an older one. The price is paid in one unlucky case, a crash after the mark and before the
+operation: no record comes, the report fails at its time limit, and the person asks again. A crash after the
+operation costs nothing: the record is in the relay's directory, and the restarted collector gives it to the
+report.
+"""
+
+import time
+
+import structlog
+
+from mms import AccessDenied, Client, ControlRefused, FunctionalConstraint, NotFound
+from service.collector.record_directory import Scan
+from service.plant import Relay
+from service.storage import Repository
+from service.storage.records import EventReport
+from service.storage.states import EventReportState
+
+log = structlog.get_logger(__name__)
+
+REFUSALS = (AccessDenied, ControlRefused, NotFound)
+"""The relay answers, and the answer is no. Link errors leave a report as it is, until its time limit."""
+
+IN_THE_RELAY = (EventReportState.TRIGGERED, EventReportState.RECORDED)
+
+HOLD_S = 0.05
+"""How long the remote bit stays set: relays look at their equations every quarter cycle, some less often."""
+
+
+class Triggering:
+    """The event reports of one relay, one at a time. Used by that relay's session alone.
+
+    A new record belongs to the oldest report that was triggered, unless it was listed before the trigger.
+    """
+
+    def __init__(self, relay: Relay, repository: Repository, *, record_timeout_s: float) -> None:
+        self._relay = relay
+        self._repository = repository
+        self._timeout_ns = round(record_timeout_s * 1e9)
+        # After a restart every report gets its time limit again: its record may wait in the relay.
+        self._started_ns = time.time_ns()
+        self._outstanding: EventReport | None = None
+        self._listed_before: frozenset[str] = frozenset()
+
+    def recall(self) -> None:
+        """Look up which report, if any, waits for a record of this relay."""
+        waiting = self._repository.open_event_reports(self._relay.name, states=IN_THE_RELAY)
+        self._outstanding = waiting[0] if waiting else None
+
+    def claim(self, record_name: str) -> str | None:
+        """The report a new record belongs to, asked once for each record that is stored or refused."""
+        report = self._outstanding
+        if report is None or record_name in self._listed_before:
+            return None
+        self._outstanding = None
+        return report.id
+
+    def follow(self, client: Client, scan: Scan) -> bool:
+        """After a scan: trigger the next report, or see how the outstanding one is doing.
+
+        Returns whether a record is on its way. Raises MmsError when the link fails.
+        """
+        self.recall()
+        report = self._outstanding
+        if report is None:
+            pending = self._repository.pending_event_report(self._relay.name)
+            return pending is not None and self._trigger(client, pending, scan.listed)
+        appeared = [name for name in scan.waiting if name not in self._listed_before]
+        if appeared and report.state is EventReportState.TRIGGERED:
+            self._repository.mark_recorded(report.id, now_ns=time.time_ns())
+        elif self._is_overdue(report):
+            self._fail(
+                report,
+                f"{self._relay.name}: expected a record within {self._timeout_ns / 1e9:g} s of the trigger, "
+                "found none; check the relay's event report settings (ER)",
+            )
+            return False
+        return True
+
+    def link_failed(self, reason: str) -> None:
+        """The relay does not answer: reports that waited for it long enough fail, with the reason."""
+        for report in self._repository.open_event_reports(self._relay.name):
+            if self._is_overdue(report):
+                self._fail(report, f"{self._relay.name} does not answer: {reason}")
+
+    def _trigger(self, client: Client, report: EventReport, listed: frozenset[str]) -> bool:
+        control = self._relay.trigger_control
+        try:
+            if client.read(f"{control}.stVal", FunctionalConstraint.ST) is True:
+                client.operate(control, False)  # noqa: FBT003 - the value of a control
+            self._repository.mark_triggered(report.id, now_ns=time.time_ns())
+            self._listed_before = listed
+            client.operate(control, True)  # noqa: FBT003
+        except REFUSALS as error:
+            self._fail(report, f"{self._relay.name} refuses the trigger: {error}")
+            return False
+        log.info("triggered", relay=self._relay.name, motor=report.motor, event_report=report.id)
+        time.sleep(HOLD_S)
+        try:
+            client.operate(control, False)  # noqa: FBT003
+        except REFUSALS as error:
+            log.warning("the trigger stays set", relay=self._relay.name, control=control, reason=str(error))
+        return True
+
+    def _fail(self, report: EventReport, reason: str) -> None:
+        self._repository.fail_event_report(report.id, reason, now_ns=time.time_ns())
+        log.warning("event report failed", relay=self._relay.name, event_report=report.id, reason=reason)
+
+    def _is_overdue(self, report: EventReport) -> bool:
+        since_ns = report.recorded_ns or report.triggered_ns or report.requested_ns
+        return time.time_ns() > max(since_ns, self._started_ns) + self._timeout_ns

@@ -1,0 +1,92 @@
+"""What the demo found out, beside the truth: as a table for people and a document for programs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
+
+from service.demo.truth import Truth
+from service.rest_client import Document
+
+COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red", "undiagnosable": "magenta"}
+
+
+@dataclass(frozen=True, slots=True)
+class DemoDiagnosis:
+    """One event report's diagnosis (as `mcc diagnose --json`), or the reason there is none."""
+
+    document: Document | None
+    seconds: float | None
+    reason: str | None = None
+
+    def as_dict(self) -> dict[str, object]:
+        if self.document is None:
+            return {"error": {"message": self.reason}}
+        return {**self.document, "trigger_to_diagnosis_seconds": self.seconds}
+
+
+@dataclass(frozen=True, slots=True)
+class DemoMotor:
+    """One motor of the demo plant and what was found out about it."""
+
+    name: str
+    site: str
+    truth: Truth
+    diagnoses: list[DemoDiagnosis] = field(default_factory=list)
+
+    def as_dict(self) -> dict[str, object]:
+        return {
+            "motor": self.name,
+            "site": self.site,
+            "truth": self.truth.model_dump(),
+            "diagnoses": [diagnosis.as_dict() for diagnosis in self.diagnoses],
+        }
+
+
+def document(motors: Sequence[DemoMotor], seconds: float) -> dict[str, object]:
+    """What `mcc demo --json FILE` writes."""
+    return {"seconds": round(seconds, 3), "motors": [motor.as_dict() for motor in motors]}
+
+
+def table(motors: Sequence[DemoMotor]) -> Table:
+    """Every motor's diagnoses beside its truth. The last column is the time from trigger to diagnosis [s]."""
+    shown = Table(title="Diagnoses and truth", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
+    for heading in ("motor", "truth", "verdict"):
+        shown.add_column(heading, no_wrap=True)
+    for heading in ("mu_f %", "95 %", "load", "s"):
+        shown.add_column(heading, justify="right", no_wrap=True)
+    for motor in motors:
+        for number, diagnosis in enumerate(motor.diagnoses):
+            first = number == 0
+            shown.add_row(
+                Text(motor.name if first else ""),
+                _truth(motor.truth) if first else "",
+                *_row(diagnosis),
+            )
+    return shown
+
+
+def _truth(truth: Truth) -> str:
+    condition = "healthy" if truth.theta_f is None else f"{100 * truth.mu_f:g} % {'abc'[truth.theta_f]}"
+    return f"{condition}, load {truth.load_level:g}"
+
+
+def _row(diagnosis: DemoDiagnosis) -> tuple[str | Text, ...]:
+    found = diagnosis.document
+    if found is None:
+        return Text(diagnosis.reason or "failed", style="red"), "", "", "", ""
+    verdict = str(found["verdict"])
+    interval = found["mu_f_ci95"]
+    return (
+        Text(f"{verdict} {found['phase'] or ''}".strip(), style=COLOURS.get(verdict, "")),
+        _percent(found["mu_f"]),
+        "..".join(_percent(bound) for bound in interval) if isinstance(interval, list) else "-",
+        f"{found['load_level']:.3f}" if isinstance(found["load_level"], float) else "-",
+        "-" if diagnosis.seconds is None else f"{diagnosis.seconds:.2f}",
+    )
+
+
+def _percent(level: object) -> str:
+    return f"{100 * level:.2f}" if isinstance(level, int | float) else "-"

@@ -1,0 +1,39 @@
+"""What the simulated motors are really like, asked of the simulator: nothing is written down twice."""
+
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from pydantic import BaseModel, ConfigDict, TypeAdapter, ValidationError
+
+TIMEOUT_S = 60.0
+
+
+class TruthError(RuntimeError):
+    """The simulator did not tell the truth of its motors."""
+
+
+class Truth(BaseModel):
+    """Condition of one simulated motor: equivalent fault level, faulted winding, load over rated torque."""
+
+    model_config = ConfigDict(extra="ignore", frozen=True)
+
+    mu_f: float
+    theta_f: int | None
+    load_level: float
+
+
+_TRUTHS = TypeAdapter(dict[str, Truth])
+
+
+def ask_simulator(scd: Path, scenario: Path) -> Mapping[str, Truth]:
+    """The truth of each simulated relay's motor, by name of the relay. Raises TruthError."""
+    command = [sys.executable, "-m", "ied_sim", "--scd", str(scd), "--scenario", str(scenario), "--truth"]
+    try:
+        answer = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=True)  # noqa: S603
+        return _TRUTHS.validate_json(answer.stdout)
+    except subprocess.CalledProcessError as error:
+        raise TruthError(f"ied-sim --truth ended with {error.returncode}: {error.stderr.strip()}") from error
+    except (subprocess.TimeoutExpired, ValidationError) as error:
+        raise TruthError(f"ied-sim --truth: {error}") from error

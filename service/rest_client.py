@@ -1,0 +1,113 @@
+"""The service's own REST API, from outside: what the command line and the demo use."""
+
+from collections.abc import Iterator, Mapping
+from http import HTTPStatus
+from types import TracebackType
+from typing import Self
+from urllib.parse import quote
+
+import httpx
+
+API = "/api/v1"
+TIMEOUT_S = 30.0
+
+Document = Mapping[str, object]
+
+
+class ServiceError(RuntimeError):
+    """The service did not do what it was asked. `status` is the HTTP status, None where it did not answer."""
+
+    def __init__(self, message: str, *, status: int | None = None) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+class ServiceClient:
+    """Speaks to one service. Documents come back as JSON objects; every failure is a ServiceError."""
+
+    def __init__(self, url: str) -> None:
+        self._url = url
+        try:
+            self._http = httpx.Client(base_url=url, timeout=TIMEOUT_S, trust_env=False)
+        except httpx.InvalidURL as error:
+            raise ServiceError(f"{url}: expected a URL such as http://127.0.0.1:8710: {error}") from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._http.close()
+
+    def is_ready(self) -> bool:
+        """Whether every part of the service works."""
+        try:
+            return self._http.get("/readyz").status_code == HTTPStatus.OK
+        except httpx.TransportError:
+            return False
+
+    def get(self, path: str, **query: str) -> Document:
+        """GET a document below /api/v1. Raises ServiceError."""
+        return _document(self._request("GET", f"{API}{path}", query))
+
+    def items(self, path: str, **query: str) -> Iterator[Document]:
+        """Every item of a list, page after page. Raises ServiceError."""
+        cursor: dict[str, str] = {}
+        while True:
+            page = self.get(path, **query, **cursor)
+            items = page["items"]
+            if not isinstance(items, list):
+                raise ServiceError(f"{self._url}{API}{path}: expected a list of items")
+            yield from items
+            following = page.get("next_cursor")
+            if not isinstance(following, str):
+                return
+            cursor = {"cursor": following}
+
+    def request_event_report(self, motor: str) -> Document:
+        """Have the motor's relay record an event report. Raises ServiceError."""
+        return _document(self._request("POST", f"{API}/motors/{segment(motor)}/event-reports", {}))
+
+    def event_report(self, report_id: str) -> Document:
+        """How an event report is doing. Raises ServiceError."""
+        return self.get(f"/event-reports/{segment(report_id)}")
+
+    def _request(self, method: str, path: str, query: Mapping[str, str]) -> httpx.Response:
+        try:
+            response = self._http.request(method, path, params=query)
+        except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
+            raise ServiceError(
+                f"no service answers at {self._url} ({error}); start it with mcc serve"
+            ) from error
+        if response.is_success:
+            return response
+        raise ServiceError(_problem(response), status=response.status_code)
+
+
+def segment(name: str) -> str:
+    """A name as one segment of a path."""
+    return quote(name, safe="")
+
+
+def _document(response: httpx.Response) -> Document:
+    try:
+        document = response.json()
+    except ValueError as error:
+        raise ServiceError(
+            f"{response.url}: expected JSON, found {response.headers.get('content-type')}"
+        ) from error
+    if not isinstance(document, dict):
+        raise ServiceError(f"{response.url}: expected a JSON object")
+    return document
+
+
+def _problem(response: httpx.Response) -> str:
+    """What an RFC 9457 problem document says."""
+    try:
+        problem = response.json()
+    except ValueError:
+        problem = None
+    if isinstance(problem, dict):
+        return str(problem.get("detail") or problem.get("title") or f"HTTP status {response.status_code}")
+    return f"{response.url}: HTTP status {response.status_code}"

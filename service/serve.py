@@ -1,0 +1,147 @@
+"""The service as a whole: collector process, diagnosis workers, REST API, on one data directory."""
+
+import os
+import signal
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ipaddress import IPv6Address
+from types import FrameType
+
+import structlog
+import uvicorn
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.api.app import create_app
+from service.api.context import ApiContext
+from service.collector.supervisor import CollectorSupervisor
+from service.exclusive import exclusive
+from service.jobs import JobRunner
+from service.jobs.runner import JobLimits
+from service.jobs.worker import diagnose_recording, prepare_worker
+from service.plant import Plant, read_plant
+from service.recordings import RecordingStore
+from service.settings import Settings
+from service.storage import Repository, connect, migrate
+
+log = structlog.get_logger(__name__)
+
+LAST_REQUESTS_S = 3
+"""How long the requests under way get when the service stops."""
+
+
+class ServeError(RuntimeError):
+    """The service cannot listen where it should."""
+
+
+def serve(settings: Settings) -> None:
+    """Run until SIGTERM or SIGINT; every process of the service has ended afterwards.
+
+    Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError.
+    """
+    signal.signal(signal.SIGTERM, _stop)
+    plant = read_plant(settings)
+    settings.data_directory.mkdir(parents=True, exist_ok=True)
+    with exclusive(settings.data_directory / "service.lock", wait=False), _listener(settings) as listener:
+        migrate(settings.database_url)
+        repository = Repository(connect(settings.database_url))
+        repository.sync_plant(plant)
+        repository.reset_links(now_ns=time.time_ns())
+        store = RecordingStore(settings.recordings_directory)
+        store.discard_incoming()
+        with (
+            _collecting(settings, repository) as collector,
+            _diagnosing(settings, plant, repository, store) as jobs,
+        ):
+            context = ApiContext(
+                settings,
+                repository,
+                store,
+                readiness={"collector": collector.problem, "jobs": jobs.problem},
+                on_new_job=jobs.wake,
+            )
+            host, port = listener.getsockname()[:2]
+            log.info("serving", host=host, port=port, motors=len(plant.motors))
+            _answer(context, listener)
+    log.info("service ended")
+
+
+def _answer(context: ApiContext, listener: socket.socket) -> None:
+    """Answer requests until a signal comes."""
+    configuration = uvicorn.Config(
+        create_app(context),
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=LAST_REQUESTS_S,
+    )
+    try:
+        uvicorn.Server(configuration).run(sockets=[listener])
+    except KeyboardInterrupt:
+        log.info("interrupted")
+
+
+@contextmanager
+def _collecting(settings: Settings, repository: Repository) -> Iterator[CollectorSupervisor]:
+    def forget_links() -> None:
+        try:
+            repository.reset_links(now_ns=time.time_ns())
+        except SQLAlchemyError as error:
+            log.warning("the links keep their last state: the database does not answer", error=str(error))
+
+    collector = CollectorSupervisor(settings, on_end=forget_links)
+    collector.start()
+    try:
+        yield collector
+    finally:
+        collector.stop()
+
+
+@contextmanager
+def _diagnosing(
+    settings: Settings, plant: Plant, repository: Repository, store: RecordingStore
+) -> Iterator[JobRunner]:
+    # A core a worker is all the matrices of a diagnosis are good for: with threads of their own, two workers
+    # on two cores wait for each other and take five times as long. Read when a worker loads numpy.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    jobs = JobRunner(
+        repository,
+        store,
+        {motor.name: motor.motor for motor in plant.motors},
+        diagnose_recording,
+        limits=JobLimits(
+            workers=settings.workers,
+            job_timeout_s=settings.job_timeout_s,
+            attempts=settings.job_attempts,
+            retry_delay_s=settings.job_retry_delay_s,
+        ),
+        prepare_worker=prepare_worker,
+    )
+    jobs.start()
+    try:
+        yield jobs
+    finally:
+        jobs.stop()
+
+
+@contextmanager
+def _listener(settings: Settings) -> Iterator[socket.socket]:
+    """The API's socket, taken before anything is started that a busy port would only have to stop again."""
+    address = settings.bind_address
+    family = socket.AF_INET6 if isinstance(address, IPv6Address) else socket.AF_INET
+    try:
+        listener = socket.create_server((str(address), settings.port), family=family)
+    except OSError as error:
+        raise ServeError(
+            f"{address}:{settings.port}: expected a free port on an address of this machine "
+            f"(settings bind_address, port), found: {error.strerror}"
+        ) from error
+    with listener:
+        yield listener
+
+
+def _stop(_number: int, _frame: FrameType | None) -> None:
+    """SIGTERM is the ordinary end: leave every block in order, on the way up as well as in service."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    raise SystemExit(0)

@@ -1,0 +1,108 @@
+"""`mcc diagnose` and `mcc import-scl`: no service needed."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import scl
+from mms import Client
+from service.cli import main
+from service.demo import MOTORS
+from tests.integration.processes import eventually, simulated_plant
+
+RELAY, MOTOR = "A2_SEL710", "FAN-A2"
+TRIGGER = f"{RELAY}CON/RBGGIO1.SPCSO01"
+
+
+@pytest.fixture(scope="module")
+def record(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A recording of the fan with 5 % shorted turns in phase b, and its motor file beside it."""
+    directory = tmp_path_factory.mktemp("fan")
+    with simulated_plant(directory, [RELAY]) as plant:
+        address = plant.address(RELAY)
+        with Client.connect(address.host, address.port) as client:
+            client.operate(TRIGGER, True)  # noqa: FBT003 - the value of a control
+            client.operate(TRIGGER, False)  # noqa: FBT003
+        assert eventually(lambda: len(plant.records()) == 1, 20)
+        (path,) = plant.events(RELAY).glob("*.CFG")
+    tables = MOTORS.read_text(encoding="utf-8").split("[[motor]]")
+    (table,) = [table for table in tables if f'"{MOTOR}"' in table]
+    motor = table.replace("[motor.", "[").replace(f'name = "{MOTOR}"', "")
+    path.with_name("motor.toml").write_text(motor, encoding="utf-8")
+    return path
+
+
+def test_a_fault_is_diagnosed_from_the_files_alone(record: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["diagnose", str(record), "--json"]) == 0
+    diagnosis = json.loads(capsys.readouterr().out)
+    assert (diagnosis["verdict"], diagnosis["phase"], diagnosis["theta_f"]) == ("fault", "b", 1)
+    assert diagnosis["mu_f"] == pytest.approx(0.05, abs=0.005)
+    motor = record.with_name("motor.toml")
+    assert main(["diagnose", str(record), "--motor", str(motor), "--model", "shorted-winding"]) == 0
+    table = capsys.readouterr().out
+    assert "fault" in table
+    assert "shorted-winding" in table
+
+
+def test_a_damaged_record_names_file_field_and_expectation(
+    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copy = tmp_path / record.name
+    copy.write_bytes(record.read_bytes())
+    copy.with_suffix(".DAT").write_bytes(record.with_suffix(".DAT").read_bytes()[:-7])
+    motor = str(record.with_name("motor.toml"))
+    assert main(["diagnose", str(copy), "--motor", motor, "--json"]) == 1
+    output = capsys.readouterr()
+    error = json.loads(output.out)["error"]
+    assert {"path", "field", "expected", "found"} <= set(error)
+    assert output.err.count("\n") == 1
+
+
+def test_a_record_of_an_unknown_motor_is_wrong_use(
+    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copy = tmp_path / record.name
+    copy.write_bytes(record.read_bytes())
+    assert main(["diagnose", str(copy)]) == 2
+    assert "--motor MOTOR.toml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [["diagnose", "--json"], ["no-such-command", "--json"], ["--json"]])
+def test_wrong_use_is_one_line_and_one_document(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    output = capsys.readouterr()
+    assert json.loads(output.out)["error"]["type"] == "WrongUse"
+    assert output.err.count("\n") == 1
+
+
+def test_an_scd_is_described(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["import-scl", str(scl.DEMO_PLANT_SCD), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [motor["motor"] for motor in found["motors"]][:2] == ["PUMP-A1", "FAN-A2"]
+    relay = found["relays"][0]
+    assert relay["record_made"] == ["A1_SEL710PRO/FLTRDRE1.RcdMade"]
+    assert (relay["host"], relay["port"]) == ("127.0.0.1", 10210)
+    assert main(["import-scl", str(scl.DEMO_PLANT_SCD)]) == 0
+    assert "127.0.0.1:10215" in capsys.readouterr().out
+
+
+def test_a_relay_may_have_no_address_yet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    before, _, rest = scl.SEL710_ICD.read_text(encoding="utf-8").partition("<Communication>")
+    icd = tmp_path / "relay.icd"
+    icd.write_text(before + rest.partition("</Communication>")[2], encoding="utf-8")
+    assert main(["import-scl", str(icd), "--json"]) == 0
+    (relay,) = json.loads(capsys.readouterr().out)["relays"]
+    assert relay["host"] is None
+
+
+def test_a_missing_scl_file_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["import-scl", str(tmp_path / "missing.scd"), "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["error"]["path"].endswith("missing.scd")
+
+
+def test_without_a_service_the_commands_say_how_to_start_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["motors", "--url", "http://127.0.0.1:9", "--json"]) == 1
+    assert "mcc serve" in json.loads(capsys.readouterr().out)["error"]["message"]

@@ -1,0 +1,94 @@
+"""Killed with SIGKILL in the middle and started again, the service loses no recording and doubles none."""
+
+import os
+import signal
+from collections import Counter
+from pathlib import Path
+
+from service.rest_client import ServiceClient
+from tests.integration.processes import (
+    MOTOR_NAMES,
+    Service,
+    descendants,
+    eventually,
+    is_alive,
+    link_states,
+    running_service,
+    simulated_plant,
+)
+
+PROGRESS = ("requested", "triggered", "recorded", "fetched", "diagnosed")
+
+
+def states(client: ServiceClient, reports: list[str]) -> list[str]:
+    return [str(client.event_report(report)["state"]) for report in reports]
+
+
+def request_all(client: ServiceClient) -> list[str]:
+    return [str(client.request_event_report(motor)["id"]) for motor in MOTOR_NAMES]
+
+
+def in_the_middle(client: ServiceClient, reports: list[str], past: str) -> bool:
+    """Every relay was triggered, one report got past a state, and not everything is done."""
+    reached = [PROGRESS.index(state) for state in states(client, reports)]
+    return min(reached) >= 1 and max(reached) > PROGRESS.index(past) and min(reached) < len(PROGRESS) - 1
+
+
+def kill_in_the_middle(service: Service, past: str, *, alone: bool) -> list[str]:
+    """Trigger every motor, kill everything on the way, start again. Returns the event reports."""
+    with ServiceClient(service.url) as client:
+        assert eventually(lambda: set(link_states(client).values()) == {"up"}, 30)
+        reports = request_all(client)
+        assert eventually(lambda: in_the_middle(client, reports, past), 30)
+    service.kill(alone=alone)
+    service.start()
+    return reports
+
+
+def test_twelve_recordings_are_twelve_rows(tmp_path: Path) -> None:
+    with (
+        simulated_plant(tmp_path) as plant,
+        running_service(tmp_path, plant.scd, MCC_POLL_PERIOD_S="1") as service,
+    ):
+        reports = kill_in_the_middle(service, past="triggered", alone=False)
+        with ServiceClient(service.url) as client:
+            assert eventually(lambda: set(states(client, reports)) == {"diagnosed"}, 60), (
+                service.log.read_text()
+            )
+        reports += kill_in_the_middle(service, past="recorded", alone=True)
+        with ServiceClient(service.url) as client:
+            assert eventually(lambda: set(states(client, reports)) == {"diagnosed"}, 60), (
+                service.log.read_text()
+            )
+            rows = Counter((str(row["ied"]), str(row["name"])) for row in client.items("/recordings"))
+            of_reports = {client.event_report(report)["recording_id"] for report in reports}
+            trends = [len(list(client.items(f"/motors/{motor}/trend"))) for motor in MOTOR_NAMES]
+        assert len(plant.records()) == 12
+        assert rows == Counter(plant.records())
+        assert len(of_reports) == 12
+        assert trends == [2] * 6
+
+
+def collector_of(service: Service) -> int | None:
+    for process_id in descendants(service.process_id):
+        if is_alive(process_id) and b"service.collector" in Path(f"/proc/{process_id}/cmdline").read_bytes():
+            return process_id
+    return None
+
+
+def test_a_collector_that_dies_is_replaced_and_the_api_goes_on(tmp_path: Path) -> None:
+    with (
+        simulated_plant(tmp_path, ["A1_SEL710"]) as plant,
+        running_service(tmp_path, plant.scd, MCC_POLL_PERIOD_S="1", MCC_CONNECT_TIMEOUT_S="1") as service,
+        ServiceClient(service.url) as client,
+    ):
+        assert eventually(lambda: link_states(client)["A1_SEL710"] == "up", 30)
+        first = collector_of(service)
+        assert first is not None
+        os.kill(first, signal.SIGKILL)
+        assert eventually(lambda: link_states(client)["A1_SEL710"] == "unknown", 10), "the API says so"
+        report = str(client.request_event_report("PUMP-A1")["id"])
+        assert eventually(lambda: states(client, [report]) == ["diagnosed"], 40), service.log.read_text()
+        assert collector_of(service) not in (None, first)
+        assert link_states(client)["A1_SEL710"] == "up"
+        assert len(plant.records()) == 1

@@ -1,0 +1,70 @@
+"""`mcc serve` comes up whole or says why not, and goes down whole."""
+
+import shutil
+import signal
+import socket
+from pathlib import Path
+
+import pytest
+
+import scl
+from service.demo import MOTORS
+from tests.integration.processes import descendants, eventually, is_alive, running_service, serve_in_vain
+
+
+def test_sigterm_ends_every_process(tmp_path: Path) -> None:
+    with running_service(tmp_path, scl.DEMO_PLANT_SCD) as service:
+        below = descendants(service.process_id)
+        assert len(below) >= 3, "a collector and two workers"
+        assert service.stop() == 0
+        assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
+    assert "Traceback" not in service.log.read_text()
+
+
+def test_ctrl_c_is_an_ordinary_end(tmp_path: Path) -> None:
+    with running_service(tmp_path, scl.DEMO_PLANT_SCD) as service:
+        assert service.process is not None
+        service.process.send_signal(signal.SIGINT)
+        assert service.process.wait(30) == 0
+
+
+def test_a_missing_scd_is_one_line(tmp_path: Path) -> None:
+    line = serve_in_vain(tmp_path / "data", MCC_SCD=str(tmp_path / "missing.scd"))
+    assert "missing.scd" in line
+    assert "expected" in line
+
+
+def test_a_damaged_scd_names_the_line(tmp_path: Path) -> None:
+    damaged = tmp_path / "damaged.scd"
+    text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
+    damaged.write_text(text[: len(text) // 2], encoding="utf-8")
+    line = serve_in_vain(tmp_path / "data", MCC_SCD=str(damaged))
+    assert "damaged.scd: line " in line
+
+
+@pytest.mark.parametrize("surplus", [True, False])
+def test_a_motor_known_to_one_file_only_is_named(tmp_path: Path, surplus: bool) -> None:
+    text = MOTORS.read_text(encoding="utf-8")
+    motors = tmp_path / "motors.toml"
+    first = text.index("[[motor]]")
+    second = text.index("[[motor]]", first + 1)
+    table = text[first:second]
+    motors.write_text(
+        text + table.replace("PUMP-A1", "PUMP-X9") if surplus else text.replace(table, ""), encoding="utf-8"
+    )
+    line = serve_in_vain(tmp_path / "data", MCC_SCD=str(scl.DEMO_PLANT_SCD), MCC_MOTORS=str(motors))
+    assert "motors.toml" in line
+    assert ("PUMP-X9" if surplus else "PUMP-A1") in line
+
+
+def test_a_busy_port_is_named(tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as busy:
+        port = busy.getsockname()[1]
+        line = serve_in_vain(tmp_path / "data", MCC_SCD=str(scl.DEMO_PLANT_SCD), MCC_PORT=str(port))
+    assert f"127.0.0.1:{port}: expected a free port" in line
+
+
+def test_a_data_directory_that_cannot_be_made_is_named(tmp_path: Path) -> None:
+    shutil.copy(MOTORS, tmp_path / "file")
+    line = serve_in_vain(tmp_path / "file" / "data", MCC_SCD=str(scl.DEMO_PLANT_SCD))
+    assert str(tmp_path / "file") in line

@@ -1,0 +1,96 @@
+"""The demo's parts: ports, programs, results."""
+
+import json
+import socket
+import sys
+from pathlib import Path
+
+import pytest
+
+import scl
+from service.cli.output import as_json
+from service.demo import MOTORS, SCENARIO
+from service.demo.addresses import addressed_scd, free_port, free_ports, is_free
+from service.demo.processes import Program, ProgramError
+from service.demo.results import DemoDiagnosis, DemoMotor, document, table
+from service.demo.truth import Truth, TruthError, ask_simulator
+from service.plant.files import plant_of_files
+from tests.service.collector.conftest import eventually
+
+DIAGNOSIS = {"verdict": "fault", "mu_f": 0.05, "mu_f_ci95": [0.049, 0.051], "phase": "b", "load_level": 0.65}
+
+
+def test_the_demo_plants_files_belong_together() -> None:
+    plant = plant_of_files(scl.DEMO_PLANT_SCD, MOTORS)
+    truths = ask_simulator(scl.DEMO_PLANT_SCD, SCENARIO)
+    assert {motor.relay for motor in plant.motors} == set(truths)
+
+
+def test_a_simulator_that_fails_says_why(tmp_path: Path) -> None:
+    with pytest.raises(TruthError, match="missing"):
+        ask_simulator(scl.DEMO_PLANT_SCD, tmp_path / "missing.toml")
+
+
+def test_ports_in_use_are_not_fought_for(tmp_path: Path) -> None:
+    (port,) = free_ports(1)
+    plant = tmp_path / "plant.scd"
+    names = [ied.name for ied in scl.read(scl.DEMO_PLANT_SCD).ieds]
+    ports = [port, *free_ports(len(names) - 1)]
+    addresses = {name: scl.Address("127.0.0.1", each) for name, each in zip(names, ports, strict=True)}
+    scl.with_addresses(scl.DEMO_PLANT_SCD, plant, addresses)
+    copies = tmp_path / "copies"
+    copies.mkdir()
+    with socket.create_server(("127.0.0.1", port)):
+        assert not is_free(port)
+        assert free_port(port) != port
+        copy = addressed_scd(plant, copies)
+    assert copy.parent == copies
+    document_of_copy = scl.read(copy)
+    assert port not in {document_of_copy.address(name).port for name in names}
+
+
+def test_free_ports_are_kept() -> None:
+    (port,) = free_ports(1)
+    assert free_port(port) == port
+
+
+def test_a_program_that_ends_leaves_its_last_words(tmp_path: Path) -> None:
+    script = "import sys; print('no luck today'); sys.exit(3)"
+    with Program("helper", [sys.executable, "-c", script], tmp_path / "log") as program:
+
+        def ended() -> bool:
+            try:
+                program.check()
+            except ProgramError:
+                return True
+            return False
+
+        assert eventually(ended)
+        with pytest.raises(ProgramError, match=r"exit code 3.*no luck today"):
+            program.check()
+
+
+def test_a_program_that_does_not_go_is_killed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.demo.processes.STOP_PATIENCE_S", 0.2)
+    stubborn = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN)"
+    script = f"{stubborn}; print('deaf', flush=True); time.sleep(60)"
+    log = tmp_path / "log"
+    with Program("helper", [sys.executable, "-c", script], log) as program:
+        assert eventually(lambda: log.stat().st_size > 0)
+    assert not Path(f"/proc/{program.process_id}").exists()
+
+
+def test_results_stand_beside_the_truth() -> None:
+    motors = [
+        DemoMotor("FAN-A2", "FACTORY_A", Truth(mu_f=0.05, theta_f=1, load_level=0.65)),
+        DemoMotor("PUMP-A1", "FACTORY_A", Truth(mu_f=0.0, theta_f=None, load_level=0.8)),
+    ]
+    motors[0].diagnoses.append(DemoDiagnosis(DIAGNOSIS, 1.5))
+    motors[1].diagnoses.append(DemoDiagnosis(None, None, "A1_SEL710 does not answer"))
+    written = json.loads(as_json(document(motors, 12.3456)))
+    assert written["seconds"] == 12.346
+    first, second = written["motors"]
+    assert first["truth"] == {"mu_f": 0.05, "theta_f": 1, "load_level": 0.65}
+    assert first["diagnoses"] == [{**DIAGNOSIS, "trigger_to_diagnosis_seconds": 1.5}]
+    assert second["diagnoses"] == [{"error": {"message": "A1_SEL710 does not answer"}}]
+    assert table(motors).row_count == 2
