@@ -19,17 +19,19 @@ from core.diagnosis.refinement import (
     refine,
 )
 from core.diagnosis.search import Starts
+from core.diagnosis.tolerance import Systematic
 from core.machines.playback import Candidates, Playback
 
-GAIN_TOLERANCE = 0.01
-"""Ratio error of a protection current transformer at rated current (IEC 61869-2, class 5P): 1 %."""
-SHARE_UNEXPLAINED = 0.25
-"""Of the asymmetry a winding's fit removes, what it may leave: parameters are known to some per cent only."""
+SHARE_UNEXPLAINED = 0.15
+"""Of the asymmetry a winding's fit removes, what it may leave: the path and the leakages of the shorted turns
+are never known exactly."""
 PATH_WORTH, PATH_WORTH_SHARE = 0.007, 0.02
-"""Unexplained current, of the forward one (what gains within their class can leave) and of the asymmetry,
-beyond which a resistive path is tried."""
+"""Unexplained current, of the forward one (what current sensors within their class can leave) and of the
+asymmetry, beyond which a resistive path is tried."""
 SIGNIFICANT = 3.0
 """Standard errors beyond which a level or a path counts as seen."""
+UNLIKELY = 2.15
+"""Standard deviations that a complex error exceeds once in a hundred times: sqrt(ln 100)."""
 PATH_START = 0.5
 """Path ratio that a fit starts from; beside it the least level a fit starts from, for its angle to count."""
 LEVEL_START = 0.005
@@ -40,7 +42,7 @@ class Explanation:
     """The best winding's fit and what it leaves.
 
     winding: in the case's own labels.  asymmetry, unexplained: backward-turning current without and with the
-    fault, as a fraction of the forward-turning one.  explained: whether shorted turns account for it.
+    fault, as a fraction of the forward-turning one.
     """
 
     winding: int
@@ -48,7 +50,6 @@ class Explanation:
     healthy: Fit
     asymmetry: float
     unexplained: float
-    explained: bool
     evaluations: int
 
 
@@ -68,19 +69,29 @@ def explain(case: Case, playback: Playback, starts: Starts) -> Explanation:
     )
     tried = [*fits, healthy]
 
-    explained, before, after = _accounts_for_asymmetry(case, healthy, fit)
+    before, after = _backward(case, healthy), _left(case, fit, healthy)
     if playback.model.knows_path and after > max(PATH_WORTH, PATH_WORTH_SHARE * before):
         through = [refine(case, playback, _with_path(one), (*unknowns, PATH_RATIO)) for one in fits]
         tried += through
         likeliest = _likeliest(through)
-        path_explains, _, path_leaves = _accounts_for_asymmetry(case, healthy, through[likeliest])
-        if (
-            path_explains
-            and _is_seen(through[likeliest], FAULT_LEVEL)
-            and _is_seen(through[likeliest], PATH_RATIO)
-        ):
-            winding, fit, explained, after = likeliest, through[likeliest], True, path_leaves
-    return Explanation(winding, fit, healthy, before, after, explained, sum(one.evaluations for one in tried))
+        bridged = through[likeliest]
+        left = _left(case, bridged, healthy)
+        if left < after and _is_seen(bridged, FAULT_LEVEL) and _is_seen(bridged, PATH_RATIO):
+            winding, fit, after = likeliest, bridged, left
+    return Explanation(
+        winding=winding,
+        fit=fit,
+        healthy=healthy,
+        asymmetry=before,
+        unexplained=after,
+        evaluations=sum(one.evaluations for one in tried),
+    )
+
+
+def is_explained(explanation: Explanation, tolerance: Systematic) -> bool:
+    """Whether shorted turns account for the asymmetry, given what sensors and parameters may be off by."""
+    allowed = max(UNLIKELY * tolerance.backward, SHARE_UNEXPLAINED * explanation.asymmetry)
+    return explanation.fit.value(FAULT_LEVEL) > 0.0 and explanation.unexplained <= allowed
 
 
 def _likeliest(fits: list[Fit]) -> int:
@@ -103,10 +114,13 @@ def _is_seen(fit: Fit, name: str) -> bool:
     return error is not None and fit.value(name) > SIGNIFICANT * error
 
 
-def _accounts_for_asymmetry(case: Case, healthy: Fit, fit: Fit) -> tuple[bool, float, float]:
+def _left(case: Case, fit: Fit, healthy: Fit) -> float:
+    """Backward-turning current that the fault leaves; a level below zero is no fault and explains nothing."""
+    return _backward(case, fit if fit.value(FAULT_LEVEL) > 0.0 else healthy)
+
+
+def _backward(case: Case, fit: Fit) -> float:
+    """Backward-turning part of a residual over the forward-turning measured current."""
     measured = case.space_vector(case.current_ab[:, case.window.first : case.window.last])
     forward = abs(case.positive_sequence(measured))
-    before = abs(case.negative_sequence(case.space_vector(healthy.residual_ab))) / forward
-    shorted = fit if fit.value(FAULT_LEVEL) > 0.0 else healthy
-    after = abs(case.negative_sequence(case.space_vector(shorted.residual_ab))) / forward
-    return after <= max(GAIN_TOLERANCE, SHARE_UNEXPLAINED * before), before, after
+    return abs(case.negative_sequence(case.space_vector(fit.residual_ab))) / forward

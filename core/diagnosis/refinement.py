@@ -18,6 +18,8 @@ from core.machines.playback import Candidates, Playback
 CONFIDENCE = 0.95
 MOST_ITERATIONS = 12
 FEWEST_BLOCKS = 3
+HIGHEST_PATH_RATIO = 4.0
+"""Beyond it a path draws a current in the voltage's own direction, as many an asymmetry does that is none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +45,7 @@ def unknown(name: str, case: Case, model: StatorModel) -> Unknown:
         FAULT_LEVEL: Unknown(FAULT_LEVEL, 2e-4, model.lowest_level, 0.5),
         LOAD_LEVEL: Unknown(LOAD_LEVEL, 2e-3, -0.2, 2.0),
         TIME_OFFSET: Unknown(TIME_OFFSET, 1e-4 * cycle, -0.5 * cycle, 0.5 * cycle),
-        PATH_RATIO: Unknown(PATH_RATIO, 2e-3, 0.0, 20.0),
+        PATH_RATIO: Unknown(PATH_RATIO, 2e-3, 0.0, HIGHEST_PATH_RATIO),
     }[name]
 
 

@@ -1,69 +1,80 @@
 """Diagnosis of one recording: quality gate, global search, refinement, choice of hypothesis, verdict."""
 
+from collections.abc import Iterable
 from time import perf_counter
 
 import numpy as np
 
+from core.diagnosis.assumed_supply import SUPPLY_UNBALANCE, assumed_voltage
+from core.diagnosis.baseline import Baseline, baseline_of, standing_current
 from core.diagnosis.case import Case, case_of
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.hypotheses import Explanation, explain
+from core.diagnosis.hypotheses import UNLIKELY, Explanation, explain, is_explained
+from core.diagnosis.indicators import indicators
 from core.diagnosis.quality import electrical_condition, no_frequency, sampled_well
-from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET
+from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET, Fit
 from core.diagnosis.search import METHODS, search
+from core.diagnosis.tolerance import Systematic, systematic
 from core.diagnosis.verdict import Diagnosis, QualityFinding, Verdict
-from core.machines.base import Array, StatorModel
+from core.machines.base import StatorModel
 from core.machines.parameters import Motor
-from core.machines.playback import Playback
+from core.machines.playback import Playback, electrical_to_rpm
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.recordings import Recording, RecordingError
 from core.signals.errors import SignalError
 from core.signals.phasors import fundamental_frequency, fundamental_phasors
 from core.signals.sequence import sequence_phasors
-from core.signals.terminals import Terminals, terminals
+from core.signals.terminals import terminals
 
 MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
 PHASES = ("a", "b", "c")
-UNEXPLAINED_LIMIT = 0.02
-"""Backward-turning current, of the forward one, that sensors within their class can no longer account for."""
 
 
 def diagnose(
-    recording: Recording, motor: Motor, *, method: str = "hcpa", model: str = "split-winding"
+    recording: Recording,
+    motor: Motor,
+    *,
+    method: str = "hcpa",
+    model: str = "split-winding",
+    baseline: Baseline | None = None,
+    currents_only: bool = False,
 ) -> Diagnosis:
     """Diagnose the stator winding from one recording in steady running.
 
     method: global search, one of search.METHODS.  model: one of MODELS; mu_f is its equivalent level.
+    baseline: the motor's standing asymmetry (learn_baseline), taken off the currents first.
+    currents_only: accept a recording without voltages; a balanced supply is assumed, and the verdict is never
+    better than "watch".
     Raises RecordingError where the recording lacks channels the motor needs, DiagnosisError for an unknown
     method or model. Everything else a recording can be guilty of makes it undiagnosable, with the reason.
     """
     begun = perf_counter()
-    if model not in MODELS:
-        raise DiagnosisError(f"model {model!r} is unknown; known: {', '.join(MODELS)}")
-    if method not in METHODS:
-        raise DiagnosisError(f"method {method!r} is unknown; known: {', '.join(METHODS)}")
-    measured = terminals(
-        recording,
-        currents=motor.channels.currents,
-        phase_voltages=motor.channels.phase_voltages,
-        line_voltages=motor.channels.line_voltages,
-    )
-    if measured.voltage_ab is None:
-        raise RecordingError(
-            recording.source,
-            "voltages",
-            expected="three phase voltages or two line voltages beside the currents",
-            found="none: without them an unbalanced supply cannot be told from a fault",
-        )
-    case, quality = _gate(measured, measured.voltage_ab, motor)
+    _check_known(method, model)
+    case, quality, assumed = _accept(recording, motor, currents_only=currents_only)
     if case is None:
         return _refused(quality, perf_counter() - begun, model, method)
+    if baseline is not None:
+        case = baseline.taken_off(case)
     playback = Playback(MODELS[model], motor, case.supply, case.window)
     starts = search(case, playback, method)
     explanation = explain(case, playback, starts)
-    verdict, reasons = judge(case, explanation)
+    tolerance = systematic(
+        case,
+        playback,
+        explanation.fit,
+        known_share=0.0 if baseline is None else 1.0 - baseline.remaining,
+        supply_unbalance=SUPPLY_UNBALANCE if assumed else 0.0,
+    )
+    verdict, reasons = judge(case, explanation, tolerance)
+    if assumed and verdict is Verdict.FAULT:
+        verdict = Verdict.WATCH
+    if assumed:
+        reasons.append("no voltages recorded: a balanced supply is assumed, so this is no better than a hint")
+    if baseline is not None:
+        reasons.append(f"relative to a baseline of {baseline.recordings} healthy recordings")
     fit = explanation.fit
-    named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and _is_shorted_turns(explanation))
+    named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and is_explained(explanation, tolerance))
     low, high = (max(0.0, bound) for bound in fit.interval(FAULT_LEVEL))
     return Diagnosis(
         verdict=verdict,
@@ -79,56 +90,109 @@ def diagnose(
         reasons=tuple(reasons),
         model=model,
         method=method,
+        load_level_ci95=fit.interval(LOAD_LEVEL),
+        speed_rpm=_speed_rpm(case, playback, fit),
+        detection_limit=tolerance.detection_limit(fit),
+        indicators=indicators(case),
     )
 
 
-def judge(case: Case, explanation: Explanation) -> tuple[Verdict, list[str]]:
+def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_only: bool = False) -> Baseline:
+    """The motor's standing asymmetry from recordings known to be healthy, at least three of them.
+
+    Raises RecordingError like `diagnose`, DiagnosisError where one is undiagnosable or there are too few.
+    """
+    seen: list[complex] = []
+    for recording in recordings:
+        case, quality, _ = _accept(recording, motor, currents_only=currents_only)
+        if case is None:
+            failed = ", ".join(finding.name for finding in quality if not finding.passed)
+            raise DiagnosisError(f"{recording.source or 'recording'}: not fit for a baseline: {failed}")
+        playback = Playback(SplitWinding(), motor, case.supply, case.window)
+        seen.append(standing_current(case, explain(case, playback, search(case, playback, "hcpa"))))
+    return baseline_of(seen)
+
+
+def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[Verdict, list[str]]:
     """Verdict and its reasons in words."""
     limit = case.motor.limits.fault_level
     fit = explanation.fit
     low, high = fit.interval(FAULT_LEVEL)
+    reach = tolerance.reach(fit)
     phase = PHASES[case.terminal_winding(explanation.winding)]
     level = f"{fit.value(FAULT_LEVEL):.2%} (95 % interval {max(0.0, low):.2%} to {max(0.0, high):.2%})"
-    backward = (
+    figures = [
         f"backward-turning current that the supply does not cause is {explanation.asymmetry:.2%} of the "
-        f"forward one; shorted turns in phase {phase} leave {explanation.unexplained:.2%}"
-    )
+        f"forward one; shorted turns in phase {phase} leave {explanation.unexplained:.2%}",
+        f"sensors and parameters within their tolerances can feign {tolerance.backward:.2%} of it, "
+        f"{tolerance.level:.2%} of the turns (standard deviation); a fault below "
+        f"{tolerance.detection_limit(fit):.2%} could not be seen here for sure",
+    ]
     path = fit.value(PATH_RATIO)
     bridged = f", bridged by {path:.2g} times the turns' own resistance" if path > 0.0 else ""
-    if low > limit and explanation.explained:
+    explained = is_explained(explanation, tolerance)
+    if explained and min(low, fit.value(FAULT_LEVEL) - reach) > limit:
         return Verdict.FAULT, [
             f"shorted turns in phase {phase}: {level}, above the limit of {limit:.2%}{bridged}",
-            backward,
+            *figures,
         ]
-    if explanation.unexplained > UNEXPLAINED_LIMIT or low > limit:
-        return Verdict.WATCH, ["an asymmetry that shorted turns in no phase explain", backward]
+    if not explained and explanation.unexplained > UNLIKELY * tolerance.backward:
+        return Verdict.WATCH, ["an asymmetry that shorted turns in no phase explain", *figures]
     if high > limit:
         return Verdict.WATCH, [
             f"shorted turns in phase {phase} cannot be excluded: {level}, limit {limit:.2%}{bridged}",
-            backward,
+            *figures,
         ]
-    return Verdict.HEALTHY, [f"no shorted turns above the limit of {limit:.2%}: best fit {level}", backward]
+    return Verdict.HEALTHY, [f"no shorted turns above the limit of {limit:.2%}: best fit {level}", *figures]
 
 
-def _is_shorted_turns(explanation: Explanation) -> bool:
-    return explanation.explained and explanation.unexplained <= UNEXPLAINED_LIMIT
+def _check_known(method: str, model: str) -> None:
+    if model not in MODELS:
+        raise DiagnosisError(f"model {model!r} is unknown; known: {', '.join(MODELS)}")
+    if method not in METHODS:
+        raise DiagnosisError(f"method {method!r} is unknown; known: {', '.join(METHODS)}")
 
 
-def _gate(measured: Terminals, voltage_ab: Array, motor: Motor) -> tuple[Case | None, list[QualityFinding]]:
-    """The case the stages work on, or None where a check fails; with every check's finding."""
+def _accept(
+    recording: Recording, motor: Motor, *, currents_only: bool
+) -> tuple[Case | None, list[QualityFinding], bool]:
+    """The case the stages work on, or None where a check fails; every check's finding; whether the voltages
+    are assumed."""
+    measured = terminals(
+        recording,
+        currents=motor.channels.currents,
+        phase_voltages=None if currents_only else motor.channels.phase_voltages,
+        line_voltages=None if currents_only else motor.channels.line_voltages,
+    )
+    voltage_ab, assumed = measured.voltage_ab, measured.voltage_ab is None
+    if voltage_ab is None and not currents_only:
+        raise RecordingError(
+            recording.source,
+            "voltages",
+            expected="three phase voltages or two line voltages beside the currents",
+            found="none: without them an unbalanced supply cannot be told from a fault",
+        )
     rate = measured.sample_rate_hz
     quality = sampled_well(measured, motor.nameplate)
     if not all(finding.passed for finding in quality):
-        return None, quality
+        return None, quality, assumed
     try:
+        if voltage_ab is None:
+            voltage_ab = assumed_voltage(measured.current_abc, rate, motor.nameplate)
         frequency = fundamental_frequency(voltage_ab, rate)
     except SignalError as error:
-        return None, [*quality, no_frequency(error, motor.nameplate)]
+        return None, [*quality, no_frequency(error, motor.nameplate)], assumed
     quality += electrical_condition(measured, voltage_ab, frequency, motor.nameplate)
     if not all(finding.passed for finding in quality):
-        return None, quality
+        return None, quality, assumed
     sequence = sequence_phasors(fundamental_phasors(voltage_ab, frequency, rate)).sequence
-    return case_of(motor, measured.current_abc, voltage_ab, rate, frequency, sequence), quality
+    case = case_of(motor, measured.current_abc, voltage_ab, rate, frequency, sequence)
+    return case, quality, assumed
+
+
+def _speed_rpm(case: Case, playback: Playback, fit: Fit) -> float:
+    mean = playback.steady_state(fit.candidate).mean_speed
+    return float(electrical_to_rpm(mean, case.motor.nameplate.pole_pairs)[0])
 
 
 def _refused(quality: list[QualityFinding], seconds: float, model: str, method: str) -> Diagnosis:

@@ -35,6 +35,27 @@ class QualityFinding:
 
 
 @dataclass(frozen=True, slots=True)
+class Indicators:
+    """Of the line quantities, in the supply's own sequence.
+
+    current_unbalance, voltage_unbalance: |I2| / |I1|, |V2| / |V1|.
+    negative_sequence_current_A: |I2|, rms.  negative_sequence_impedance_ohm: |V2| / |I2|.
+    park_axis_ratio: minor over major axis of the current's ellipse on the Clarke axes; 1 is a circle.
+    park_axis_angle_deg: of the major axis against phase a, -90 to 90.
+    """
+
+    current_unbalance: float
+    voltage_unbalance: float
+    negative_sequence_current_A: float
+    negative_sequence_impedance_ohm: float
+    park_axis_ratio: float
+    park_axis_angle_deg: float
+
+    def as_dict(self) -> dict[str, float]:
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnosis:
     """The result for one recording. Figures are None where the quality gate refused the recording.
 
@@ -42,6 +63,8 @@ class Diagnosis:
     theta_f: 0, 1, 2 = winding on terminals a, b, c; None unless shorted turns are found; `phase` likewise.
     load_level: load torque over rated torque.  time_offset_s: delay of the currents against the voltages.
     residual_rms_A: rms of measured minus modelled current over both Clarke axes.
+    speed_rpm: of the shaft, from the fit.  detection_limit: least mu_f this recording would have shown.
+    indicators: model-free figures beside the fit.
     """
 
     verdict: Verdict
@@ -57,6 +80,10 @@ class Diagnosis:
     reasons: tuple[str, ...]
     model: str
     method: str
+    load_level_ci95: tuple[float, float] | None = None
+    speed_rpm: float | None = None
+    detection_limit: float | None = None
+    indicators: Indicators | None = None
 
     @property
     def phase(self) -> Literal["a", "b", "c"] | None:
@@ -80,4 +107,8 @@ class Diagnosis:
             "reasons": list(self.reasons),
             "model": self.model,
             "method": self.method,
+            "load_level_ci95": None if self.load_level_ci95 is None else list(self.load_level_ci95),
+            "speed_rpm": self.speed_rpm,
+            "detection_limit": self.detection_limit,
+            "indicators": None if self.indicators is None else self.indicators.as_dict(),
         }

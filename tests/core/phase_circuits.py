@@ -41,14 +41,20 @@ def running(
     fault: Fault | None = None,
     unbalance: complex = 0.0,
     reverse: bool = False,
+    joint: tuple[int, float] | None = None,
 ) -> Operation:
-    """Line currents and phase voltages (rms phasors of a, b, c) in steady running at rated voltage."""
+    """Line currents and phase voltages (rms phasors of a, b, c) in steady running at rated voltage.
+
+    joint: a winding and the resistance of a bad connection in series with it [ohm].
+    """
     volts = motor.nameplate.rated_voltage_V / np.sqrt(3)
     sequence = np.array([0, unbalance, 1]) if reverse else np.array([0, 1, unbalance])
     voltage = FORTESCUE @ sequence * volts
     direction = -1 if reverse else 1
-    slip = brentq(lambda s: _torque_surplus(motor, voltage, s, load_level, fault, direction), -0.01, 0.12)
-    return Operation(_currents(motor, voltage, slip, fault, direction)[0], voltage, slip)
+    slip = brentq(
+        lambda s: _torque_surplus(motor, voltage, s, load_level, fault, direction, joint), -0.01, 0.12
+    )
+    return Operation(_currents(motor, voltage, slip, fault, direction, joint)[0], voltage, slip)
 
 
 def recording(
@@ -78,9 +84,15 @@ def recording(
 
 
 def _torque_surplus(
-    motor: Motor, voltage: Complex, slip: float, load_level: float, fault: Fault | None, direction: int
+    motor: Motor,
+    voltage: Complex,
+    slip: float,
+    load_level: float,
+    fault: Fault | None,
+    direction: int,
+    joint: tuple[int, float] | None,
 ) -> float:
-    _, rotor = _currents(motor, voltage, slip, fault, direction)
+    _, rotor = _currents(motor, voltage, slip, fault, direction, joint)
     R_r = motor.parameters.rotor_resistance_ohm
     forward, backward = (1, 2) if direction > 0 else (2, 1)
     power = np.abs(np.linalg.solve(FORTESCUE, rotor)) ** 2 * 3 * R_r
@@ -90,7 +102,12 @@ def _torque_surplus(
 
 
 def _currents(
-    motor: Motor, voltage: Complex, slip: float, fault: Fault | None, direction: int
+    motor: Motor,
+    voltage: Complex,
+    slip: float,
+    fault: Fault | None,
+    direction: int,
+    joint: tuple[int, float] | None,
 ) -> tuple[Complex, Complex]:
     """Line currents and rotor currents (referred, seen from the stator), by one linear system.
 
@@ -108,6 +125,8 @@ def _currents(
     M = np.zeros((8, 8), dtype=np.complex128)
     rhs = np.zeros(8, dtype=np.complex128)
     M[:3, :3] = (machine.stator_resistance_ohm + jw * machine.stator_leakage_H) * np.eye(3) + jw * mutual
+    if joint is not None:
+        M[joint[0], joint[0]] += joint[1]
     M[:3, 3:6] = jw * mutual
     M[3:6, :3] = jw * mutual
     M[3:6, 3:6] = rotor_resistance + jw * machine.rotor_leakage_H * np.eye(3) + jw * mutual

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.stator import diagnose
+from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.parameters import Motor
 from core.machines.playback import Candidates, Playback, window_of_record
@@ -65,13 +65,30 @@ def test_an_unbalanced_supply_is_no_fault(motor: Motor, load: float, unbalance: 
     assert result.load_level == pytest.approx(load, abs=0.03)
 
 
-def test_a_current_sensor_out_of_class_is_an_asymmetry_and_no_fault() -> None:
-    result = diagnose(
-        recording(running(REFERENCE, 0.5), noise=0.002, current_gains=(1.0, 0.88, 1.0)), REFERENCE
-    )
+def test_a_current_sensor_out_of_class_is_refused_by_the_sum_of_the_currents() -> None:
+    record = recording(running(REFERENCE, 0.5), noise=0.002, current_gains=(1.0, 0.8, 1.0))
+    result = diagnose(record, REFERENCE)
+    assert result.verdict is Verdict.UNDIAGNOSABLE
+    assert result.reasons[0].startswith("current sum")
+
+
+@pytest.mark.parametrize("phase", [0, 1, 2])
+def test_an_asymmetry_in_no_fault_s_direction_is_an_asymmetry(phase: int) -> None:
+    """A voltage sensor that reads 3 % too much: the missing current lies opposite to a shunt's."""
+    record = recording(running(REFERENCE, 0.5), noise=0.002)
+    samples = record.samples.copy()
+    samples[3 + phase] *= 1.03
+    result = diagnose(replace(record, samples=samples), REFERENCE)
     assert result.verdict is Verdict.WATCH
     assert result.theta_f is None
     assert "no phase explain" in result.reasons[0]
+
+
+@pytest.mark.parametrize("motor", ALL, ids=IDS)
+def test_a_slightly_bad_joint_is_no_fault(motor: Motor) -> None:
+    joint = (1, 0.05 * motor.parameters.stator_resistance_ohm)
+    result = diagnose(recording(running(motor, 0.8, joint=joint), noise=0.005), motor)
+    assert result.verdict is Verdict.HEALTHY
 
 
 def test_the_thesis_model_diagnoses_machines_of_its_own_kind_only() -> None:
@@ -197,6 +214,76 @@ def test_missing_voltages_are_a_recording_error() -> None:
         diagnose(currents_only, REFERENCE)
 
 
+def test_without_voltages_the_verdict_is_a_hint_at_best() -> None:
+    """A balanced supply, so the assumption holds: the phase is right, and still it is only a watch."""
+    for winding in range(3):
+        record = recording(running(REFERENCE, 0.5, fault=Fault(0.08, winding)), noise=0.005)
+        bare = replace(record, samples=record.samples[:3], channels=record.channels[:3])
+        result = diagnose(bare, REFERENCE, currents_only=True)
+        assert result.verdict is Verdict.WATCH
+        assert result.theta_f == winding
+        assert result.mu_f == pytest.approx(0.08, abs=0.01)
+        assert "no voltages recorded" in result.reasons[-1]
+    healthy = recording(running(REFERENCE, 0.5), noise=0.005)
+    bare = replace(healthy, samples=healthy.samples[:3], channels=healthy.channels[:3])
+    assert diagnose(bare, REFERENCE, currents_only=True).verdict is Verdict.HEALTHY
+
+
+def test_a_baseline_takes_the_standing_asymmetry_off() -> None:
+    gains, unbalance = (0.99, 1.012, 1.0), 0.01
+    healthy = [
+        recording(running(MEDIUM, load, unbalance=unbalance), noise=0.005, current_gains=gains, seed=seed)
+        for seed, load in enumerate((0.45, 0.5, 0.55, 0.6))
+    ]
+    baseline = learn_baseline(healthy[:3], MEDIUM)
+    assert baseline.recordings == 3
+    without, within = diagnose(healthy[3], MEDIUM), diagnose(healthy[3], MEDIUM, baseline=baseline)
+    assert without.mu_f is not None
+    assert within.mu_f is not None
+    assert within.mu_f < 0.3 * without.mu_f
+    assert within.detection_limit is not None
+    assert without.detection_limit is not None
+    assert within.detection_limit < without.detection_limit
+    small = recording(
+        running(MEDIUM, 0.5, fault=Fault(0.008, 2), unbalance=unbalance),
+        noise=0.005,
+        current_gains=gains,
+        seed=9,
+    )
+    found = diagnose(small, MEDIUM, baseline=baseline)
+    assert found.theta_f == 2
+    assert found.mu_f == pytest.approx(0.008, abs=0.0005)
+    with pytest.raises(DiagnosisError, match="at least 3"):
+        learn_baseline(healthy[:2], MEDIUM)
+    with pytest.raises(DiagnosisError, match="not fit for a baseline: phase loss"):
+        learn_baseline([spoilt("phase loss")], REFERENCE)
+
+
+@pytest.mark.parametrize("motor", ALL, ids=IDS)
+def test_indicators_and_speed_stand_beside_the_fit(motor: Motor) -> None:
+    truth = running(motor, 0.5, fault=Fault(0.05, 1), unbalance=0.02)
+    result = diagnose(recording(truth, noise=0.001), motor)
+    rpm = 60.0 * motor.nameplate.rated_frequency_Hz / motor.nameplate.pole_pairs
+    assert result.speed_rpm == pytest.approx(rpm * (1.0 - truth.slip), abs=0.5)
+    positive, negative = (
+        (truth.line_current[0] + turn * truth.line_current[1] + turn**2 * truth.line_current[2]) / 3.0
+        for turn in (np.exp(2j * np.pi / 3), np.exp(-2j * np.pi / 3))
+    )
+    seen = result.indicators
+    assert seen is not None
+    assert seen.voltage_unbalance == pytest.approx(0.02, rel=0.02)
+    assert seen.current_unbalance == pytest.approx(abs(negative / positive), rel=0.02)
+    assert seen.negative_sequence_current_A == pytest.approx(abs(negative), rel=0.02)
+    volts = motor.nameplate.rated_voltage_V / np.sqrt(3.0)
+    assert seen.negative_sequence_impedance_ohm == pytest.approx(0.02 * volts / abs(negative), rel=0.02)
+    t = np.linspace(0.0, 2.0 * np.pi, 20_000)
+    alpha, beta = clarke(np.real(truth.line_current[:, np.newaxis] * np.exp(1j * t)))
+    radius = np.hypot(alpha, beta)
+    assert seen.park_axis_ratio == pytest.approx(radius.min() / radius.max(), abs=0.005)
+    major = np.degrees(np.arctan2(beta[radius.argmax()], alpha[radius.argmax()]))
+    assert abs((seen.park_axis_angle_deg - major + 90.0) % 180.0 - 90.0) < 1.0
+
+
 def test_unknown_method_and_model_name_the_known_ones() -> None:
     with pytest.raises(DiagnosisError, match="known: hcpa"):
         diagnose(healthy_record(), REFERENCE, method="dowsing")
@@ -208,7 +295,8 @@ def test_the_document_has_the_keys_of_the_contract() -> None:
     document = diagnose(healthy_record(), REFERENCE).as_dict()
     assert list(document) == [
         "verdict", "mu_f", "mu_f_ci95", "theta_f", "phase", "load_level", "time_offset_s", "residual_rms_A",
-        "evaluations", "compute_seconds", "quality", "reasons", "model", "method",
+        "evaluations", "compute_seconds", "quality", "reasons", "model", "method", "load_level_ci95",
+        "speed_rpm", "detection_limit", "indicators",
     ]  # fmt: skip
     assert document["method"] == "hcpa"
 

@@ -1,0 +1,34 @@
+"""Where no voltages were recorded: a balanced supply at rated voltage, in step with the currents.
+
+An unbalanced supply then looks like a fault, so the verdict is never better than "watch". The voltage's
+direction against the current is unknown and found like a sensors' delay.
+"""
+
+from math import radians
+
+import numpy as np
+
+from core.machines.base import Array
+from core.machines.parameters import Nameplate
+from core.signals.clarke import clarke
+from core.signals.phasors import fundamental_frequency, fundamental_phasors
+from core.signals.sequence import PhaseSequence, sequence_phasors
+
+USUAL_LAG_DEG = 50.0
+"""Of a motor's current behind its voltage: only where the search for the true lag begins."""
+SUPPLY_UNBALANCE = 0.01
+"""Standard deviation of a plant's voltage unbalance, not to be told from a fault here (EN 50160: 2 %)."""
+
+
+def assumed_voltage(current_abc: Array, sample_rate_hz: float, nameplate: Nameplate) -> Array:
+    """Clarke voltages (2, n) [V] for line currents (3, n) [A]. Raises SignalError without a fundamental."""
+    current_ab = clarke(current_abc)
+    frequency = fundamental_frequency(current_ab, sample_rate_hz)
+    phasors = sequence_phasors(fundamental_phasors(current_ab, frequency, sample_rate_hz))
+    backwards = phasors.sequence is PhaseSequence.ACB
+    strong = phasors.negative if backwards else phasors.positive
+    angle = 2.0 * np.pi * frequency / sample_rate_hz * np.arange(current_abc.shape[1])
+    angle += np.angle(strong) + radians(USUAL_LAG_DEG)
+    volts = nameplate.rated_voltage_V
+    turn = -1.0 if backwards else 1.0
+    return volts * np.stack([np.cos(angle), turn * np.sin(angle)])

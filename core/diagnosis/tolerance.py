@@ -1,0 +1,95 @@
+"""What sensors within their class and parameters within their tolerance can feign.
+
+Noise averages out over a record; a ratio error of a sensor or a wrong parameter does not. Each leaves
+a backward-turning current that a fault would explain as well, so its size, not the noise, decides how small a
+fault can be believed. The contributions are independent and add in squares.
+"""
+
+from dataclasses import dataclass
+from math import hypot, sqrt
+
+import numpy as np
+from scipy.stats import norm
+
+from core.diagnosis.case import Case
+from core.diagnosis.refinement import FAULT_LEVEL, Fit
+from core.machines.playback import Candidates, Playback
+
+CURRENT_RATIO = 0.005
+"""Standard deviation of a current channel's complex ratio: half the limit of class 5P (IEC 61869-2)."""
+VOLTAGE_RATIO = 0.0025
+"""Of a voltage channel's: half the limit of class 0.5 (IEC 61869-3)."""
+PARAMETERS = 0.05
+"""Of the machine's negative-sequence impedance: windings warm up, data sheets round."""
+
+BELIEF = float(norm.ppf(0.975))
+DETECTION = float(norm.ppf(0.999) + norm.ppf(0.9))
+"""Standard errors at which a fault is seen in nine of ten records, at one false call in a thousand."""
+PROBE_LEVEL = 0.005
+
+
+@dataclass(frozen=True, slots=True)
+class Systematic:
+    """Standard deviations that no averaging reduces.
+
+    backward: of the backward-turning current, as a fraction of the forward-turning one (complex magnitude).
+    level: of the fault level, fraction of the phase turns.
+    """
+
+    backward: float
+    level: float
+
+    def reach(self, fit: Fit) -> float:
+        """Half width of the 95 % interval of the fault level with noise and tolerances together."""
+        return BELIEF * self._total(fit)
+
+    def detection_limit(self, fit: Fit) -> float:
+        """Least fault level this record would have shown."""
+        return DETECTION * self._total(fit)
+
+    def _total(self, fit: Fit) -> float:
+        return hypot(self.level, fit.standard_error.get(FAULT_LEVEL, 0.0))
+
+
+def systematic(
+    case: Case, playback: Playback, fit: Fit, *, known_share: float = 0.0, supply_unbalance: float = 0.0
+) -> Systematic:
+    """Tolerances of one record, from its voltages, its currents and the fitted operating point.
+
+    known_share: share of them that a baseline has taken off.  supply_unbalance: standard deviation of
+    V2 / V1 where the voltages are assumed.
+    """
+    one = np.ones(1)
+    candidate = fit.candidate
+    probes = Candidates(
+        fault_level=np.array([0.0, PROBE_LEVEL]),
+        winding=np.repeat(candidate.winding, 2),
+        load_level=np.repeat(candidate.load_level, 2),
+        time_offset_s=np.repeat(candidate.time_offset_s, 2),
+        path_ratio=np.repeat(0.0 * one, 2),
+    )
+    alpha, beta = playback.steady_state(probes).current
+    backward_current = (alpha - 1j * beta) / 2.0
+    forward = abs(complex(alpha[0] + 1j * beta[0])) / 2.0
+    per_level = abs(complex(backward_current[1] - backward_current[0])) / PROBE_LEVEL / forward
+
+    V_alpha, V_beta = (complex(value) for value in case.supply.phasor)
+    V_forward, V_backward = abs(V_alpha + 1j * V_beta) / 2.0, abs(V_alpha - 1j * V_beta) / 2.0
+    impedance = _negative_sequence_impedance(case)
+    per_volt = 1.0 / (impedance * forward)
+    lasting = (
+        CURRENT_RATIO / sqrt(3.0),
+        VOLTAGE_RATIO / sqrt(3.0) * V_forward * per_volt,
+        PARAMETERS * V_backward * per_volt,
+    )
+    changing = supply_unbalance * V_forward * per_volt
+    backward = hypot((1.0 - known_share) * float(np.linalg.norm(lasting)), changing)
+    # Only the part of a complex error that lies along the fault's own current looks like a fault.
+    return Systematic(backward=backward, level=backward / sqrt(2.0) / per_level)
+
+
+def _negative_sequence_impedance(case: Case) -> float:
+    """|Z2| at a slip near 2 [ohm, winding]: resistances R_s and R_r' / 2, both leakages."""
+    machine = case.motor.parameters
+    reactance = case.supply.angular_frequency * (machine.stator_leakage_H + machine.rotor_leakage_H)
+    return hypot(machine.stator_resistance_ohm + machine.rotor_resistance_ohm / 2.0, reactance)
