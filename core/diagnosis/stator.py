@@ -75,14 +75,16 @@ def diagnose(
         reasons.append(f"relative to a baseline of {baseline.recordings} healthy recordings")
     fit = explanation.fit
     named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and is_explained(explanation, tolerance))
+    # Load and speed belong to the hypothesis believed: a level too small to believe would bend them.
+    running = fit if named else explanation.healthy
     low, high = (max(0.0, bound) for bound in fit.interval(FAULT_LEVEL))
     return Diagnosis(
         verdict=verdict,
         mu_f=max(0.0, fit.value(FAULT_LEVEL)),
         mu_f_ci95=(low, high),
         theta_f=case.terminal_winding(explanation.winding) if named else None,
-        load_level=fit.value(LOAD_LEVEL),
-        time_offset_s=fit.value(TIME_OFFSET),
+        load_level=running.value(LOAD_LEVEL),
+        time_offset_s=running.value(TIME_OFFSET),
         residual_rms_A=_residual_rms(case, explanation),
         evaluations=starts.evaluations + explanation.evaluations,
         compute_seconds=perf_counter() - begun,
@@ -90,8 +92,8 @@ def diagnose(
         reasons=tuple(reasons),
         model=model,
         method=method,
-        load_level_ci95=fit.interval(LOAD_LEVEL),
-        speed_rpm=_speed_rpm(case, playback, fit),
+        load_level_ci95=running.interval(LOAD_LEVEL),
+        speed_rpm=_speed_rpm(case, playback, running),
         detection_limit=tolerance.detection_limit(fit),
         indicators=indicators(case),
     )

@@ -15,12 +15,12 @@ from core.diagnosis.case import Case
 from core.diagnosis.refinement import FAULT_LEVEL, Fit
 from core.machines.playback import Candidates, Playback
 
-CURRENT_RATIO = 0.005
-"""Standard deviation of a current channel's complex ratio: half the limit of class 5P (IEC 61869-2)."""
-VOLTAGE_RATIO = 0.0025
-"""Of a voltage channel's: half the limit of class 0.5 (IEC 61869-3)."""
-PARAMETERS = 0.05
-"""Of the machine's negative-sequence impedance: windings warm up, data sheets round."""
+CHANNEL_RATIO = 0.0073
+"""Standard deviation of a channel's complex ratio: within 1 % in size and 50 us in time at 50 Hz, uniformly,
+as protection relays and their transformers are specified (1 % / sqrt 3, and 50 us / sqrt 12 as an angle)."""
+PARAMETERS = 0.06
+"""Of the machine's negative-sequence impedance: within 10 %, uniformly; windings warm up, data sheets round
+off."""
 
 BELIEF = float(norm.ppf(0.975))
 DETECTION = float(norm.ppf(0.999) + norm.ppf(0.9))
@@ -78,8 +78,8 @@ def systematic(
     impedance = _negative_sequence_impedance(case)
     per_volt = 1.0 / (impedance * forward)
     lasting = (
-        CURRENT_RATIO / sqrt(3.0),
-        VOLTAGE_RATIO / sqrt(3.0) * V_forward * per_volt,
+        CHANNEL_RATIO / sqrt(3.0),
+        CHANNEL_RATIO / sqrt(3.0) * V_forward * per_volt,
         PARAMETERS * V_backward * per_volt,
     )
     changing = supply_unbalance * V_forward * per_volt
