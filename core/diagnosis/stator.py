@@ -29,6 +29,8 @@ from core.signals.terminals import terminals
 
 MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
 PHASES = ("a", "b", "c")
+USUAL_OFFSET_CYCLES = 1 / 80
+"""Offset in cycles (250 us at 50 Hz) up to which sensors and parameters within 10 % account for it."""
 
 
 def diagnose(
@@ -130,6 +132,12 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
         f"{tolerance.level:.2%} of the turns (standard deviation); a fault below "
         f"{tolerance.detection_limit(fit):.2%} could not be seen here for sure",
     ]
+    offset = fit.value(TIME_OFFSET)
+    if abs(offset) * case.frequency_hz > USUAL_OFFSET_CYCLES:
+        figures.append(
+            f"the currents lie {offset * 1e6:.0f} us behind the voltages, more than the channels of one relay do: "
+            "if they were recorded together, nameplate or parameters are not this motor's"
+        )
     path = fit.value(PATH_RATIO)
     bridged = f", bridged by {path:.2g} times the turns' own resistance" if path > 0.0 else ""
     explained = is_explained(explanation, tolerance)

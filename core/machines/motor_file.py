@@ -2,10 +2,14 @@
 
 import tomllib
 from collections.abc import Mapping
-from math import isfinite
+from math import inf, isfinite
 from pathlib import Path
 
 from core.machines.parameters import ChannelNames, Connection, Limits, MachineParameters, Motor, Nameplate
+
+TABLES = ("nameplate", "parameters", "channels", "limits")
+HIGHEST_FAULT_LIMIT = 0.2
+"""The search looks no higher: a limit above it would switch the alarm off."""
 
 
 class MotorFileError(ValueError):
@@ -29,20 +33,24 @@ def read_motor(path: Path | str) -> Motor:
         table = tomllib.loads(path.read_text("utf-8"))
     except OSError as error:
         raise MotorFileError(
-            path, "file", expected="a readable TOML file", found=str(error.strerror)
+            path, "file", expected="a readable TOML file", found=f"none ({error.strerror})"
         ) from error
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise MotorFileError(path, "file", expected="valid TOML in UTF-8", found=str(error)) from error
+        raise MotorFileError(
+            path, "file", expected="valid TOML in UTF-8", found=f"an error: {error}"
+        ) from error
     return motor_from_table(table, name=path.stem, source=path)
 
 
 def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | str) -> Motor:
     """A motor from the tables [nameplate], [parameters] and optionally [channels], [limits]."""
-    known = {"nameplate", "parameters", "channels", "limits"}
-    unknown = sorted(set(table) - known)
+    unknown = sorted(set(table) - set(TABLES))
     if unknown:
         raise MotorFileError(
-            source, unknown[0], expected=f"one of the tables {sorted(known)}", found="an unknown key"
+            source,
+            unknown[0],
+            expected=f"one of the tables {', '.join(f'[{table}]' for table in TABLES)} (docs/motor-file.md)",
+            found="an unknown key",
         )
     nameplate = _Table(table, "nameplate", source)
     machine = _Table(table, "parameters", source)
@@ -70,7 +78,9 @@ def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | s
             phase_voltages=channels.names("va", "vb", "vc"),
             line_voltages=channels.names("vab", "vbc", "vca"),
         ),
-        limits=Limits(fault_level=limits.positive("fault_level", default=Limits().fault_level)),
+        limits=Limits(
+            fault_level=limits.positive("fault_level", default=Limits().fault_level, most=HIGHEST_FAULT_LIMIT)
+        ),
     )
     for section in (nameplate, machine, limits, channels):
         section.reject_unknown()
@@ -88,12 +98,14 @@ class _Table:
             found = "nothing" if values is None else type(values).__name__
             raise MotorFileError(source, f"[{name}]", expected="a table", found=found)
         self._values, self._name, self._source = values, name, source
-        self._used: set[str] = set()
+        self._known: set[str] = set()
 
-    def positive(self, key: str, *, default: float | None = None) -> float:
+    def positive(self, key: str, *, default: float | None = None, most: float = inf) -> float:
         value = self._take(key, default)
         if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) or value <= 0:
             raise self._error(key, "a number above zero", value)
+        if value > most:
+            raise self._error(key, f"a fraction of at most {most:g} (0.005 means 0.5 %)", value)
         return float(value)
 
     def count(self, key: str) -> int:
@@ -110,6 +122,7 @@ class _Table:
             raise self._error(key, '"star" or "delta"', value) from None
 
     def names(self, *keys: str) -> tuple[str, str, str] | None:
+        self._known.update(keys)
         given = [key for key in keys if key in self._values]
         if not given:
             return None
@@ -117,9 +130,14 @@ class _Table:
         return first, second, third
 
     def reject_unknown(self) -> None:
-        unknown = sorted(set(self._values) - self._used)
+        unknown = sorted(set(self._values) - self._known)
         if unknown:
-            raise self._error(unknown[0], f"one of {sorted(self._used)}", "an unknown key")
+            raise MotorFileError(
+                self._source,
+                f"[{self._name}] {unknown[0]}",
+                expected=f"one of {', '.join(sorted(self._known))}",
+                found="an unknown key",
+            )
 
     def _name_of(self, key: str) -> str:
         value = self._take(key, None)
@@ -128,7 +146,7 @@ class _Table:
         return value
 
     def _take(self, key: str, default: object) -> object:
-        self._used.add(key)
+        self._known.add(key)
         return self._values.get(key, default)
 
     def _error(self, key: str, expected: str, found: object) -> MotorFileError:

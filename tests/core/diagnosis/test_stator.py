@@ -8,7 +8,7 @@ import pytest
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
-from core.machines.parameters import Motor
+from core.machines.parameters import Connection, Motor
 from core.machines.playback import Candidates, Playback, window_of_record
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.supply import supply
@@ -82,6 +82,13 @@ def test_an_asymmetry_in_no_fault_s_direction_is_an_asymmetry(phase: int) -> Non
     assert result.verdict is Verdict.WATCH
     assert result.theta_f is None
     assert "no phase explain" in result.reasons[0]
+
+
+def test_an_offset_no_relay_has_points_at_the_wrong_motor_file() -> None:
+    record = recording(running(LARGE, 0.6), noise=0.002)
+    mistaken = replace(LARGE, nameplate=replace(LARGE.nameplate, connection=Connection.STAR))
+    assert any("not this motor's" in reason for reason in diagnose(record, mistaken).reasons)
+    assert not any("not this motor's" in reason for reason in diagnose(record, LARGE).reasons)
 
 
 @pytest.mark.parametrize("motor", ALL, ids=IDS)
