@@ -19,7 +19,12 @@ COLOURS = {"healthy": "#2a9d5c", "watch": "#e9a23b", "fault": "#d1495b", "undiag
 def main() -> None:
     motors = json.loads(Path(sys.argv[1]).read_text("utf-8"))["motors"]
     figure, (levels, loads) = plt.subplots(
-        1, 2, figsize=(10, 3.6), sharey=True, layout=ConstrainedLayoutEngine(wspace=0.16)
+        1,
+        2,
+        figsize=(10, 3.6),
+        sharey=True,
+        gridspec_kw={"width_ratios": (3, 2)},
+        layout=ConstrainedLayoutEngine(wspace=0.05),
     )
     for row, motor in enumerate(reversed(motors)):
         for diagnosis in motor["diagnoses"]:
@@ -33,6 +38,7 @@ def main() -> None:
         phase = diagnosis["phase"]
         text = diagnosis["verdict"] + (f", phase {phase}" if phase else "")
         levels.annotate(text, (12.2, row), va="center", color=colour, annotation_clip=False)
+    levels.set_ylim(-0.6, len(motors) - 0.4)
     levels.axvline(0.5, color="#8d99ae", linestyle="--", linewidth=1)
     levels.set(xlim=(-0.5, 12), xlabel="shorted turns, % of the phase (bar: truth; dashed: limit)")
     levels.set_yticks(range(len(motors)), [f"{m['motor']}\n{m['site']}" for m in reversed(motors)])

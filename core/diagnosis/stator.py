@@ -135,7 +135,7 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
     offset = fit.value(TIME_OFFSET)
     if abs(offset) * case.frequency_hz > USUAL_OFFSET_CYCLES:
         figures.append(
-            f"the currents lie {offset * 1e6:.0f} us behind the voltages, more than the channels of one relay do: "
+            f"the currents lie {offset * 1e6:.0f} us behind the voltages, more than one relay's channels do: "
             "if they were recorded together, nameplate or parameters are not this motor's"
         )
     path = fit.value(PATH_RATIO)
