@@ -5,9 +5,7 @@ import logging
 import signal
 import sys
 import tempfile
-import threading
 from pathlib import Path
-from types import FrameType
 from typing import Annotated
 
 import typer
@@ -79,13 +77,9 @@ def _scenarios(document: scl.Scl, path: Path | None) -> dict[str, RelayScenario]
 def _serve(
     document: scl.Scl, names: list[str], scenarios: dict[str, RelayScenario], files: Path | None
 ) -> None:
-    stopping = threading.Event()
-
-    def stop(_signal: int, _frame: FrameType | None) -> None:
-        stopping.set()
-
-    signal.signal(signal.SIGTERM, stop)
-    signal.signal(signal.SIGINT, stop)
+    # Waited for instead of handled, and blocked before any thread starts: all threads inherit it.
+    signals = (signal.SIGTERM, signal.SIGINT)
+    signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     warm_up()
     with (
         tempfile.TemporaryDirectory(prefix="ied-sim-") as temporary,
@@ -94,7 +88,7 @@ def _serve(
         for name, address in simulator.addresses.items():
             _say(f"{name} {address.host} {address.port}")
         _say("ready")
-        stopping.wait()
+        signal.sigwait(signals)
 
 
 def _say(line: str) -> None:

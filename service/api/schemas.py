@@ -1,9 +1,12 @@
 """Documents of the API. Fields that are null are not known (yet)."""
 
+from collections.abc import Iterable
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 
+from core.diagnosis.search import METHODS
+from core.diagnosis.stator import MODELS
 from core.diagnosis.verdict import Verdict
 from core.recordings import Quantity
 from service.api.times import Time
@@ -12,8 +15,21 @@ from service.storage.states import EventReportState, JobState, LinkState, Record
 Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00/]+$")]
 """Name of a site, IED or motor in a path."""
 
-Method = Literal["hcpa", "genetic", "pattern-search"]
-Model = Literal["shorted-winding", "split-winding"]
+
+def _one_of(known: Iterable[str]) -> AfterValidator:
+    """What the core does not know must not become a job: no attempt of it could end well."""
+    names = tuple(known)
+
+    def check(name: str) -> str:
+        if name not in names:
+            raise ValueError(f"expected one of {', '.join(names)}, found {name[:100]!r}")
+        return name
+
+    return AfterValidator(check)
+
+
+Method = Annotated[str, _one_of(METHODS), Field(json_schema_extra={"enum": [*METHODS]})]
+Model = Annotated[str, _one_of(MODELS), Field(json_schema_extra={"enum": [*MODELS]})]
 
 
 class Document(BaseModel):
@@ -58,11 +74,23 @@ class QualityFinding(Document):
     message: str
 
 
+class Indicators(Document):
+    """Model-free figures of the line quantities, for comparison beside the fit."""
+
+    current_unbalance: float
+    voltage_unbalance: float
+    negative_sequence_current_A: float
+    negative_sequence_impedance_ohm: float
+    park_axis_ratio: float
+    park_axis_angle_deg: float
+
+
 class Diagnosis(Document):
     """The result for one recording, as `mcc diagnose --json` prints it.
 
     mu_f: equivalent fault level, fraction of the phase turns. theta_f: 0, 1, 2 = winding on terminals
-    a, b, c. load_level: load torque over rated torque.
+    a, b, c. load_level: load torque over rated torque. speed_rpm: of the shaft, from the fit.
+    detection_limit: least mu_f this recording would have shown. Diagnoses of earlier versions lack some.
     """
 
     verdict: Verdict
@@ -79,6 +107,10 @@ class Diagnosis(Document):
     reasons: list[str]
     model: str
     method: str
+    load_level_ci95: tuple[float, float] | None = None
+    speed_rpm: float | None = None
+    detection_limit: float | None = None
+    indicators: Indicators | None = None
 
 
 class EventReport(Document):

@@ -1,21 +1,20 @@
 """`mcc demo`: a simulated plant, watched; everything ends with the command."""
 
-import signal
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from scl import SclError
 from service.cli.output import CommandError, as_json, failing_clearly, failure_document, progress, results
+from service.demo.interruption import Interruption, interruptible
 from service.demo.plant import DemoPlant, NotReadyError, running_plant, wait_until_ready
 from service.demo.processes import ProgramError
-from service.demo.results import DemoMotor, document, table
+from service.demo.results import DemoMotor, document, slowest, table
 from service.demo.rounds import STATES, play_round
 from service.demo.truth import TruthError, ask_simulator
 from service.rest_client import ServiceClient, ServiceError
@@ -30,38 +29,41 @@ def demonstrate(*, once: bool, json_file: Path | None, data: Path | None) -> Non
 
     Raises CommandError, and writes the same to `json_file`, where something did not work.
     """
-    signal.signal(signal.SIGTERM, _stop)
     try:
         with (
+            interruptible() as interruption,
             failing_clearly(SclError, ProgramError, NotReadyError, ServiceError, TruthError, OSError),
             _data_directory(data) as directory,
         ):
             if json_file is not None:
-                json_file.unlink(missing_ok=True)
-            _run(directory, once=once, json_file=json_file)
+                json_file.write_bytes(b"")  # a place that cannot be written to is told now, not in a minute
+            _run(directory, interruption, once=once, json_file=json_file)
+    except KeyboardInterrupt as interrupt:
+        failure = CommandError("interrupted", details={"type": "Interrupted"})
+        _tell(failure, json_file)
+        raise failure from interrupt
     except CommandError as error:
-        if json_file is not None and not json_file.exists():
-            json_file.write_text(as_json(failure_document(error)) + "\n", encoding="utf-8")
+        _tell(error, json_file)
         raise
 
 
-def _run(data: Path, *, once: bool, json_file: Path | None) -> None:
+def _run(data: Path, interruption: Interruption, *, once: bool, json_file: Path | None) -> None:
     started_s = time.monotonic()
     console = progress()
     console.print(f"starting two factories, six relays and the service (data and logs: {data})")
-    with running_plant(data) as plant, ServiceClient(plant.url) as service:
+    with running_plant(data, interruption.pause) as plant, ServiceClient(plant.url) as service:
         motors = _motors(plant, service)
         if once:
-            _play(service, motors, ROUNDS)
+            _play(plant, service, motors, ROUNDS)
             _publish(motors, time.monotonic() - started_s, json_file)
             _require_diagnoses(motors)
             return
-        console.print(f"API: {plant.url}/api/v1/docs   end: Ctrl-C")
+        console.print(f"API: {plant.url}/api/v1/motors   end: Ctrl-C")
         try:
             while True:
                 for motor in motors:
                     motor.diagnoses.clear()
-                _play(service, motors, 1)
+                _play(plant, service, motors, 1)
                 _publish(motors, time.monotonic() - started_s, json_file)
                 _rest(plant)
         except KeyboardInterrupt:
@@ -78,7 +80,7 @@ def _motors(plant: DemoPlant, service: ServiceClient) -> list[DemoMotor]:
     ]
 
 
-def _play(service: ServiceClient, motors: Sequence[DemoMotor], rounds: int) -> None:
+def _play(plant: DemoPlant, service: ServiceClient, motors: Sequence[DemoMotor], rounds: int) -> None:
     bar = Progress(
         TextColumn("triggering, recording, diagnosing"),
         BarColumn(),
@@ -89,15 +91,23 @@ def _play(service: ServiceClient, motors: Sequence[DemoMotor], rounds: int) -> N
     with bar:
         task = bar.add_task("diagnoses", total=rounds * len(motors) * len(STATES))
         for _ in range(rounds):
-            play_round(service, motors, lambda steps: bar.advance(task, steps))
+            play_round(service, motors, lambda steps: bar.advance(task, steps), plant.pause)
 
 
 def _publish(motors: Sequence[DemoMotor], seconds: float, json_file: Path | None) -> None:
     console = results()
     console.print(table(motors))
-    console.print(Text(f"{seconds:.1f} s in all"))
+    longest_s = slowest(motors)
+    words = "" if longest_s is None else f"; at most {longest_s:.2f} s from trigger to diagnosis"
+    console.print(Text(f"{seconds:.1f} s in all{words}"))
     if json_file is not None:
         json_file.write_text(as_json(document(motors, seconds)) + "\n", encoding="utf-8")
+
+
+def _tell(failure: CommandError, json_file: Path | None) -> None:
+    """Write the failure where the results should have gone, unless they are there."""
+    if json_file is not None and json_file.is_file() and not json_file.stat().st_size:
+        json_file.write_text(as_json(failure_document(failure)) + "\n", encoding="utf-8")
 
 
 def _require_diagnoses(motors: Sequence[DemoMotor]) -> None:
@@ -114,8 +124,7 @@ def _require_diagnoses(motors: Sequence[DemoMotor]) -> None:
 def _rest(plant: DemoPlant) -> None:
     until_s = time.monotonic() + REST_S
     while time.monotonic() < until_s:
-        plant.check()
-        time.sleep(1.0)
+        plant.pause(1.0)
 
 
 @contextmanager
@@ -126,8 +135,3 @@ def _data_directory(given: Path | None) -> Iterator[Path]:
         return
     with tempfile.TemporaryDirectory(prefix="mcc-demo-") as temporary:
         yield Path(temporary)
-
-
-def _stop(_number: int, _frame: FrameType | None) -> None:
-    """SIGTERM ends the programs of the demo in order, as Ctrl-C does."""
-    raise KeyboardInterrupt

@@ -5,6 +5,7 @@ from pathlib import Path
 from rich.table import Table
 from rich.text import Text
 
+from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose
 from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file import MotorFileError, read_motor
@@ -17,11 +18,15 @@ VERDICT_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red", "undia
 def diagnose_recording(record: Path, motor: Path | None, *, method: str, model: str, as_json: bool) -> None:
     """Read, diagnose, print.
 
-    Raises CommandError where the recording or the motor file cannot be used.
+    Raises CommandError where the recording or the motor file cannot be used, or the method is not known.
     """
-    motor_path = motor or _motor_file_beside(record)
-    with failing_clearly(RecordingError, MotorFileError, OSError):
-        diagnosis = diagnose(read(record), read_motor(motor_path), method=method, model=model)
+    with (
+        failing_clearly(RecordingError, MotorFileError, OSError),
+        failing_clearly(DiagnosisError, exit_code=WRONG_USE),
+    ):
+        recording = read(record)
+        found = read_motor(motor or _motor_file_beside(record))
+        diagnosis = diagnose(recording, found, method=method, model=model)
     if as_json:
         print_document(diagnosis.as_dict())
     else:

@@ -9,6 +9,9 @@ from rich.console import Console
 
 DONE, FAILED, WRONG_USE = 0, 1, 2
 
+UNLIMITED_WIDTH = 10_000
+"""Columns. Tables take what they need of it."""
+
 DETAILS = ("path", "source", "host", "operation", "line", "element", "field", "expected", "found")
 """Attributes of the project's errors that tell a program where to look."""
 
@@ -24,23 +27,24 @@ class CommandError(Exception):
         self.exit_code = exit_code
 
     @classmethod
-    def from_error(cls, error: Exception) -> "CommandError":
+    def from_error(cls, error: Exception, exit_code: int = FAILED) -> "CommandError":
         """The same failure, with whatever fields the error carries."""
         details: dict[str, object] = {"type": type(error).__name__}
         for name in DETAILS:
             value = getattr(error, name, None)
             if value is not None:
                 details[name] = value if isinstance(value, int) else str(value)
-        return cls(one_line(str(error) or type(error).__name__), details=details)
+        message = one_line(str(error) or type(error).__name__)
+        return cls(message, details=details, exit_code=exit_code)
 
 
 @contextmanager
-def failing_clearly(*expected: type[Exception]) -> Iterator[None]:
+def failing_clearly(*expected: type[Exception], exit_code: int = FAILED) -> Iterator[None]:
     """Turn the errors a command expects into its one line; anything else is a bug and keeps its traceback."""
     try:
         yield
     except expected as error:
-        raise CommandError.from_error(error) from error
+        raise CommandError.from_error(error, exit_code) from error
 
 
 def one_line(text: str) -> str:
@@ -49,8 +53,12 @@ def one_line(text: str) -> str:
 
 
 def results() -> Console:
-    """Where a person reads the results."""
-    return Console(file=sys.stdout, highlight=False)
+    """Where a person reads the results.
+
+    A terminal sets the width. A file or a pipe has none, and a figure cut off there is a figure lost.
+    """
+    width = None if sys.stdout.isatty() else UNLIMITED_WIDTH
+    return Console(file=sys.stdout, highlight=False, width=width)
 
 
 def progress() -> Console:

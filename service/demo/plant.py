@@ -14,7 +14,7 @@ from service.demo.addresses import LOOPBACK, addressed_scd, free_port
 from service.demo.processes import Program
 from service.rest_client import ServiceClient
 
-START_LIMIT_S = 45.0
+START_LIMIT_S = 90.0
 POLL_PERIOD_S = 0.1
 SERVICE_PORT = 8710
 
@@ -25,17 +25,22 @@ class NotReadyError(RuntimeError):
 
 @dataclass(frozen=True, slots=True)
 class DemoPlant:
-    """A running plant: its files, the service's address, and a check that nothing has ended."""
+    """A running plant: its files, the service's address, and how to wait for it.
+
+    pause: waits some seconds; raises ProgramError when a program of the plant has ended.
+    """
 
     scd: Path
     scenario: Path
     url: str
-    check: Callable[[], None]
+    pause: Callable[[float], None]
 
 
 @contextmanager
-def running_plant(data: Path) -> Iterator[DemoPlant]:
+def running_plant(data: Path, pause: Callable[[float], None]) -> Iterator[DemoPlant]:
     """The demo plant while the block runs; afterwards every process has ended. Its data stays in `data`.
+
+    pause: waits some seconds, and may raise to end the block.
 
     Raises SclError, ProgramError, NotReadyError, OSError.
     """
@@ -47,18 +52,19 @@ def running_plant(data: Path) -> Iterator[DemoPlant]:
         Program("mcc serve", _service(), data / "service.log", _environment(scd, data, port)) as service,
     ):
 
-        def check() -> None:
+        def pause_and_check(seconds: float) -> None:
+            pause(seconds)
             simulator.check()
             service.check()
 
-        yield DemoPlant(scd, SCENARIO, f"http://{LOOPBACK}:{port}", check)
+        yield DemoPlant(scd, SCENARIO, f"http://{LOOPBACK}:{port}", pause_and_check)
 
 
 def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> None:
     """Until the service and every relay answer. Raises ProgramError, NotReadyError, ServiceError."""
     deadline_s = time.monotonic() + START_LIMIT_S
     while True:
-        plant.check()
+        plant.pause(POLL_PERIOD_S)
         if service.is_ready():
             down = [str(ied["name"]) for ied in service.items("/ieds") if ied["link_state"] != "up"]
             if not down:
@@ -67,7 +73,6 @@ def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> None:
             down = ["the service"]
         if time.monotonic() > deadline_s:
             raise NotReadyError(f"not ready after {START_LIMIT_S:g} s: {', '.join(down)}")
-        time.sleep(POLL_PERIOD_S)
 
 
 def _simulator(scd: Path, data: Path) -> list[str]:

@@ -50,11 +50,17 @@ def document(motors: Sequence[DemoMotor], seconds: float) -> dict[str, object]:
     return {"seconds": round(seconds, 3), "motors": [motor.as_dict() for motor in motors]}
 
 
+def slowest(motors: Sequence[DemoMotor]) -> float | None:
+    """Longest time from a trigger to the stored diagnosis [s]; the relay's own recording is part of it."""
+    times = [diagnosis.seconds for motor in motors for diagnosis in motor.diagnoses]
+    return max((seconds for seconds in times if seconds is not None), default=None)
+
+
 def table(motors: Sequence[DemoMotor]) -> Table:
     """Every motor's diagnoses beside its truth. The last column is the time from trigger to diagnosis [s]."""
     shown = Table(title="Diagnoses and truth", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("motor", "truth", "verdict"):
-        shown.add_column(heading, no_wrap=True)
+        shown.add_column(heading)  # these may wrap on a narrow terminal: the figures stay whole
     for heading in ("mu_f %", "95 %", "load", "s"):
         shown.add_column(heading, justify="right", no_wrap=True)
     for motor in motors:

@@ -11,9 +11,6 @@ from service.rest_client import Document, ServiceClient, ServiceError, segment
 LIMIT_S = 40.0
 POLL_PERIOD_S = 0.1
 
-UNDER_WAY = 2
-"""Motors triggered at a time: a plant's motors do not trip all at once, and a waiting queue is no news."""
-
 STATES = ("triggered", "recorded", "fetched", "diagnosed")
 """What an event report goes through after it was requested."""
 
@@ -28,20 +25,23 @@ class _UnderWay:
     steps: int = 0
 
 
-def play_round(service: ServiceClient, motors: Sequence[DemoMotor], advance: Callable[[int], None]) -> None:
-    """Trigger all motors; give each one more diagnosis, or the reason why there is none.
+def play_round(
+    service: ServiceClient,
+    motors: Sequence[DemoMotor],
+    advance: Callable[[int], None],
+    pause: Callable[[float], None],
+) -> None:
+    """Trigger all motors at once; give each one more diagnosis, or the reason why there is none.
 
     `advance` is told how many states the event reports went through since it was told last, in all
-    len(motors) * len(STATES). Raises ServiceError.
+    len(motors) * len(STATES). `pause` waits some seconds. Raises ServiceError.
     """
-    to_trigger = list(reversed(motors))
-    under_way: list[_UnderWay] = []
-    while to_trigger or under_way:
-        while to_trigger and len(under_way) < UNDER_WAY:
-            motor = to_trigger.pop()
-            report = service.request_event_report(motor.name)
-            under_way.append(_UnderWay(motor, str(report["id"]), time.monotonic() + LIMIT_S))
-        time.sleep(POLL_PERIOD_S)
+    under_way = [
+        _UnderWay(motor, str(service.request_event_report(motor.name)["id"]), time.monotonic() + LIMIT_S)
+        for motor in motors
+    ]
+    while under_way:
+        pause(POLL_PERIOD_S)
         for one in list(under_way):
             report = service.event_report(one.report_id)
             ended = _ended(service, report, late=time.monotonic() > one.deadline_s)

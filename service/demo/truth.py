@@ -31,7 +31,14 @@ def ask_simulator(scd: Path, scenario: Path) -> Mapping[str, Truth]:
     """The truth of each simulated relay's motor, by name of the relay. Raises TruthError."""
     command = [sys.executable, "-m", "ied_sim", "--scd", str(scd), "--scenario", str(scenario), "--truth"]
     try:
-        answer = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, check=True)  # noqa: S603
+        answer = subprocess.run(  # noqa: S603 - our own module
+            command,
+            capture_output=True,
+            text=True,
+            timeout=TIMEOUT_S,
+            check=True,
+            start_new_session=True,  # Ctrl-C is for the demo
+        )
         return _TRUTHS.validate_json(answer.stdout)
     except subprocess.CalledProcessError as error:
         raise TruthError(f"ied-sim --truth ended with {error.returncode}: {error.stderr.strip()}") from error

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass
 from functools import partial
+from multiprocessing.synchronize import Semaphore
 
 import structlog
 from pebble import ProcessExpired, ProcessPool
@@ -61,10 +62,14 @@ class JobRunner:
         self._task = task
         self._limits = limits
         self._poll_period_s = poll_period_s
+        context = multiprocessing.get_context("spawn")
+        self._prepared = context.Semaphore(0)
+        self._unprepared = limits.workers
         self._pool = ProcessPool(
             max_workers=limits.workers,
-            initializer=prepare_worker,
-            context=multiprocessing.get_context("spawn"),
+            initializer=_prepare,
+            initargs=(prepare_worker, self._prepared),
+            context=context,
         )
         self._in_flight: dict[str, Future[Outcome]] = {}
         self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()
@@ -92,7 +97,9 @@ class JobRunner:
         self._wake_up.set()
 
     def problem(self) -> str | None:
-        """Why no jobs are being done at present; None when all is well."""
+        """Why jobs are not done, or not at full speed, at present; None when all is well."""
+        if self._problem is None and self._unprepared:
+            return f"{self._unprepared} of {self._limits.workers} workers are still loading"
         return self._problem
 
     def _run(self) -> None:
@@ -108,6 +115,8 @@ class JobRunner:
             self._shut_down()
 
     def _step(self) -> None:
+        while self._unprepared and self._prepared.acquire(block=False):
+            self._unprepared -= 1
         try:
             while self._results:
                 self._settle(*self._results[0])
@@ -205,3 +214,9 @@ class JobRunner:
                 self._repository.release_job(job_id)
         except SQLAlchemyError:
             log.exception("jobs were not put back; the next start queues them again")
+
+
+def _prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
+    """Runs first in every worker, and tells the runner when it is done."""
+    prepare_worker()
+    prepared.release()

@@ -96,7 +96,7 @@ class Service:
         port = free_ports(1)[0]
         self.url = f"http://127.0.0.1:{port}"
         environment = service_environment(
-            self.directory / "data", {"MCC_SCD": str(self.scd), "MCC_PORT": str(port), **self.settings}
+            self.data, {"MCC_SCD": str(self.scd), "MCC_PORT": str(port), **self.settings}
         )
         with self.log.open("ab") as log:
             self.process = subprocess.Popen(
@@ -106,6 +106,10 @@ class Service:
             ready = eventually(lambda: self.has_ended() or client.is_ready(), START_LIMIT_S)
         assert ready, self.log.read_text()
         assert not self.has_ended(), self.log.read_text()
+
+    @property
+    def data(self) -> Path:
+        return self.directory / "data"
 
     @property
     def log(self) -> Path:

@@ -1,11 +1,14 @@
 """What goes wrong in a plant gives one clear error, and touches nothing else."""
 
+import io
 import json
 import shutil
+import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import httpx
 import pytest
 
 from core.recordings import Quantity, comtrade, read
@@ -54,6 +57,15 @@ class Bench:
         assert row["state"] == "rejected", row
         return str(row["reason"])
 
+    def rejected_files(self, name: str) -> Mapping[str, bytes]:
+        """What the service keeps of a rejected record, by file name."""
+        row = self.recording(name)
+        assert row is not None
+        answer = httpx.get(f"{self.service.url}/api/v1/recordings/{row['id']}/file", trust_env=False)
+        answer.raise_for_status()
+        with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+            return {file: archive.read(file) for file in archive.namelist()}
+
     def copy_of_good(
         self, name: str, *, configuration: bytes | None = None, data: bytes | None = None
     ) -> None:
@@ -90,6 +102,10 @@ def test_a_truncated_data_file_is_rejected(bench: Bench) -> None:
     reason = bench.reason_for_rejecting("HR_20001")
     assert "HR_20001.DAT" in reason
     assert "expected" in reason
+    assert bench.rejected_files("HR_20001") == {
+        "HR_20001.CFG": bench.good.read_bytes(),
+        "HR_20001.DAT": data[: len(data) // 2],
+    }
 
 
 def test_a_configuration_with_a_wrong_count_is_rejected(bench: Bench) -> None:
@@ -130,7 +146,9 @@ def test_a_relay_that_is_down_fails_its_event_report_alone(
     assert main(["trigger", "FAN-A2", "--url", url, "--wait", "40", "--json"]) == 1
     output = capsys.readouterr()
     error = json.loads(output.out)["error"]
+    address = bench.plant.address("A2_SEL710")
     assert "A2_SEL710 does not answer" in error["message"]
+    assert f"{address.host}:{address.port}" in error["message"]
     assert "A2_SEL710 does not answer" in output.err
     with ServiceClient(url) as client:
         states = link_states(client)
@@ -180,6 +198,6 @@ def test_nothing_listens_beyond_loopback(bench: Bench) -> None:
 
 
 def test_a_second_service_on_the_same_data_is_refused(bench: Bench) -> None:
-    ended = serve_in_vain(bench.service.directory / "data", MCC_SCD=str(bench.plant.scd))
+    ended = serve_in_vain(bench.service.data, MCC_SCD=str(bench.plant.scd))
     assert "another service works on this data directory" in ended
     assert str(bench.service.process_id) in ended

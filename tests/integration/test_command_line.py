@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 import scl
+from core.diagnosis.search import METHODS
 from mms import Client
 from service.cli import main
 from service.demo import MOTORS
@@ -59,13 +60,41 @@ def test_a_damaged_record_names_file_field_and_expectation(
     assert output.err.count("\n") == 1
 
 
+def test_a_method_the_core_does_not_know_is_wrong_use(
+    record: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(METHODS, "genetic", raising=False)
+    assert main(["diagnose", str(record), "--method", "genetic", "--json"]) == 2
+    message = json.loads(capsys.readouterr().out)["error"]["message"]
+    assert "'genetic' is unknown" in message
+    assert "hcpa" in message
+
+
 def test_a_record_of_an_unknown_motor_is_wrong_use(
     record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     copy = tmp_path / record.name
     copy.write_bytes(record.read_bytes())
+    copy.with_suffix(".DAT").write_bytes(record.with_suffix(".DAT").read_bytes())
     assert main(["diagnose", str(copy)]) == 2
     assert "--motor MOTOR.toml" in capsys.readouterr().err
+
+
+def test_a_record_that_is_not_there_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["diagnose", str(tmp_path / "HR_1.CFG"), "--json"]) == 1
+    error = json.loads(capsys.readouterr().out)["error"]
+    assert error["path"] == str(tmp_path / "HR_1.CFG")
+    assert "expected" in error["message"]
+
+
+def test_a_demo_whose_results_have_no_place_does_not_start(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    results = tmp_path / "missing" / "results.json"
+    assert main(["demo", "--once", "--json", str(results)]) == 1
+    output = capsys.readouterr()
+    assert str(results) in output.err
+    assert output.err.count("\n") == 1
 
 
 @pytest.mark.parametrize("arguments", [["diagnose", "--json"], ["no-such-command", "--json"], ["--json"]])

@@ -1,6 +1,7 @@
 """`mcc demo --once`: what a newcomer sees first."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -11,6 +12,9 @@ import pytest
 
 from service.exclusive import exclusive
 from tests.integration.processes import MOTOR_NAMES, descendants, eventually, is_alive
+
+RECORD_S = 1.0
+"""0.2 s before the trigger, 0.8 s after it."""
 
 
 @pytest.fixture(autouse=True)
@@ -45,13 +49,21 @@ def test_the_demo_finds_the_truth_and_leaves_nothing_running(tmp_path: Path) -> 
         assert len(motor["diagnoses"]) == 2
         for diagnosis in motor["diagnoses"]:
             agrees_with_truth(motor["truth"], diagnosis)
-            assert 0 < diagnosis["trigger_to_diagnosis_seconds"] < 20
+        quickest = min(diagnosis["trigger_to_diagnosis_seconds"] for diagnosis in motor["diagnoses"])
+        assert 0.8 < quickest <= RECORD_S + 3.0 * crowding(), "all six at once"
+    assert "at most" in table
+    assert "…" not in table
     assert len(seen) >= 4, "a simulator, a service, a collector, workers"
     assert eventually(lambda: not any(is_alive(process_id) for process_id in seen), 5)
 
 
+def crowding() -> float:
+    """Processes that want a processor for each one there is: other tests run beside this one."""
+    return max(1.0, os.getloadavg()[0] / len(os.sched_getaffinity(0)))
+
+
 def agrees_with_truth(truth: dict[str, float | None], diagnosis: dict[str, object]) -> None:
-    """Same verdict, phase, level within a point, load within a few."""
+    """Same verdict and phase, level within 0.3 percentage points, load within 5."""
     assert diagnosis["theta_f"] == truth["theta_f"]
     assert diagnosis["verdict"] == ("healthy" if truth["theta_f"] is None else "fault")
     mu_f, load_level = diagnosis["mu_f"], diagnosis["load_level"]
@@ -59,23 +71,25 @@ def agrees_with_truth(truth: dict[str, float | None], diagnosis: dict[str, objec
     assert isinstance(load_level, float)
     assert truth["mu_f"] is not None
     assert truth["load_level"] is not None
-    assert abs(mu_f - truth["mu_f"]) < 0.01
-    assert abs(load_level - truth["load_level"]) < 0.08
+    assert abs(mu_f - truth["mu_f"]) < 0.003
+    assert abs(load_level - truth["load_level"]) < 0.05
 
 
 def test_the_demo_can_be_interrupted_on_its_way_up(tmp_path: Path) -> None:
-    with endless_demo(tmp_path) as demo:
+    results = tmp_path / "results.json"
+    with start_demo(tmp_path, "--once", "--json", str(results)) as demo:
         assert eventually(lambda: len(descendants(demo.pid)) >= 2, 30), "the simulator and the service"
         below = descendants(demo.pid)
         demo.send_signal(signal.SIGTERM)
         assert demo.stderr is not None
         assert "mcc: interrupted" in demo.stderr.read()
     assert demo.returncode == 1
+    assert json.loads(results.read_text())["error"]["message"] == "interrupted"
     assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
 
 
 def test_ctrl_c_ends_the_endless_demo(tmp_path: Path) -> None:
-    with endless_demo(tmp_path) as demo:
+    with start_demo(tmp_path) as demo:
         assert demo.stdout is not None
         assert any("s in all" in line for line in demo.stdout), "the first round's table"
         below = descendants(demo.pid)
@@ -86,6 +100,22 @@ def test_ctrl_c_ends_the_endless_demo(tmp_path: Path) -> None:
     assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
 
 
-def endless_demo(data: Path) -> "subprocess.Popen[str]":
-    command = [sys.executable, "-m", "service.cli", "demo", "--data", str(data)]
+def test_a_simulator_that_dies_ends_the_demo(tmp_path: Path) -> None:
+    with start_demo(tmp_path) as demo:
+        assert eventually(lambda: len(descendants(demo.pid)) >= 2, 30), "the simulator and the service"
+        below = descendants(demo.pid)
+        os.kill(next(process_id for process_id in below if is_simulator(process_id)), signal.SIGKILL)
+        assert demo.stderr is not None
+        words = demo.stderr.read()
+    assert demo.returncode == 1, words
+    assert "mcc: ied-sim ended (exit code -9)" in words
+    assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
+
+
+def is_simulator(process_id: int) -> bool:
+    return b"--files" in Path(f"/proc/{process_id}/cmdline").read_bytes()
+
+
+def start_demo(data: Path, *options: str) -> "subprocess.Popen[str]":
+    command = [sys.executable, "-m", "service.cli", "demo", "--data", str(data), *options]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

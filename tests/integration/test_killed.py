@@ -6,6 +6,9 @@ from collections import Counter
 from pathlib import Path
 
 from service.rest_client import ServiceClient
+from service.settings import sqlite_url
+from service.storage import Repository, connect
+from service.storage.states import EventReportState
 from tests.integration.processes import (
     MOTOR_NAMES,
     Service,
@@ -41,6 +44,9 @@ def kill_in_the_middle(service: Service, past: str, *, alone: bool) -> list[str]
         reports = request_all(client)
         assert eventually(lambda: in_the_middle(client, reports, past), 30)
     service.kill(alone=alone)
+    repository = Repository(connect(sqlite_url(service.data)))
+    left = {repository.event_report(report).state for report in reports}
+    assert left - {EventReportState.DIAGNOSED}, "it was killed before everything was done"
     service.start()
     return reports
 

@@ -64,9 +64,11 @@ def test_another_reader_reads_the_same_samples(plant: SimulatedPlant) -> None:
     theirs.load(str(path), str(path.with_suffix(".DAT")))
     assert theirs.total_samples == ours.samples.shape[1]
     assert theirs.analog_channel_ids == [channel.name for channel in ours.channels]
-    assert theirs.cfg.sample_rates == [[ours.sample_rate_hz, ours.samples.shape[1]]]
+    assert theirs.cfg.sample_rates == [[ours.sample_rate_hz, ours.samples.shape[1]]] == [[10_000, 10_000]]
+    assert theirs.analog_channel_ids == ["IA", "IB", "IC", "VA", "VB", "VC"]
     for channel, samples in zip(ours.channels, np.array(theirs.analog), strict=True):
         row = ours.samples[ours.channels.index(channel)]
         step = (channel.full_scale or 0) / 32767
         np.testing.assert_allclose(samples, row, atol=step / 100)
-    assert theirs.trigger_time == pytest.approx((ours.trigger_index or 0) / ours.sample_rate_hz)
+    assert theirs.trigger_time == pytest.approx(0.2)
+    assert ours.trigger_index == 2_000

@@ -88,6 +88,3 @@ def test_any_host_where_it_is_allowed(context: ApiContext) -> None:
     app = create_app(replace(context, settings=settings))
     with serving(app) as client:
         assert client.get("/healthz", headers={"Host": "mcc.plant.example"}).status_code == 200
-
-
-# FIXME

@@ -1,10 +1,13 @@
 import io
 import zipfile
+from collections.abc import Collection
 from dataclasses import replace
 
 import httpx
 import pytest
 
+from core.diagnosis.search import METHODS
+from core.diagnosis.stator import MODELS
 from service.api import ApiContext, create_app
 from service.storage import Repository
 from service.storage.records import RemoteRecord
@@ -101,24 +104,41 @@ def test_a_recording_can_be_diagnosed_again(
     client: httpx.Client, repository: Repository, recording: str
 ) -> None:
     url = f"/api/v1/recordings/{recording}/diagnoses"
-    accepted = client.post(url, json={"method": "genetic", "model": "shorted-winding"})
+    accepted = client.post(url, json={"method": "hcpa", "model": "shorted-winding"})
     assert accepted.status_code == 202
     run = client.get(accepted.headers["location"]).json()
     assert run == accepted.json()
     assert (run["method"], run["model"], run["state"], run["result"]) == (
-        "genetic",
+        "hcpa",
         "shorted-winding",
         "queued",
         None,
     )
-    assert client.post(url).json()["method"] == "hcpa"
-    assert client.post(url, json={"method": "guess"}).status_code == 422
+    assert client.post(url).json()["model"] == "split-winding"
     claimed = repository.claim_job(now_ns=2**62)
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
     runs = client.get(url).json()["items"]
     assert len(runs) == 3
     assert [run["result"] for run in runs if run["state"] == "done"] == [fault().as_dict()]
+
+
+@pytest.mark.parametrize(("field", "known"), [("method", METHODS), ("model", MODELS)])
+def test_a_diagnosis_the_core_does_not_know_leaves_the_recording_as_it_is(
+    client: httpx.Client, repository: Repository, recording: str, field: str, known: Collection[str]
+) -> None:
+    claimed = repository.claim_job(now_ns=2**62)
+    assert claimed is not None
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    before = client.get(f"/api/v1/recordings/{recording}").json()
+    refused = client.post(f"/api/v1/recordings/{recording}/diagnoses", json={field: "guess"})
+    assert refused.status_code == 422
+    assert refused.headers["content-type"] == "application/problem+json"
+    (error,) = refused.json()["errors"]
+    assert error["location"] == f"body.{field}"
+    assert all(name in error["message"] for name in known)
+    assert client.get(f"/api/v1/recordings/{recording}").json() == before
+    assert repository.claim_job(now_ns=2**62) is None
 
 
 def test_files_come_back_as_they_came(client: httpx.Client, recording: str) -> None:

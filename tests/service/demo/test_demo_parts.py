@@ -1,18 +1,23 @@
 """The demo's parts: ports, programs, results."""
 
+import io
 import json
+import os
+import signal
 import socket
 import sys
 from pathlib import Path
 
 import pytest
+from rich.console import Console
 
 import scl
-from service.cli.output import as_json
+from service.cli.output import as_json, results
 from service.demo import MOTORS, SCENARIO
 from service.demo.addresses import addressed_scd, free_port, free_ports, is_free
+from service.demo.interruption import SIGNALS, interruptible
 from service.demo.processes import Program, ProgramError
-from service.demo.results import DemoDiagnosis, DemoMotor, document, table
+from service.demo.results import DemoDiagnosis, DemoMotor, document, slowest, table
 from service.demo.truth import Truth, TruthError, ask_simulator
 from service.plant.files import plant_of_files
 from tests.service.collector.conftest import eventually
@@ -93,4 +98,34 @@ def test_results_stand_beside_the_truth() -> None:
     assert first["truth"] == {"mu_f": 0.05, "theta_f": 1, "load_level": 0.65}
     assert first["diagnoses"] == [{**DIAGNOSIS, "trigger_to_diagnosis_seconds": 1.5}]
     assert second["diagnoses"] == [{"error": {"message": "A1_SEL710 does not answer"}}]
-    assert table(motors).row_count == 2
+    assert slowest(motors) == 1.5
+    assert slowest(motors[1:]) is None
+
+
+def test_no_figure_is_cut_off_where_there_is_no_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    motor = DemoMotor("M" * 100, "FACTORY_A", Truth(mu_f=0.05, theta_f=1, load_level=0.65))
+    motor.diagnoses.append(DemoDiagnosis(DIAGNOSIS, 1.5))
+    results().print(table([motor]))
+    (row,) = [line for line in capsys.readouterr().out.splitlines() if "M" in line]
+    assert row.split()[0] == "M" * 100
+    assert row.split()[-6:] == ["fault", "b", "5.00", "4.90..5.10", "0.650", "1.50"]
+
+
+def test_figures_stay_whole_on_a_narrow_terminal() -> None:
+    motor = DemoMotor("COMPRESSOR-B2", "FACTORY_B", Truth(mu_f=0.05, theta_f=1, load_level=0.65))
+    motor.diagnoses.append(DemoDiagnosis(DIAGNOSIS, 1.5))
+    terminal = Console(file=io.StringIO(), width=60)
+    with terminal.capture() as shown:
+        terminal.print(table([motor]))
+    assert {"5.00", "4.90..5.10", "0.650", "1.50"} <= set(shown.get().split())
+
+
+def test_an_interrupt_waits_for_the_next_pause() -> None:
+    before = signal.getsignal(signal.SIGTERM)
+    with interruptible() as interruption:
+        interruption.pause(0.0)
+        for number in SIGNALS:
+            os.kill(os.getpid(), number)
+        with pytest.raises(KeyboardInterrupt):
+            interruption.pause(60.0)
+    assert signal.getsignal(signal.SIGTERM) is before

@@ -4,9 +4,15 @@ import os
 import signal
 import time
 from dataclasses import replace
+from pathlib import Path
 
 from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
+from service.jobs.worker_process import follow_service
+from tests.service.jobs.waiting import wait_until
 from tests.service.plants import NOW_NS, fault
+
+GO = "STAND_IN_GO"
+"""Environment variable with the path of the file that lets a worker go on."""
 
 
 def act_as_told(task: DiagnosisTask) -> Outcome:
@@ -25,6 +31,12 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
         first_time.write_text(str(os.getpid()))
         time.sleep(600)
     return Diagnosed(fault(), NOW_NS)
+
+
+def prepare_when_told() -> None:
+    """A worker that loads until the file named in the environment is there."""
+    follow_service()
+    wait_until(lambda: Path(os.environ[GO]).exists())
 
 
 def fail_to_start() -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+import pytest
 from sqlalchemy import Engine
 
 from service.jobs import JobRunner
@@ -16,7 +17,7 @@ from service.jobs.worker_process import follow_service
 from service.recordings import RecordingStore
 from service.storage import Repository, connect
 from service.storage.states import EventReportState, JobState, RecordingState
-from tests.service.jobs.stand_ins import act_as_told, fail_to_start
+from tests.service.jobs.stand_ins import GO, act_as_told, fail_to_start, prepare_when_told
 from tests.service.jobs.waiting import wait_until
 from tests.service.plants import motor
 
@@ -70,7 +71,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     store.entry(lost).unlink()
     with running(repository, store) as runner:
         wait_until(lambda: ended(repository, *ids.values()), timeout_s=60)
-        assert runner.problem() is None
+        wait_until(lambda: runner.problem() is None)
     recordings = {what: repository.recording(id_) for what, id_ in ids.items()}
     assert {what: str(recording.state) for what, recording in recordings.items()} == {
         "fine": "diagnosed",
@@ -168,8 +169,21 @@ def test_a_database_that_does_not_answer_is_a_problem_not_the_end(
         wait_until(lambda: runner.problem() is None)
 
 
+def test_the_runner_is_not_ready_before_its_workers_are(
+    repository: Repository, store: RecordingStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    go = tmp_path / "go"
+    monkeypatch.setenv(GO, str(go))
+    recording_id = add(repository, store, "fine")
+    with running(repository, store, prepare_worker=prepare_when_told) as runner:
+        assert runner.problem() == "2 of 2 workers are still loading"
+        assert not ended(repository, recording_id)
+        go.touch()
+        wait_until(lambda: runner.problem() is None)
+        wait_until(lambda: ended(repository, recording_id))
+
+
 def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, store: RecordingStore) -> None:
     add(repository, store, "fine")
     with running(repository, store, prepare_worker=fail_to_start) as runner:
-        wait_until(lambda: runner.problem())
-        assert "the job runner stopped" in (runner.problem() or "")
+        wait_until(lambda: "the job runner stopped" in (runner.problem() or ""))

@@ -1,0 +1,15 @@
+"""The simulated motors know nothing of the models and methods that diagnose them."""
+
+import subprocess
+import sys
+
+SHARED = ("core.machines.motor_file", "core.machines.parameters", "core.recordings")
+"""What simulator and diagnosis have in common: what a nameplate says, and a file format."""
+
+
+def test_the_simulator_loads_nothing_of_the_diagnosis() -> None:
+    program = "import sys, ied_sim.cli; print(*(name for name in sys.modules if name.startswith('core.')))"
+    loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    modules = set(loaded.stdout.split()) - {"core.machines"}
+    assert "core.machines.parameters" in modules
+    assert {name for name in modules if not name.startswith(SHARED)} == set()
