@@ -5,12 +5,13 @@ of sequence a-c-b is mirrored, so that rotation, slip and load always count posi
 names is turned back into the terminals' labels on the way out.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi, sqrt
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import decimate
 
 from core.machines.base import Array
 from core.machines.parameters import Connection, Motor
@@ -21,6 +22,8 @@ from core.signals.phasors import fundamental_phasors
 from core.signals.sequence import PhaseSequence
 
 LONGEST_WINDOW_S = 1.0
+FEWEST_SAMPLES_A_CYCLE = 40
+"""Of a thinned record: up to the 13th harmonic its shape is kept."""
 Winding = Literal[0, 1, 2]
 
 _TURNED: dict[tuple[Connection, PhaseSequence], tuple[Winding, Winding, Winding]] = {
@@ -36,14 +39,15 @@ _TURNED: dict[tuple[Connection, PhaseSequence], tuple[Winding, Winding, Winding]
 class Case:
     """What the search and the refinement work on.
 
-    current_ab: winding currents on the Clarke axes, shape (2, n) [A]; line_per_winding_current turns their
-    magnitude into that of the lines (sqrt 3 in delta).
+    current_ab, voltage_ab: of the windings on the Clarke axes, shape (2, n) [A, V]; line_per_winding_current
+    turns the current's magnitude into that of the lines (sqrt 3 in delta).
     sequence: that of the supply, before mirroring.
     """
 
     motor: Motor
     supply: Supply
     current_ab: Array
+    voltage_ab: Array
     sample_rate_hz: float
     frequency_hz: float
     sequence: PhaseSequence
@@ -100,10 +104,33 @@ def case_of(
         motor=motor,
         supply=supply(voltage_ab, sample_rate_hz, frequency_hz, phasor),
         current_ab=current_ab,
+        voltage_ab=voltage_ab,
         sample_rate_hz=sample_rate_hz,
         frequency_hz=frequency_hz,
         sequence=sequence,
         window=window_of_record(current_ab.shape[1], sample_rate_hz, frequency_hz, LONGEST_WINDOW_S),
+    )
+
+
+def thinned(case: Case) -> Case:
+    """The same case at a lower sample rate, for a search that only has to come near.
+
+    Voltages and currents pass the same zero-phase filter, and the models are linear at constant speed: what
+    is true of the record is true of its filtered copy.
+    """
+    factor = int(case.sample_rate_hz / case.frequency_hz / FEWEST_SAMPLES_A_CYCLE)
+    if factor < 2:
+        return case
+    current_ab = decimate(case.current_ab, factor, ftype="fir", axis=1)
+    voltage_ab = decimate(case.voltage_ab, factor, ftype="fir", axis=1)
+    rate = case.sample_rate_hz / factor
+    return replace(
+        case,
+        supply=supply(voltage_ab, rate, case.frequency_hz, case.supply.phasor),
+        current_ab=current_ab,
+        voltage_ab=voltage_ab,
+        sample_rate_hz=rate,
+        window=window_of_record(current_ab.shape[1], rate, case.frequency_hz, LONGEST_WINDOW_S),
     )
 
 

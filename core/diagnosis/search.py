@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import OptimizeResult
 
-from core.diagnosis.case import Case
+from core.diagnosis.case import Case, thinned
 from core.diagnosis.errors import DiagnosisError
-from core.machines.base import Array
+from core.machines.base import Array, StatorModel
 from core.machines.playback import Candidates, Playback
 from core.optimisers import hcpa
 
@@ -42,16 +42,19 @@ def candidates_at(points: Array) -> Candidates:
     )
 
 
-def search(case: Case, playback: Playback, method: str) -> Starts:
-    """Run the optimiser called `method` and hand on its best point for each winding.
+def search(case: Case, model: StatorModel, method: str) -> Starts:
+    """Run the optimiser called `method` on the thinned record; hand on its best point for each winding.
 
     Raises DiagnosisError for a method that does not exist.
     """
     if method not in METHODS:
         raise DiagnosisError(f"method {method!r} is unknown; known: {', '.join(METHODS)}")
 
+    coarse = thinned(case)
+    playback = Playback(model, case.motor, coarse.supply, coarse.window)
+
     def cost(points: Array) -> Array:
-        return playback.squared_error(candidates_at(points), case.current_ab)
+        return playback.squared_error(candidates_at(points), coarse.current_ab)
 
     cycle = 1.0 / case.frequency_hz
     result = METHODS[method](

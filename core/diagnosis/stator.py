@@ -59,7 +59,7 @@ def diagnose(
     if baseline is not None:
         case = baseline.taken_off(case)
     playback = Playback(MODELS[model], motor, case.supply, case.window)
-    starts = search(case, playback, method)
+    starts = search(case, playback.model, method)
     explanation = explain(case, playback, starts)
     tolerance = systematic(
         case,
@@ -113,7 +113,7 @@ def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_on
             failed = ", ".join(finding.name for finding in quality if not finding.passed)
             raise DiagnosisError(f"{recording.source or 'recording'}: not fit for a baseline: {failed}")
         playback = Playback(SplitWinding(), motor, case.supply, case.window)
-        seen.append(standing_current(case, explain(case, playback, search(case, playback, "hcpa"))))
+        seen.append(standing_current(case, explain(case, playback, search(case, playback.model, "hcpa"))))
     return baseline_of(seen)
 
 
