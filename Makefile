@@ -2,20 +2,28 @@
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
+WARM := .venv/.compiled
 # Matrices are small here: threads of the linear algebra library only take cores from the tests' own processes.
 export OPENBLAS_NUM_THREADS ?= 1
 
 .PHONY: install demo test lint bench lock clean
 .DEFAULT_GOAL := install
 
-install: $(STAMP)
+install: $(WARM)
 
 $(BIN)/python:
 	sh .ci/make-venv "$(PYTHON)"
 
 $(STAMP): $(BIN)/python pyproject.toml constraints.txt
+	@echo "installing into .venv: a minute or two"
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
-	$(BIN)/python -m core.warm_up
+	touch $@
+
+# Cached machine code is checked against a function's own file only, not against those it calls: compile afresh.
+$(WARM): $(STAMP) $(wildcard core/machines/*.py ied_sim/*.py)
+	@echo "compiling the machine models: half a minute"
+	find core ied_sim -name '*.nb[ci]' -delete
+	$(BIN)/python -c 'import core.warm_up, ied_sim; core.warm_up.warm_up(); ied_sim.warm_up()'
 	touch $@
 
 demo: install

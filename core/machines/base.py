@@ -24,15 +24,28 @@ CLARKE_PHASE = float(np.sqrt(2.0 / 3.0))
 
 
 @dataclass(frozen=True, slots=True)
+class RotorAsymmetry:
+    """Turning part of the rotor's resistance, each of shape (candidates,): half the difference between its
+    axes [ohm], and the electrical angle of the axis of more resistance at the window's first sample [rad]."""
+
+    resistance: Array
+    angle: Array
+
+
+@dataclass(frozen=True, slots=True)
 class Circuits:
-    """Inductances L [H] and resistances R [ohm] of a batch, each of shape (candidates, 5, 5)."""
+    """Inductances L [H] and resistances R [ohm] of a batch, each of shape (candidates, 5, 5).
+
+    Where a rotor is not the same all around, R has its mean and `rotor_asymmetry` what turns with it.
+    """
 
     inductance: Array
     resistance: Array
+    rotor_asymmetry: RotorAsymmetry | None = None
 
 
 class StatorModel(Protocol):
-    """A stator winding with a fault of a level in one phase; replaceable (thesis section 6.5)."""
+    """A machine with a fault of a level, in a stator model's case in one phase; replaceable (thesis 6.5)."""
 
     @property
     def name(self) -> str:

@@ -14,6 +14,9 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
     `fastmath` lets the compiler contract and reorder sums (needed for fused multiply-add and vector lanes);
     no result here depends on signed zeros, infinities or the order of a sum.
+
+    The cache notices a change in the file of a function, not in those of the functions it calls: after
+    editing one, remove __pycache__.
     """
     return cast(
         Callable[P, R],

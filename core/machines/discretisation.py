@@ -1,7 +1,9 @@
 """Exact step of a linear system whose input is a straight line between samples (first-order hold).
 
-    x' = A x + B u,   u(t) = u_k + (u_k+1 - u_k) (t - t_k) / h
-    x_k+1 = E x_k + G0 u_k + G1 u_k+1,        E = exp(A h)
+    x' = A x + B u + D e,   u(t) = u_k + (u_k+1 - u_k) (t - t_k) / h,   e constant over the step
+    x_k+1 = E x_k + G0 u_k + G1 u_k+1 + H e,        E = exp(A h)
+
+u is the stator's voltage (rows 0, 1), e a voltage of the rotor circuits (rows 2, 3).
 
 The integrals of the exponential are summed as series over a step short enough to converge, then doubled:
 A-stable for any A, so a loop that decays in a microsecond is stepped at 0.1 ms without harm.
@@ -14,7 +16,7 @@ from core.machines.base import Array
 from core.machines.compiled import compiled
 
 STATES = 5
-INPUTS = 2
+INPUTS = 4
 SERIES_TERMS = 10
 SERIES_NORM = 0.25
 
@@ -31,8 +33,26 @@ def multiply(a: Array, b: Array, out: Array) -> None:
 
 
 @compiled
-def first_order_hold(A: Array, step: float, E: Array, G0: Array, G1: Array) -> None:
-    """Fill E (5, 5), G0 and G1 (5, 2) for x' = A x + [I; 0] u over `step` [s]."""
+def invert(matrix: Array, inverse: Array) -> None:
+    """Inverse of a 5 x 5 matrix whose diagonal dominates, by Gauss and Jordan without pivoting."""
+    work = matrix.copy()
+    inverse[:] = np.eye(5)
+    for i in range(5):
+        pivot = 1.0 / work[i, i]
+        for j in range(5):
+            work[i, j] *= pivot
+            inverse[i, j] *= pivot
+        for row in range(5):
+            if row != i:
+                factor = work[row, i]
+                for j in range(5):
+                    work[row, j] -= factor * work[i, j]
+                    inverse[row, j] -= factor * inverse[i, j]
+
+
+@compiled
+def first_order_hold(A: Array, step: float, E: Array, G0: Array, G1: Array, H: Array) -> None:
+    """Fill E (5, 5), G0, G1 and H (5, 2) for x' = A x + [u; e; 0] over `step` [s]."""
     norm = np.abs(A).sum(axis=1).max() * step
     doublings = 0
     while norm > SERIES_NORM:
@@ -60,5 +80,15 @@ def first_order_hold(A: Array, step: float, E: Array, G0: Array, G1: Array) -> N
         hold += carried
         multiply(E, E, product)
         E[:] = product
-    G0[:] = hold - ramp
-    G1[:] = ramp
+    G0[:] = hold[:, :2] - ramp[:, :2]
+    G1[:] = ramp[:, :2]
+    H[:] = hold[:, 2:]
+
+
+@compiled
+def discretise(decay: Array, w: float, step: float, E: Array, G0: Array, G1: Array, H: Array) -> None:
+    """The hold of a machine, A = decay + w Jr, at the electrical speed w [rad/s]."""
+    A = decay.copy()
+    A[2, 3] -= w
+    A[3, 2] += w
+    first_order_hold(A, step, E, G0, G1, H)

@@ -1,17 +1,18 @@
 """Measured voltages played through a stator model: what currents would this candidate have drawn?"""
 
 from dataclasses import dataclass
-from enum import IntEnum
+from enum import Enum, IntEnum
 from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.machines.base import Array, StatorModel
-from core.machines.batch import find_steady_states, play
+from core.machines.base import Array, RotorAsymmetry, StatorModel
+from core.machines.batch import find_rates, find_steady_states, play
 from core.machines.parameters import Motor
 from core.machines.steady_state import SteadyState
 from core.machines.supply import Supply
+from core.machines.turning_rotor import play_turning
 
 DELAY_MARGIN_COLUMNS = 3
 """Columns at the ends of a record that the interpolation of a delayed voltage cannot reach."""
@@ -23,6 +24,13 @@ class LoadLaw(IntEnum):
     CONSTANT = 0
     LINEAR = 1
     QUADRATIC = 2
+
+
+class Beginning(Enum):
+    """What the machine does at the window's first sample."""
+
+    STEADY_STATE = "steady state"
+    REST = "rest"
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +90,14 @@ class Playback:
         supply: Supply,
         window: Window,
         load_law: LoadLaw = LoadLaw.CONSTANT,
+        beginning: Beginning = Beginning.STEADY_STATE,
     ) -> None:
         self.model = model
         self.motor = motor
         self.supply = supply
         self.window = window
         self.load_law = load_law
+        self.beginning = beginning
         self._first = window.first * supply.substeps
         self._last = (window.last - 1) * supply.substeps + 1
         reach = DELAY_MARGIN_COLUMNS - 1
@@ -105,7 +115,7 @@ class Playback:
 
     def steady_state(self, candidates: Candidates) -> SteadyState:
         """Periodic steady state of every candidate at the window's first sample."""
-        return self._prepare(candidates).state
+        return self._steady_state(candidates, self._rates(candidates))
 
     def squared_error(self, candidates: Candidates, measured_ab: Array) -> Array:
         """Sum of squared distances of the model's to the measured current, (candidates,) [A^2] (6.25).
@@ -125,13 +135,19 @@ class Playback:
         self._play(candidates, np.empty((0, 2)), np.empty(n), current, speed)
         return Trajectories(current, speed)
 
-    def _prepare(self, candidates: Candidates) -> "_Prepared":
+    def _rates(self, candidates: Candidates) -> "_Rates":
         n = len(candidates)
         circuits = self.model.circuits(
             self.motor, candidates.fault_level, candidates.winding, candidates.path_ratio
         )
         load = np.zeros((n, 3))
         load[:, int(self.load_law)] = candidates.load_level * self._torque_per_pole_pair
+        rates = _Rates(np.empty((n, 5, 5)), np.empty((n, 5, 5)), load, circuits.rotor_asymmetry)
+        find_rates(circuits.inductance, circuits.resistance, rates.decay, rates.current_from_flux)
+        return rates
+
+    def _steady_state(self, candidates: Candidates, rates: "_Rates") -> SteadyState:
+        n = len(candidates)
         state = SteadyState(
             flux=np.empty((5, n)),
             speed=np.empty(n),
@@ -139,13 +155,12 @@ class Playback:
             current=np.empty((2, n), np.complex128),
             balanced=np.empty(n, np.bool_),
         )
-        decay, current_from_flux = np.empty((n, 5, 5)), np.empty((n, 4, 5))
         find_steady_states(
-            circuits.inductance, circuits.resistance, load, candidates.time_offset_s,
-            self.supply.angular_frequency, self._phasor, self._pull_out_slip, self._ripple_gain, decay,
-            current_from_flux, state.flux, state.speed, state.mean_speed, state.current, state.balanced,
+            rates.decay, rates.current_from_flux, rates.load, candidates.time_offset_s,
+            self.supply.angular_frequency, self._phasor, self._pull_out_slip, self._ripple_gain,
+            state.flux, state.speed, state.mean_speed, state.current, state.balanced,
         )  # fmt: skip
-        return _Prepared(state, load, decay, current_from_flux)
+        return state
 
     def _play(
         self, candidates: Candidates, measured: Array, error: Array, current: Array, speed: Array
@@ -156,24 +171,38 @@ class Playback:
                 f"time offsets: expected {self._earliest_delay:g} to {self._latest_delay:g} s, for which "
                 f"the record has voltages, found {delays.min():g} to {delays.max():g} s"
             )
-        prepared = self._prepare(candidates)
-        substeps, window = self.supply.substeps, self.window
-        play(
-            self.supply.voltage, self._first, self._last, self.supply.step_s, substeps, delays,
-            prepared.decay, prepared.current_from_flux, prepared.load,
-            self._ripple_gain * self.supply.step_s, prepared.state.flux, prepared.state.speed, measured,
-            max(1, (window.compare_from - window.first) * substeps), error, current, speed,
-        )  # fmt: skip
+        rates = self._rates(candidates)
+        if self.beginning is Beginning.REST:
+            flux_0, speed_0 = np.zeros((5, len(candidates))), np.zeros(len(candidates))
+        else:
+            state = self._steady_state(candidates, rates)
+            flux_0, speed_0 = state.flux, state.speed
+        supply, asymmetry = self.supply, rates.rotor_asymmetry
+        compare_from = max(1, (self.window.compare_from - self.window.first) * supply.substeps)
+        acceleration, turn = self._ripple_gain * supply.step_s, supply.angular_frequency * supply.step_s
+        if asymmetry is None:
+            play(
+                supply.voltage, self._first, self._last, supply.step_s, supply.substeps, delays, rates.decay,
+                rates.current_from_flux, rates.load, acceleration, turn, flux_0, speed_0, measured,
+                compare_from, error, current, speed,
+            )  # fmt: skip
+        else:
+            play_turning(
+                supply.voltage, self._first, self._last, supply.step_s, supply.substeps, delays, rates.decay,
+                rates.current_from_flux, rates.load, acceleration, turn, flux_0, speed_0,
+                asymmetry.resistance, asymmetry.angle, measured, compare_from, error, current, speed,
+            )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
-class _Prepared:
-    """What a batch is stepped with: its steady state and the arrays `find_steady_states` fills."""
+class _Rates:
+    """What a batch is stepped with: -R inv(L) and inv(L) (n, 5, 5), the load's polynomial in the speed
+    (n, 3), what of the rotor's resistance turns with it."""
 
-    state: SteadyState
-    load: Array
     decay: Array
     current_from_flux: Array
+    load: Array
+    rotor_asymmetry: RotorAsymmetry | None
 
 
 def window_of_record(samples: int, sample_rate_hz: float, frequency_hz: float, longest_s: float) -> Window:

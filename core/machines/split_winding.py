@@ -9,6 +9,8 @@ from core.machines.parameters import Connection, Motor
 
 WHOLE_PHASE = 1.0
 """No more turns than the phase has can be shorted."""
+LOWEST_LEVEL = -0.01
+"""Continued below zero, the loop's inductance L_ls + 2/3 mu L_m stays positive: L_m / L_ls is under 100."""
 
 
 class SplitWinding:
@@ -31,7 +33,7 @@ class SplitWinding:
     """
 
     name = "split-winding"
-    lowest_level = -0.05
+    lowest_level = LOWEST_LEVEL
     knows_path = True
 
     def circuits(
@@ -46,7 +48,7 @@ class SplitWinding:
             machine.stator_resistance_ohm,
         )
         axis = CLARKE_PHASE * winding_axis(winding)
-        level = np.minimum(fault_level * (1.0 + path_ratio), WHOLE_PHASE)
+        level = np.clip(fault_level * (1.0 + path_ratio), LOWEST_LEVEL, WHOLE_PHASE)
         mu = level[:, np.newaxis]
         L[:, 0:2, 4] = -(L_ls + L_m) * axis
         L[:, 2:4, 4] = -L_m * axis

@@ -5,6 +5,13 @@ the positive and the negative sequence together: with v(t) = Re(V e^{j w_s t}) o
 
     (j w_s I - A(w)) Psi = [V; 0],   A(w) = -R inv(L) + w Jr,
     T_e / p = Re(Psi_r x conj(I_r)) / 2  (mean)  +  Re((Psi_r x I_r) e^{j 2 w_s t}) / 2  (ripple)
+
+Where both sequences turn, the ripple makes the speed w + Re(W e^{j 2 w_s t}), and that answers in the flux:
+
+    (j w_s I - A(w)) dPsi_1 = W Jr conj(Psi) / 2,     (j 3 w_s I - A(w)) Psi_3 = W Jr Psi / 2
+
+both proportional to W, so that their torque closes one linear equation for W: harmonic balance at w_s and
+3 w_s, with the mean speed corrected to the second order in W / w_s (which is below 1 %).
 """
 
 from dataclasses import dataclass
@@ -15,6 +22,8 @@ from numpy.typing import NDArray
 from core.machines.base import Array
 from core.machines.compiled import compiled
 
+ComplexArray = NDArray[np.complex128]
+
 SPEED_TOLERANCE = 1e-9
 MOST_ITERATIONS = 60
 
@@ -22,31 +31,28 @@ MOST_ITERATIONS = 60
 @dataclass(frozen=True, slots=True)
 class SteadyState:
     """Of each candidate: flux at t = 0 (5, candidates) [V s], speed at t = 0 and mean speed (candidates,)
-    [electrical rad/s], stator current phasors on the Clarke axes (2, candidates) [A, peak], and whether a
-    speed exists at which the torques balance (candidates,)."""
+    [electrical rad/s], stator current phasors at w_s on the Clarke axes (2, candidates) [A, peak], and
+    whether a speed exists at which the torques balance (candidates,)."""
 
     flux: Array
     speed: Array
     mean_speed: Array
-    current: NDArray[np.complex128]
+    current: ComplexArray
     balanced: NDArray[np.bool_]
 
 
 @compiled
-def solve_circuits(
-    decay: Array, w: float, w_s: float, V_alpha: complex, V_beta: complex, flux: NDArray[np.complex128]
-) -> None:
-    """flux = inv(j w_s I - decay - w Jr) [V; 0] by elimination; the diagonal dominates, so no pivoting."""
+def solve_circuits(decay: Array, w: float, frequency: float, drive: ComplexArray, flux: ComplexArray) -> None:
+    """flux = inv(j frequency I - decay - w Jr) [drive; 0] by elimination; the diagonal dominates, so no
+    pivoting. drive (4,): voltage phasors of stator and rotor."""
     M = np.empty((5, 6), np.complex128)
     for i in range(5):
         for j in range(5):
             M[i, j] = -decay[i, j]
-        M[i, i] += 1j * w_s
-        M[i, 5] = 0.0
+        M[i, i] += 1j * frequency
+        M[i, 5] = drive[i] if i < 4 else 0.0
     M[2, 3] += w
     M[3, 2] -= w
-    M[0, 5] = V_alpha
-    M[1, 5] = V_beta
     for i in range(5):
         for row in range(i + 1, 5):
             factor = M[row, i] / M[i, i]
@@ -60,36 +66,42 @@ def solve_circuits(
 
 
 @compiled
-def mean_torque(
-    decay: Array, current_from_flux: Array, w: float, w_s: float, V_alpha: complex, V_beta: complex,
-    flux: NDArray[np.complex128], rotor: NDArray[np.complex128],
-) -> float:  # fmt: skip
-    """Mean of T_e / p at speed w; leaves the flux and the rotor currents of that speed behind."""
-    solve_circuits(decay, w, w_s, V_alpha, V_beta, flux)
+def rotor_current(current_from_flux: Array, flux: ComplexArray, rotor: ComplexArray) -> None:
+    """i_r (2,) from the flux of all circuits."""
     for axis in range(2):
         rotor[axis] = 0.0
         for j in range(5):
             rotor[axis] += current_from_flux[2 + axis, j] * flux[j]
+
+
+@compiled
+def mean_torque(
+    decay: Array, current_from_flux: Array, w: float, w_s: float, drive: ComplexArray, flux: ComplexArray,
+    rotor: ComplexArray,
+) -> float:  # fmt: skip
+    """Mean of T_e / p at speed w; leaves the flux and the rotor currents of that speed behind."""
+    solve_circuits(decay, w, w_s, drive, flux)
+    rotor_current(current_from_flux, flux, rotor)
     crossed = flux[3] * np.conj(rotor[0]) - flux[2] * np.conj(rotor[1])
     return 0.5 * float(crossed.real)
 
 
 @compiled
 def balance(
-    decay: Array, current_from_flux: Array, load: Array, w_s: float, V_alpha: complex, V_beta: complex,
-    pull_out_slip: float, flux: NDArray[np.complex128], rotor: NDArray[np.complex128],
+    decay: Array, current_from_flux: Array, load: Array, w_s: float, drive: ComplexArray,
+    pull_out_slip: float, flux: ComplexArray, rotor: ComplexArray,
 ) -> tuple[float, bool]:  # fmt: skip
     """Speed between pull-out and synchronism (a little above, for the drag of the negative sequence) at
     which motor and load torque agree, by regula falsi (Illinois); False where the load is too heavy."""
     low, high = w_s * (1.0 - pull_out_slip), w_s * (1.0 + 0.1 * pull_out_slip)
     surplus_low = (
-        mean_torque(decay, current_from_flux, low, w_s, V_alpha, V_beta, flux, rotor)
+        mean_torque(decay, current_from_flux, low, w_s, drive, flux, rotor)
         - load[0] - low * (load[1] + low * load[2])
     )  # fmt: skip
     if surplus_low <= 0.0:
         return low, False
     surplus_high = (
-        mean_torque(decay, current_from_flux, high, w_s, V_alpha, V_beta, flux, rotor)
+        mean_torque(decay, current_from_flux, high, w_s, drive, flux, rotor)
         - load[0] - high * (load[1] + high * load[2])
     )  # fmt: skip
     w, side = high, 0
@@ -97,7 +109,7 @@ def balance(
         previous = w
         w = (low * surplus_high - high * surplus_low) / (surplus_high - surplus_low)
         surplus = (
-            mean_torque(decay, current_from_flux, w, w_s, V_alpha, V_beta, flux, rotor)
+            mean_torque(decay, current_from_flux, w, w_s, drive, flux, rotor)
             - load[0] - w * (load[1] + w * load[2])
         )  # fmt: skip
         if abs(w - previous) < SPEED_TOLERANCE * w_s:
@@ -113,3 +125,64 @@ def balance(
                 surplus_low *= 0.5
             side = -1
     return w, True
+
+
+@compiled
+def answer_speed(
+    decay: Array, current_from_flux: Array, w: float, frequency: float, amplitude: complex,
+    turned: ComplexArray, flux: ComplexArray, rotor: ComplexArray,
+) -> None:  # fmt: skip
+    """Flux and rotor current at `frequency` in answer to the rotor's voltage amplitude Jr turned."""
+    drive = np.zeros(4, np.complex128)
+    drive[2], drive[3] = -amplitude * turned[3], amplitude * turned[2]
+    solve_circuits(decay, w, frequency, drive, flux)
+    rotor_current(current_from_flux, flux, rotor)
+
+
+@compiled
+def cross(flux: ComplexArray, rotor: ComplexArray) -> complex:
+    """psi_r_beta i_r_alpha - psi_r_alpha i_r_beta: T_e / p of two real vectors."""
+    return complex(flux[3] * rotor[0] - flux[2] * rotor[1])
+
+
+@compiled
+def answer_ripple(
+    decay: Array, current_from_flux: Array, load: Array, w: float, w_s: float, gain: float,
+    flux: ComplexArray, rotor: ComplexArray, third: ComplexArray,
+) -> tuple[float, complex]:  # fmt: skip
+    """Mean speed and amplitude W of its ripple; adds their answer to `flux`, fills `third`, that at 3 w_s.
+
+    flux, rotor: Psi and I_r of constant speed w; gain: p^2 / J. The mean torque changes with |W|^2, and the
+    mean speed makes up for it.
+    """
+    once, steady, again = np.empty(5, np.complex128), np.empty(5, np.complex128), np.empty(5, np.complex128)
+    i_once, i_steady, i_again = (
+        np.empty(2, np.complex128), np.empty(2, np.complex128), np.empty(2, np.complex128),
+    )  # fmt: skip
+    i_third = np.empty(2, np.complex128)
+    answer_speed(decay, current_from_flux, w, w_s, 0.5, np.conj(flux), once, i_once)
+    answer_speed(decay, current_from_flux, w, 3.0 * w_s, 0.5, flux, third, i_third)
+    answer_speed(decay, current_from_flux, w, w_s, 1.0, flux, steady, i_steady)
+    load_slope = load[1] + 2.0 * w * load[2]
+    ripple_slope = 0.5 * (
+        cross(once, rotor) + cross(flux, i_once)
+        + cross(third, np.conj(rotor)) + cross(np.conj(flux), i_third)
+    )  # fmt: skip
+    ripple = gain * 0.5 * cross(flux, rotor) / (2j * w_s + gain * (load_slope - ripple_slope))
+
+    # Of second order: the ripple of the third harmonic back at w_s, and the mean torque.
+    once *= ripple
+    i_once *= ripple
+    third *= ripple
+    i_third *= ripple
+    answer_speed(decay, current_from_flux, w, w_s, 0.5 * np.conj(ripple), third, again, i_again)
+    mean_slope = 0.5 * (cross(steady, np.conj(rotor)) + cross(np.conj(flux), i_steady)).real
+    gained = -0.5 * cross(flux, np.conj(rotor)).real
+    flux += once + again
+    rotor += i_once + i_again
+    gained += 0.5 * (cross(flux, np.conj(rotor)) + cross(third, np.conj(i_third))).real
+    # Near pull-out the slopes cancel; what is of second order stays below what is of first.
+    most = abs(ripple)
+    shift = min(most, max(-most, gained / (load_slope - mean_slope)))
+    flux += shift * steady
+    return w + shift, complex(ripple)

@@ -1,4 +1,4 @@
-"""The equations of the two fault models as they stand on the page, integrated by scipy: slow, independent.
+"""The equations of the models as they stand on the page, integrated by scipy: slow, independent.
 
 Currents are found from fluxes by solving the flux equations written as a function of the currents, column by
 column; nothing of the models' own matrices is used.
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from core.machines.parameters import Motor
+from core.machines.parameters import Connection, Motor
 
 Array = NDArray[np.float64]
 K = np.sqrt(2.0 / 3.0)
@@ -43,13 +43,19 @@ def shorted_winding_drops(motor: Motor, mu: float, winding: int, v: Array, z: Ar
     )
 
 
+def split_winding_current(motor: Motor, mu: float, winding: int, z: Array) -> float:
+    """i_x: in delta with a third of the shunt's current, which runs around and never reaches the lines."""
+    around = mu * z[4] / 3.0 if motor.nameplate.connection is Connection.DELTA else 0.0
+    return float(K * axis(winding) @ z[0:2] + around)
+
+
 def split_winding_fluxes(motor: Motor, mu: float, winding: int, z: Array) -> Array:
     """psi_s, psi_r, psi_x2 of Tallam's model from i_s, i_r, i_f."""
     p, n = motor.parameters, axis(winding)
     i_s, i_r, i_f = z[0:2], z[2:4], z[4]
     sound = i_s - K * n * mu * i_f
     psi_m = p.magnetising_inductance_H * (sound + i_r)
-    psi_x2 = mu * (p.stator_leakage_H * (K * n @ i_s - i_f) + K * n @ psi_m)
+    psi_x2 = mu * (p.stator_leakage_H * (split_winding_current(motor, mu, winding, z) - i_f) + K * n @ psi_m)
     return np.concatenate([p.stator_leakage_H * sound + psi_m, p.rotor_leakage_H * i_r + psi_m, [psi_x2]])
 
 
@@ -60,15 +66,59 @@ def split_winding_drops(motor: Motor, mu: float, winding: int, v: Array, z: Arra
         [
             v - p.stator_resistance_ohm * (i_s - K * n * mu * i_f),
             -p.rotor_resistance_ohm * i_r,
-            [-mu * p.stator_resistance_ohm * (K * n @ i_s - i_f)],
+            [-mu * p.stator_resistance_ohm * (split_winding_current(motor, mu, winding, z) - i_f)],
         ]
     )
 
 
+def healthy_fluxes(motor: Motor, mu: float, winding: int, z: Array) -> Array:
+    """psi_s, psi_r of thesis 3.14 and 3.15 from i_s, i_r; the fifth is idle."""
+    p, i_s, i_r = motor.parameters, z[0:2], z[2:4]
+    psi_m = p.magnetising_inductance_H * (i_s + i_r)
+    return np.concatenate([p.stator_leakage_H * i_s + psi_m, p.rotor_leakage_H * i_r + psi_m, z[4:]])
+
+
+def healthy_drops(motor: Motor, mu: float, winding: int, v: Array, z: Array) -> Array:
+    p = motor.parameters
+    return np.concatenate(
+        [
+            v - p.stator_resistance_ohm * z[0:2],
+            -p.rotor_resistance_ohm * z[2:4],
+            [-p.stator_resistance_ohm * z[4]],
+        ]
+    )
+
+
+def high_resistance_fluxes(motor: Motor, mu: float, winding: int, z: Array) -> Array:
+    """The healthy machine's; the fifth current is the delta's zero sequence i_0 through the leakage."""
+    fluxes = healthy_fluxes(motor, mu, winding, z)
+    fluxes[4] = motor.parameters.stator_leakage_H * z[4]
+    return fluxes
+
+
+def high_resistance_drops(motor: Motor, mu: float, winding: int, v: Array, z: Array) -> Array:
+    """mu R_s in series with one winding: a drop along its axis, and in a delta around the loop."""
+    p, n = motor.parameters, axis(winding)
+    delta = motor.nameplate.connection is Connection.DELTA
+    i_x = K * n @ z[0:2] + (z[4] / np.sqrt(3.0) if delta else 0.0)
+    drop = mu * p.stator_resistance_ohm * i_x
+    around = drop / np.sqrt(3.0) if delta else 0.0
+    added = np.concatenate([K * n * drop, [0.0, 0.0, around]])
+    return np.asarray(healthy_drops(motor, mu, winding, v, z) - added, dtype=np.float64)
+
+
 PAGES = {
+    "healthy": (healthy_fluxes, healthy_drops),
     "shorted-winding": (shorted_winding_fluxes, shorted_winding_drops),
     "split-winding": (split_winding_fluxes, split_winding_drops),
+    "high-resistance": (high_resistance_fluxes, high_resistance_drops),
 }
+
+
+def axis_resistance_growth(broken_share: float) -> float:
+    """alpha / (1 - alpha), alpha = 2 n_bb / N_b: rotor resistance along the broken bars' axis, relative."""
+    alpha = 2.0 * broken_share
+    return alpha / (1.0 - alpha)
 
 
 def integrate(
@@ -83,25 +133,39 @@ def integrate(
     times: Array,
     method: Literal["DOP853", "Radau", "RK45"] = "DOP853",
     rtol: float = 1e-10,
+    *,
+    load_exponent: int = 0,
+    broken_share: float = 0.0,
 ) -> tuple[Array, Array]:
-    """Stator currents (2, times) and electrical speed (times,) from currents `start` (5,) at times[0]."""
+    """Stator currents (2, times) and electrical speed (times,) from currents `start` (5,) at times[0].
+
+    load_exponent: of the speed in the load torque; broken_share: n_bb / N_b, their axis on alpha at times[0].
+    """
     fluxes, drops = PAGES[model]
     columns = np.array([fluxes(motor, mu, winding, unit) for unit in np.eye(5)]).T
     inverse = np.linalg.inv(columns)
+    off = np.zeros(2)
+    decay = np.array([drops(motor, mu, winding, off, unit) for unit in np.eye(5)]).T @ inverse
     nameplate, p = motor.nameplate, motor.parameters
     pole_pairs = nameplate.pole_pairs
-    load = load_level * nameplate.rated_torque_Nm
+    rated_load = load_level * nameplate.rated_torque_Nm
+    added_resistance = p.rotor_resistance_ohm * axis_resistance_growth(broken_share)
 
     def rhs(t: float, y: Array) -> Array:
-        z, w = inverse @ y[:5], y[5]
-        change = drops(motor, mu, winding, voltage(t), z)
+        z, w, angle = inverse @ y[:5], y[5], y[6]
+        change = decay @ y[:5]
+        change[0:2] += voltage(t)
         change[2:4] += w * (J @ y[2:4])
+        if added_resistance:
+            q = np.array([np.cos(angle), np.sin(angle)])
+            change[2:4] -= added_resistance * q * (q @ z[2:4])
         torque = pole_pairs * (y[3] * z[2] - y[2] * z[3])
-        return np.concatenate([change, [pole_pairs / p.inertia_kgm2 * (torque - load)]])
+        load = rated_load * (w / nameplate.rated_angular_frequency) ** load_exponent
+        return np.concatenate([change, [pole_pairs / p.inertia_kgm2 * (torque - load), w]])
 
-    y0 = np.concatenate([columns @ start, [speed]])
+    y0 = np.concatenate([columns @ start, [speed, 0.0]])
     solution = solve_ivp(
-        rhs, (float(times[0]), float(times[-1])), y0, method=method, t_eval=times, rtol=1e-10, atol=1e-12
+        rhs, (float(times[0]), float(times[-1])), y0, method=method, t_eval=times, rtol=rtol, atol=1e-2 * rtol
     )
     assert solution.success, solution.message
     return (inverse @ solution.y[:5])[:2], solution.y[5]

@@ -162,7 +162,7 @@ def spoilt(kind: str) -> Recording:  # noqa: C901 - one case a check
         case "missing samples":
             x[1, 300] = np.nan
         case "duration":
-            x = x[:, :1000]
+            x = x[:, :900]
         case "clipping IA":
             x[0] = np.clip(x[0], -1.0, 1.0)
             channels[0] = replace(channels[0], full_scale=1.0)

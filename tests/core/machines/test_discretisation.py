@@ -11,13 +11,13 @@ from core.machines.discretisation import first_order_hold
 
 
 def van_loan(A: NDArray[np.float64], h: float) -> tuple[NDArray[np.float64], ...]:
-    M = np.zeros((9, 9))
+    M = np.zeros((13, 13))
     M[:5, :5] = A * h
-    M[:2, 5:7] = h * np.eye(2)
-    M[5:7, 7:] = np.eye(2)
+    M[:4, 5:9] = h * np.eye(4)
+    M[5:9, 9:] = np.eye(4)
     exponential = expm(M)
-    ramp = exponential[:5, 7:]
-    return exponential[:5, :5], exponential[:5, 5:7] - ramp, ramp
+    hold, ramp = exponential[:5, 5:9], exponential[:5, 9:]
+    return exponential[:5, :5], hold[:, :2] - ramp[:, :2], ramp[:, :2], hold[:, 2:]
 
 
 @settings(max_examples=50, deadline=None)
@@ -26,15 +26,15 @@ def test_agrees_with_the_matrix_exponential(seed: int, scale: float, step: float
     rng = np.random.default_rng(seed)
     A = scale * rng.standard_normal((5, 5))
     A -= (np.abs(np.linalg.eigvals(A).real).max() + scale) * np.eye(5)
-    E, G0, G1 = np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2))
-    first_order_hold(A, step, E, G0, G1)
-    for ours, theirs in zip((E, G0, G1), van_loan(A, step), strict=True):
+    E, G0, G1, H = np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2))
+    first_order_hold(A, step, E, G0, G1, H)
+    for ours, theirs in zip((E, G0, G1, H), van_loan(A, step), strict=True):
         assert ours == pytest.approx(theirs, rel=1e-7, abs=1e-10 * max(1.0, step))
 
 
 def test_a_stiff_loop_decays_instead_of_blowing_up() -> None:
     A = np.diag([-100.0, -100.0, -100.0, -100.0, -1e9])
-    E, G0, G1 = np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2))
-    first_order_hold(A, 1e-4, E, G0, G1)
+    E, G0, G1, H = np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2))
+    first_order_hold(A, 1e-4, E, G0, G1, H)
     assert np.abs(np.linalg.eigvals(E)).max() < 1.0
     assert E[4, 4] == pytest.approx(0.0, abs=1e-12)

@@ -1,0 +1,55 @@
+"""Broken rotor bars: a cage that conducts less along one axis, which turns with the rotor.
+
+A cage of N_b bars with n_bb neighbouring ones broken has lost the share alpha = 2 n_bb / N_b of its
+conductance along their axis and nothing across it (the squares of the bars' shares of a sine-shaped current
+add up to N_b / 2). With q = (cos th, sin th), th the axis's electrical angle on the stator,
+
+    R(th) = R_r (I + g q q'),     g = alpha / (1 - alpha)
+          = R_r (1 + g/2) I + R_r g/2 [[cos 2th, sin 2th], [sin 2th, -cos 2th]]
+
+(Bachir, Tnani, Trigeassou, Champenois, IEEE Trans. Ind. Electron. 53(3), 2006: alpha = 2/3 eta with
+eta = 3 n_bb / N_b.) The even part is one more rotor resistance, which every formula of the other models
+takes; the part that turns needs the rotor's angle and so a stepping of its own (turning_rotor.py). It throws
+the rotor's current back at -s f in the rotor, which the stator sees at (1 - 2 s) f; the ripple of torque and
+speed at 2 s f adds (1 + 2 s) f.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.machines.base import Array, Circuits, RotorAsymmetry
+from core.machines.healthy import symmetrical
+from core.machines.parameters import Motor
+
+
+@dataclass(frozen=True, slots=True)
+class BrokenBars:
+    """Level n_bb / N_b, share of the cage's bars that are broken, all in one place.
+
+    axis_angle: electrical angle of their axis on the stator's alpha axis at the window's first sample [rad].
+    The steady state is that of the mean rotor resistance; the sidebands need about a slip period to settle.
+    """
+
+    axis_angle: float = 0.0
+    name = "broken-bars"
+    lowest_level = 0.0
+    knows_path = False
+
+    def circuits(
+        self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
+    ) -> Circuits:
+        del winding, path_ratio
+        circuits = symmetrical(motor, fault_level.size)
+        half = 0.5 * motor.parameters.rotor_resistance_ohm * resistance_growth(fault_level)
+        for axis in (2, 3):
+            circuits.resistance[:, axis, axis] += half
+        angle = np.full(fault_level.size, self.axis_angle)
+        return Circuits(circuits.inductance, circuits.resistance, RotorAsymmetry(half, angle))
+
+
+def resistance_growth(broken_share: Array) -> Array:
+    """g = alpha / (1 - alpha) of n_bb / N_b: growth of the rotor resistance along the broken bars' axis."""
+    alpha = 2.0 * broken_share
+    return np.asarray(alpha / (1.0 - alpha), dtype=np.float64)

@@ -1,0 +1,92 @@
+"""Stepping candidates whose rotor resistance has an axis that turns with the rotor.
+
+    R_r(th) = mean + asymmetry [[cos 2th, sin 2th], [sin 2th, -cos 2th]],     d(th)/dt = w
+
+As in kernel.py, with the drop across the turning part as one more voltage of the rotor, extrapolated to the
+middle of the step. Plain loops, one candidate after the other: this is for simulating, not for searching.
+"""
+
+import numpy as np
+
+from core.machines.base import Array
+from core.machines.compiled import compiled
+from core.machines.delay import delay_voltage
+from core.machines.discretisation import discretise, multiply
+from core.machines.kernel import REFERENCE_DRIFT, mean_over_next_step
+
+
+@compiled
+def turning_drop(asymmetry: float, angle: float, i: Array, drop: Array) -> None:
+    """Drop across the turning part of the rotor's resistance, (2,) [V]; i: i_s, i_r, j."""
+    cosine, sine = asymmetry * np.cos(2.0 * angle), asymmetry * np.sin(2.0 * angle)
+    drop[0] = cosine * i[2, 0] + sine * i[3, 0]
+    drop[1] = sine * i[2, 0] - cosine * i[3, 0]
+
+
+@compiled
+def simulate_turning(
+    u: Array, step: float, decay: Array, current_from_flux: Array, load: Array, acceleration: float,
+    turn: float, flux: Array, w: float, asymmetry: float, angle: float, current: Array, speed: Array,
+) -> None:  # fmt: skip
+    """One candidate through voltages u (columns, 2); fills current (columns, 2) and speed (columns,).
+
+    asymmetry [ohm] and angle [rad] are those of the header, the angle at column 0; flux (5,), w likewise.
+    """
+    E, G0, G1, H = np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2))
+    x, x_next, i, rotor_before = np.empty((5, 1)), np.empty((5, 1)), np.empty((5, 1)), np.empty(2)
+    drop, drop_before, e = np.zeros(2), np.empty(2), np.empty(2)
+    x[:, 0], rotor_before[:], reference, half_kick = flux, flux[2:4], np.inf, 0.0
+    now, before = mean_over_next_step(turn)
+    for k in range(u.shape[0]):
+        drop_before[:] = drop
+        multiply(current_from_flux, x, i)
+        turning_drop(asymmetry, angle, i, drop)
+        if k == 0:
+            drop_before[:] = drop
+        current[k] = i[:2, 0]
+        pace = w + half_kick
+        demand = load[0] + pace * (load[1] + pace * load[2])
+        half_kick = 0.5 * acceleration * (x[3, 0] * i[2, 0] - x[2, 0] * i[3, 0] - demand)
+        if k > 0:
+            w += half_kick
+        speed[k] = w
+        w += half_kick
+        if k == u.shape[0] - 1:
+            break
+        if abs(w - reference) > REFERENCE_DRIFT:
+            reference = w
+            discretise(decay, reference, step, E, G0, G1, H)
+        ahead = w - reference
+        e[0] = -ahead * (now * x[3, 0] + before * rotor_before[1]) - now * drop[0] - before * drop_before[0]
+        e[1] = ahead * (now * x[2, 0] + before * rotor_before[0]) - now * drop[1] - before * drop_before[1]
+        rotor_before[:] = x[2:4, 0]
+        multiply(E, x, x_next)
+        for row in range(5):
+            x[row, 0] = x_next[row, 0] + H[row, 0] * e[0] + H[row, 1] * e[1]
+            for axis in range(2):
+                x[row, 0] += G0[row, axis] * u[k, axis] + G1[row, axis] * u[k + 1, axis]
+        angle += step * w
+
+
+@compiled
+def play_turning(
+    voltage: Array, first: int, last: int, step: float, substeps: int, delay_s: Array, decay: Array,
+    current_from_flux: Array, load: Array, acceleration: float, turn: float, flux_0: Array, speed_0: Array,
+    asymmetry: Array, angle_0: Array, measured: Array, compare_from: int, error: Array, current: Array,
+    speed: Array,
+) -> None:  # fmt: skip
+    """Like `batch.play`; asymmetry [ohm] and angle_0, th at the first column [rad], of shape (n,)."""
+    u, track, pace = np.empty((last - first, 2)), np.empty((last - first, 2)), np.empty(last - first)
+    for c in range(delay_s.size):
+        delay_voltage(voltage, delay_s[c] / step, first, u)
+        simulate_turning(
+            u, step, decay[c], current_from_flux[c], load[c], acceleration, turn, flux_0[:, c], speed_0[c],
+            asymmetry[c], angle_0[c], track, pace,
+        )  # fmt: skip
+        error[c] = 0.0
+        for k in range(0, track.shape[0], substeps):
+            if speed.shape[1] > 0:
+                current[c, :, k // substeps], speed[c, k // substeps] = track[k], pace[k]
+            if measured.shape[0] > 0 and k >= compare_from:
+                difference = track[k] - measured[k // substeps]
+                error[c] += difference[0] ** 2 + difference[1] ** 2
