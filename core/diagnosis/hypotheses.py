@@ -32,6 +32,8 @@ SIGNIFICANT = 3.0
 """Standard errors beyond which a level or a path counts as seen."""
 UNLIKELY = 2.15
 """Standard deviations that a complex error exceeds once in a hundred times: sqrt(ln 100)."""
+OFFSET_DEVIATION_S, WIDEST_OFFSET = 100e-6, 5.0
+"""Standard deviation of the offset between a relay's channels [s], and how many of it are still a relay's."""
 PATH_START = 0.5
 """Path ratio that a fit starts from; beside it the least level a fit starts from, for its angle to count."""
 LEVEL_START = 0.005
@@ -62,7 +64,7 @@ def explain(case: Case, playback: Playback, starts: Starts) -> Explanation:
     """
     unknowns = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
     fits = [refine(case, playback, start, unknowns) for start in starts.by_winding]
-    winding = _likeliest(fits)
+    winding = _likeliest(case, fits)
     fit = fits[winding]
     healthy = refine(
         case, playback, replace(fit.candidate, fault_level=np.zeros(1)), (LOAD_LEVEL, TIME_OFFSET)
@@ -73,7 +75,7 @@ def explain(case: Case, playback: Playback, starts: Starts) -> Explanation:
     if playback.model.knows_path and after > max(PATH_WORTH, PATH_WORTH_SHARE * before):
         through = [refine(case, playback, _with_path(one), (*unknowns, PATH_RATIO)) for one in fits]
         tried += through
-        likeliest = _likeliest(through)
+        likeliest = _likeliest(case, through)
         bridged = through[likeliest]
         left = _left(case, bridged, healthy)
         if left < after and _is_seen(bridged, FAULT_LEVEL) and _is_seen(bridged, PATH_RATIO):
@@ -94,11 +96,19 @@ def is_explained(explanation: Explanation, tolerance: Systematic) -> bool:
     return explanation.fit.value(FAULT_LEVEL) > 0.0 and explanation.unexplained <= allowed
 
 
-def _likeliest(fits: list[Fit]) -> int:
-    """The winding with the least residual among those with a level above zero; no winding has fewer turns
-    shorted than none, so a level below zero only stands where there is no other."""
-    possible = [fit.squared_error if fit.value(FAULT_LEVEL) > 0.0 else np.inf for fit in fits]
-    return int(np.argmin(possible if np.isfinite(min(possible)) else [fit.squared_error for fit in fits]))
+def _likeliest(case: Case, fits: list[Fit]) -> int:
+    """The winding that explains the record best, among those with a level above zero: no winding has fewer
+    turns shorted than none, so a level below zero only stands where there is no other.
+
+    Two windings may fit equally well, one of them with an offset no relay has (a light load on a strongly
+    unbalanced supply): the offset's prior decides, as long as some winding's offset is a relay's at all.
+    """
+    squared = np.array([fit.squared_error for fit in fits])
+    offset = np.array([fit.value(TIME_OFFSET) for fit in fits]) / OFFSET_DEVIATION_S
+    if np.abs(offset).min() < WIDEST_OFFSET:
+        squared = squared + squared.min() / (2 * case.samples_compared) * offset**2
+    possible = np.array([fit.value(FAULT_LEVEL) > 0.0 for fit in fits])
+    return int(np.argmin(np.where(possible, squared, np.inf) if possible.any() else squared))
 
 
 def _with_path(fit: Fit) -> Candidates:
