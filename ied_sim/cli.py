@@ -5,6 +5,7 @@ import logging
 import signal
 import sys
 import tempfile
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +18,12 @@ from ied_sim.scenario import RelayScenario, ScenarioError, healthy_reference, re
 from ied_sim.simulator import Simulator
 
 app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        _say(f"ied-sim {version('statorwatch')}")
+        raise typer.Exit
 
 
 @app.command()
@@ -37,6 +44,10 @@ def ied_sim(
     at: Annotated[
         float, typer.Option(metavar="SECONDS", help="With --truth: time since the simulator's start.")
     ] = 0.0,
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop."),
+    ] = False,
 ) -> None:
     """Serve simulated motor relays over IEC 61850 MMS until interrupted."""
     logging.basicConfig(stream=sys.stderr, level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")

@@ -1,6 +1,6 @@
 """A whole configuration file: its IEDs, where they are reached and which motor each one protects."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from ipaddress import ip_address
 from pathlib import Path
@@ -17,6 +17,9 @@ class Address:
 
     host: str
     port: int = MMS_PORT
+
+    def __str__(self) -> str:
+        return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +145,16 @@ class Scl:
                 found="none",
             )
         return candidates[0]
+
+    def shared_addresses(self, ied_names: Iterable[str]) -> dict[Address, tuple[str, ...]]:
+        """Addresses that several of these IEDs have, and which ones do; SclError as for `address`."""
+        holders: dict[Address, list[str]] = {}
+        for name in ied_names:
+            address = self.address(name)
+            # One address may be written in several ways: ::1 is 0:0:0:0:0:0:0:1.
+            same = Address(str(ip_address(address.host)), address.port)
+            holders.setdefault(same, []).append(name)
+        return {address: tuple(names) for address, names in holders.items() if len(names) > 1}
 
     def feeders(self) -> tuple[MotorFeeder, ...]:
         """Every motor (ConductingEquipment, type MOT) with the IED attached to it or else to its bay."""

@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Sequence
 from enum import StrEnum
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
@@ -43,6 +44,23 @@ class Model(StrEnum):
     SHORTED_WINDING = "shorted-winding"
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        sys.stdout.write(f"mcc {version('statorwatch')}\n")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    *,
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop."),
+    ] = False,
+) -> None:
+    """What comes before a command."""
+
+
 @app.command()
 def demo(
     *,
@@ -76,7 +94,9 @@ def serve(
 
 @app.command()
 def diagnose(
-    record: Annotated[Path, typer.Argument(metavar="RECORD", help="A COMTRADE or CEV recording.")],
+    record: Annotated[
+        Path, typer.Argument(metavar="RECORD", help="A COMTRADE recording (.CFG beside its .DAT, or .CFF).")
+    ],
     motor: Annotated[
         Path | None,
         typer.Option(
@@ -99,7 +119,10 @@ def trigger(
     motor: MotorName,
     url: Url = DEFAULT_URL,
     wait: Annotated[
-        float, typer.Option(metavar="SECONDS", min=0, help="Wait this long for the diagnosis.")
+        float,
+        typer.Option(
+            metavar="SECONDS", min=0, help="Wait this long for the diagnosis, and print its verdict."
+        ),
     ] = 0.0,
     *,
     as_json: Json = False,
@@ -112,7 +135,7 @@ def trigger(
 
 @app.command()
 def motors(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
-    """List the motors the service watches."""
+    """Show every motor the service watches: link, verdict, level, load, last recording."""
     from service.cli.remote import list_motors
 
     list_motors(url, as_json=as_json)

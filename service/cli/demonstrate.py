@@ -4,6 +4,7 @@ import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from itertools import count
 from pathlib import Path
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
@@ -50,8 +51,12 @@ def demonstrate(*, once: bool, json_file: Path | None, data: Path | None) -> Non
 def _run(data: Path, interruption: Interruption, *, once: bool, json_file: Path | None) -> None:
     started_s = time.monotonic()
     console = progress()
+
+    def tell(line: str) -> None:
+        console.print(Text(line), soft_wrap=True)
+
     console.print(f"starting two factories, six relays and the service (data and logs: {data})")
-    with running_plant(data, interruption.pause) as plant, ServiceClient(plant.url) as service:
+    with running_plant(data, interruption.pause, tell) as plant, ServiceClient(plant.url) as service:
         motors = _motors(plant, service)
         if once:
             _play(plant, service, motors, ROUNDS)
@@ -60,12 +65,13 @@ def _run(data: Path, interruption: Interruption, *, once: bool, json_file: Path 
             return
         console.print(f"API: {plant.url}/api/v1/motors   end: Ctrl-C")
         try:
-            while True:
+            for number in count(1):
                 for motor in motors:
                     motor.diagnoses.clear()
                 _play(plant, service, motors, 1)
-                _publish(motors, time.monotonic() - started_s, json_file)
+                _publish(motors, time.monotonic() - started_s, json_file, number)
                 _rest(plant)
+                started_s = time.monotonic()
         except KeyboardInterrupt:
             console.print("ending")
 
@@ -94,12 +100,14 @@ def _play(plant: DemoPlant, service: ServiceClient, motors: Sequence[DemoMotor],
             play_round(service, motors, lambda steps: bar.advance(task, steps), plant.pause)
 
 
-def _publish(motors: Sequence[DemoMotor], seconds: float, json_file: Path | None) -> None:
+def _publish(motors: Sequence[DemoMotor], seconds: float, json_file: Path | None, number: int = 1) -> None:
+    """Print and write what was found; `seconds` hold the plant's start too, except after round 1."""
     console = results()
     console.print(table(motors))
     longest_s = slowest(motors)
     words = "" if longest_s is None else f"; at most {longest_s:.2f} s from trigger to diagnosis"
-    console.print(Text(f"{seconds:.1f} s in all{words}"))
+    spent = f"{seconds:.1f} s in all" if number == 1 else f"round {number}: {seconds:.1f} s"
+    console.print(Text(f"{spent}{words}"))
     if json_file is not None:
         json_file.write_text(as_json(document(motors, seconds)) + "\n", encoding="utf-8")
 

@@ -11,8 +11,7 @@ from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file import MotorFileError, read_motor
 from core.recordings import RecordingError, read
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
-
-VERDICT_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red", "undiagnosable": "magenta"}
+from service.verdicts import level, verdict_text
 
 
 def diagnose_recording(record: Path, motor: Path | None, *, method: str, model: str, as_json: bool) -> None:
@@ -48,10 +47,9 @@ def _motor_file_beside(record: Path) -> Path:
 
 def _table(record: Path, diagnosis: Diagnosis) -> Table:
     table = Table(title=Text(record.name), title_justify="left", show_header=False)
-    colour = VERDICT_COLOURS[diagnosis.verdict]
-    table.add_row("verdict", f"[{colour}]{diagnosis.verdict}[/]")
+    table.add_row("verdict", verdict_text(diagnosis.verdict))
     if diagnosis.mu_f is not None:
-        table.add_row("equivalent fault level", percent(diagnosis.mu_f, diagnosis.mu_f_ci95))
+        table.add_row("equivalent fault level", level(diagnosis.mu_f, diagnosis.mu_f_ci95))
     if diagnosis.phase is not None:
         table.add_row("phase", diagnosis.phase)
     if diagnosis.load_level is not None:
@@ -63,12 +61,7 @@ def _table(record: Path, diagnosis: Diagnosis) -> Table:
     for reason in diagnosis.reasons:
         table.add_row("reason", Text(reason))
     for finding in diagnosis.quality:
-        if not finding.passed:
+        if not finding.passed and not any(finding.message in reason for reason in diagnosis.reasons):
             table.add_row("quality", Text(finding.message))
+    table.add_row("checks passed", str(sum(finding.passed for finding in diagnosis.quality)))
     return table
-
-
-def percent(mu_f: float, ci95: tuple[float, float] | None) -> str:
-    """A fault level as people say it: percent of the phase turns, with its 95 % interval."""
-    interval = "" if ci95 is None else f"  [{100 * ci95[0]:.2f} .. {100 * ci95[1]:.2f}]"
-    return f"{100 * mu_f:.2f} %{interval}"

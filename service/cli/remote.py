@@ -3,20 +3,26 @@
 import time
 from collections.abc import Mapping
 
+from rich.box import SIMPLE_HEAD
+from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from service.cli.output import CommandError, failing_clearly, print_document, progress, results
+from service.cli.output import CommandError, failing_clearly, one_line, print_document, progress, results
 from service.rest_client import Document, ServiceClient, ServiceError, segment
+from service.verdicts import level, to_the_second, verdict_text
 
 ENDED = ("diagnosed", "failed")
 POLL_PERIOD_S = 0.25
+LINK_COLOURS = {"up": "green", "down": "red"}
+NO_RECORDING = "no recording yet"
 
 
 def trigger_motor(url: str, motor: str, *, wait_s: float, as_json: bool) -> None:
-    """Ask for an event report; with `wait_s`, follow it to its end. Raises CommandError."""
+    """Ask for an event report; with `wait_s`, follow it to its verdict. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         report = service.request_event_report(motor)
+        _warn_of_a_link_that_is_down(service, motor)
         deadline_s = time.monotonic() + wait_s
         state = report["state"]
         while state not in ENDED and time.monotonic() < deadline_s:
@@ -25,6 +31,9 @@ def trigger_motor(url: str, motor: str, *, wait_s: float, as_json: bool) -> None
             if report["state"] != state:
                 state = report["state"]
                 progress().print(f"{motor}: {state}")
+        if state == "diagnosed":
+            recording = service.get(f"/recordings/{segment(str(report['recording_id']))}")
+            report = {**report, "diagnosis": recording["diagnosis"]}
     if state == "failed":
         raise CommandError(f"{motor}: {report['reason']}", details={"event_report": dict(report)})
     if wait_s and state != "diagnosed":
@@ -33,49 +42,135 @@ def trigger_motor(url: str, motor: str, *, wait_s: float, as_json: bool) -> None
         )
     if as_json:
         print_document(report)
+        return
+    diagnosis = report.get("diagnosis")
+    if isinstance(diagnosis, Mapping):
+        results().print(_verdict_line(motor, diagnosis), soft_wrap=True)
     else:
-        results().print(Text(f"{motor}: event report {report['id']} {state}"))
+        results().print(Text(f"{motor}: event report {report['id']} {state}"), soft_wrap=True)
 
 
 def list_motors(url: str, *, as_json: bool) -> None:
-    """Print the plant's motors. Raises CommandError."""
+    """Print one line for each of the plant's motors: where it is and how it is. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        motors = list(service.items("/motors"))
+        motors = [(motor, _health(service, str(motor["name"]))) for motor in service.items("/motors")]
     if as_json:
-        print_document({"motors": motors})
+        print_document({"motors": [{**motor, "health": health} for motor, health in motors]})
         return
-    table = Table()
-    for heading in ("site", "motor", "description", "relay"):
+    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+    table.add_column("motor", no_wrap=True)
+    for heading in ("site", "relay", "link", "verdict"):
         table.add_column(heading)
-    for motor in motors:
-        table.add_row(
-            *(Text(str(motor.get(field) or "")) for field in ("site", "name", "description", "ied"))
-        )
+    for heading in ("level %", "phase", "load"):
+        table.add_column(heading, justify="right")
+    table.add_column("last recording")
+    for _, health in motors:
+        table.add_row(*_overview(health))
     results().print(table)
 
 
 def show_health(url: str, motor: str, *, as_json: bool) -> None:
     """Print a motor's condition. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        health = service.get(f"/motors/{segment(motor)}/health")
+        health = _health(service, motor)
     if as_json:
         print_document(health)
         return
     table = Table(title=Text(motor), title_justify="left", show_header=False)
-    for name, value in _flat(health):
-        table.add_row(name, Text(value))
+    for name, value in _condition(health):
+        table.add_row(name, value)
     results().print(table)
 
 
-def _flat(document: Document, above: str = "") -> list[tuple[str, str]]:
-    """Fields of a document and of the documents in it, for people: names in words, nothing that is empty."""
-    rows: list[tuple[str, str]] = []
-    for name, value in document.items():
-        label = f"{above} {name.replace('_', ' ')}".strip()
-        if isinstance(value, Mapping):
-            rows.extend(_flat(value, label))
-        elif isinstance(value, list):
-            rows.extend((label, str(item)) for item in value if not isinstance(item, Mapping))
-        elif value is not None:
-            rows.append((label, str(value)))
+def _health(service: ServiceClient, motor: str) -> Document:
+    return service.get(f"/motors/{segment(motor)}/health")
+
+
+def _warn_of_a_link_that_is_down(service: ServiceClient, motor: str) -> None:
+    """The wish is noted and may yet be granted; who made it wants to know that it will take its time."""
+    health = _health(service, motor)
+    if health["link_state"] == "down":
+        words = one_line(f"{motor}: the link to {health['ied']} is down: {health['link_reason']}")
+        progress().print(Text(words, style="yellow"), soft_wrap=True)
+
+
+def _verdict_line(motor: str, diagnosis: Document) -> Text:
+    line = Text(f"{motor}: ")
+    line.append_text(verdict_text(str(diagnosis["verdict"]), _phase(diagnosis)))
+    if diagnosis["mu_f"] is not None:
+        line.append(f", {level(diagnosis['mu_f'], diagnosis['mu_f_ci95'])}, load {_load(diagnosis)}")
+    else:
+        line.append(one_line(f": {'; '.join(_reasons(diagnosis))}"))
+    return line
+
+
+def _overview(health: Document) -> tuple[RenderableType, ...]:
+    mu_f = health["mu_f"]
+    last = _last_recording(health)
+    return (
+        Text(str(health["motor"])),
+        Text(str(health["site"])),
+        Text(str(health["ied"])),
+        _link(health),
+        Text("-") if health["verdict"] is None else verdict_text(str(health["verdict"])),
+        f"{100 * mu_f:.2f}" if isinstance(mu_f, int | float) else "-",
+        str(health["phase"] or "-"),
+        _load(health),
+        Text(NO_RECORDING if last is None else last),
+    )
+
+
+def _condition(health: Document) -> list[tuple[str, RenderableType]]:
+    """The lines of one motor's condition."""
+    last = _last_recording(health)
+    rows: list[tuple[str, RenderableType]] = []
+    if health["verdict"] is not None:
+        rows.append(("verdict", verdict_text(str(health["verdict"]))))
+        if health["mu_f"] is not None:
+            rows.append(("equivalent fault level", level(health["mu_f"], health["mu_f_ci95"])))
+        if health["phase"] is not None:
+            rows.append(("phase", str(health["phase"])))
+        if health["load_level"] is not None:
+            rows.append(("load level", _load(health)))
+        rows.extend(("reason", Text(reason)) for reason in _reasons(health))
+        diagnosed = to_the_second(health["recorded_time"])
+        if diagnosed != last:
+            rows.append(("diagnosed recording", diagnosed))
+    rows.append(("last recording", Text(NO_RECORDING if last is None else last)))
+    rows.append(("site, relay", Text(f"{health['site']}, {health['ied']}")))
+    link = _link(health)
+    if health["link_reason"] is not None:
+        link.append(f": {one_line(str(health['link_reason']))}")
+    rows.append(("link", link))
     return rows
+
+
+def _last_recording(health: Document) -> str | None:
+    """When it was made; what became of it where that is not a diagnosis."""
+    last = health["last_recording"]
+    if not isinstance(last, Mapping):
+        return None
+    when = to_the_second(last["recorded_time"] or last["announced_time"])
+    if last["state"] == "diagnosed":
+        return when
+    reason = f": {one_line(str(last['reason']))}" if last["reason"] else ""
+    return f"{when}, {last['state']}{reason}"
+
+
+def _link(health: Document) -> Text:
+    state = str(health["link_state"])
+    return Text(state, style=LINK_COLOURS.get(state, ""))
+
+
+def _phase(diagnosis: Document) -> str:
+    return "" if diagnosis["phase"] is None else f"in phase {diagnosis['phase']}"
+
+
+def _load(found: Document) -> str:
+    load_level = found["load_level"]
+    return f"{load_level:.3f}" if isinstance(load_level, int | float) else "-"
+
+
+def _reasons(found: Document) -> list[str]:
+    reasons = found["reasons"]
+    return list(dict.fromkeys(map(str, reasons))) if isinstance(reasons, list) else []

@@ -2,13 +2,16 @@
 
 from pathlib import Path
 
+from rich.box import SIMPLE_HEAD
+from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
 import scl
-from scl import Scl, SclError
+from scl import Address, Scl, SclError
 from scl.data_model import Ied
-from service.cli.output import failing_clearly, print_document, results
+from service.cli.output import failing_clearly, one_line, print_document, results
+from service.plant.files import trigger_control
 
 
 def show_scl(file: Path, *, as_json: bool) -> None:
@@ -25,8 +28,8 @@ def show_scl(file: Path, *, as_json: bool) -> None:
     console = results()
     console.print(_motors(document))
     console.print(_relays(document))
-    for warning in document.warnings:
-        console.print(Text(f"warning: {warning}", style="yellow"))
+    for warning in _warnings(document):
+        console.print(Text(f"warning: {one_line(warning)}", style="yellow"))
 
 
 def describe(document: Scl) -> dict[str, object]:
@@ -45,40 +48,66 @@ def describe(document: Scl) -> dict[str, object]:
             for feeder in document.feeders()
         ],
         "relays": [_describe_relay(document, ied) for ied in document.ieds],
-        "warnings": [str(warning) for warning in document.warnings],
+        "warnings": _warnings(document),
     }
 
 
 def _describe_relay(document: Scl, ied: Ied) -> dict[str, object]:
-    address = _address(document, ied.name)
+    address = _usable_address(document, ied.name)
     return {
         "relay": ied.name,
         "manufacturer": ied.manufacturer,
         "type": ied.type,
         "description": ied.description,
-        "host": None if address is None else address[0],
-        "port": None if address is None else address[1],
+        "host": None if address is None else address.host,
+        "port": None if address is None else address.port,
         "logical_devices": [device.name for device in ied.logical_devices],
         "data_sets": [data_set.reference for data_set in ied.data_sets()],
         "buffered_reports": [
             reference for report in ied.report_controls(buffered=True) for reference in report.references
         ],
         "record_made": [placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdMade")],
+        "trigger": trigger_control(ied),
         "controls": [placed.reference for placed in ied.data_objects(common_data_class="SPC")],
     }
 
 
-def _address(document: Scl, ied_name: str) -> tuple[str, int] | None:
-    """An ICD describes a kind of relay and has no address yet."""
+def _warnings(document: Scl) -> list[str]:
+    """What is odd in the file, and every address the service could not use."""
+    warnings = [str(warning) for warning in document.warnings]
+    addressed = []
+    for ied in document.ieds:
+        try:
+            if _address(document, ied.name) is not None:
+                addressed.append(ied.name)
+        except SclError as error:
+            warnings.append(str(error))
+    for address, sharing in document.shared_addresses(addressed).items():
+        warnings.append(f"relays {' and '.join(sharing)} have the same address, {address}")
+    return warnings
+
+
+def _address(document: Scl, ied_name: str) -> Address | None:
+    """None where there is none yet, as in an ICD (of a kind of relay). Raises SclError (unusable)."""
     try:
-        address = document.address(ied_name)
+        document.connected_access_point(ied_name)
     except SclError:
         return None
-    return address.host, address.port
+    return document.address(ied_name)
 
 
-def _motors(document: Scl) -> Table:
-    table = Table(title="Motors", title_justify="left")
+def _usable_address(document: Scl, ied_name: str) -> Address | None:
+    """None also for an address that cannot be one: a warning says so."""
+    try:
+        return _address(document, ied_name)
+    except SclError:
+        return None
+
+
+def _motors(document: Scl) -> RenderableType:
+    if not document.feeders():
+        return Text('no motors: no ConductingEquipment type="MOT" with an LNode of its relay')
+    table = Table(title="Motors", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("site", "bay", "motor", "description", "relay"):
         table.add_column(heading)
     for feeder in document.feeders():
@@ -88,21 +117,23 @@ def _motors(document: Scl) -> Table:
 
 
 def _relays(document: Scl) -> Table:
-    table = Table(title="Relays", title_justify="left")
-    for heading in ("relay", "make", "address"):
+    """References are shown without the relay's name, with which each of them begins."""
+    table = Table(title="Relays", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
+    for heading in ("relay\nmake", "address"):
         table.add_column(heading, no_wrap=True)
-    for heading in ("logical devices", "reports", "record made"):
-        table.add_column(heading, overflow="fold")
+    for heading in ("devices", "reports"):
+        table.add_column(heading)
+    table.add_column("record made\ntrigger", no_wrap=True)
     for ied in document.ieds:
-        address = _address(document, ied.name)
+        address = _usable_address(document, ied.name)
         reports = sum(len(report.references) for report in ied.report_controls(buffered=True))
         made = [placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdMade")]
+        trigger = trigger_control(ied) or "no trigger"
         table.add_row(
-            Text(ied.name),
-            Text(f"{ied.manufacturer} {ied.type}".strip()),
-            Text("none" if address is None else f"{address[0]}:{address[1]}"),
+            Text(f"{ied.name}\n{ied.manufacturer} {ied.type}".strip()),
+            Text("none" if address is None else str(address)),
             Text(" ".join(device.inst for device in ied.logical_devices)),
             str(reports),
-            Text(" ".join(made)),
+            Text("\n".join(reference.removeprefix(ied.name) for reference in (*made, trigger))),
         )
     return table

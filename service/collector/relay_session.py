@@ -39,6 +39,9 @@ ENTRY_ID_OCTETS = 8
 
 FIRST_RETRY_S, LONGEST_RETRY_S = 0.5, 10.0
 
+REMIND_AFTER_S = 600.0
+"""A link that stays down for the same reason is logged this often."""
+
 
 class Inbox(SimpleQueue[Report]):
     """Reports as they arrive from the MMS layer's thread; whoever waits on `arrival` wakes up."""
@@ -77,6 +80,8 @@ class RelaySession:
         self._unsaved_entry_id: bytes | None = None
         self._expecting_until_s = 0.0
         self._link_noted_s = 0.0
+        self._failure_logged: tuple[str, float] | None = None
+        self._overflow_means_loss = False
 
     def wake(self) -> None:
         """Somebody asked for an event report."""
@@ -118,6 +123,7 @@ class RelaySession:
             self._subscribe(client, inbox)
             log.info("connected", relay=self._relay.name, host=self._relay.host, port=self._relay.port)
             self._link_noted_s = 0.0
+            self._failure_logged = None
             while not self._stopping.is_set():
                 self._something_to_do.clear()
                 waiting = self._work(client, inbox)
@@ -129,9 +135,13 @@ class RelaySession:
         self._unsaved_entry_id = None
         control = self._relay.report_control
         try:
+            entry_id = self._repository.entry_id(self._relay.name)
+            # A block enabled without an EntryID begins with the overflow bit set, whatever it lost.
+            self._overflow_means_loss = entry_id is not None
             try:
-                client.subscribe(control, inbox, entry_id=self._repository.entry_id(self._relay.name))
+                client.subscribe(control, inbox, entry_id=entry_id)
             except EntryNotFound:
+                self._overflow_means_loss = False
                 log.warning(
                     "reports lost: the relay no longer holds the last one seen", relay=self._relay.name
                 )
@@ -141,7 +151,9 @@ class RelaySession:
 
     def _heed(self, report: Report) -> None:
         """A report hurries the scans when it says that a record is, or will soon be, in the directory."""
-        if report.buffer_overflow:
+        overflowed = report.buffer_overflow and self._overflow_means_loss
+        self._overflow_means_loss = True
+        if overflowed:
             # No loss: whatever the lost reports announced is in the directory, which is scanned anyway.
             log.info("the relay's report buffer had overflowed", relay=self._relay.name)
         if report.entry_id is not None and len(report.entry_id) == ENTRY_ID_OCTETS:
@@ -173,12 +185,22 @@ class RelaySession:
             self._link_noted_s = now_s
 
     def _note_failure(self, reason: str) -> None:
-        log.warning("link down", relay=self._relay.name, reason=reason)
+        self._log_failure(reason)
         try:
             self._repository.set_link_state(self._relay.name, LinkState.DOWN, reason, now_ns=time.time_ns())
             self._triggering.link_failed(reason)
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
+
+    def _log_failure(self, reason: str) -> None:
+        """A relay that is off for a month is one line at first and one now and then, not one each retry."""
+        now_s = time.monotonic()
+        if self._failure_logged is not None:
+            logged, logged_s = self._failure_logged
+            if reason == logged and now_s - logged_s < REMIND_AFTER_S:
+                return
+        self._failure_logged = (reason, now_s)
+        log.warning("link down", relay=self._relay.name, reason=reason)
 
     def _work(self, client: Client, inbox: Inbox) -> bool:
         """One round: reports, directory, event reports. Returns whether a record is on its way."""

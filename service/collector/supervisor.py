@@ -59,9 +59,9 @@ class CollectorSupervisor:
         with self._lock:
             self._stopping.set()
             child = self._child
-        if child is None:
-            return
-        _close_input(child)
+            if child is None:
+                return
+            _close_input(child)
         try:
             child.wait(STOP_PATIENCE_S)
         except subprocess.TimeoutExpired:
@@ -94,9 +94,11 @@ class CollectorSupervisor:
             child = self._child = subprocess.Popen(  # noqa: S603 - our own module
                 self._command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
             )
-        _hand_over(child, self._settings)
+            # Before anybody may close that pipe. One line fits into it, so this waits for no child.
+            _hand_over(child, self._settings)
         exit_code = child.wait()
-        _close_input(child)
+        with self._lock:
+            _close_input(child)
         return exit_code
 
 

@@ -4,19 +4,25 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import scl
 from service.demo import MOTORS, SCENARIO
 from service.demo.addresses import LOOPBACK, addressed_scd, free_port
-from service.demo.processes import Program
+from service.demo.processes import Program, ProgramError
 from service.rest_client import ServiceClient
 
 START_LIMIT_S = 90.0
 POLL_PERIOD_S = 0.1
 SERVICE_PORT = 8710
+
+ATTEMPTS = 3
+"""To find ports nobody else takes between the choice and the start."""
+
+PORT_TAKEN = ("cannot listen on", "expected a free port")
+"""Last words of the simulator, of the service, that came too late to its port."""
 
 
 class NotReadyError(RuntimeError):
@@ -37,27 +43,66 @@ class DemoPlant:
 
 
 @contextmanager
-def running_plant(data: Path, pause: Callable[[float], None]) -> Iterator[DemoPlant]:
+def running_plant(
+    data: Path, pause: Callable[[float], None], tell: Callable[[str], None]
+) -> Iterator[DemoPlant]:
     """The demo plant while the block runs; afterwards every process has ended. Its data stays in `data`.
 
-    pause: waits some seconds, and may raise to end the block.
+    pause: waits some seconds, and may raise to end the block. tell: takes a line for the person who waits.
 
     Raises SclError, ProgramError, NotReadyError, OSError.
     """
     data.mkdir(parents=True, exist_ok=True)
+    with ExitStack() as programs:
+        plant = _start(data, pause, programs)
+        for line in _other_places(plant):
+            tell(line)
+        yield plant
+
+
+def _start(data: Path, pause: Callable[[float], None], programs: ExitStack) -> DemoPlant:
+    """Both programs, listening; with other ports where somebody was quicker to take the chosen ones."""
+    for _ in range(ATTEMPTS - 1):
+        try:
+            return _start_once(data, pause, programs)
+        except ProgramError as error:
+            if not any(words in str(error) for words in PORT_TAKEN):
+                raise
+    return _start_once(data, pause, programs)
+
+
+def _start_once(data: Path, pause: Callable[[float], None], programs: ExitStack) -> DemoPlant:
     scd = addressed_scd(scl.DEMO_PLANT_SCD, data)
     port = free_port(SERVICE_PORT)
-    with (
-        Program("ied-sim", _simulator(scd, data), data / "ied-sim.log") as simulator,
-        Program("mcc serve", _service(), data / "service.log", _environment(scd, data, port)) as service,
-    ):
+    with ExitStack() as starting:
+        simulator = starting.enter_context(Program("ied-sim", _simulator(scd, data), data / "ied-sim.log"))
+        service = starting.enter_context(
+            Program("mcc serve", _service(), data / "service.log", _environment(scd, data, port))
+        )
 
         def pause_and_check(seconds: float) -> None:
             pause(seconds)
             simulator.check()
             service.check()
 
-        yield DemoPlant(scd, SCENARIO, f"http://{LOOPBACK}:{port}", pause_and_check)
+        # Their own word, because at a port that was lost somebody else's service would answer.
+        deadline_s = time.monotonic() + START_LIMIT_S
+        while not (simulator.has_said("\nready\n") and service.has_said("serving")):
+            pause_and_check(POLL_PERIOD_S)
+            if time.monotonic() > deadline_s:
+                raise NotReadyError(f"not listening after {START_LIMIT_S:g} s; logs: {data}")
+        programs.push(starting.pop_all())
+    return DemoPlant(scd, SCENARIO, f"http://{LOOPBACK}:{port}", pause_and_check)
+
+
+def _other_places(plant: DemoPlant) -> Iterator[str]:
+    """Where the demo answers, as far as that is not where its documentation says."""
+    if plant.url != f"http://{LOOPBACK}:{SERVICE_PORT}":
+        yield (f"port {SERVICE_PORT} is taken; the API answers on {plant.url} (export MCC_URL={plant.url})")
+    if plant.scd != scl.DEMO_PLANT_SCD:
+        document = scl.read(plant.scd)
+        ports = ", ".join(str(document.address(ied.name).port) for ied in document.ieds)
+        yield f"a port of {plant.scd.name} is taken; the relays answer on ports {ports} (see {plant.scd})"
 
 
 def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> None:

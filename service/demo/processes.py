@@ -37,6 +37,10 @@ class Program:
     def process_id(self) -> int:
         return self._process.pid
 
+    def has_said(self, words: str) -> bool:
+        """Whether its log holds these words."""
+        return words in self._log.read_text(encoding="utf-8", errors="replace")
+
     def check(self) -> None:
         """Raises ProgramError when the program has ended."""
         exit_code = self._process.poll()

@@ -9,8 +9,9 @@ from rich.text import Text
 
 from service.demo.truth import Truth
 from service.rest_client import Document
+from service.verdicts import verdict_text
 
-COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red", "undiagnosable": "magenta"}
+FOOTNOTE = "the interval is the record's own scatter; see docs/diagnosis.md"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,11 +58,18 @@ def slowest(motors: Sequence[DemoMotor]) -> float | None:
 
 
 def table(motors: Sequence[DemoMotor]) -> Table:
-    """Every motor's diagnoses beside its truth. The last column is the time from trigger to diagnosis [s]."""
-    shown = Table(title="Diagnoses and truth", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
+    """Every motor's diagnoses beside its truth."""
+    shown = Table(
+        title="Diagnoses and truth",
+        title_justify="left",
+        caption=FOOTNOTE,
+        caption_justify="left",
+        box=SIMPLE_HEAD,
+        collapse_padding=True,
+    )
     for heading in ("motor", "truth", "verdict"):
         shown.add_column(heading)  # these may wrap on a narrow terminal: the figures stay whole
-    for heading in ("mu_f %", "95 %", "load", "s"):
+    for heading in ("mu_f %", "95 % scatter", "load", "trigger to\ndiagnosis s"):
         shown.add_column(heading, justify="right", no_wrap=True)
     for motor in motors:
         for number, diagnosis in enumerate(motor.diagnoses):
@@ -83,10 +91,9 @@ def _row(diagnosis: DemoDiagnosis) -> tuple[str | Text, ...]:
     found = diagnosis.document
     if found is None:
         return Text(diagnosis.reason or "failed", style="red"), "", "", "", ""
-    verdict = str(found["verdict"])
     interval = found["mu_f_ci95"]
     return (
-        Text(f"{verdict} {found['phase'] or ''}".strip(), style=COLOURS.get(verdict, "")),
+        verdict_text(str(found["verdict"]), found["phase"]),
         _percent(found["mu_f"]),
         "..".join(_percent(bound) for bound in interval) if isinstance(interval, list) else "-",
         f"{found['load_level']:.3f}" if isinstance(found["load_level"], float) else "-",

@@ -88,6 +88,7 @@ def _plant(configuration: scl.Scl, motors: dict[str, Motor], motors_path: Path) 
         )
     _once(path, "motor", (feeder.motor for feeder in feeders))
     _once(path, "relay", (feeder.ied for feeder in feeders))
+    _one_relay_an_address(configuration, [feeder.ied for feeder in feeders])
     names = {feeder.motor for feeder in feeders}
     for missing in sorted(names - motors.keys()):
         raise PlantError(
@@ -125,6 +126,22 @@ def _once(path: Path, kind: str, names: Iterable[str]) -> None:
         seen.add(name)
 
 
+def _one_relay_an_address(configuration: scl.Scl, relays: Iterable[str]) -> None:
+    for address, sharing in configuration.shared_addresses(relays).items():
+        raise PlantError(
+            configuration.path,
+            f"relays {' and '.join(sharing)}",
+            expected="an address for each relay (P elements IP and MMS-Port)",
+            found=f"{address} for {len(sharing)} of them",
+        )
+
+
+def trigger_control(ied: Ied) -> str | None:
+    """Reference of the control that has this relay record an event; None where it offers none."""
+    controls = (placed.reference for placed in ied.data_objects(common_data_class="SPC"))
+    return _first(reference for reference in controls if reference.endswith(f"/{TRIGGER_CONTROL}"))
+
+
 def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
     """The references the service uses, found in the relay's own model."""
     ied = configuration.ied(feeder.ied)
@@ -135,8 +152,6 @@ def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
             raise PlantError(configuration.path, f"relay {ied.name}", expected=expected, found="none")
         return reference
 
-    controls = (placed.reference for placed in ied.data_objects(common_data_class="SPC"))
-    trigger = _first(reference for reference in controls if reference.endswith(f"/{TRIGGER_CONTROL}"))
     record_made = required(
         _first(placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdMade")),
         "a disturbance recorder's RcdMade (logical node class RDRE)",
@@ -150,7 +165,7 @@ def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
         manufacturer=ied.manufacturer,
         type=ied.type,
         trigger_control=required(
-            trigger, f"the remote bit {TRIGGER_CONTROL} (CDC SPC) that triggers a record"
+            trigger_control(ied), f"the remote bit {TRIGGER_CONTROL} (CDC SPC) that triggers a record"
         ),
         record_made=record_made,
         fault_number=_first(placed.reference for placed in ied.data_objects(ln_class="RDRE", name="FltNum")),

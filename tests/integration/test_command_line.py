@@ -1,6 +1,7 @@
 """`mcc diagnose` and `mcc import-scl`: no service needed."""
 
 import json
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,9 @@ from mms import Client
 from service.cli import main
 from service.demo import MOTORS
 from tests.integration.processes import eventually, simulated_plant
+
+pytestmark = pytest.mark.timeout(300)
+"""The first test starts a simulator."""
 
 RELAY, MOTOR = "A2_SEL710", "FAN-A2"
 TRIGGER = f"{RELAY}CON/RBGGIO1.SPCSO01"
@@ -115,7 +119,33 @@ def test_an_scd_is_described(capsys: pytest.CaptureFixture[str]) -> None:
     assert relay["record_made"] == ["A1_SEL710PRO/FLTRDRE1.RcdMade"]
     assert (relay["host"], relay["port"]) == ("127.0.0.1", 10210)
     assert main(["import-scl", str(scl.DEMO_PLANT_SCD)]) == 0
-    assert "127.0.0.1:10215" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "127.0.0.1:10215" in shown
+    assert "CON/RBGGIO1.SPCSO01" in shown
+    assert "A1_SEL710CON" not in shown, "the relay's name stands in its own column"
+    assert relay["trigger"] == "A1_SEL710CON/RBGGIO1.SPCSO01"
+
+
+@pytest.mark.parametrize(
+    ("port", "warning"),
+    [
+        ("10210", "relays A1_SEL710 and A2_SEL710 have the same address, 127.0.0.1:10210"),
+        ("70000", "expected a port from 1 to 65535"),
+    ],
+)
+def test_an_address_of_no_use_is_flagged(
+    port: str, warning: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
+    damaged = tmp_path / "damaged.scd"
+    damaged.write_text(text.replace(">10211<", f">{port}<"), encoding="utf-8")
+    assert main(["import-scl", str(damaged)]) == 0
+    assert warning in capsys.readouterr().out
+
+
+def test_the_version_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"mcc {version('statorwatch')}\n"
 
 
 def test_a_relay_may_have_no_address_yet(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -125,6 +155,8 @@ def test_a_relay_may_have_no_address_yet(tmp_path: Path, capsys: pytest.CaptureF
     assert main(["import-scl", str(icd), "--json"]) == 0
     (relay,) = json.loads(capsys.readouterr().out)["relays"]
     assert relay["host"] is None
+    assert main(["import-scl", str(icd)]) == 0
+    assert "no motors" in capsys.readouterr().out
 
 
 def test_a_missing_scl_file_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -3,15 +3,23 @@
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from service.demo.addresses import free_ports
+from service.demo.plant import SERVICE_PORT, running_plant
 from service.exclusive import exclusive
+from service.rest_client import ServiceClient
 from tests.integration.processes import MOTOR_NAMES, descendants, eventually, is_alive
+
+pytestmark = pytest.mark.timeout(300)
+"""On a loaded machine a demo takes its time to start, and one waits for the other to end."""
 
 RECORD_S = 1.0
 """0.2 s before the trigger, 0.8 s after it."""
@@ -19,7 +27,7 @@ RECORD_S = 1.0
 
 @pytest.fixture(autouse=True)
 def _one_demo_at_a_time(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Two demos that start at the same moment both find the plant's own ports free."""
+    """The demo's times are measured here: two at once would measure each other."""
     with exclusive(tmp_path_factory.getbasetemp().parent / "demo.lock", wait=True):
         yield
 
@@ -110,6 +118,25 @@ def test_a_simulator_that_dies_ends_the_demo(tmp_path: Path) -> None:
     assert demo.returncode == 1, words
     assert "mcc: ied-sim ended (exit code -9)" in words
     assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
+
+
+def test_a_port_lost_before_the_start_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    chosen = [SERVICE_PORT]
+    told: list[str] = []
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+
+        def too_late(wanted: int) -> int:
+            chosen.append(port if len(chosen) == 1 else free_ports(1)[0])
+            return chosen[-1]
+
+        monkeypatch.setattr("service.demo.plant.free_port", too_late)
+        with running_plant(tmp_path, time.sleep, told.append) as plant, ServiceClient(plant.url) as service:
+            assert len(list(service.items("/motors"))) == len(MOTOR_NAMES)
+    assert chosen[1] == port
+    assert len(chosen) == 3
+    assert plant.url == f"http://127.0.0.1:{chosen[2]}"
+    assert f"port 8710 is taken; the API answers on {plant.url} (export MCC_URL={plant.url})" in told
 
 
 def is_simulator(process_id: int) -> bool:

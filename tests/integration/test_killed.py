@@ -5,6 +5,8 @@ import signal
 from collections import Counter
 from pathlib import Path
 
+import pytest
+
 from service.rest_client import ServiceClient
 from service.settings import sqlite_url
 from service.storage import Repository, connect
@@ -51,6 +53,7 @@ def kill_in_the_middle(service: Service, past: str, *, alone: bool) -> list[str]
     return reports
 
 
+@pytest.mark.timeout(300)  # it starts the service four times and waits for twelve diagnoses
 def test_twelve_recordings_are_twelve_rows(tmp_path: Path) -> None:
     with (
         simulated_plant(tmp_path) as plant,
@@ -82,6 +85,7 @@ def collector_of(service: Service) -> int | None:
     return None
 
 
+@pytest.mark.timeout(300)
 def test_a_collector_that_dies_is_replaced_and_the_api_goes_on(tmp_path: Path) -> None:
     with (
         simulated_plant(tmp_path, ["A1_SEL710"]) as plant,

@@ -15,6 +15,9 @@ from mms import Client
 from tests.integration import foreign_client
 from tests.integration.processes import SimulatedPlant, eventually, simulated_plant
 
+pytestmark = pytest.mark.timeout(300)
+"""The first test starts a simulator."""
+
 RELAY = "A1_SEL710"
 TRIGGER = f"{RELAY}CON/RBGGIO1.SPCSO01"
 

@@ -11,6 +11,9 @@ import scl
 from service.demo import MOTORS
 from tests.integration.processes import descendants, eventually, is_alive, running_service, serve_in_vain
 
+pytestmark = pytest.mark.timeout(300)
+"""Starting and stopping a service may take START_LIMIT_S each."""
+
 
 def test_sigterm_ends_every_process(tmp_path: Path) -> None:
     with running_service(tmp_path, scl.DEMO_PLANT_SCD) as service:

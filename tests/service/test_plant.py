@@ -89,6 +89,13 @@ def test_a_motor_the_scd_does_not_have(motors: Path) -> None:
         ('type="MOT"', 'type="CBR"', "expected motors (ConductingEquipment"),
         ('name="FAN-A2"', 'name="PUMP-A1"', "motor PUMP-A1: expected one motor for one relay"),
         ('<P type="IP">127.0.0.1</P>', '<P type="IP">here</P>', "expected an IPv4 or IPv6 address"),
+        (
+            '<P type="MMS-Port">10211</P>',
+            '<P type="MMS-Port">10210</P>',
+            "relays A1_SEL710 and A2_SEL710: expected an address for each relay "
+            "(P elements IP and MMS-Port), found 127.0.0.1:10210 for 2 of them",
+        ),
+        ('<P type="MMS-Port">10211</P>', '<P type="MMS-Port">70000</P>', "expected a port from 1 to 65535"),
         ("RcdMade", "RcdMad", "relay A1_SEL710: expected a disturbance recorder's RcdMade"),
         ("</SCL>", "", "expected"),
     ],

@@ -59,7 +59,7 @@ def test_an_upload_is_stored_once_and_queued(context: ApiContext, repository: Re
         ({"EVENT.CFG": CFG}, "the .DAT file that belongs to the .CFG"),
         ({"EVENT.DAT": DAT}, "exactly one file"),
         ({"EVENT.EXE": b"MZ"}, "expected a file ending in"),
-        ({f"E{i}.CEV": b"" for i in range(5)}, "at most 4 files"),
+        ({f"E{i}.CFF": b"" for i in range(5)}, "at most 4 files"),
     ],
 )
 def test_what_is_no_recording_is_refused(client: httpx.Client, files: dict[str, bytes], message: str) -> None:
@@ -71,13 +71,13 @@ def test_what_is_no_recording_is_refused(client: httpx.Client, files: dict[str, 
 def test_an_upload_names_its_motor(client: httpx.Client) -> None:
     status, problem = upload(client, FILES, motor="NOPE")
     assert (status, problem["detail"]) == (404, "there is no motor 'NOPE'")
-    assert client.post("/api/v1/recordings", files={"files": ("E.CEV", b"x")}).status_code == 422
+    assert client.post("/api/v1/recordings", files={"files": ("E.CFF", b"x")}).status_code == 422
 
 
 def test_too_large_an_upload(client: httpx.Client) -> None:
-    assert upload(client, {"E.CEV": b"x" * 200_001})[0] == 413
+    assert upload(client, {"E.CFF": b"x" * 200_001})[0] == 413
 
-    beginning = b'--b\r\nContent-Disposition: form-data; name="files"; filename="E.CEV"\r\n\r\n'
+    beginning = b'--b\r\nContent-Disposition: form-data; name="files"; filename="E.CFF"\r\n\r\n'
     unannounced = client.post(
         "/api/v1/recordings",
         content=iter([beginning, *[b"x" * 100_000] * 3]),

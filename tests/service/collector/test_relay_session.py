@@ -6,8 +6,10 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from structlog.testing import capture_logs
 
-from mms import Client
+from mms import Client, Report
+from service.collector.relay_session import Inbox, RelaySession
 from service.recordings import Incoming
 from service.storage.states import EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import Bench, eventually
@@ -261,3 +263,56 @@ def test_a_relay_that_forgot_the_last_report_is_subscribed_anew(bench: Bench, re
         relay.write_record("HR_1")
         assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
         assert eventually(lambda: bench.repository.entry_id(NAME) not in (None, forgotten))
+
+
+OVERFLOWED = "the relay's report buffer had overflowed"
+
+
+def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.collector.relay_session.FIRST_RETRY_S", 0.05)
+    failures: list[str] = []
+    note_failure = RelaySession._note_failure
+
+    def counted(session: RelaySession, reason: str) -> None:
+        failures.append(reason)
+        note_failure(session, reason)
+
+    monkeypatch.setattr(RelaySession, "_note_failure", counted)
+    with capture_logs() as logs, bench.session():
+        assert eventually(lambda: len(failures) >= 3)
+    assert [entry["event"] for entry in logs].count("link down") == len(set(failures)) == 1
+
+
+def test_a_relay_that_stays_down_is_mentioned_now_and_then(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.relay_session.FIRST_RETRY_S", 0.05)
+    monkeypatch.setattr("service.collector.relay_session.REMIND_AFTER_S", 0.0)
+    with capture_logs() as logs, bench.session():
+        assert eventually(lambda: [entry["event"] for entry in logs].count("link down") >= 2)
+
+
+@pytest.mark.parametrize("resumed", [False, True])
+def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRelay, resumed: bool) -> None:
+    """A block that is enabled without an EntryID begins with the bit set."""
+    report = Report(
+        rcb_reference=bench.relay.report_control,
+        report_id="",
+        entry_id=None,
+        sequence_number=0,
+        timestamp_ns=None,
+        buffer_overflow=True,
+        data_set=None,
+        members=(),
+    )
+    session = RelaySession(bench.relay, "PUMP-A1", bench.repository, bench.store, bench.settings)
+    if resumed:
+        with bench.session():
+            relay.write_record("HR_1")
+            assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
+    with Client.connect("127.0.0.1", relay.port) as client, capture_logs() as logs:
+        session._subscribe(client, Inbox(session._something_to_do))
+        session._heed(report)
+        assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed)
+        session._heed(report)
+        assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed) + 1

@@ -2,13 +2,15 @@
 
 import os
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
-from service.collector.supervisor import CollectorSupervisor
+from service.collector.supervisor import CollectorSupervisor, _hand_over
 from service.settings import Settings
 from tests.service.collector.conftest import eventually
 
@@ -39,6 +41,28 @@ def test_stopping_twice_is_stopping(tmp_path: Path) -> None:
     supervised.start()
     supervised.stop()
     supervised.stop()
+    assert supervised.process_id is None
+
+
+def test_a_stop_just_after_the_start_waits_for_the_settings(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    supervised = supervisor(OBEDIENT, tmp_path)
+    stopping = Thread(target=supervised.stop)
+    hand_over = _hand_over
+
+    def slowly(child: "subprocess.Popen[bytes]", settings: Settings) -> None:
+        stopping.start()
+        assert child.stdin is not None
+        stdin = child.stdin
+        assert not eventually(lambda: stdin.closed, within_s=0.2)
+        hand_over(child, settings)
+
+    monkeypatch.setattr("service.collector.supervisor._hand_over", slowly)
+    supervised.start()
+    assert eventually(lambda: stopping.ident is not None)
+    stopping.join(10)
+    assert not stopping.is_alive()
     assert supervised.process_id is None
 
 

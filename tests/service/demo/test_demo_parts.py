@@ -106,8 +106,11 @@ def test_no_figure_is_cut_off_where_there_is_no_terminal(capsys: pytest.CaptureF
     motor = DemoMotor("M" * 100, "FACTORY_A", Truth(mu_f=0.05, theta_f=1, load_level=0.65))
     motor.diagnoses.append(DemoDiagnosis(DIAGNOSIS, 1.5))
     results().print(table([motor]))
-    (row,) = [line for line in capsys.readouterr().out.splitlines() if "M" in line]
+    out = capsys.readouterr().out
+    (row,) = [line for line in out.splitlines() if "M" in line]
     assert row.split()[0] == "M" * 100
+    assert "95 % scatter" in out
+    assert "the interval is the record's own scatter; see docs/diagnosis.md" in out
     assert row.split()[-6:] == ["fault", "b", "5.00", "4.90..5.10", "0.650", "1.50"]
 
 

@@ -19,7 +19,7 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
     told = task.entry.read_text()
     first_time = task.entry.with_suffix(".tried")
     if told == "reject":
-        return Rejected("E.CEV: line 1: expected a FID, found nothing")
+        return Rejected("E.CFF: line 1: expected a FID, found nothing")
     if told == "raise":
         raise ArithmeticError("no such number")
     if told == "not a number":

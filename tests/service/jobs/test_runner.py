@@ -49,7 +49,7 @@ def running(
 
 
 def add(repository: Repository, store: RecordingStore, told: str, motor_name: str = "PUMP-A1") -> str:
-    stored = store.store({"E.CEV": told.encode()})
+    stored = store.store({"E.CFF": told.encode()})
     return repository.add_recording(stored, motor=motor_name, now_ns=time.time_ns()).recording.id
 
 
@@ -84,7 +84,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
         "lost": "rejected",
     }
     reasons = {what: recording.reason or "" for what, recording in recordings.items()}
-    assert reasons["reject"] == "E.CEV: line 1: expected a FID, found nothing"
+    assert reasons["reject"] == "E.CFF: line 1: expected a FID, found nothing"
     assert reasons["raise"] == "gave up after 2 attempts: ArithmeticError: no such number"
     assert "not JSON compliant" in reasons["not a number"]
     assert "the worker process died" in reasons["die"]
@@ -94,7 +94,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
 
 def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: RecordingStore) -> None:
     report = repository.request_event_report("PUMP-A1", now_ns=time.time_ns())
-    stored = store.store({"E.CEV": b"hang"})
+    stored = store.store({"E.CFF": b"hang"})
     repository.add_recording(stored, motor="PUMP-A1", event_report_id=report.id, now_ns=time.time_ns())
     limits = JobLimits(workers=1, job_timeout_s=0.3, attempts=1)
     with running(repository, store, limits):

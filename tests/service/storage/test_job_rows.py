@@ -12,7 +12,7 @@ from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 @pytest.fixture
 def recording_id(repository: Repository, store: RecordingStore) -> str:
-    stored = store.store({"E.CEV": b"samples"})
+    stored = store.store({"E.CFF": b"samples"})
     report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
     added = repository.add_recording(
         stored,
@@ -58,10 +58,10 @@ def test_a_result_ends_job_recording_and_report(repository: Repository, recordin
 
 
 def test_an_unreadable_record_is_rejected_with_the_reason(repository: Repository, recording_id: str) -> None:
-    repository.reject_recording(claim(repository).job.id, "E.CEV: checksum", now_ns=NOW_NS)
+    repository.reject_recording(claim(repository).job.id, "E.CFF: checksum", now_ns=NOW_NS)
     recording = repository.recording(recording_id)
-    assert (recording.state, recording.reason) == (RecordingState.REJECTED, "E.CEV: checksum")
-    assert report_state(repository) == (EventReportState.FAILED, "E.CEV: checksum")
+    assert (recording.state, recording.reason) == (RecordingState.REJECTED, "E.CFF: checksum")
+    assert report_state(repository) == (EventReportState.FAILED, "E.CFF: checksum")
     assert repository.claim_job(now_ns=NOW_NS + 1000 * SECOND_NS) is None
 
 
@@ -133,7 +133,7 @@ def test_a_result_that_is_no_json_is_refused(repository: Repository, recording_i
 
 def test_trend_and_health(repository: Repository, store: RecordingStore) -> None:
     for i, diagnosis in enumerate([fault(0.01), fault(0.02), undiagnosable()]):
-        repository.add_recording(store.store({f"U{i}.CEV": b"x"}), motor="FAN-A2", now_ns=NOW_NS + i)
+        repository.add_recording(store.store({f"U{i}.CFF": b"x"}), motor="FAN-A2", now_ns=NOW_NS + i)
         job_id = claim(repository, NOW_NS + i).job.id
         repository.finish_job(job_id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + 9)
     points = repository.trend("FAN-A2", "mu_f", limit=10).items
