@@ -1,0 +1,99 @@
+"""Work over the cores, intervals of rates, and the sections of the accuracy page."""
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import TypeVar
+
+from scipy.stats import beta
+
+Task = TypeVar("Task")
+Result = TypeVar("Result")
+
+CONFIDENCE = 0.95
+PROGRESS_S = 10.0
+MOST_AT_A_TIME = 8
+"""Tasks handed to a process at once."""
+FEWEST_TURNS = 64
+"""Into so many handfuls a few long tasks are split, so that no process is left with the last of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """One subject's part of the page: its tables and remarks as Markdown, and the command that repeats it."""
+
+    subject: str
+    title: str
+    command: str
+    lines: tuple[str, ...]
+
+    def text(self) -> str:
+        body = "\n".join(self.lines)
+        return (
+            f"{_begin(self.subject)}\n## {self.title}\n\n`{self.command}`\n\n{body}\n{_end(self.subject)}\n"
+        )
+
+
+def spread(
+    work: Callable[[Task], Result], tasks: Sequence[Task], label: str, pool: Executor
+) -> Iterator[Result]:
+    """Results of `work` in the order of the tasks; progress on stderr."""
+    begun = said = perf_counter()
+    chunk = max(1, min(MOST_AT_A_TIME, len(tasks) // FEWEST_TURNS))
+    for done, result in enumerate(pool.map(work, tasks, chunksize=chunk), start=1):
+        now = perf_counter()
+        if now - said > PROGRESS_S or done == len(tasks):
+            said = now
+            print(f"{label}: {done} of {len(tasks)}, {now - begun:.0f} s", file=sys.stderr, flush=True)
+        yield result
+
+
+def rate_interval(count: int, of: int) -> tuple[float, float]:
+    """Clopper and Pearson's 95 % interval of a rate of which `count` in `of` trials were seen."""
+    tail = (1.0 - CONFIDENCE) / 2.0
+    low = float(beta.ppf(tail, count, of - count + 1)) if count else 0.0
+    high = float(beta.ppf(1.0 - tail, count + 1, of - count)) if count < of else 1.0
+    return low, high
+
+
+def rate_text(count: int, of: int) -> str:
+    """A rate and its interval."""
+    if of == 0:
+        return "none"
+    low, high = rate_interval(count, of)
+    return f"{count} of {of} ({count / of:.2%}; {low:.2%} to {high:.2%})"
+
+
+def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """A Markdown table."""
+    lines = [header, ["---"] * len(header), *rows]
+    return ["| " + " | ".join(line) + " |" for line in lines]
+
+
+def mark(passed: bool) -> str:
+    return "met" if passed else "**falls short**"
+
+
+def write_sections(path: Path, preamble: str, order: Sequence[str], sections: Sequence[Section]) -> None:
+    """Put sections into the page, each in its place; those not measured this time stay as they are."""
+    old = path.read_text(encoding="utf-8") if path.exists() else ""
+    new = {section.subject: section.text() for section in sections}
+    parts = [preamble.strip() + "\n"]
+    for subject in order:
+        begin, end = _begin(subject), _end(subject)
+        if subject in new:
+            parts.append(new[subject])
+        elif begin in old and end in old:
+            parts.append(old[old.index(begin) : old.index(end)] + end + "\n")
+    path.write_text("\n".join(parts), encoding="utf-8")
+
+
+def _begin(subject: str) -> str:
+    return f"<!-- {subject}: measured -->"
+
+
+def _end(subject: str) -> str:
+    return f"<!-- {subject}: end -->"
