@@ -106,12 +106,21 @@ def diagnose(
     method: Method = Method.HCPA,
     model: Model = Model.SPLIT_WINDING,
     *,
+    currents_only: Annotated[
+        bool,
+        typer.Option(
+            "--currents-only",
+            help="Accept a recording without voltages; the verdict is at best a hint (watch).",
+        ),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Tell from one recording whether a motor has shorted stator turns."""
     from service.cli.diagnose import diagnose_recording
 
-    diagnose_recording(record, motor, method=method.value, model=model.value, as_json=as_json)
+    diagnose_recording(
+        record, motor, method=method.value, model=model.value, currents_only=currents_only, as_json=as_json
+    )
 
 
 @app.command()

@@ -14,7 +14,9 @@ from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_d
 from service.verdicts import level, verdict_text
 
 
-def diagnose_recording(record: Path, motor: Path | None, *, method: str, model: str, as_json: bool) -> None:
+def diagnose_recording(
+    record: Path, motor: Path | None, *, method: str, model: str, currents_only: bool, as_json: bool
+) -> None:
     """Read, diagnose, print.
 
     Raises CommandError where the recording or the motor file cannot be used, or the method is not known.
@@ -25,7 +27,7 @@ def diagnose_recording(record: Path, motor: Path | None, *, method: str, model: 
     ):
         recording = read(record)
         found = read_motor(motor or _motor_file_beside(record))
-        diagnosis = diagnose(recording, found, method=method, model=model)
+        diagnosis = diagnose(recording, found, method=method, model=model, currents_only=currents_only)
     if as_json:
         print_document(diagnosis.as_dict())
     else:

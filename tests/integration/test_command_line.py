@@ -1,6 +1,7 @@
 """`mcc diagnose` and `mcc import-scl`: no service needed."""
 
 import json
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 
 import scl
 from core.diagnosis.search import METHODS
+from core.recordings import comtrade, read
 from mms import Client
 from service.cli import main
 from service.demo import MOTORS
@@ -48,6 +50,19 @@ def test_a_fault_is_diagnosed_from_the_files_alone(record: Path, capsys: pytest.
     table = capsys.readouterr().out
     assert "fault" in table
     assert "shorted-winding" in table
+
+
+def test_without_voltages_a_diagnosis_must_be_asked_for(
+    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = read(record)
+    bare = replace(whole, samples=whole.samples[:3], channels=whole.channels[:3])
+    path, motor = comtrade.write(tmp_path / "BARE.CFG", bare), str(record.with_name("motor.toml"))
+    assert main(["diagnose", str(path), "--motor", motor, "--json"]) == 1
+    assert "voltages" in json.loads(capsys.readouterr().out)["error"]["message"]
+    assert main(["diagnose", str(path), "--motor", motor, "--json", "--currents-only"]) == 0
+    hint = json.loads(capsys.readouterr().out)
+    assert (hint["verdict"], hint["phase"]) == ("watch", "b")
 
 
 def test_a_damaged_record_names_file_field_and_expectation(
