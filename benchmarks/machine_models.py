@@ -1,7 +1,8 @@
 """Machine models: one candidate over 5,000 samples (0.5 s at 10 kHz), beside scipy and motulator."""
 
 import tracemalloc
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,8 +86,7 @@ def _solve_ivp() -> object:
 
 def _cost(playback: Playback, candidates: Candidates, measured: NDArray[np.float64], times: int) -> float:
     """Seconds a candidate, all of its work included: matrices, steady state, discretisation, stepping."""
-    work: Callable[[], object] = lambda: playback.squared_error(candidates, measured)  # noqa: E731
-    return best_of(times, work) / len(candidates)
+    return best_of(times, partial(playback.squared_error, candidates, measured)) / len(candidates)
 
 
 def _growth() -> Iterator[str]:

@@ -2,5 +2,6 @@
 
 import os
 
-# Must come before numpy: its matrices are small here, and threads of its own only take the workers' cores.
+# Must come before numpy, here and in every process started from here: with threads of their own for matrices
+# this small, two workers on two cores wait for each other and take five times as long.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -1,6 +1,5 @@
 """The service as a whole: collector process, diagnosis workers, REST API, on one data directory."""
 
-import os
 import signal
 import socket
 import time
@@ -102,9 +101,6 @@ def _collecting(settings: Settings, repository: Repository) -> Iterator[Collecto
 def _diagnosing(
     settings: Settings, plant: Plant, repository: Repository, store: RecordingStore
 ) -> Iterator[JobRunner]:
-    # A core a worker is all the matrices of a diagnosis are good for: with threads of their own, two workers
-    # on two cores wait for each other and take five times as long. Read when a worker loads numpy.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     jobs = JobRunner(
         repository,
         store,
