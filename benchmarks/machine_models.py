@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from benchmarks.motulator_peer import motulator_seconds
 from benchmarks.stopwatch import best_of
 from core.machines.broken_bars import BrokenBars
+from core.machines.candidates import Candidates
 from core.machines.high_resistance import HighResistanceConnection
-from core.machines.playback import Beginning, Candidates, Playback, Window
+from core.machines.playback import Beginning, Playback, Window
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import Supply, supply

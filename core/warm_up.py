@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from core.machines.candidates import Candidates
 from core.machines.parameters import MachineParameters, Motor, Nameplate
-from core.machines.playback import Candidates, Playback, window_of_record
+from core.machines.playback import Playback, window_of_record
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import supply
 

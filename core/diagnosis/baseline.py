@@ -36,12 +36,10 @@ class Baseline:
         return replace(case, current_ab=case.current_ab - np.stack([backward.real, backward.imag]))
 
 
-def standing_current(case: Case, explanation: Explanation) -> complex:
+def standing_current(explanation: Explanation) -> complex:
     """Backward-turning winding current the healthy machine leaves, from the forward voltage [A, peak]."""
-    first = case.window.compare_from / case.sample_rate_hz
-    current = case.negative_sequence(case.space_vector(explanation.healthy.residual_ab))
-    at_start = current * np.exp(1j * case.supply.angular_frequency * first)
-    return complex(at_start * _voltage_direction(case))
+    voltage = explanation.record.voltage.forward
+    return explanation.healthy.left * voltage / abs(voltage)
 
 
 def baseline_of(standing: Iterable[complex]) -> Baseline:

@@ -21,7 +21,8 @@ from core.signals.clarke import clarke
 from core.signals.phasors import fundamental_phasors
 from core.signals.sequence import PhaseSequence
 
-LONGEST_WINDOW_S = 1.0
+LONGEST_WINDOW_S, LONGEST_RECORD_S = 1.0, 1.2
+"""What is compared, and what is looked at: with it the cycles before and behind that delays reach to."""
 FEWEST_SAMPLES_A_CYCLE = 40
 """Of a thinned record: up to the 13th harmonic its shape is kept."""
 Winding = Literal[0, 1, 2]
@@ -91,14 +92,9 @@ def case_of(
     sequence: PhaseSequence,
 ) -> Case:
     """Winding quantities in a positive-sequence world; inputs as measured at the terminals."""
-    current_ab = clarke(current_abc)
-    if sequence is PhaseSequence.ACB:
-        mirror = np.array([[1.0], [-1.0]])
-        current_ab, voltage_ab = mirror * current_ab, mirror * voltage_ab
-    if motor.nameplate.connection is Connection.DELTA:
-        # v_ab = v_a - v_b and i_a = i_ab - i_ca turn and stretch the space vectors by sqrt 3 and 30 degrees.
-        ahead = _rotation(pi / 6.0)
-        current_ab, voltage_ab = ahead @ current_ab / sqrt(3.0), ahead @ voltage_ab * sqrt(3.0)
+    current_ab, voltage_ab = winding_frame(
+        clarke(current_abc), voltage_ab, sequence, motor.nameplate.connection
+    )
     phasor = sqrt(2.0) * fundamental_phasors(voltage_ab, frequency_hz, sample_rate_hz)
     return Case(
         motor=motor,
@@ -110,6 +106,20 @@ def case_of(
         sequence=sequence,
         window=window_of_record(current_ab.shape[1], sample_rate_hz, frequency_hz, LONGEST_WINDOW_S),
     )
+
+
+def winding_frame(
+    current_ab: Array, voltage_ab: Array, sequence: PhaseSequence, connection: Connection
+) -> tuple[Array, Array]:
+    """Currents and voltages of the windings, positive sequence, from those of the terminals, all (2, n)."""
+    if sequence is PhaseSequence.ACB:
+        mirror = np.array([[1.0], [-1.0]])
+        current_ab, voltage_ab = mirror * current_ab, mirror * voltage_ab
+    if connection is Connection.DELTA:
+        # v_ab = v_a - v_b and i_a = i_ab - i_ca turn and stretch the space vectors by sqrt 3 and 30 degrees.
+        ahead = _rotation(pi / 6.0)
+        current_ab, voltage_ab = ahead @ current_ab / sqrt(3.0), ahead @ voltage_ab * sqrt(3.0)
+    return current_ab, voltage_ab
 
 
 def thinned(case: Case) -> Case:

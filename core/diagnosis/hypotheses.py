@@ -10,17 +10,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.diagnosis.case import Case
+from core.diagnosis.fundamental import Fundamental
 from core.diagnosis.refinement import (
     FAULT_LEVEL,
     LOAD_LEVEL,
     PATH_RATIO,
     TIME_OFFSET,
     Fit,
-    refine,
+    Refinement,
 )
 from core.diagnosis.search import Starts
 from core.diagnosis.tolerance import Systematic
-from core.machines.playback import Candidates, Playback
+from core.machines.base import StatorModel
+from core.machines.candidates import Candidates
 
 SHARE_UNEXPLAINED = 0.15
 """Of the asymmetry a winding's fit removes, what it may leave: the path and the leakages of the shorted turns
@@ -32,8 +34,6 @@ SIGNIFICANT = 3.0
 """Standard errors beyond which a level or a path counts as seen."""
 UNLIKELY = 2.15
 """Standard deviations that a complex error exceeds once in a hundred times: sqrt(ln 100)."""
-OFFSET_DEVIATION_S, WIDEST_OFFSET = 100e-6, 5.0
-"""Standard deviation of the offset between a relay's channels [s], and how many of it are still a relay's."""
 PATH_START = 0.5
 """Path ratio that a fit starts from; beside it the least level a fit starts from, for its angle to count."""
 LEVEL_START = 0.005
@@ -43,10 +43,11 @@ LEVEL_START = 0.005
 class Explanation:
     """The best winding's fit and what it leaves.
 
-    winding: in the case's own labels.  asymmetry, unexplained: backward-turning current without and with the
-    fault, as a fraction of the forward-turning one.
+    record: the phasors explained.  winding: in the case's own labels.  asymmetry, unexplained:
+    backward-turning current without and with the fault, as a fraction of the forward-turning one.
     """
 
+    record: Fundamental
     winding: int
     fit: Fit
     healthy: Fit
@@ -55,7 +56,7 @@ class Explanation:
     evaluations: int
 
 
-def explain(case: Case, playback: Playback, starts: Starts) -> Explanation:
+def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
     """Refine every winding's best point and the healthy machine; choose the winding with the least residual.
 
     All windings have equally many unknowns, so the least residual is also the greatest likelihood. Turns
@@ -63,24 +64,25 @@ def explain(case: Case, playback: Playback, starts: Starts) -> Explanation:
     much unexplained, the path's resistance is fitted too, and taken where it is seen.
     """
     unknowns = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
-    fits = [refine(case, playback, start, unknowns) for start in starts.by_winding]
-    winding = _likeliest(case, fits)
+    refinement = Refinement(case, model, starts.best)
+    fits = [refinement.fit(start, unknowns) for start in starts.by_winding]
+    winding = _likeliest(fits)
     fit = fits[winding]
-    healthy = refine(
-        case, playback, replace(fit.candidate, fault_level=np.zeros(1)), (LOAD_LEVEL, TIME_OFFSET)
-    )
+    healthy = refinement.fit(replace(fit.candidate, fault_level=np.zeros(1)), (LOAD_LEVEL, TIME_OFFSET))
     tried = [*fits, healthy]
 
-    before, after = _backward(case, healthy), _left(case, fit, healthy)
-    if playback.model.knows_path and after > max(PATH_WORTH, PATH_WORTH_SHARE * before):
-        through = [refine(case, playback, _with_path(one), (*unknowns, PATH_RATIO)) for one in fits]
+    forward = abs(refinement.record.current.forward)
+    before, after = abs(healthy.left) / forward, abs(_left(fit, healthy)) / forward
+    if model.knows_path and after > max(PATH_WORTH, PATH_WORTH_SHARE * before):
+        through = [refinement.fit(_with_path(one), (*unknowns, PATH_RATIO)) for one in fits]
         tried += through
-        likeliest = _likeliest(case, through)
+        likeliest = _likeliest(through)
         bridged = through[likeliest]
-        left = _left(case, bridged, healthy)
+        left = abs(_left(bridged, healthy)) / forward
         if left < after and _is_seen(bridged, FAULT_LEVEL) and _is_seen(bridged, PATH_RATIO):
             winding, fit, after = likeliest, bridged, left
     return Explanation(
+        record=refinement.record,
         winding=winding,
         fit=fit,
         healthy=healthy,
@@ -96,19 +98,12 @@ def is_explained(explanation: Explanation, tolerance: Systematic) -> bool:
     return explanation.fit.value(FAULT_LEVEL) > 0.0 and explanation.unexplained <= allowed
 
 
-def _likeliest(case: Case, fits: list[Fit]) -> int:
+def _likeliest(fits: list[Fit]) -> int:
     """The winding that explains the record best, among those with a level above zero: no winding has fewer
-    turns shorted than none, so a level below zero only stands where there is no other.
-
-    Two windings may fit equally well, one of them with an offset no relay has (a light load on a strongly
-    unbalanced supply): the offset's prior decides, as long as some winding's offset is a relay's at all.
-    """
-    squared = np.array([fit.squared_error for fit in fits])
-    offset = np.array([fit.value(TIME_OFFSET) for fit in fits]) / OFFSET_DEVIATION_S
-    if np.abs(offset).min() < WIDEST_OFFSET:
-        squared = squared + squared.min() / (2 * case.samples_compared) * offset**2
+    turns shorted than none, so a level below zero only stands where there is no other."""
+    misfit = np.array([fit.misfit for fit in fits])
     possible = np.array([fit.value(FAULT_LEVEL) > 0.0 for fit in fits])
-    return int(np.argmin(np.where(possible, squared, np.inf) if possible.any() else squared))
+    return int(np.argmin(np.where(possible, misfit, np.inf) if possible.any() else misfit))
 
 
 def _with_path(fit: Fit) -> Candidates:
@@ -124,13 +119,6 @@ def _is_seen(fit: Fit, name: str) -> bool:
     return error is not None and fit.value(name) > SIGNIFICANT * error
 
 
-def _left(case: Case, fit: Fit, healthy: Fit) -> float:
+def _left(fit: Fit, healthy: Fit) -> complex:
     """Backward-turning current that the fault leaves; a level below zero is no fault and explains nothing."""
-    return _backward(case, fit if fit.value(FAULT_LEVEL) > 0.0 else healthy)
-
-
-def _backward(case: Case, fit: Fit) -> float:
-    """Backward-turning part of a residual over the forward-turning measured current."""
-    measured = case.space_vector(case.current_ab[:, case.window.first : case.window.last])
-    forward = abs(case.positive_sequence(measured))
-    return abs(case.negative_sequence(case.space_vector(fit.residual_ab))) / forward
+    return fit.left if fit.value(FAULT_LEVEL) > 0.0 else healthy.left

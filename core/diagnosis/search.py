@@ -9,8 +9,10 @@ from scipy.optimize import OptimizeResult
 from core.diagnosis.case import Case, thinned
 from core.diagnosis.errors import DiagnosisError
 from core.machines.base import Array, StatorModel
-from core.machines.playback import Candidates, Playback
-from core.optimisers import hcpa
+from core.machines.candidates import Candidates
+from core.machines.playback import Playback
+from core.optimisers import genetic, hcpa, hybrid, pattern_search
+from core.optimisers.hybrid import Refinement
 
 HIGHEST_FAULT_LEVEL = 0.2
 HIGHEST_LOAD_LEVEL = 1.25
@@ -20,6 +22,15 @@ MAX_GLOBAL, MAX_LOCAL = 400, 120
 FINENESS = 18
 ADAPTIVENESS = 0.4
 """Section 6.5.2's setting, with a fineness that lets single coordinates reach a thousandth of their range."""
+HYBRID_GLOBAL, HYBRID_ADAPTIVENESS = 100, 0.7
+"""Few points, spread widely: each winding's best only has to lie in the right valley (docs/optimisers.md)."""
+HYBRID_REFINEMENT = Refinement(starts=1, tolerance=1e-4)
+SAMPLES = 60
+"""Latin hypercube points of which the pattern search begins at the best (section 6.5.1)."""
+PATTERN_EVALUATIONS = 500
+FINEST_MESH = 1e-3
+SEED = 0
+"""Of the methods that draw random points: a record is diagnosed alike every time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +38,7 @@ class Starts:
     """Best point found for each winding, as a batch of one each, and what finding them took."""
 
     by_winding: tuple[Candidates, Candidates, Candidates]
+    best: Candidates
     evaluations: int
     message: str
 
@@ -53,24 +65,59 @@ def search(case: Case, model: StatorModel, method: str) -> Starts:
     coarse = thinned(case)
     playback = Playback(model, case.motor, coarse.supply, coarse.window)
 
+    measured = coarse.current_ab[:, coarse.window.first : coarse.window.last]
+    compared = coarse.window.compare_from - coarse.window.first
+
     def cost(points: Array) -> Array:
         return playback.squared_error(candidates_at(points), coarse.current_ab)
 
+    def residuals(points: Array) -> Array:
+        errors = playback.trajectories(candidates_at(points)).current - measured
+        return errors[:, :, compared:].reshape(len(points), -1)
+
     cycle = 1.0 / case.frequency_hz
-    result = METHODS[method](
-        cost, ((0.0, HIGHEST_FAULT_LEVEL), (0.0, 2.0), (0.0, cycle), (0.0, HIGHEST_LOAD_LEVEL))
-    )
+    result = METHODS[method](Objective(cost, residuals, cycle))
+    by_winding = (_best(result, 0, cycle), _best(result, 1, cycle), _best(result, 2, cycle))
     return Starts(
-        by_winding=(_best(result, 0, cycle), _best(result, 1, cycle), _best(result, 2, cycle)),
+        by_winding=by_winding,
+        best=by_winding[round(result.x[1])],
         evaluations=int(result.nfev),
         message=str(result.message),
     )
 
 
-def _hcpa(cost: Callable[[Array], Array], bounds: tuple[tuple[float, float], ...]) -> OptimizeResult:
+@dataclass(frozen=True, slots=True)
+class Objective:
+    """What a method minimises over points (m, 4), as in `candidates_at`: the cost, or the residuals (m, n)
+    whose squares sum to it; the cycle's length [s], which T_d is known up to."""
+
+    cost: Callable[[Array], Array]
+    residuals: Callable[[Array], Array]
+    cycle_s: float
+
+    def bounds(self, lowest_winding: float, highest_winding: float) -> tuple[tuple[float, float], ...]:
+        return (
+            (0.0, HIGHEST_FAULT_LEVEL),
+            (lowest_winding, highest_winding),
+            (0.0, self.cycle_s),
+            (0.0, HIGHEST_LOAD_LEVEL),
+        )
+
+    @property
+    def choice(self) -> tuple[tuple[float, float], ...]:
+        """Bounds for a method that only tries the windings."""
+        return self.bounds(0.0, 2.0)
+
+    @property
+    def rounding(self) -> tuple[tuple[float, float], ...]:
+        """Bounds for a method that knows no choice: each winding has a third of the range."""
+        return self.bounds(-0.5, 2.5)
+
+
+def _hcpa(objective: Objective) -> OptimizeResult:
     return hcpa.minimise(
-        cost,
-        bounds,
+        objective.cost,
+        objective.choice,
         adaptiveness=ADAPTIVENESS,
         fineness=FINENESS,
         exclusion=0.0,
@@ -81,7 +128,55 @@ def _hcpa(cost: Callable[[Array], Array], bounds: tuple[tuple[float, float], ...
     )
 
 
-METHODS = {"hcpa": _hcpa}
+def _hybrid(objective: Objective) -> OptimizeResult:
+    return hybrid.minimise(
+        objective.cost,
+        objective.choice,
+        residuals=objective.residuals,
+        refinement=HYBRID_REFINEMENT,
+        adaptiveness=HYBRID_ADAPTIVENESS,
+        fineness=FINENESS,
+        max_global=HYBRID_GLOBAL,
+        allowed=(None, WINDINGS, None, None),
+        periodic=(2,),
+        batch=True,
+    )
+
+
+def _genetic(objective: Objective) -> OptimizeResult:
+    return genetic.minimise(objective.cost, objective.rounding, seed=SEED, batch=True)
+
+
+def _pattern_search(objective: Objective) -> OptimizeResult:
+    return pattern_search.minimise(
+        objective.cost,
+        objective.rounding,
+        smallest_mesh=FINEST_MESH,
+        max_evaluations=PATTERN_EVALUATIONS,
+        batch=True,
+    )
+
+
+def _pattern_search_lhs(objective: Objective) -> OptimizeResult:
+    return pattern_search.minimise(
+        objective.cost,
+        objective.rounding,
+        samples=SAMPLES,
+        smallest_mesh=FINEST_MESH,
+        max_evaluations=PATTERN_EVALUATIONS,
+        seed=SEED,
+        batch=True,
+    )
+
+
+METHODS: dict[str, Callable[[Objective], OptimizeResult]] = {
+    "hybrid": _hybrid,
+    "hcpa": _hcpa,
+    "genetic": _genetic,
+    "pattern-search": _pattern_search,
+    "pattern-search-lhs": _pattern_search_lhs,
+}
+DEFAULT_METHOD = "hybrid"
 
 
 def _best(result: OptimizeResult, winding: int, cycle: float) -> Candidates:

@@ -5,15 +5,15 @@ from time import perf_counter
 
 import numpy as np
 
-from core.diagnosis.assumed_supply import SUPPLY_UNBALANCE, assumed_voltage
+from core.diagnosis.assumed_supply import SUPPLY_UNBALANCE
 from core.diagnosis.baseline import Baseline, baseline_of, standing_current
-from core.diagnosis.case import Case, case_of
+from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.hypotheses import UNLIKELY, Explanation, explain, is_explained
 from core.diagnosis.indicators import indicators
-from core.diagnosis.quality import electrical_condition, no_frequency, sampled_well
+from core.diagnosis.quality import examine
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET, Fit
-from core.diagnosis.search import METHODS, search
+from core.diagnosis.search import DEFAULT_METHOD, METHODS, search
 from core.diagnosis.tolerance import Systematic, systematic
 from core.diagnosis.verdict import Diagnosis, QualityFinding, Verdict
 from core.machines.base import StatorModel
@@ -22,9 +22,6 @@ from core.machines.playback import Playback, electrical_to_rpm
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.recordings import Recording, RecordingError
-from core.signals.errors import SignalError
-from core.signals.phasors import fundamental_frequency, fundamental_phasors
-from core.signals.sequence import sequence_phasors
 from core.signals.terminals import terminals
 
 MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
@@ -37,7 +34,7 @@ def diagnose(
     recording: Recording,
     motor: Motor,
     *,
-    method: str = "hcpa",
+    method: str = DEFAULT_METHOD,
     model: str = "split-winding",
     baseline: Baseline | None = None,
     currents_only: bool = False,
@@ -60,7 +57,7 @@ def diagnose(
         case = baseline.taken_off(case)
     playback = Playback(MODELS[model], motor, case.supply, case.window)
     starts = search(case, playback.model, method)
-    explanation = explain(case, playback, starts)
+    explanation = explain(case, playback.model, starts)
     tolerance = systematic(
         case,
         playback,
@@ -87,7 +84,7 @@ def diagnose(
         theta_f=case.terminal_winding(explanation.winding) if named else None,
         load_level=running.value(LOAD_LEVEL),
         time_offset_s=running.value(TIME_OFFSET),
-        residual_rms_A=_residual_rms(case, explanation),
+        residual_rms_A=_residual_rms(case, playback, fit),
         evaluations=starts.evaluations + explanation.evaluations,
         compute_seconds=perf_counter() - begun,
         quality=tuple(quality),
@@ -112,8 +109,8 @@ def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_on
         if case is None:
             failed = ", ".join(finding.name for finding in quality if not finding.passed)
             raise DiagnosisError(f"{recording.source or 'recording'}: not fit for a baseline: {failed}")
-        playback = Playback(SplitWinding(), motor, case.supply, case.window)
-        seen.append(standing_current(case, explain(case, playback, search(case, playback.model, "hcpa"))))
+        model = SplitWinding()
+        seen.append(standing_current(explain(case, model, search(case, model, DEFAULT_METHOD))))
     return baseline_of(seen)
 
 
@@ -173,30 +170,21 @@ def _accept(
         currents=motor.channels.currents,
         phase_voltages=None if currents_only else motor.channels.phase_voltages,
         line_voltages=None if currents_only else motor.channels.line_voltages,
+        longest_s=LONGEST_RECORD_S,
     )
-    voltage_ab, assumed = measured.voltage_ab, measured.voltage_ab is None
-    if voltage_ab is None and not currents_only:
+    assumed = measured.voltage_ab is None
+    if assumed and not currents_only:
         raise RecordingError(
             recording.source,
             "voltages",
             expected="three phase voltages or two line voltages beside the currents",
             found="none: without them an unbalanced supply cannot be told from a fault",
         )
-    rate = measured.sample_rate_hz
-    quality = sampled_well(measured, motor.nameplate)
-    if not all(finding.passed for finding in quality):
+    quality, passed = examine(measured, motor)
+    if passed is None:
         return None, quality, assumed
-    try:
-        if voltage_ab is None:
-            voltage_ab = assumed_voltage(measured.current_abc, rate, motor.nameplate)
-        frequency = fundamental_frequency(voltage_ab, rate)
-    except SignalError as error:
-        return None, [*quality, no_frequency(error, motor.nameplate)], assumed
-    quality += electrical_condition(measured, voltage_ab, frequency, motor.nameplate)
-    if not all(finding.passed for finding in quality):
-        return None, quality, assumed
-    sequence = sequence_phasors(fundamental_phasors(voltage_ab, frequency, rate)).sequence
-    case = case_of(motor, measured.current_abc, voltage_ab, rate, frequency, sequence)
+    rate, frequency = measured.sample_rate_hz, passed.frequency_hz
+    case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
     return case, quality, assumed
 
 
@@ -223,6 +211,8 @@ def _refused(quality: list[QualityFinding], seconds: float, model: str, method: 
     )
 
 
-def _residual_rms(case: Case, explanation: Explanation) -> float:
-    residual = case.space_vector(explanation.fit.residual_ab)
+def _residual_rms(case: Case, playback: Playback, fit: Fit) -> float:
+    window = case.window
+    modelled = playback.trajectories(fit.candidate).current[0]
+    residual = case.space_vector(case.current_ab[:, window.first : window.last] - modelled)
     return float(np.sqrt(np.mean(np.abs(residual) ** 2))) * case.line_per_winding_current

@@ -12,12 +12,10 @@ import numpy as np
 from scipy.stats import norm
 
 from core.diagnosis.case import Case
-from core.diagnosis.refinement import FAULT_LEVEL, Fit
-from core.machines.playback import Candidates, Playback
+from core.diagnosis.refinement import CHANNEL_RATIO, FAULT_LEVEL, Fit
+from core.machines.candidates import Candidates
+from core.machines.playback import Playback
 
-CHANNEL_RATIO = 0.0073
-"""Standard deviation of a channel's complex ratio: within 1 % in size and 50 us in time at 50 Hz, uniformly,
-as protection relays and their transformers are specified (1 % / sqrt 3, and 50 us / sqrt 12 as an angle)."""
 PARAMETERS = 0.06
 """Of the machine's negative-sequence impedance: within 10 %, uniformly; windings warm up, data sheets round
 off."""

@@ -11,17 +11,20 @@ with the least
 differ in one coordinate by 2^-(level of that coordinate + D) (4.6).
 """
 
-from bisect import bisect_left, insort
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from heapq import heappop, heappush
 
 import numpy as np
 from scipy.optimize import OptimizeResult
+from sortedcontainers import SortedList
 
+from core.optimisers.evaluations import Evaluations, Stopped
+from core.optimisers.exclusion import Exclusion
 from core.optimisers.objective import (
-    Array,
     BatchFunction,
     Bounds,
+    Box,
+    Callback,
     OptimiserError,
     PointFunction,
     as_batch,
@@ -35,14 +38,15 @@ RECOMMENDED = {
     4: (5, 0.08, 0.2),
     5: (4, 0.15, 0.15),
 }
-"""Fineness L0, exclusion epsilon and adaptiveness alpha by dimension (Table 4.1)."""
+"""Fineness L0, exclusion epsilon and adaptiveness alpha by dimension (Table 4.1; 1 is as 2)."""
 RECOMMENDED_BEYOND = (3, 0.3, 0.1)
 
 DIGITS = 52
 """Binary digits of a coordinate; also its deepest level, as many as a double can hold."""
 HALF = 1 << (DIGITS - 1)
 
-Callback = Callable[[Array, Array], bool | None]
+Point = tuple[int, ...]
+"""Coordinates as whole multiples of 2^-DIGITS."""
 
 
 def minimise(
@@ -58,11 +62,12 @@ def minimise(
     batch: bool = False,
     callback: Callback | None = None,
 ) -> OptimizeResult:
-    """Minimise `fun` over a box.
+    """Minimise `fun` over a box. There is no chance in it: the same arguments take the same path.
 
     adaptiveness: alpha in [0, 1]; 0 prefers good values (local), 1 unexplored regions (global).
     fineness: L0; only points of a level below it are evaluated.
-    exclusion: side (fraction of the box) of the region around an exhausted point that is searched no more.
+    exclusion: side (fraction of the box) of the region around a local minimum of the grid that is searched
+    no more; a point is one when it has no neighbours left and none of them has a lower value.
     max_global, max_local: evaluations with the given alpha, then with alpha = 0 (Fig. 4.7).
     allowed: for each coordinate the only values it may take, or None ("improved HCPA", section 6.4.3).
     batch: `fun` takes points (m, d) and returns (m,) values; a step hands over all its neighbours at once.
@@ -72,9 +77,8 @@ def minimise(
     costs (nfev,), levels (nfev,). Arguments left None take Table 4.1's value for the dimension.
     Raises OptimiserError for impossible arguments.
     """
-    lower, upper = checked_bounds(bounds)
-    dimensions = lower.size
-    table = RECOMMENDED.get(dimensions, RECOMMENDED_BEYOND)
+    box = checked_bounds(bounds)
+    table = RECOMMENDED.get(box.dimensions, RECOMMENDED_BEYOND)
     fineness = table[0] if fineness is None else fineness
     exclusion = table[1] if exclusion is None else exclusion
     adaptiveness = table[2] if adaptiveness is None else adaptiveness
@@ -85,8 +89,9 @@ def minimise(
             "fineness and max_global must be at least 1, exclusion and max_local at least 0: "
             f"found {fineness}, {max_global}, {exclusion}, {max_local}"
         )
-    search = _Search(lower, upper, fineness, exclusion, _admitted(allowed, lower, upper))
-    return search.run(as_batch(fun, batch=batch), adaptiveness, max_global, max_local, callback)
+    evaluations = Evaluations(as_batch(fun, batch=batch), box, callback=callback)
+    search = _Search(evaluations, fineness, exclusion, _admitted(allowed, box))
+    return search.run(adaptiveness, max_global, max_local)
 
 
 def level(digits: int) -> int:
@@ -94,21 +99,27 @@ def level(digits: int) -> int:
     return DIGITS - ((digits & -digits).bit_length() - 1) if digits else 0
 
 
-def _admitted(
-    allowed: Sequence[Sequence[float] | None] | None, lower: Array, upper: Array
-) -> list[frozenset[int] | None]:
+def deepest_levels(box: Box) -> list[int]:
+    """For each coordinate the level down to which neighbouring points are different doubles."""
+    coarsest = np.spacing(np.maximum(np.abs(box.lower), np.abs(box.upper)))
+    depths = np.floor(np.log2(box.upper - box.lower) - np.log2(coarsest)) - 1.0
+    return [int(depth) for depth in np.clip(depths, 0, DIGITS)]
+
+
+def _admitted(allowed: Sequence[Sequence[float] | None] | None, box: Box) -> list[frozenset[int] | None]:
     if allowed is None:
-        return [None] * lower.size
-    if len(allowed) != lower.size:
+        return [None] * box.dimensions
+    if len(allowed) != box.dimensions:
         raise OptimiserError(
-            f"allowed: expected one entry for each of {lower.size} dimensions, found {len(allowed)}"
+            f"allowed: expected one entry for each of {box.dimensions} dimensions, found {len(allowed)}"
         )
     admitted: list[frozenset[int] | None] = []
     for axis, values in enumerate(allowed):
         if values is None:
             admitted.append(None)
             continue
-        scaled = ((np.asarray(values) - lower[axis]) / (upper[axis] - lower[axis]) - 0.5) * 2.0**DIGITS
+        span = box.upper[axis] - box.lower[axis]
+        scaled = ((np.asarray(values) - box.lower[axis]) / span - 0.5) * 2.0**DIGITS
         digits = frozenset(round(value) for value in scaled)
         if not digits or 0 not in digits or max(abs(value) for value in digits) > HALF:
             raise OptimiserError(
@@ -124,137 +135,113 @@ class _Search:
 
     Among points of one L + D the least G belongs to the least value, so one heap for each L + D holds them
     all and a step only compares the heads; the rank of a head is its place in the sorted list of values.
+    There are at most L0 heaps, whatever the number of points.
     """
 
     def __init__(
         self,
-        lower: Array,
-        upper: Array,
+        evaluations: Evaluations,
         fineness: int,
         exclusion: float,
         admitted: list[frozenset[int] | None],
     ) -> None:
-        self._lower, self._span = lower, upper - lower
-        self._fineness = fineness
-        self._exclusion = exclusion * 2.0 ** (DIGITS - 1)
+        self._evaluations = evaluations
         self._admitted = admitted
-        self._points: list[tuple[int, ...]] = []
-        self._seen: set[tuple[int, ...]] = set()
+        self._deepest = deepest_levels(evaluations.box)
+        self._fineness = min(fineness, sum(self._deepest) + 1)
+        self._exclusion = Exclusion(evaluations.box.dimensions, exclusion * HALF) if exclusion else None
+        self._value_of: dict[Point, float] = {}
+        self._points: list[Point] = []
         self._levels: list[int] = []
         self._degrees: list[int] = []
-        self._values: list[float] = []
-        self._sorted: list[float] = []
-        self._heaps: dict[int, list[tuple[float, int]]] = {}
-        self._minima: list[tuple[int, ...]] = []
+        self._sorted = SortedList()
+        self._heaps: list[list[tuple[float, int]]] = [[] for _ in range(self._fineness)]
 
-    def run(
-        self,
-        fun: BatchFunction,
-        adaptiveness: float,
-        max_global: int,
-        max_local: int,
-        callback: Callback | None,
-    ) -> OptimizeResult:
-        stopped = self._evaluate(fun, [(0,) * self._lower.size], callback)
+    def run(self, adaptiveness: float, max_global: int, max_local: int) -> OptimizeResult:
+        """The stop logic of Fig. 4.7."""
+        budget = max_global + max_local
         steps = 0
-        message = "stopped by the callback"
-        while not stopped:
-            if len(self._values) >= max_global + max_local:
-                message = f"evaluated max_global + max_local = {max_global + max_local} points"
-                break
-            alpha = adaptiveness if len(self._values) < max_global else 0.0
-            best = self._least_goodness(alpha)
-            if best is None:
-                message = f"every reachable point of a level below {self._fineness} is evaluated"
-                break
-            budget = max_global + max_local - len(self._values)
-            stopped = self._evaluate(fun, self._expand(best)[:budget], callback)
-            steps += 1
-        return self._result(steps, message)
+        try:
+            self._evaluate([(0,) * len(self._admitted)], 0)
+            message = f"evaluated max_global + max_local = {budget} points"
+            while len(self._points) < budget:
+                best = self._least_goodness(adaptiveness if len(self._points) < max_global else 0.0)
+                if best is None:
+                    message = f"every reachable point of a level below {self._fineness} is evaluated"
+                    break
+                new, its_level = self._expand(best)
+                self._evaluate(new[: budget - len(self._points)], its_level)
+                steps += 1
+        except Stopped as stop:
+            message = str(stop)
+        result = self._evaluations.result(message, steps)
+        result["levels"] = np.array(self._levels)
+        return result
 
     def _least_goodness(self, alpha: float) -> int | None:
-        best, least = None, np.inf
-        for generation, heap in self._heaps.items():
-            if heap:
-                rank = bisect_left(self._sorted, heap[0][0]) + 1
+        best, least, lowest = None, np.inf, None
+        for generation, heap in enumerate(self._heaps):
+            # No better a value at a greater L + D: no less a G, so its rank need not be known.
+            if heap and (lowest is None or heap[0][0] < lowest):
+                lowest = heap[0][0]
+                rank = self._sorted.bisect_left(lowest) + 1
                 goodness = max(generation, 1) ** alpha * rank ** (1.0 - alpha)
                 if goodness < least:
-                    best, least = generation, goodness
-        return None if best is None else heappop(self._heaps[best])[1]
+                    best, least = heap, goodness
+        return None if best is None else heappop(best)[1]
 
-    def _expand(self, index: int) -> list[tuple[int, ...]]:
+    def _expand(self, index: int) -> tuple[list[Point], int]:
+        """New neighbours of a point and their level, L + D (4.6); none are left where that reaches L0."""
         self._degrees[index] += 1
         degree, point = self._degrees[index], self._points[index]
         generation = self._levels[index] + degree
         if generation >= self._fineness:
-            # No neighbour of this point is left above the grid's fineness: it is a minimum of this grid.
-            if self._exclusion > 0.0 and not self._is_excluded(point):
-                self._minima.append(point)
-            return []
+            if self._exclusion is not None and self._is_minimum(point, degree):
+                self._exclusion.add(point)
+            return [], generation
         self._push(index)
-        return [new for new in self._neighbours(point, degree) if self._is_new(new)]
+        around = [one for one in self._neighbours(point, degree) if one not in self._value_of]
+        if self._exclusion is not None:
+            around = self._exclusion.outside(point, around)
+        return around, generation
 
-    def _neighbours(self, point: tuple[int, ...], degree: int) -> list[tuple[int, ...]]:
+    def _neighbours(self, point: Point, degree: int) -> list[Point]:
         found = []
         for axis, digits in enumerate(point):
             depth = level(digits) + degree
-            if depth > DIGITS:
+            if depth > self._deepest[axis]:
                 continue
             step = 1 << (DIGITS - depth)
             admitted = self._admitted[axis]
             for moved in (digits - step, digits + step):
-                if abs(moved) <= HALF and (admitted is None or moved in admitted):
+                if -HALF <= moved <= HALF and (admitted is None or moved in admitted):
                     found.append((*point[:axis], moved, *point[axis + 1 :]))
         return found
 
-    def _is_new(self, point: tuple[int, ...]) -> bool:
-        return point not in self._seen and not self._is_excluded(point)
-
-    def _is_excluded(self, point: tuple[int, ...]) -> bool:
-        return any(
-            all(abs(a - b) < self._exclusion for a, b in zip(point, minimum, strict=True))
-            for minimum in self._minima
+    def _is_minimum(self, point: Point, degrees: int) -> bool:
+        """Whether no evaluated neighbour is lower; those of degree 0 are the points it descends from."""
+        value = self._value_of[point]
+        return all(
+            self._value_of.get(one, np.inf) >= value
+            for degree in range(degrees)
+            for one in self._neighbours(point, degree)
         )
 
-    def _evaluate(self, fun: BatchFunction, new: list[tuple[int, ...]], callback: Callback | None) -> bool:
+    def _evaluate(self, new: list[Point], its_level: int) -> None:
         if not new:
-            return False
-        points = self._in_box(new)
-        values = fun(points)
-        for point, value in zip(new, values.tolist(), strict=True):
-            self._seen.add(point)
-            self._points.append(point)
-            self._levels.append(sum(level(digits) for digits in point))
-            self._degrees.append(0)
-            self._values.append(value)
-            insort(self._sorted, value)
-            self._push(len(self._values) - 1)
-        return bool(callback(points, values)) if callback is not None else False
+            return
+        # Levels first: a callback that stops the search leaves points whose levels are asked for too.
+        self._levels += [its_level] * len(new)
+        self._degrees += [0] * len(new)
+        first = len(self._points)
+        self._points += new
+        values = self._evaluations(np.array(new, dtype=np.float64) * 2.0**-DIGITS + 0.5).tolist()
+        self._value_of.update(zip(new, values, strict=True))
+        self._sorted.update(values)
+        for index, value in enumerate(values, start=first):
+            heappush(self._heaps[its_level], (value, index))
 
     def _push(self, index: int) -> None:
         generation = self._levels[index] + self._degrees[index]
-        heappush(self._heaps.setdefault(generation, []), (self._values[index], index))
-
-    def _in_box(self, points: list[tuple[int, ...]]) -> Array:
-        unit = np.array(points, dtype=np.float64) * 2.0**-DIGITS + 0.5
-        return self._lower + unit * self._span
-
-    def _result(self, steps: int, message: str) -> OptimizeResult:
-        values = np.array(self._values)
-        best = int(np.argmin(values))
-        points = self._in_box(self._points)
-        result = OptimizeResult()
-        result.update(
-            {
-                "x": points[best],
-                "fun": float(values[best]),
-                "nfev": len(values),
-                "nit": steps,
-                "success": bool(np.isfinite(values[best])),
-                "message": message,
-                "points": points,
-                "costs": values,
-                "levels": np.array(self._levels),
-            }
-        )
-        return result
+        value = self._value_of[self._points[index]]
+        heappush(self._heaps[generation], (value, index))

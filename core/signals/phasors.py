@@ -24,6 +24,13 @@ MIN_FUNDAMENTAL_SHARE = 0.5
 HARMONICS_OF_A_SUPPLY = (1, 3, 5, 7, 11, 13)
 """Orders modelled beside the fundamental while its frequency is sought, in both sequences."""
 
+HIGHEST_RATE_HZ = 1e12
+"""Beyond it a rate is a mistake, and angles lose their digits."""
+
+FEWEST_SAMPLES = 8
+SMALLEST_SIZE = 1e-300
+"""Of samples; below it they are nothing."""
+
 _MAX_ITERATIONS = 12
 _CONVERGED_CYCLES = 1e-8
 """Change of the whole record's phase at which the iteration stops [cycles]; far below any noise."""
@@ -36,7 +43,8 @@ def harmonic_phasors(
 
     x: samples, shape (..., n), finite. Returns rms phasors of shape (..., len(orders)), unit of x.
     Name every order the waveform contains: over a part of a cycle an order left out leaks into the others.
-    Raises SignalError for fewer samples than unknowns or values that are not finite.
+    Raises SignalError for fewer samples than unknowns, values that are not finite, and a frequency that is
+    not between 0 and the sampling rate.
     """
     n = x.shape[-1]
     if n < 1 + 2 * len(orders):
@@ -46,17 +54,23 @@ def harmonic_phasors(
         )
     if not np.isfinite(x).all():
         raise SignalError("phasors need finite samples; the waveform has missing values")
+    if not 0.0 < frequency_hz <= sample_rate_hz < HIGHEST_RATE_HZ:
+        raise SignalError(
+            f"phasors need a frequency between 0 and the sampling rate; found {frequency_hz:g} Hz "
+            f"at {sample_rate_hz:g} Hz"
+        )
+    size = _size(x)
     theta = np.outer(2 * pi * frequency_hz / sample_rate_hz * np.arange(n), np.asarray(orders))
     # Re{X e^jθ} sqrt(2) = sqrt(2) (Re X cos θ - Im X sin θ)
     basis = np.concatenate([sqrt(2) * np.cos(theta), -sqrt(2) * np.sin(theta), np.ones((n, 1))], axis=1)
-    solution, _, rank, _ = np.linalg.lstsq(basis, x.reshape(-1, n).T)
+    solution, _, rank, _ = np.linalg.lstsq(basis, (x / size).reshape(-1, n).T)
     if rank < basis.shape[1]:
         raise SignalError(
             f"orders {tuple(orders)} of {frequency_hz:g} Hz cannot be told apart in {n} samples "
             f"at {sample_rate_hz:g} Hz"
         )
     count = len(orders)
-    phasors = solution[:count] + 1j * solution[count : 2 * count]
+    phasors = size * (solution[:count] + 1j * solution[count : 2 * count])
     return np.asarray(phasors.T.reshape(*x.shape[:-1], count), dtype=np.complex128)
 
 
@@ -81,9 +95,14 @@ def fundamental_frequency(
     Raises SignalError if the record is shorter than MIN_CYCLES of the found frequency, has no
     dominant line within `search_hz`, or has missing values.
     """
-    space_vector = v_ab[0] + 1j * v_ab[1]
-    if not np.isfinite(space_vector).all():
+    if not np.isfinite(v_ab).all():
         raise SignalError("a frequency needs finite samples; the voltages have missing values")
+    if not search_hz[0] < sample_rate_hz < HIGHEST_RATE_HZ:
+        raise SignalError(
+            f"a frequency needs a sampling rate above {search_hz[0]:g} Hz; found {sample_rate_hz:g} Hz"
+        )
+    v_ab = v_ab / _size(v_ab)
+    space_vector = v_ab[0] + 1j * v_ab[1]
     coarse_hz = _spectral_peak(space_vector, sample_rate_hz, search_hz)
     n = space_vector.size
     if n * coarse_hz / sample_rate_hz < MIN_CYCLES:
@@ -99,11 +118,18 @@ def fundamental_frequency(
     return _refine(space_vector, coarse_hz, sample_rate_hz, search_hz)
 
 
+def _size(x: NDArray[np.float64]) -> float:
+    """Greatest magnitude, by which samples are divided: their squares must not leave the range of numbers."""
+    return max(float(np.abs(x).max(initial=0.0)), SMALLEST_SIZE)
+
+
 def _spectral_peak(
     space_vector: NDArray[np.complex128], sample_rate_hz: float, search_hz: tuple[float, float]
 ) -> float:
     """Frequency of the strongest line in either sequence, to a few hundredths of a DFT bin [Hz]."""
     n = space_vector.size
+    if n < FEWEST_SAMPLES:
+        raise SignalError(f"{n} samples are too few for a frequency; at least {FEWEST_SAMPLES} are needed")
     size = 4 * max(n, 16)
     spectrum = np.fft.fft((space_vector - space_vector.mean()) * np.hanning(n), size)
     half = size // 2

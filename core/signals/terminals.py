@@ -2,13 +2,15 @@
 
 from dataclasses import dataclass
 from itertools import groupby
+from math import ceil, inf, isfinite
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.recordings.errors import RecordingError
+from core.recordings.resampling import evenly_spaced
 from core.recordings.waveform import Channel, Quantity, Recording
-from core.signals.clarke import clarke, clarke_from_line_voltages
+from core.signals.clarke import CLARKE, CLARKE_FROM_LINE
 
 PHASES = ("a", "b", "c")
 LINES = ("ab", "bc", "ca")
@@ -28,6 +30,8 @@ class Terminals:
     voltage_ab: voltages in power-invariant Clarke axes, shape (2, n) [V]; None if the recording has none.
     current_channels, voltage_channels: the channels taken (three currents; three voltages, two where
     the third line voltage follows from Kirchhoff's law, none without voltages).
+    voltages: samples of the voltage channels, shape (channels, n) [V]; voltage_axes, shape (2, channels),
+    makes voltage_ab of them.
     Missing samples stay NaN.
     """
 
@@ -36,6 +40,8 @@ class Terminals:
     sample_rate_hz: float
     current_channels: tuple[Channel, ...]
     voltage_channels: tuple[Channel, ...]
+    voltages: NDArray[np.float64]
+    voltage_axes: NDArray[np.float64]
 
 
 def terminals(
@@ -44,46 +50,68 @@ def terminals(
     currents: tuple[str, str, str] | None = None,
     phase_voltages: tuple[str, str, str] | None = None,
     line_voltages: tuple[str, str, str] | None = None,
+    longest_s: float = inf,
 ) -> Terminals:
     """Pick the terminal quantities by channel name, or by quantity and phase where no names are given.
+
+    Of a record longer than `longest_s` only its end.
 
     currents: names of the channels of i_a, i_b, i_c; phase_voltages: v_a, v_b, v_c; line_voltages: v_ab,
     v_bc, v_ca. Voltages: phase voltages if named, else line voltages if named, else a complete set of
     phase voltages, else of line voltages (two suffice: they sum to zero), else None.
 
-    Raises RecordingError naming the channel that is missing, ambiguous or of the wrong unit.
+    Raises RecordingError naming the channel that is missing, ambiguous or of the wrong unit, and for a sample
+    rate or samples that are no real numbers or have a gap.
     """
+    if not (isfinite(recording.sample_rate_hz) and recording.sample_rate_hz > 0.0):
+        raise RecordingError(
+            recording.source, "sample rate", expected="more than 0 Hz", found=f"{recording.sample_rate_hz} Hz"
+        )
+    recording = evenly_spaced(recording)
+    if recording.samples.dtype.kind not in "fiu":
+        raise RecordingError(
+            recording.source, "samples", expected="real numbers", found=f"{recording.samples.dtype}"
+        )
     chosen_currents = (
         _by_name(recording, Quantity.CURRENT, currents) if currents else _find_currents(recording)
     )
-    voltage_ab, voltage_rows = _voltages(recording, phase_voltages, line_voltages)
+    voltage_rows, voltage_axes = _voltages(recording, phase_voltages, line_voltages)
+    longest = min(longest_s * recording.sample_rate_hz, recording.samples.shape[1])
+    first = recording.samples.shape[1] - ceil(longest)
+    voltages = _rows(recording, voltage_rows, first)
+    with np.errstate(invalid="ignore", over="ignore"):  # infinite samples become NaN and stay so
+        voltage_ab = voltage_axes @ voltages
     return Terminals(
-        current_abc=recording.samples[list(chosen_currents)],
-        voltage_ab=voltage_ab,
+        current_abc=_rows(recording, chosen_currents, first),
+        voltage_ab=voltage_ab if voltage_rows else None,
         sample_rate_hz=recording.sample_rate_hz,
         current_channels=tuple(recording.channels[row] for row in chosen_currents),
         voltage_channels=tuple(recording.channels[row] for row in voltage_rows),
+        voltages=voltages,
+        voltage_axes=voltage_axes,
     )
+
+
+def _rows(recording: Recording, rows: tuple[int, ...], first: int) -> NDArray[np.float64]:
+    return recording.samples[:, first:][list(rows)].astype(np.float64, copy=False)
 
 
 def _voltages(
     recording: Recording,
     phase_voltages: tuple[str, str, str] | None,
     line_voltages: tuple[str, str, str] | None,
-) -> tuple[NDArray[np.float64] | None, tuple[int, ...]]:
+) -> tuple[tuple[int, ...], NDArray[np.float64]]:
+    """Rows of the voltage channels and the matrix that makes Clarke axes of them."""
     if phase_voltages:
-        rows = _by_name(recording, Quantity.PHASE_VOLTAGE, phase_voltages)
-        return clarke(recording.samples[list(rows)]), rows
+        return _by_name(recording, Quantity.PHASE_VOLTAGE, phase_voltages), CLARKE
     if line_voltages:
-        rows = _by_name(recording, Quantity.LINE_VOLTAGE, line_voltages)
-        return clarke_from_line_voltages(recording.samples[list(rows)]), rows
+        return _by_name(recording, Quantity.LINE_VOLTAGE, line_voltages), CLARKE_FROM_LINE
     by_phase = _find(recording, Quantity.PHASE_VOLTAGE, PHASES)
     if len(by_phase) == len(PHASES):
-        rows = tuple(by_phase[phase] for phase in PHASES)
-        return clarke(recording.samples[list(rows)]), rows
+        return tuple(by_phase[phase] for phase in PHASES), CLARKE
     by_line = _find(recording, Quantity.LINE_VOLTAGE, LINES)
     if len(by_line) >= 2:
-        return clarke_from_line_voltages(_close_triangle(recording, by_line)), tuple(by_line.values())
+        return tuple(by_line.values()), CLARKE_FROM_LINE @ _closed_triangle(by_line)
     if by_phase or by_line:
         raise RecordingError(
             recording.source,
@@ -91,19 +119,16 @@ def _voltages(
             expected="three phase voltages, or at least two line voltages",
             found=_listing(recording, [*by_phase.values(), *by_line.values()]),
         )
-    return None, ()
+    return (), np.zeros((2, 0))
 
 
-def _close_triangle(recording: Recording, by_line: dict[str, int]) -> NDArray[np.float64]:
-    """Line voltages (3, n) [V]; one that was not recorded is minus the sum of the others."""
-    v_line = np.zeros((3, recording.samples.shape[1]))
-    for k, line in enumerate(LINES):
-        if line in by_line:
-            v_line[k] = recording.samples[by_line[line]]
-    for k, line in enumerate(LINES):
-        if line not in by_line:
-            v_line[k] = -v_line.sum(axis=0)
-    return v_line
+def _closed_triangle(by_line: dict[str, int]) -> NDArray[np.float64]:
+    """From the line voltages there are to all three: one not recorded is minus the sum of the others."""
+    rows = [
+        [float(line == other) for other in by_line] if line in by_line else [-1.0] * len(by_line)
+        for line in LINES
+    ]
+    return np.array(rows)
 
 
 def _find_currents(recording: Recording) -> tuple[int, ...]:

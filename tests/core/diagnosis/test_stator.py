@@ -8,8 +8,9 @@ import pytest
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
+from core.machines.candidates import Candidates
 from core.machines.parameters import Connection, Motor
-from core.machines.playback import Candidates, Playback, window_of_record
+from core.machines.playback import Playback, window_of_record
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.supply import supply
 from core.recordings import Channel, Quantity, Recording, RecordingError
@@ -182,7 +183,7 @@ def spoilt(kind: str) -> Recording:  # noqa: C901 - one case a check
             x[2] *= 0.02
         case "current sum":
             x[2] *= 0.4
-        case "power direction":
+        case "polarity":
             x[:3] *= -1
         case "steadiness":
             x[:3] *= np.linspace(1.0, 1.6, x.shape[1])
@@ -194,7 +195,7 @@ def spoilt(kind: str) -> Recording:  # noqa: C901 - one case a check
     [
         "missing samples", "duration", "clipping IA", "held samples IB", "frequency", "voltage", "current",
         "phase order", "phase loss",
-        "current sum", "power direction", "steadiness",
+        "current sum", "polarity", "steadiness",
     ],
 )  # fmt: skip
 def test_the_gate_refuses_with_name_figure_and_reason(check: str) -> None:
@@ -292,7 +293,7 @@ def test_indicators_and_speed_stand_beside_the_fit(motor: Motor) -> None:
 
 
 def test_unknown_method_and_model_name_the_known_ones() -> None:
-    with pytest.raises(DiagnosisError, match="known: hcpa"):
+    with pytest.raises(DiagnosisError, match="known: hybrid, hcpa"):
         diagnose(healthy_record(), REFERENCE, method="dowsing")
     with pytest.raises(DiagnosisError, match="split-winding"):
         diagnose(healthy_record(), REFERENCE, model="perfect")
@@ -305,7 +306,7 @@ def test_the_document_has_the_keys_of_the_contract() -> None:
         "evaluations", "compute_seconds", "quality", "reasons", "model", "method", "load_level_ci95",
         "speed_rpm", "detection_limit", "indicators",
     ]  # fmt: skip
-    assert document["method"] == "hcpa"
+    assert document["method"] == "hybrid"
 
 
 def test_residual_of_a_delta_is_given_in_line_amperes() -> None:

@@ -7,10 +7,11 @@ import pytest
 from numpy.typing import NDArray
 
 from core.machines.base import StatorModel
+from core.machines.candidates import Candidates, LoadLaw
 from core.machines.healthy import HealthyMachine
 from core.machines.high_resistance import HighResistanceConnection
 from core.machines.parameters import Motor
-from core.machines.playback import Beginning, Candidates, LoadLaw, Playback, Trajectories, Window
+from core.machines.playback import Beginning, Playback, Trajectories, Window
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import Supply, supply

@@ -7,9 +7,10 @@ import pytest
 from numpy.typing import NDArray
 
 from core.machines.base import StatorModel
+from core.machines.candidates import Candidates
 from core.machines.high_resistance import HighResistanceConnection
 from core.machines.parameters import Connection, Motor
-from core.machines.playback import Candidates, Playback, electrical_to_rpm, window_of_record
+from core.machines.playback import Playback, electrical_to_rpm, window_of_record
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import Supply, supply

@@ -1,0 +1,199 @@
+"""Checks on the currents: every phase there, undistorted, the right way round, and a running motor's."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.diagnosis.quality.finding import finding
+from core.diagnosis.quality.machine import CircleDiagram
+from core.diagnosis.quality.supply import Feed
+from core.diagnosis.verdict import QualityFinding
+from core.signals.clarke import CLARKE
+from core.signals.phasors import harmonic_phasors
+from core.signals.sequence import SequencePhasors, sequence_phasors
+from core.signals.terminals import Terminals
+
+OPEN_WIRE, OPEN_CHANNEL = 0.01, 0.1
+"""Least over greatest phase current. An open wire carries nothing; severe shorts without load on an
+unbalanced supply come down to 0.016, without a sum. An open channel leaves a sum and may show crosstalk."""
+SATURATED, SATURATED_UNPAIRED = 0.05, 0.15
+"""2nd and 3rd harmonic of the currents' sum over a phase current. Three wires carry no such sum whatever the
+supply and the winding do; transformers that saturate make 10 % and more."""
+SATURATED_PHASE = 0.15
+"""The same of one phase, where the sum is zero because the recorder computed the third current."""
+COMPUTED_SUM = 1e-6
+CURRENT_SUM, CURRENT_SUM_UNPAIRED = 0.045, 0.3
+"""Fundamental of the currents' sum over the greatest: 1 % and 50 us between channels leave 2.6 % at worst.
+Unpaired: currents recorded without voltages often come from sensors scaled one by one."""
+LEAST_OF_NO_LOAD = 0.5
+"""Positive-sequence current over the no-load current: parameters within 10 % and sensors leave 0.85."""
+MOST_OF_STANDSTILL, IMPOSSIBLE_OF_STANDSTILL = 0.6, 1.4
+"""Of the locked rotor's current: severe shorts at full load reach 0.35; only a wrong ratio exceeds 1."""
+CLEAN = 0.8
+"""Fundamental over rms: a small but clean current is scaled wrongly, a small and noisy one is none."""
+BACKWARD = 1.3
+"""Backward over forward current, in the supply's own sense: exchanged phases make 2 and more; a motor without
+load on a supply unbalanced by 5 %, with severe shorts, comes near 1."""
+LEAST_LAG_DEG, MOST_LAG_DEG = -20.0, 110.0
+"""Of the current behind the voltage: a motor's 0 to 90, and delays between the channels."""
+
+_SIGNS = ((-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, -1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class Currents:
+    """Phasors of the line currents, rms [A].
+
+    by_order: fundamental, 2nd and 3rd harmonic, shape (3 phases, 3 orders).
+    phasors: the fundamental's sequences.  rms: of the greatest phase with everything in it, without its mean.
+    """
+
+    by_order: NDArray[np.complex128]
+    phasors: SequencePhasors
+    names: tuple[str, ...]
+    rms: float
+
+    @property
+    def sizes(self) -> NDArray[np.float64]:
+        return np.abs(self.by_order[:, 0])
+
+    @property
+    def greatest(self) -> float:
+        return float(self.sizes.max())
+
+    @property
+    def strong(self) -> float:
+        """The greater of the two sequences, rms [A]."""
+        return max(abs(self.phasors.positive), abs(self.phasors.negative))
+
+
+def currents_of(terminals: Terminals, frequency_hz: float) -> Currents:
+    by_order = harmonic_phasors(terminals.current_abc, frequency_hz, terminals.sample_rate_hz, (1, 2, 3))
+    return Currents(
+        by_order=by_order,
+        phasors=sequence_phasors(CLARKE @ by_order[:, 0]),
+        names=tuple(channel.name for channel in terminals.current_channels),
+        rms=float(terminals.current_abc.std(axis=1).max()),
+    )
+
+
+def running(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[QualityFinding]:
+    """Is there current of the supply's frequency, and less than a locked rotor's?"""
+    share = currents.strong / (circle.at_standstill * feed.strong)
+    off = _is_small(currents, feed, circle) and currents.greatest < CLEAN * currents.rms
+    stalled = MOST_OF_STANDSTILL < share <= IMPOSSIBLE_OF_STANDSTILL
+    why = (
+        "there is no current at the supply's frequency: the motor is switched off"
+        if off
+        else f"{share:.2f} of the locked rotor's current: the motor is starting or stalled, or the currents "
+        "are scaled 2 to 5 times too large"
+    )
+    yield finding(
+        "running", share, MOST_OF_STANDSTILL, "of locked rotor", passed=not off and not stalled, message=why
+    )
+
+
+def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[QualityFinding]:
+    """Is it scaled as the nameplate says?"""
+    no_load, standstill = circle.at_no_load * feed.strong, circle.at_standstill * feed.strong
+    small = _is_small(currents, feed, circle)
+    limit = LEAST_OF_NO_LOAD * no_load if small else IMPOSSIBLE_OF_STANDSTILL * standstill
+    yield finding(
+        "current", currents.strong, limit, "A", passed=not small and currents.strong <= limit,
+        message=f"{currents.strong:.3g} A is {'less' if small else 'more'} than this motor can draw (no load "
+        f"{no_load:.3g} A, locked rotor {standstill:.3g} A): a wrong ratio, secondary amperes, kA for A, "
+        "or another motor's nameplate",
+    )  # fmt: skip
+
+
+def _is_small(currents: Currents, feed: Feed, circle: CircleDiagram) -> bool:
+    return currents.strong < LEAST_OF_NO_LOAD * circle.at_no_load * feed.strong
+
+
+def phase_loss(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
+    least = float(currents.sizes.min() / currents.greatest)
+    name = currents.names[int(currents.sizes.argmin())]
+    limit = OPEN_CHANNEL if _sum(currents) > _most_sum(feed) else OPEN_WIRE
+    yield finding(
+        "phase loss", least, limit, "of the greatest", passed=least >= limit,
+        message=f"{name} shows {least:.1%} of the greatest current: wire or channel open, or a fuse blown",
+    )  # fmt: skip
+
+
+def saturation(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
+    harmonics = currents.by_order[:, 1:]
+    if float(np.abs(currents.by_order[:, 0].sum())) < COMPUTED_SUM * currents.greatest:
+        share = float((np.linalg.norm(harmonics, axis=1) / currents.sizes).max())
+        limit = SATURATED_PHASE
+    else:
+        share = float(np.linalg.norm(harmonics.sum(axis=0))) / currents.greatest
+        limit = SATURATED_UNPAIRED if feed.assumed else SATURATED
+    yield finding(
+        "saturation", share, limit, "of one phase", passed=share <= limit,
+        message=f"2nd and 3rd harmonics make {share:.0%}, which three wires cannot carry: a current "
+        "transformer (or its input) saturates; take one with a smaller burden or a higher ratio",
+    )  # fmt: skip
+
+
+def adding_up(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
+    """The sum shows a single channel reversed, or of a wrong ratio."""
+    phasors = currents.by_order[:, 0]
+    limit, share = _most_sum(feed), _sum(currents)
+    turned = [float(abs((phasors * np.array(signs)).sum())) / currents.greatest for signs in _SIGNS]
+    best = int(np.argmin(turned))
+    wrong = share > limit
+    reversed_one = wrong and turned[best] <= limit
+    yield finding(
+        "current polarity", share, limit, "of one phase", passed=not reversed_one,
+        message=f"with {currents.names[best]} the other way round the currents add up to nothing: "
+        "exchange its wires",
+    )  # fmt: skip
+    if reversed_one:
+        return
+    yield finding(
+        "current sum", share, limit, "of one phase", passed=not wrong,
+        message=f"the three currents leave {share:.1%} where they should add up to nothing: one is scaled or "
+        "timed wrongly, or the motor has an earth fault",
+    )  # fmt: skip
+
+
+def _sum(currents: Currents) -> float:
+    return float(abs(currents.by_order[:, 0].sum())) / currents.greatest
+
+
+def _most_sum(feed: Feed) -> float:
+    return CURRENT_SUM_UNPAIRED if feed.assumed else CURRENT_SUM
+
+
+def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[QualityFinding]:
+    """Do the currents belong to these voltages: same order of phases, and behind them as a motor's are?"""
+    if feed.assumed:
+        return
+    positive = abs(feed.phasors.positive) >= abs(feed.phasors.negative)
+    ahead, back = currents.phasors.positive, currents.phasors.negative
+    voltage = feed.phasors.positive if positive else feed.phasors.negative
+    forward, backward = (ahead, back) if positive else (back, ahead)
+    share = abs(backward) / max(abs(forward), 1e-12)
+    lag = float(np.degrees(np.angle(voltage / forward)))
+    within = LEAST_LAG_DEG <= lag <= MOST_LAG_DEG
+    off = lag - circle.lag_deg(abs(forward) / abs(voltage))
+    # Turned by a third of a cycle either way the phases are exchanged in a ring, by half a cycle reversed.
+    swapped = share > BACKWARD
+    ring = not swapped and not within and abs((off + 180.0) % 360.0 - 180.0) < 150.0
+    nearest = LEAST_LAG_DEG if lag < LEAST_LAG_DEG else MOST_LAG_DEG
+    yield finding(
+        "phase order", lag if ring else share, nearest if ring else BACKWARD,
+        "degrees behind" if ring else "backward over forward", passed=not swapped and not ring,
+        message="the currents turn against the voltages: two phases are exchanged" if swapped else
+        f"the currents lie {lag:.0f} degrees behind the voltages, a third of a cycle off: the phases are "
+        "exchanged in a ring",
+    )  # fmt: skip
+    if swapped or ring:
+        return
+    yield finding(
+        "polarity", lag, nearest, "degrees behind", passed=within,
+        message=f"the currents lie {lag:.0f} degrees behind the voltages, half a cycle off: all currents (or "
+        "voltages) are reversed, or the machine generates",
+    )  # fmt: skip

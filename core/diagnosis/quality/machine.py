@@ -1,0 +1,65 @@
+"""What currents a healthy machine can draw: the circle diagram of its equivalent circuit.
+
+Two points bound every running motor: at no load it draws what magnetises it, at standstill the most it ever
+does. Both follow from the motor's parameters, so the gate needs no rule of thumb on the nameplate.
+"""
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.machines.base import Array
+from core.machines.parameters import Connection, Motor
+
+_SLIPS = np.concatenate([[1e-6], np.geomspace(1e-4, 1.0, 400)])
+
+
+@dataclass(frozen=True, slots=True)
+class CircleDiagram:
+    """Line current per volt of phase-to-neutral voltage over the slip: conductances of one sequence [S].
+
+    admittance: from no load to standstill, shape (slips,).  rated_current_A: at rated torque and voltage.
+    """
+
+    admittance: NDArray[np.complex128]
+    rated_current_A: float
+
+    @property
+    def at_no_load(self) -> float:
+        """Least admittance of a running motor [S]."""
+        return float(abs(self.admittance[0]))
+
+    @property
+    def at_standstill(self) -> float:
+        """Greatest admittance, that of the locked rotor [S]."""
+        return float(abs(self.admittance[-1]))
+
+    def lag_deg(self, admittance: float) -> float:
+        """By how much the current lags the voltage where the machine draws as much, nearest point [deg]."""
+        nearest = int(np.argmin(np.abs(np.abs(self.admittance) - admittance)))
+        return -float(np.degrees(np.angle(self.admittance[nearest])))
+
+
+def circle_diagram(motor: Motor, frequency_hz: float) -> CircleDiagram:
+    """Of the healthy machine at a supply frequency, from the terminals (a delta as its equal star)."""
+    machine, nameplate = motor.parameters, motor.nameplate
+    w = 2.0 * pi * frequency_hz
+    rotor = machine.rotor_resistance_ohm / _SLIPS + 1j * w * machine.rotor_leakage_H
+    magnetising = 1j * w * machine.magnetising_inductance_H
+    stator = machine.stator_resistance_ohm + 1j * w * machine.stator_leakage_H
+    impedance = stator + magnetising * rotor / (magnetising + rotor)
+    rotor_share = np.abs(magnetising / (magnetising + rotor))
+    star = 1.0 / sqrt(3.0) if nameplate.connection is Connection.STAR else 1.0
+    current: Array = star * nameplate.rated_voltage_V / np.abs(impedance)
+    torque = 3.0 * (rotor_share * current) ** 2 * rotor.real * nameplate.pole_pairs / w
+    # A motor that cannot bear its rated torque has no rated current: its greatest torque stands for it.
+    pull_out = int(np.argmax(torque))
+    reached = torque[: pull_out + 1] >= nameplate.rated_torque_Nm
+    point = int(np.argmax(reached)) if reached.any() else pull_out
+    per_line = 1.0 if nameplate.connection is Connection.STAR else 3.0
+    return CircleDiagram(
+        admittance=np.asarray(per_line / impedance, dtype=np.complex128),
+        rated_current_A=float(current[point]) * (1.0 if per_line == 1.0 else sqrt(3.0)),
+    )

@@ -1,0 +1,66 @@
+"""Checks on the order of magnitude of a record's samples, before anything is squared."""
+
+from collections.abc import Iterator
+from math import sqrt
+
+import numpy as np
+
+from core.diagnosis.quality.finding import finding
+from core.diagnosis.verdict import QualityFinding
+from core.machines.base import Array
+from core.machines.parameters import Nameplate
+from core.signals.terminals import Terminals
+
+SILENT, DEAFENING = 0.005, 1e4
+"""Of rated amplitude: offsets and noise of a motor switched off; more than any ratio's mistake makes."""
+NO_CURRENT = 1e-6
+"""Of rated: below the mistake of any ratio or unit."""
+EFFICIENCY_TIMES_POWER_FACTOR = 0.6
+"""Typical of small motors; only for the order of magnitude of the rated current."""
+
+
+def rated_current_A(nameplate: Nameplate) -> float:
+    """Order of magnitude of the rated line current, rms, from power and voltage [A]."""
+    apparent = nameplate.rated_power_W / EFFICIENCY_TIMES_POWER_FACTOR
+    return float(apparent / (sqrt(3.0) * nameplate.rated_voltage_V))
+
+
+def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFinding]:
+    """Only what fails: is there any signal, and is it of this world? Samples are finite."""
+    amps = _swing(terminals.current_abc) / (sqrt(2.0) * rated_current_A(nameplate))
+    yield from _deafening("current", amps)
+    if terminals.voltage_ab is None:
+        volts = 1.0
+    else:
+        volts = _swing(terminals.voltages) / (sqrt(2.0) * nameplate.rated_voltage_V)
+        yield from _deafening("voltage", volts)
+    if volts < SILENT and amps < SILENT:
+        yield finding(
+            "running", amps, SILENT, "of rated", passed=False,
+            message="neither voltage nor current: the motor is switched off",
+        )  # fmt: skip
+    elif volts < SILENT:
+        yield finding(
+            "voltage", volts, SILENT, "of rated", passed=False,
+            message=f"current flows but the voltages are {volts:.2g} of rated: transformers off, fuses blown "
+            "or a wrong ratio or unit",
+        )  # fmt: skip
+    elif amps < NO_CURRENT:
+        yield finding(
+            "running", amps, NO_CURRENT, "of rated", passed=False,
+            message="no current flows: the motor is switched off, or the current transformers are",
+        )  # fmt: skip
+
+
+def _deafening(name: str, share: float) -> Iterator[QualityFinding]:
+    if share > DEAFENING:
+        yield finding(
+            name, share, DEAFENING, "of rated", passed=False,
+            message=f"the samples reach {share:.3g} times the rated value: wrong ratio or unit",
+        )  # fmt: skip
+
+
+def _swing(samples: Array) -> float:
+    """Half of the greatest channel's range; halved first, for numbers near the largest there are."""
+    half = samples / 2.0
+    return float(np.ptp(half, axis=1).max())

@@ -1,0 +1,159 @@
+"""Checks on the samples of single channels: are they there, enough of them, and as the sensor saw them?"""
+
+from collections.abc import Iterator
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.diagnosis.quality.finding import finding
+from core.diagnosis.verdict import QualityFinding
+from core.machines.base import Array
+from core.machines.parameters import Nameplate
+from core.recordings import Channel
+from core.signals.terminals import Terminals
+
+FEWEST_CYCLES = 4.9
+"""Delay margin, settling and the fewest cycles a scatter can be taken from."""
+FEWEST_SAMPLES_A_CYCLE, MOST_SAMPLES_A_CYCLE = 10.0, 2_000.0
+"""600 Hz for 60 Hz, the slowest relays; above, the samples cost time and tell nothing about a winding."""
+AT_FULL_SCALE, CLIPPED_SHARE = 0.999, 0.001
+FLAT_SHARE = 0.02
+"""Of samples in runs of three and more equal to a channel's extreme: a crest cut off at 0.998 of its height.
+What the converter's own step makes flat at a crest comes on top."""
+HELD_CYCLES = 0.15
+"""Longest stretch of one value away from the extremes: the converter's step explains no such stretch."""
+REPEATED_SHARE = 0.02
+"""Of samples on the flanks that equal the one before, beyond what chance does: a recorder that writes every
+sample twice has a half."""
+FEWEST_REPEATS = 3
+"""Equal neighbours that a short record may have by chance."""
+FLAT, FLANK = 0.05, 0.7
+"""Of the greatest magnitude: between them a sine always moves, and a saturated transformer does not rest."""
+DIPS_A_CYCLE = 0.8
+"""Stretches at zero as frequent as this are a saturated transformer's, not a converter's."""
+COARSEST_LAG_CYCLES = 1 / 12
+"""A waveform of so few converter steps that it stands still longer cannot be judged by its repeats."""
+DEAD = 0.03
+"""Of the greatest channel's swing: less is no signal, and for the check on missing phases to name."""
+RUN = 3
+"""Samples: two equal ones stand on both sides of a crest by chance."""
+
+
+def extent(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFinding]:
+    """Length and rate of the record, and whether all of it is there."""
+    per_cycle = terminals.sample_rate_hz / nameplate.rated_frequency_Hz
+    cycles = terminals.current_abc.shape[1] / per_cycle
+    yield finding(
+        "duration", cycles, FEWEST_CYCLES, "cycles", passed=cycles >= FEWEST_CYCLES,
+        message=f"{cycles:.1f} cycles of the rated frequency are too few: record at least {FEWEST_CYCLES:g}",
+    )  # fmt: skip
+    slow = per_cycle < FEWEST_SAMPLES_A_CYCLE
+    yield finding(
+        "sample rate", per_cycle, FEWEST_SAMPLES_A_CYCLE if slow else MOST_SAMPLES_A_CYCLE, "samples a cycle",
+        passed=FEWEST_SAMPLES_A_CYCLE <= per_cycle <= MOST_SAMPLES_A_CYCLE,
+        message=f"{per_cycle:.4g} samples a cycle are too {'few' if slow else 'many'}: expected "
+        f"{FEWEST_SAMPLES_A_CYCLE:g} to {MOST_SAMPLES_A_CYCLE:g}",
+    )  # fmt: skip
+    both = (terminals.current_abc, terminals.voltages)
+    missing = sum(x.size - int(np.count_nonzero(np.isfinite(x))) for x in both)
+    yield finding(
+        "missing samples", missing, 0, "samples", passed=missing == 0,
+        message=f"{missing} samples are missing or not numbers: record again, or check the recorder",
+    )  # fmt: skip
+
+
+def clipping(channels: tuple[Channel, ...], samples: Array) -> Iterator[QualityFinding]:
+    """Crests cut off by a converter or an amplifier, at the full scale the file states or at any other."""
+    for channel, x in _alive(channels, samples):
+        share, limit, where = _flat_share(x), FLAT_SHARE + _crest_share(x), "its own extreme"
+        if channel.full_scale is not None:
+            at_full = float(np.mean(np.abs(x) >= AT_FULL_SCALE * channel.full_scale))
+            if at_full > CLIPPED_SHARE or share <= limit:
+                share, limit = at_full, CLIPPED_SHARE
+                where = f"its full scale of {channel.full_scale:g} {channel.unit}"
+        yield finding(
+            f"clipping {channel.name}", share, limit, "share", passed=share <= limit,
+            message=f"{channel.name} sits at {where} for {share:.1%} of the record: its crests are cut off; "
+            "choose a larger range",
+        )  # fmt: skip
+
+
+def holding(channels: tuple[Channel, ...], samples: Array, per_cycle: float) -> Iterator[QualityFinding]:
+    """Values that stand still where a waveform moves: one stretch, or every sample several times."""
+    for channel, x in _alive(channels, samples):
+        stretch, repeated = _longest_stretch(x, per_cycle) / per_cycle, _repeated_share(x, per_cycle)
+        stuck = stretch > HELD_CYCLES
+        yield finding(
+            f"held samples {channel.name}",
+            stretch if stuck else repeated, HELD_CYCLES if stuck else REPEATED_SHARE,
+            "cycles" if stuck else "share", passed=not stuck and repeated <= REPEATED_SHARE,
+            message=f"{channel.name} stands still for {stretch:.2f} cycles: samples were lost or the "
+            "converter froze" if stuck else f"{repeated:.0%} of {channel.name} repeat the sample before: "
+            "it was sampled more slowly than the file says",
+        )  # fmt: skip
+
+
+def _alive(channels: tuple[Channel, ...], samples: Array) -> Iterator[tuple[Channel, Array]]:
+    swing = np.ptp(samples, axis=1) if samples.size else np.zeros(len(channels))
+    for channel, x, its in zip(channels, samples, swing.tolist(), strict=True):
+        if its > DEAD * float(swing.max()):
+            yield channel, x
+
+
+def _flat_share(x: Array) -> float:
+    return max(float(np.mean(_in_runs(x == extreme))) for extreme in (x.max(), x.min()))
+
+
+def _in_runs(flags: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Which of the flags stand in runs of three and more."""
+    middle = np.zeros_like(flags)
+    middle[1:-1] = flags[:-2] & flags[1:-1] & flags[2:]
+    runs = middle.copy()
+    runs[:-1] |= middle[1:]
+    runs[1:] |= middle[:-1]
+    return runs
+
+
+def _crest_share(x: Array) -> float:
+    """Share of a sine's samples that lie within one step of the converter below its crest."""
+    return float(np.sqrt(4.0 * _step(x) / np.ptp(x))) / pi
+
+
+def _step(x: Array) -> float:
+    """Smallest change there is: the converter's step, or nearly nothing for computed samples."""
+    changes = np.abs(np.diff(x))
+    return float(changes.min(initial=np.inf, where=changes > 0.0))
+
+
+def _longest_stretch(x: Array, per_cycle: float) -> int:
+    """Sample periods of the longest run of one value that is not an extreme, nor zero in every cycle."""
+    ends = np.flatnonzero(np.diff(x) != 0.0)
+    first = np.concatenate([[0], ends + 1])
+    lengths = np.diff(np.concatenate([first, [x.size]]))
+    counted = (x[first] != x.max()) & (x[first] != x.min())
+    dips = (np.abs(x[first]) < FLAT * np.ptp(x) / 2.0) & (lengths >= RUN)
+    if np.count_nonzero(dips) > DIPS_A_CYCLE * x.size / per_cycle:
+        counted &= ~dips
+    return int((lengths - 1).max(initial=0, where=counted))
+
+
+def _repeated_share(x: Array, per_cycle: float) -> float:
+    """Share of the flanks' samples equal to the one before, less the chance of it.
+
+    Chance is what differs by just one step of the converter. A waveform so small that it moves by less than
+    three steps a sample is compared with an earlier sample.
+    """
+    step, centred = _step(x), np.abs(x - x.mean())
+    greatest = float(centred.max())
+    lag = max(1, int(np.ceil(3.0 * step * per_cycle / (FLANK * greatest * 2.0 * pi))))
+    flank = (np.abs(x) > FLAT * greatest) & (centred < FLANK * greatest)
+    if lag > max(1.0, COARSEST_LAG_CYCLES * per_cycle):
+        return 0.0
+    both = flank[lag:] & flank[:-lag]
+    if not both.any():
+        return 0.0
+    change = np.abs(x[lag:] - x[:-lag])[both]
+    equal, next_to = (change == 0.0), (change > 0.0) & (change < 1.5 * step)
+    surplus = np.count_nonzero(equal) - np.count_nonzero(next_to) - FEWEST_REPEATS
+    return max(0.0, float(surplus / change.size))

@@ -1,0 +1,65 @@
+"""Is it one operating point? The models are started in periodic steady state at one load."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.diagnosis.quality.currents import Currents
+from core.diagnosis.quality.finding import finding
+from core.diagnosis.quality.machine import CircleDiagram
+from core.diagnosis.quality.supply import Feed
+from core.diagnosis.verdict import QualityFinding
+from core.machines.base import Array
+from core.signals.clarke import clarke
+from core.signals.sequence import PhaseSequence, SequencePhasors
+from core.signals.terminals import Terminals
+
+UNSTEADY_CURRENT = 0.18
+"""Farthest that the forward current goes from its mean, of rated: a load that swings by 10 % of the rated
+torque moves it by 0.13 at most, a third of the rated load switched by as much as the limit."""
+UNSTEADY_UNPAIRED = 0.3
+"""The same where no voltages were recorded: of the current's size alone, and for a hint at best."""
+UNSTEADY_VOLTAGE = 0.1
+"""The same of the voltage, of its mean: dips, switching, and cycles lost from the record."""
+
+
+def steadiness(
+    terminals: Terminals, feed: Feed, currents: Currents, circle: CircleDiagram
+) -> Iterator[QualityFinding]:
+    per_cycle = terminals.sample_rate_hz / feed.frequency_hz
+    volts = _farthest(_course(feed.voltage_ab, feed.phasors, per_cycle))
+    yield finding(
+        "supply steadiness", volts, UNSTEADY_VOLTAGE, "of its mean", passed=volts <= UNSTEADY_VOLTAGE,
+        message=f"the voltage moves by {volts:.0%} within the record: a dip, a switching, or cycles lost",
+    )  # fmt: skip
+    if volts > UNSTEADY_VOLTAGE:
+        return
+    course = _course(clarke(terminals.current_abc), currents.phasors, per_cycle)
+    amps = _farthest(np.abs(course) if feed.assumed else course) * currents.strong / circle.rated_current_A
+    limit = UNSTEADY_UNPAIRED if feed.assumed else UNSTEADY_CURRENT
+    yield finding(
+        "steadiness", amps, limit, "of rated", passed=amps <= limit,
+        message=f"the current moves by {amps:.0%} of the rated one within the record: the load changes, or "
+        "the motor starts or stops; record at a steady load",
+    )  # fmt: skip
+
+
+def _course(x_ab: Array, phasors: SequencePhasors, per_cycle: float) -> NDArray[np.complex128]:
+    """The stronger sequence over the record.
+
+    A mean over each cycle keeps the one sequence and takes out the other, harmonics and offsets.
+    """
+    vector = x_ab[0] + 1j * x_ab[1]
+    if phasors.sequence is PhaseSequence.ACB:
+        vector = vector.conj()
+    turning = vector * np.exp(-2j * np.pi / per_cycle * np.arange(vector.size))
+    cycle = round(per_cycle)
+    sums = np.cumsum(np.concatenate([[0.0], turning]))
+    return np.asarray((sums[cycle:] - sums[:-cycle]) / cycle, dtype=np.complex128)
+
+
+def _farthest(course: NDArray[np.complex128] | Array) -> float:
+    """Greatest distance from the mean, of the mean."""
+    mean = course.mean()
+    return float(np.abs(course - mean).max() / abs(mean))

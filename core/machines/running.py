@@ -1,0 +1,85 @@
+"""Steady running of a batch of candidates on one supply: speed, flux and the currents' fundamental."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.machines.base import Array, RotorAsymmetry, StatorModel
+from core.machines.batch import find_rates, find_steady_states
+from core.machines.candidates import Candidates, LoadLaw
+from core.machines.parameters import Motor
+from core.machines.steady_state import ComplexArray, SteadyState
+
+
+@dataclass(frozen=True, slots=True)
+class Rates:
+    """What a batch is stepped with: -R inv(L) and inv(L) (n, 5, 5), the load's polynomial in the speed
+    (n, 3), what of the rotor's resistance turns with it."""
+
+    decay: Array
+    current_from_flux: Array
+    load: Array
+    rotor_asymmetry: RotorAsymmetry | None
+
+
+class SteadyRunning:
+    """One motor and one model on a sinusoidal supply; any number of candidates.
+
+    phasor: of the voltage on the Clarke axes at t = 0, peak, shape (2,) [V].
+    """
+
+    def __init__(
+        self,
+        model: StatorModel,
+        motor: Motor,
+        angular_frequency: float,
+        phasor: ComplexArray,
+        load_law: LoadLaw = LoadLaw.CONSTANT,
+    ) -> None:
+        self.model = model
+        self.motor = motor
+        self.angular_frequency = angular_frequency
+        self.phasor = phasor
+        self.load_law = load_law
+        nameplate, machine = motor.nameplate, motor.parameters
+        w_s, w_b = angular_frequency, nameplate.rated_angular_frequency
+        self._torque_per_pole_pair = nameplate.rated_torque_Nm / nameplate.pole_pairs / w_b**load_law.value
+        self.ripple_gain = nameplate.pole_pairs**2 / machine.inertia_kgm2
+        # Slip of the healthy machine's greatest torque: R_r' over the impedance of R_s and the leakages.
+        leakage = w_s * (machine.stator_leakage_H + machine.rotor_leakage_H)
+        impedance = float(np.hypot(machine.stator_resistance_ohm, leakage))
+        self._pull_out_slip = min(1.0, machine.rotor_resistance_ohm / impedance)
+
+    def on(self, phasor: ComplexArray) -> "SteadyRunning":
+        """The same motor on another voltage of the same frequency."""
+        return SteadyRunning(self.model, self.motor, self.angular_frequency, phasor, self.load_law)
+
+    def rates(self, candidates: Candidates) -> Rates:
+        """What the candidates are stepped with."""
+        n = len(candidates)
+        circuits = self.model.circuits(
+            self.motor, candidates.fault_level, candidates.winding, candidates.path_ratio
+        )
+        load = np.zeros((n, 3))
+        load[:, int(self.load_law)] = candidates.load_level * self._torque_per_pole_pair
+        rates = Rates(np.empty((n, 5, 5)), np.empty((n, 5, 5)), load, circuits.rotor_asymmetry)
+        find_rates(circuits.inductance, circuits.resistance, rates.decay, rates.current_from_flux)
+        return rates
+
+    def state(self, candidates: Candidates, rates: Rates | None = None) -> SteadyState:
+        """Periodic steady state of every candidate; `rates` where they are known already."""
+        known = self.rates(candidates) if rates is None else rates
+        n = len(candidates)
+        state = SteadyState(
+            flux=np.empty((5, n)),
+            speed=np.empty(n),
+            mean_speed=np.empty(n),
+            current=np.empty((2, n), np.complex128),
+            balanced=np.empty(n, np.bool_),
+        )
+        find_steady_states(
+            known.decay, known.current_from_flux, known.load, candidates.time_offset_s,
+            self.angular_frequency, self.phasor, self._pull_out_slip, self.ripple_gain,
+            state.flux, state.speed, state.mean_speed, state.current, state.balanced,
+        )  # fmt: skip
+        return state

@@ -1,0 +1,122 @@
+"""Every point an optimiser has evaluated: counted, never evaluated twice, and handed over in the end."""
+
+import numpy as np
+from scipy.optimize import OptimizeResult
+
+from core.optimisers.objective import Array, BatchFunction, Box, Callback, OptimiserError
+
+
+class Stopped(Exception):  # noqa: N818 (no error: the way out of a library's search)
+    """The callback asked for the end, or the budget is spent; the text is the stop reason."""
+
+
+class Halted(Exception):  # noqa: N818
+    """The same of a search made of several: passes through the one that happens to run."""
+
+
+class Evaluations:
+    """An objective on the unit box that keeps its points and values in the order of evaluation.
+
+    A point evaluated before costs nothing: its value is looked up. Calls raise Stopped (Halted where
+    `staged`) once the callback answers true, or where more than `budget` evaluations are asked for (those
+    within it are made first).
+    """
+
+    def __init__(
+        self,
+        fun: BatchFunction,
+        box: Box,
+        *,
+        callback: Callback | None = None,
+        budget: int | None = None,
+        staged: bool = False,
+    ) -> None:
+        self.box = box
+        self.count = 0
+        self._fun = fun
+        self._callback = callback
+        self._budget = budget
+        self._end = Halted if staged else Stopped
+        self._points: list[Array] = []
+        self._values: list[Array] = []
+        self._known: dict[bytes, float] = {}
+
+    def __call__(self, unit: Array) -> Array:
+        """Values (m,) at points (m, d) of [0, 1]^d."""
+        # Adding zero turns -0.0 into 0.0, which is the same point but other bytes.
+        points = self.box.from_unit(unit) + 0.0
+        keys = [point.tobytes() for point in points]
+        fresh: dict[bytes, int] = {}
+        for row, key in enumerate(keys):
+            if key not in self._known and key not in fresh:
+                fresh[key] = row
+        rows = list(fresh.values())
+        allowed = len(rows) if self._budget is None else min(len(rows), self._budget - self.count)
+        if allowed:
+            self._evaluate(points[rows[:allowed]], list(fresh)[:allowed])
+        if allowed < len(rows):
+            raise self._end(self._spent)
+        return np.array([self._known[key] for key in keys])
+
+    def record(self, unit: Array, values: Array) -> None:
+        """Take over points (m, d) of [0, 1]^d with values (m,) that were found elsewhere; they count."""
+        points = self.box.from_unit(unit) + 0.0
+        self._keep(points, [point.tobytes() for point in points], values)
+        if self._budget is not None and self.count >= self._budget:
+            raise self._end(self._spent)
+
+    @property
+    def _spent(self) -> str:
+        return f"evaluated the most points allowed, {self._budget}"
+
+    def at(self, unit: Array) -> float:
+        """Value at a single point (d,) of [0, 1]^d."""
+        return float(self(np.asarray(unit, dtype=np.float64)[np.newaxis])[0])
+
+    @property
+    def points(self) -> Array:
+        """Points of the box in order of evaluation, (nfev, d)."""
+        return np.concatenate(self._points) if self._points else np.empty((0, self.box.dimensions))
+
+    @property
+    def values(self) -> Array:
+        """Their values, (nfev,)."""
+        return np.concatenate(self._values) if self._values else np.empty(0)
+
+    def best(self) -> Array:
+        """The best point so far, in [0, 1]^d; the middle of the box before the first evaluation."""
+        if not self._values:
+            return np.full(self.box.dimensions, 0.5)
+        return self.box.to_unit(self.points[int(np.argmin(self.values))])
+
+    def result(self, message: str, steps: int) -> OptimizeResult:
+        """x, fun, nfev, nit, success, message, points (nfev, d), costs (nfev,)."""
+        points, values = self.points, self.values
+        if not values.size:
+            raise OptimiserError("max_evaluations: expected at least one evaluation, found none left")
+        best = int(np.argmin(values))
+        result = OptimizeResult()
+        result.update(
+            {
+                "x": points[best],
+                "fun": float(values[best]),
+                "nfev": len(values),
+                "nit": steps,
+                "success": bool(np.isfinite(values[best])),
+                "message": message,
+                "points": points,
+                "costs": values,
+            }
+        )
+        return result
+
+    def _evaluate(self, points: Array, keys: list[bytes]) -> None:
+        self._keep(points, keys, self._fun(points))
+
+    def _keep(self, points: Array, keys: list[bytes], values: Array) -> None:
+        self._known.update(zip(keys, values.tolist(), strict=True))
+        self._points.append(points)
+        self._values.append(values)
+        self.count += len(values)
+        if self._callback is not None and self._callback(points, values):
+            raise self._end("stopped by the callback")

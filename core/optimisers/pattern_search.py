@@ -1,0 +1,112 @@
+"""Pattern search: a mesh of directions around the best point, widened on success, narrowed on failure.
+
+Thesis section 6.3.1; Torczon, SIAM J. Optim. 7 (1997), doi:10.1137/S1052623493250780. It is a local search:
+where it ends depends on where it begins, so it may begin at the best of some Latin hypercube points (6.5.1).
+No library at hand has it with both patterns, bounds and batches.
+"""
+
+from collections.abc import Sequence
+from enum import StrEnum
+
+import numpy as np
+from scipy.optimize import OptimizeResult
+
+from core.optimisers.evaluations import Evaluations, Stopped
+from core.optimisers.latin_hypercube import unit_points
+from core.optimisers.objective import (
+    Array,
+    BatchFunction,
+    Bounds,
+    Callback,
+    OptimiserError,
+    PointFunction,
+    as_batch,
+    checked_bounds,
+    checked_count,
+)
+
+
+class Pattern(StrEnum):
+    """Directions tried: both ways along every axis, or along every axis and once against all of them."""
+
+    TWO_D = "2D"
+    D_PLUS_ONE = "D+1"
+
+
+def minimise(
+    fun: PointFunction | BatchFunction,
+    bounds: Bounds,
+    *,
+    start: Sequence[float] | Array | None = None,
+    samples: int = 0,
+    pattern: Pattern | str = Pattern.TWO_D,
+    mesh: float = 0.25,
+    mesh_factor: float = 2.0,
+    smallest_mesh: float = 1e-6,
+    function_tolerance: float = 0.0,
+    max_evaluations: int = 2_000,
+    seed: int = 0,
+    batch: bool = False,
+    callback: Callback | None = None,
+) -> OptimizeResult:
+    """Minimise `fun` over a box from `start` (default: its middle).
+
+    samples: begin at the best of so many Latin hypercube points, seeded by `seed`, instead.
+    pattern: Pattern.TWO_D or D_PLUS_ONE.  mesh: first step length, a fraction of the box; multiplied by
+    mesh_factor after a success and divided by it after a failure, up to 1 and down to smallest_mesh.
+    function_tolerance: stop after a success that gained less; 0 leaves the end to the mesh.
+    Points beyond the bounds are not tried.
+
+    Returns x, fun, nfev, nit, success, message, points (nfev, d), costs (nfev,), centres (nit + 1, d).
+    Raises OptimiserError for impossible arguments.
+    """
+    box = checked_bounds(bounds)
+    checked_count("max_evaluations", max_evaluations, 1)
+    checked_count("samples", samples, 0)
+    if start is not None and samples:
+        raise OptimiserError("start, samples: expected one of them, found both")
+    if not (0.0 < smallest_mesh <= mesh <= 1.0 and mesh_factor > 1.0 and function_tolerance >= 0.0):
+        raise OptimiserError(
+            "expected 0 < smallest_mesh <= mesh <= 1, mesh_factor > 1, function_tolerance >= 0: "
+            f"found {smallest_mesh}, {mesh}, {mesh_factor}, {function_tolerance}"
+        )
+    directions = _directions(Pattern(pattern), box.dimensions)
+    evaluations = Evaluations(as_batch(fun, batch=batch), box, callback=callback, budget=max_evaluations)
+    centres: list[Array] = []
+    try:
+        if samples:
+            evaluations(unit_points(samples, box.dimensions, seed))
+            centre = evaluations.best()
+        else:
+            centre = box.start(start)
+        value = evaluations.at(centre)
+        centres.append(centre)
+        while True:
+            around = centre + mesh * directions
+            around = around[((around >= 0.0) & (around <= 1.0)).all(axis=1)]
+            values = evaluations(around) if len(around) else np.empty(0)
+            best = int(np.argmin(values)) if values.size else 0
+            if values.size and values[best] < value:
+                gain = value - values[best]
+                centre, value = around[best], float(values[best])
+                mesh = min(1.0, mesh * mesh_factor)
+                if gain < function_tolerance:
+                    message = f"a step gained less than function_tolerance = {function_tolerance:g}"
+                    break
+            else:
+                mesh /= mesh_factor
+                if mesh < smallest_mesh:
+                    message = f"the mesh is narrower than smallest_mesh = {smallest_mesh:g}"
+                    break
+            centres.append(centre)
+    except Stopped as stop:
+        message = str(stop)
+    result = evaluations.result(message, max(0, len(centres) - 1))
+    result["centres"] = box.from_unit(np.array(centres).reshape(-1, box.dimensions))
+    return result
+
+
+def _directions(pattern: Pattern, dimensions: int) -> Array:
+    axes = np.eye(dimensions)
+    against = -axes if pattern is Pattern.TWO_D else -np.ones((1, dimensions))
+    return np.concatenate([axes, against])
