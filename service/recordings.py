@@ -19,7 +19,7 @@ from hashlib import file_digest, sha256
 from pathlib import Path
 from typing import BinaryIO
 
-ENTRY_SUFFIXES = (".CFG", ".CFF")
+ENTRY_SUFFIXES = (".CFG", ".CFF", ".CEV")
 MAX_NAME_LENGTH = 100
 _DIGEST = re.compile(r"[0-9a-f]{64}")
 
@@ -57,7 +57,7 @@ class StoredRecording:
 
     @property
     def entry(self) -> Path:
-        """The file a reader starts from (.CFG or .CFF)."""
+        """The file a reader starts from (.CFG, .CFF or .CEV)."""
         return _entry(self.directory, (file.name for file in self.files))
 
 

@@ -2,6 +2,6 @@
 
 from core.recordings.errors import RecordingError
 from core.recordings.reading import read
-from core.recordings.waveform import Channel, Quantity, Recording
+from core.recordings.waveform import Channel, Digitals, Quantity, Recording
 
-__all__ = ["Channel", "Quantity", "Recording", "RecordingError", "read"]
+__all__ = ["Channel", "Digitals", "Quantity", "Recording", "RecordingError", "read"]

@@ -15,7 +15,11 @@ _SI_UNITS = {
     "A": ("A", 1.0), "a": ("A", 1.0), "mA": ("A", 1e-3), "kA": ("A", 1e3), "KA": ("A", 1e3), "ka": ("A", 1e3),
     "V": ("V", 1.0), "v": ("V", 1.0), "mV": ("V", 1e-3), "kV": ("V", 1e3), "KV": ("V", 1e3), "kv": ("V", 1e3),
     "MV": ("V", 1e6), "Amps": ("A", 1.0), "Volts": ("V", 1.0),
+    "А": ("A", 1.0), "мА": ("A", 1e-3), "кА": ("A", 1e3),
+    "В": ("V", 1.0), "мВ": ("V", 1e-3), "кВ": ("V", 1e3),
 }  # fmt: skip
+_CYRILLIC_PHASES = str.maketrans("АВСавс", "ABCabc")
+"""Letters of Cyrillic keyboards that look like those of the phases."""
 
 _PHASES = {"A": "a", "B": "b", "C": "c", "N": "n", "L1": "a", "L2": "b", "L3": "c"}
 _PHASES |= {"R": "a", "S": "b", "T": "c"}
@@ -50,7 +54,7 @@ def channel_roles(channels: Sequence[tuple[str, str, str]]) -> tuple[ChannelRole
 
     They are judged together: I1, I2, I3 are phase currents; I1 and I2 beside an I0 are sequence components.
     """
-    matches = [_NAME.search(name) for name, _, _ in channels]
+    matches = [_NAME.search(name.translate(_CYRILLIC_PHASES)) for name, _, _ in channels]
     digits = {(m["kind"].upper(), m["phase"]) for m in matches if m and m["phase"] in _NUMBERED}
     numbered_kinds = {kind for kind, _ in digits if {(kind, "1"), (kind, "2"), (kind, "3")} <= digits}
     return tuple(
@@ -86,7 +90,7 @@ def _phase_of_name(match: re.Match[str] | None, si_unit: str, numbered_kinds: se
 
 def _phase_of_field(phase_field: str) -> str | None:
     """Phase of the `ph` field; bare numbers there are often the input's number and say nothing."""
-    code = re.sub(r"[-_ ./]", "", phase_field.upper())
+    code = re.sub(r"[-_ ./]", "", phase_field.upper().translate(_CYRILLIC_PHASES))
     if code in ("AN", "BN", "CN", "AG", "BG", "CG", "L1N", "L2N", "L3N", "L1E", "L2E", "L3E"):
         code = code[:-1]
     return _PHASES.get(code) or _LINES.get(code)

@@ -4,16 +4,18 @@ What is decided here, where the standard leaves a choice:
 
 - Values are PRIMARY: those a relay recorded as secondary ("S") are multiplied by its transformer ratio.
   1991 files do not say; their values are taken in the unit as written. kA, kV, mA, mV become A and V.
-- Text is UTF-8, else Latin-1. A name written in a third code page is misspelt, never misread as a number.
+- Text is UTF-8, else of the code page its letters speak for (code_pages). A wrong guess misspells a name.
 - 1991 and 1999 have no time zone: times are UTC. 2013's time code is honoured.
-- A record of several sampling rates is refused: the Recording has one time base.
+- Several rates and gaps in the time stamps are kept: the Recording then has the time of every sample
+  (resampling brings a rate that merely follows the line to even spacing).
 - Currents and voltages that were sampled one after another (skew) are interpolated to the time stamps'
   instants: 10 us are 0.2 degrees, which would pass for an unbalance.
 - Missing samples are NaN (marked by 0x8000 or 99999 in 1999, by 0xFFFF or a blank in 1991, by 0x80000000,
   NaN or the most negative float in the formats of 2013).
 - A trigger outside the record is refused.
 
-Nothing is repaired: a file that contradicts itself is a RecordingError that says where.
+Nothing is repaired in silence: a file that contradicts itself is a RecordingError that says where, or, where
+the caller asks for a lenient reader, a Recording that says what was mended.
 """
 
 from pathlib import Path
@@ -22,57 +24,69 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.recordings.channel_roles import ChannelRole, channel_roles
+from core.recordings.code_pages import decode_text
+from core.recordings.comtrade_ascii import decode_ascii
 from core.recordings.comtrade_combined import split_combined
 from core.recordings.comtrade_configuration import AnalogChannel, Configuration, parse_configuration
-from core.recordings.comtrade_data import decode_data
+from core.recordings.comtrade_data import SampleTable, decode_binary
+from core.recordings.comtrade_time import TimeBase, time_base
 from core.recordings.comtrade_writer import configuration_text, data_bytes, write
+from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
-from core.recordings.skew import without_skew
-from core.recordings.waveform import Channel, Quantity, Recording
+from core.recordings.repairs import Repairs
+from core.recordings.skew import even_stretches, without_skew
+from core.recordings.waveform import Channel, Digitals, Quantity, Recording
 
 __all__ = ["configuration_text", "data_bytes", "read_combined_comtrade", "read_comtrade", "write"]
 
 MAX_CONFIGURATION_BYTES = 16 << 20
 MAX_DATA_BYTES = 1 << 30
+MAX_STRETCHES = 1000
+"""Of a record sampled unevenly, beyond which skew is not removed piece by piece."""
 
 
-def read_comtrade(path: Path) -> Recording:
+def read_comtrade(path: Path, *, lenient: bool = False) -> Recording:
     """Read the record whose configuration file is `path`; its data file lies beside it (.dat in any case).
 
+    lenient: mend what can be mended without guessing at values, and say so in the recording's repairs.
     Raises RecordingError with the file and field at fault; OSError if a file that exists cannot be read.
     """
-    configuration = parse_configuration(path, _decode(_read_bytes(path, MAX_CONFIGURATION_BYTES)))
+    repairs = Repairs(lenient=lenient)
+    _check_file(path, MAX_CONFIGURATION_BYTES)
+    configuration = parse_configuration(path, decode_text(path.read_bytes()), repairs)
     data_path = _data_file(path)
-    counts, rate_hz = decode_data(data_path, _read_bytes(data_path, MAX_DATA_BYTES), configuration)
-    return _recording(path, configuration, counts, rate_hz)
+    size = _check_file(data_path, MAX_DATA_BYTES)
+    return _recording(path, configuration, DataSection(data_path, 0, size), repairs)
 
 
-def read_combined_comtrade(path: Path) -> Recording:
-    """Read a 2013 combined file (.cff), which holds configuration and data; errors as `read_comtrade`."""
-    cfg, dat, data_format = split_combined(path, _read_bytes(path, MAX_DATA_BYTES))
-    configuration = parse_configuration(path, _decode(cfg))
+def read_combined_comtrade(path: Path, *, lenient: bool = False) -> Recording:
+    """Read a 2013 combined file (.cff), which holds configuration and data; else as `read_comtrade`."""
+    repairs = Repairs(lenient=lenient)
+    _check_file(path, MAX_DATA_BYTES)
+    cfg, data, data_format = split_combined(path, repairs)
+    if len(cfg) > MAX_CONFIGURATION_BYTES:
+        raise RecordingError(
+            path,
+            "CFG section",
+            expected=f"at most {MAX_CONFIGURATION_BYTES} bytes",
+            found=f"{len(cfg)} bytes",
+        )
+    configuration = parse_configuration(path, decode_text(cfg), repairs)
     if data_format != configuration.data_format:
         raise RecordingError(
             path, "DAT section", expected=f"format {configuration.data_format}", found=repr(data_format)
         )
-    counts, rate_hz = decode_data(path, dat, configuration)
-    return _recording(path, configuration, counts, rate_hz)
+    return _recording(path, configuration, data, repairs)
 
 
-def _read_bytes(path: Path, limit: int) -> bytes:
+def _check_file(path: Path, limit: int) -> int:
+    """Size [bytes] of a file that is there and no larger than `limit`."""
     if not path.is_file():
         raise RecordingError(path, "file", expected="a file", found="none at this path")
     size = path.stat().st_size
     if size > limit:
         raise RecordingError(path, "size", expected=f"at most {limit} bytes", found=f"{size} bytes")
-    return path.read_bytes()
-
-
-def _decode(content: bytes) -> str:
-    try:
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return content.decode("latin-1")
+    return size
 
 
 def _data_file(path: Path) -> Path:
@@ -92,38 +106,64 @@ def _data_file(path: Path) -> Path:
     return found[0]
 
 
-def _recording(
-    path: Path, configuration: Configuration, counts: NDArray[np.float64], rate_hz: float
-) -> Recording:
+def _recording(path: Path, configuration: Configuration, data: DataSection, repairs: Repairs) -> Recording:
+    decode = decode_ascii if configuration.data_format == "ASCII" else decode_binary
+    table = decode(data, configuration, repairs)
+    _check_counts(data.path, table)
+    base = time_base(data.path, table.stamps, configuration, repairs)
     roles = channel_roles([(c.name, c.phase, c.unit) for c in configuration.analog])
-    scales = np.array(
-        [role.scale * c.to_primary for role, c in zip(roles, configuration.analog, strict=True)]
-    )
-    with np.errstate(over="ignore", invalid="ignore"):
-        gains = scales * np.array([c.gain for c in configuration.analog])
-        offsets = scales * np.array([c.offset for c in configuration.analog])
-        samples = counts * gains[:, None] + offsets[:, None]
-    overflown = np.flatnonzero((~np.isfinite(samples) & ~np.isnan(counts)).any(axis=1))
-    if overflown.size:
-        name = configuration.analog[overflown[0]].name
-        raise RecordingError(
-            path, f"channel {name!r}", expected="finite values", found="values too large for a number"
-        )
-    _remove_skew(path, configuration, roles, samples, rate_hz)
+    samples = _scaled(path, configuration, roles, table)
+    _remove_skew(path, configuration, roles, samples, base, repairs)
     return Recording(
         samples=samples,
-        sample_rate_hz=rate_hz,
+        sample_rate_hz=base.rate_hz,
         start_time_ns=configuration.start_time_ns,
         channels=tuple(
             Channel(c.name, role.quantity, role.phase, role.unit, _full_scale(c, role.scale))
             for c, role in zip(configuration.analog, roles, strict=True)
         ),
-        trigger_index=_trigger_index(path, configuration, rate_hz),
+        trigger_index=_trigger_index(path, configuration, base, samples.shape[1], repairs),
         nominal_frequency_hz=configuration.nominal_frequency_hz,
         station=configuration.station,
         device=configuration.device,
+        digitals=Digitals(configuration.status_names, table.status) if configuration.status_names else None,
+        instants_s=base.instants_s,
+        repairs=repairs.notes,
         source=str(path),
     )
+
+
+def _check_counts(path: Path, table: SampleTable) -> None:
+    for channel, counts in enumerate(table.counts, 1):
+        infinite = np.isinf(counts)
+        if infinite.any():
+            sample = int(np.argmax(infinite))
+            raise RecordingError(
+                path,
+                f"sample {sample + 1}, analogue channel {channel}",
+                expected="a finite value",
+                found=str(counts[sample]),
+            )
+
+
+def _scaled(
+    path: Path, configuration: Configuration, roles: tuple[ChannelRole, ...], table: SampleTable
+) -> NDArray[np.float64]:
+    """The counts turned into primary SI values, in place: a long record is not held twice."""
+    for channel, role, values in zip(configuration.analog, roles, table.counts, strict=True):
+        scale = role.scale * channel.to_primary
+        with np.errstate(over="ignore", invalid="ignore"):
+            values *= scale * channel.gain
+            values += scale * channel.offset
+        finite = np.isfinite([scale * channel.gain, scale * channel.offset]).all()
+        if not finite or np.isinf(values).any():
+            raise RecordingError(
+                path,
+                f"channel {channel.name!r}",
+                expected="finite values",
+                found="values too large for a number",
+            )
+    return table.counts
 
 
 def _full_scale(channel: AnalogChannel, unit_scale: float) -> float | None:
@@ -140,32 +180,53 @@ def _remove_skew(
     configuration: Configuration,
     roles: tuple[ChannelRole, ...],
     samples: NDArray[np.float64],
-    rate_hz: float,
+    base: TimeBase,
+    repairs: Repairs,
 ) -> None:
     """Bring currents and voltages to the instants of the time stamps, in place."""
-    for row, (channel, role) in enumerate(zip(configuration.analog, roles, strict=True)):
-        skew = channel.skew_us * 1e-6 * rate_hz
-        if skew == 0 or role.quantity is Quantity.OTHER:
-            continue
-        if not abs(skew) < 1:
-            raise RecordingError(
+    skewed = [
+        (row, channel)
+        for row, (channel, role) in enumerate(zip(configuration.analog, roles, strict=True))
+        if channel.skew_us != 0 and role.quantity is not Quantity.OTHER
+    ]
+    if not skewed:
+        return
+    stretches = [(slice(None), 1 / base.rate_hz)]
+    if base.instants_s is not None:
+        stretches = list(even_stretches(base.instants_s))
+    for row, channel in skewed:
+        shortest_us = 1e6 * min((period for _, period in stretches), default=1 / base.rate_hz)
+        if not abs(channel.skew_us) < shortest_us or len(stretches) > MAX_STRETCHES:
+            fault = RecordingError(
                 path,
                 f"channel {channel.name!r}, skew",
-                expected=f"less than a sample period, {1e6 / rate_hz:.6g} us",
+                expected=f"less than a sample period, {shortest_us:.6g} us, on evenly spaced samples",
                 found=f"{channel.skew_us:g} us",
             )
-        samples[row] = without_skew(samples[row], skew)
+            repairs.mend(fault, "the channel is left as recorded")
+            continue
+        for stretch, period_s in stretches:
+            samples[row, stretch] = without_skew(samples[row, stretch], channel.skew_us * 1e-6 / period_s)
 
 
-def _trigger_index(path: Path, configuration: Configuration, rate_hz: float) -> int:
+def _trigger_index(
+    path: Path, configuration: Configuration, base: TimeBase, samples: int, repairs: Repairs
+) -> int | None:
+    """The sample next to the trigger."""
     elapsed_s = (configuration.trigger_time_ns - configuration.start_time_ns) / 1e9
-    index = round(elapsed_s * rate_hz)
-    if not 0 <= index < configuration.sample_count:
-        duration_s = configuration.sample_count / rate_hz
-        raise RecordingError(
-            path,
-            "time of the trigger",
-            expected=f"within the record, 0 to {duration_s:.6g} s after its first sample",
-            found=f"{elapsed_s:.6f} s after it",
-        )
-    return index
+    if base.instants_s is None:
+        index, duration_s = round(elapsed_s * base.rate_hz), samples / base.rate_hz
+        within = 0 <= index < samples
+    else:
+        index, duration_s = int(np.argmin(np.abs(base.instants_s - elapsed_s))), float(base.instants_s[-1])
+        within = 0 <= elapsed_s <= duration_s + 0.5 / base.rate_hz
+    if within:
+        return index
+    fault = RecordingError(
+        path,
+        "time of the trigger",
+        expected=f"within the record, 0 to {duration_s:.6g} s after its first sample",
+        found=f"{elapsed_s:.6f} s after it",
+    )
+    repairs.mend(fault, "the trigger is left out")
+    return None

@@ -1,35 +1,49 @@
 """The COMTRADE combined file (.CFF) of the 2013 edition: CFG and DAT as sections of one file (chapter 9)."""
 
+import mmap
 import re
 from pathlib import Path
 
-from core.recordings.comtrade_configuration import quoted
+from core.recordings.comtrade_lines import quoted
+from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
+from core.recordings.repairs import Repairs
 
 _SECTION = re.compile(
     rb"^--- *file type: *([A-Za-z]+)(?: +([A-Za-z0-9]+))?(?: *: *([0-9]{1,12}))? *---[ \t]*\r?\n", re.M
 )
+_PADDING = b"\x1a\r\n"
+_MOST_SECTIONS = 16
+"""There are four kinds: CFG, INF, HDR and DAT, the last."""
 
 
-def split_combined(path: Path, content: bytes) -> tuple[bytes, bytes, str]:
-    """Configuration section, data section and the data format its heading names, upper case.
+def split_combined(path: Path, repairs: Repairs) -> tuple[bytes, DataSection, str]:
+    """Configuration section, place of the data, and the data format its heading names, upper case.
 
-    Raises RecordingError if a section is missing, given twice, or of another size than it says.
+    A lenient reader takes the data there are where the heading names another size.
+    Raises RecordingError if a section is missing, given twice, or of another size than it says; OSError.
     """
+    size = path.stat().st_size
     configuration: bytes | None = None
-    at = 0
-    while section := _SECTION.search(content, at):
-        kind = section[1].upper()
-        if kind == b"DAT":
-            if configuration is None:
-                raise RecordingError(path, "sections", expected="CFG before DAT", found="DAT first")
-            return configuration, _data(path, content[section.end() :], section), _format(section)
-        following = _SECTION.search(content, section.end())
-        at = following.start() if following else len(content)
-        if kind == b"CFG":
-            if configuration is not None:
-                raise RecordingError(path, "sections", expected="one CFG", found="two")
-            configuration = content[section.end() : at]
+    if size:
+        with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+            at = 0
+            for _ in range(_MOST_SECTIONS):
+                section = _SECTION.search(content, at)
+                if section is None:
+                    break
+                kind = section[1].upper()
+                if kind == b"DAT":
+                    if configuration is None:
+                        raise RecordingError(path, "sections", expected="CFG before DAT", found="DAT first")
+                    data = DataSection(path, section.end(), size - section.end())
+                    return configuration, _of_size(data, section, repairs), _format(section)
+                following = _SECTION.search(content, section.end())
+                at = following.start() if following else size
+                if kind == b"CFG":
+                    if configuration is not None:
+                        raise RecordingError(path, "sections", expected="one CFG", found="two")
+                    configuration = content[section.end() : at]
     raise RecordingError(
         path, "sections", expected="a CFG and a DAT section", found="no DAT" if configuration else "neither"
     )
@@ -39,14 +53,16 @@ def _format(section: re.Match[bytes]) -> str:
     return (section[2] or b"").decode("ascii").upper()
 
 
-def _data(path: Path, data: bytes, section: re.Match[bytes]) -> bytes:
+def _of_size(data: DataSection, section: re.Match[bytes], repairs: Repairs) -> DataSection:
     """The data after its heading, the last section; binary data are as long as the heading says."""
     if section[3] is None:
         return data
     size = int(section[3])
-    if len(data) < size or data[size:].strip(b"\x1a\r\n"):
-        heading = quoted(section[0].decode("ascii").strip())
-        raise RecordingError(
-            path, "DAT section", expected=f"{size} bytes after {heading}", found=f"{len(data)} bytes"
-        )
-    return data[:size]
+    if data.size >= size and data.is_padding_after(size, _PADDING):
+        return DataSection(data.path, data.offset, size)
+    heading = quoted(section[0].decode("ascii").strip())
+    fault = RecordingError(
+        data.path, "DAT section", expected=f"{size} bytes after {heading}", found=f"{data.size} bytes"
+    )
+    repairs.mend(fault, "read to the end of the file")
+    return data

@@ -5,13 +5,13 @@ Clauses are those of C37.111-1999, chapter 5; differences of the other editions 
 """
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from math import isfinite
 from pathlib import Path
 
+from core.recordings.comtrade_lines import Line, Lines, quoted
 from core.recordings.errors import RecordingError
+from core.recordings.repairs import Repairs
 
 REVISIONS = {"1991": 1991, "1997": 1999, "1999": 1999, "2001": 1999, "2013": 2013}
 """Revision year in the file -> edition whose layout holds. IEC 60255-24:2001 is the 1999 edition;
@@ -21,10 +21,10 @@ DATA_FORMATS = ("ASCII", "BINARY", "BINARY32", "FLOAT32")
 
 MAX_CHANNELS = 999_999
 MAX_SAMPLES = 9_999_999_999
+MAX_RATES = 999
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
-_INTEGER = re.compile(r"[+-]?[0-9]{1,10}", re.ASCII)
-_REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?", re.ASCII)
+_YEAR = re.compile(r"199[1-9]|20[0-9]{2}", re.ASCII)
 _DATE = re.compile(r"([0-9]{1,2})/([0-9]{1,2})/([0-9]{4}|[0-9]{2})", re.ASCII)
 _TIME = re.compile(r"([0-9]{1,2}):([0-9]{1,2}):([0-9]{1,2})(?:\.([0-9]{1,9}))?", re.ASCII)
 _UTC_OFFSET = re.compile(r"([+-]?)([0-9]{1,2})(?:h([0-9]{1,2}))?", re.ASCII)
@@ -54,7 +54,8 @@ class AnalogChannel:
 class Configuration:
     """A checked configuration file.
 
-    sample_rate_hz: None where the samples' own time stamps are the only time base (0 rates in the file).
+    rates: sampling rates [Hz], each with the number of the last sample taken at it, in ascending order;
+        empty where the samples' own time stamps are the only time base (0 rates in the file).
     start_time_ns, trigger_time_ns: UTC. 1991 and 1999 know no time zone: their times are taken as UTC.
     time_stamp_unit_s: seconds one step of the data file's time stamps stands for.
     """
@@ -63,9 +64,9 @@ class Configuration:
     station: str
     device: str
     analog: tuple[AnalogChannel, ...]
-    status_count: int
+    status_names: tuple[str, ...]
     nominal_frequency_hz: float | None
-    sample_rate_hz: float | None
+    rates: tuple[tuple[float, int], ...]
     sample_count: int
     start_time_ns: int
     trigger_time_ns: int
@@ -73,98 +74,28 @@ class Configuration:
     time_stamp_unit_s: float
 
 
-@dataclass(frozen=True, slots=True)
-class _Line:
-    path: Path
-    number: int
-    what: str
-    fields: tuple[str, ...]
-
-    def refuse(self, field: str, expected: str, found: str) -> RecordingError:
-        where = f"line {self.number}, {self.what}" + (f", {field}" if field else "")
-        return RecordingError(self.path, where, expected=expected, found=found)
-
-    def has_fields(self, *counts: int) -> None:
-        if len(self.fields) not in counts:
-            expected = " or ".join(str(count) for count in counts)
-            raise self.refuse(
-                "", f"{expected} field{'' if counts == (1,) else 's'}", f"{len(self.fields)}: {self.quoted()}"
-            )
-
-    def quoted(self) -> str:
-        return quoted(",".join(self.fields))
-
-    def integer(self, index: int, field: str, at_least: int, at_most: int) -> int:
-        text = self.fields[index]
-        if not _INTEGER.fullmatch(text) or not at_least <= int(text) <= at_most:
-            raise self.refuse(field, f"an integer from {at_least} to {at_most}", quoted(text))
-        return int(text)
-
-    def real(self, index: int, field: str) -> float:
-        text = self.fields[index]
-        if not _REAL.fullmatch(text) or not isfinite(float(text)):
-            raise self.refuse(field, "a finite number", quoted(text))
-        return float(text)
-
-    def positive(self, index: int, field: str, at_least: float = 0.0, at_most: float = 1e300) -> float:
-        value = self.real(index, field)
-        if not (value > 0 and at_least <= value <= at_most):
-            limits = (
-                "a number greater than 0" if at_least == 0 else f"a number from {at_least:g} to {at_most:g}"
-            )
-            raise self.refuse(field, limits, quoted(self.fields[index]))
-        return value
-
-
-class _Lines:
-    """The file's lines one after another, each with its number for messages."""
-
-    def __init__(self, path: Path, text: str) -> None:
-        # Not str.splitlines: in Latin-1 it would also split at 0x85, a letter of other code pages.
-        self._lines = re.split(r"\r\n|\n|\r", text)
-        self._path = path
-        self._next = 0
-
-    def next(self, what: str) -> _Line:
-        if self._next >= len(self._lines):
-            raise RecordingError(
-                self._path, f"line {self._next + 1}", expected=what, found="the end of the file"
-            )
-        text = self._lines[self._next]
-        self._next += 1
-        return _Line(self._path, self._next, what, tuple(field.strip() for field in text.split(",")))
-
-    def remaining(self) -> Iterator[_Line]:
-        while self._next < len(self._lines):
-            yield self.next("end of the file")
-
-    def __len__(self) -> int:
-        return len(self._lines)
-
-
-def quoted(text: str) -> str:
-    """Text from a file, for a message: short and without control characters."""
-    return repr(text if len(text) <= 60 else text[:57] + "...")
-
-
-def parse_configuration(path: Path, text: str) -> Configuration:
+def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuration:
     """Check and read the text of a configuration file.
 
-    Raises RecordingError with the line and field at fault; `path` only names the file in it.
+    A lenient reader takes any revision year for the edition of its time and does not mind how channels are
+    numbered. Raises RecordingError with the line and field at fault; `path` only names the file in it.
     """
     text = text.rstrip("\x1a\r\n\t ")
     if control := _CONTROL.search(text):
         raise RecordingError(path, "text", expected="no control characters", found=repr(control.group()))
-    lines = _Lines(path, text)
-    station, device, revision = _identification(lines.next("station, device and revision"))
+    lines = Lines(path, text)
+    station, device, revision = _identification(lines.next("station, device and revision"), repairs)
     analog_count, status_count = _channel_counts(lines.next("channel counts"), len(lines))
     analog = tuple(
-        _analog_channel(lines.next(f"analogue channel {k}"), k, revision) for k in range(1, analog_count + 1)
+        _analog_channel(lines.next(f"analogue channel {k}"), k, revision, repairs)
+        for k in range(1, analog_count + 1)
     )
-    for k in range(1, status_count + 1):
-        _check_status_channel(lines.next(f"status channel {k}"), k, revision)
+    status_names = tuple(
+        _status_channel(lines.next(f"status channel {k}"), k, revision, repairs)
+        for k in range(1, status_count + 1)
+    )
     nominal_frequency_hz = _nominal_frequency(lines.next("line frequency"))
-    sample_rate_hz, sample_count = _rate(lines)
+    rates, sample_count = _rates(lines)
     start_ns, start_digits = _date_time(lines.next("time of the first sample"), revision)
     trigger_ns, trigger_digits = _date_time(lines.next("time of the trigger"), revision)
     data_format = _data_format(lines.next("data format"))
@@ -186,9 +117,9 @@ def parse_configuration(path: Path, text: str) -> Configuration:
         station=station,
         device=device,
         analog=analog,
-        status_count=status_count,
+        status_names=status_names,
         nominal_frequency_hz=nominal_frequency_hz,
-        sample_rate_hz=sample_rate_hz,
+        rates=rates,
         sample_count=sample_count,
         start_time_ns=start_ns - utc_offset_ns,
         trigger_time_ns=trigger_ns - utc_offset_ns,
@@ -197,17 +128,23 @@ def parse_configuration(path: Path, text: str) -> Configuration:
     )
 
 
-def _identification(line: _Line) -> tuple[str, str, int]:
+def _identification(line: Line, repairs: Repairs) -> tuple[str, str, int]:
     line.has_fields(2, 3)
     station, device = line.fields[:2]
     if len(line.fields) == 2:  # 1991 has no revision year
         return station, device, 1991
-    if line.fields[2] not in REVISIONS:
-        raise line.refuse("revision", f"one of {', '.join(REVISIONS)}", quoted(line.fields[2]))
-    return station, device, REVISIONS[line.fields[2]]
+    year = line.fields[2]
+    if year in REVISIONS:
+        return station, device, REVISIONS[year]
+    fault = line.refuse("revision", f"one of {', '.join(REVISIONS)}", quoted(year))
+    if not _YEAR.fullmatch(year):
+        raise fault
+    edition = max(edition for edition in REVISIONS.values() if edition <= int(year))
+    repairs.mend(fault, f"read as the edition of {edition}")
+    return station, device, edition
 
 
-def _channel_counts(line: _Line, line_count: int) -> tuple[int, int]:
+def _channel_counts(line: Line, line_count: int) -> tuple[int, int]:
     line.has_fields(3)
     total = line.integer(0, "total", 1, MAX_CHANNELS)
     counts = []
@@ -226,9 +163,16 @@ def _channel_counts(line: _Line, line_count: int) -> tuple[int, int]:
     return analog, status
 
 
-def _analog_channel(line: _Line, number: int, revision: int) -> AnalogChannel:
+def _check_index(line: Line, number: int, repairs: Repairs) -> None:
+    try:
+        line.integer(0, "index", number, number)
+    except RecordingError as fault:
+        repairs.mend(fault, "channels are counted in the order of their lines")
+
+
+def _analog_channel(line: Line, number: int, revision: int, repairs: Repairs) -> AnalogChannel:
     line.has_fields(10 if revision == 1991 else 13)
-    line.integer(0, "index", number, number)
+    _check_index(line, number, repairs)
     gain = line.real(5, "multiplier a")
     if gain == 0:
         raise line.refuse("multiplier a", "a number other than 0", quoted(line.fields[5]))
@@ -248,7 +192,7 @@ def _analog_channel(line: _Line, number: int, revision: int) -> AnalogChannel:
     )
 
 
-def _ratio(line: _Line) -> float:
+def _ratio(line: Line) -> float:
     """What turns the channel's values into primary ones (5.3.3.11 to 5.3.3.13)."""
     primary, secondary = line.real(10, "primary ratio"), line.real(11, "secondary ratio")
     scaling = line.fields[12].upper()
@@ -268,14 +212,18 @@ def _ratio(line: _Line) -> float:
     return ratio
 
 
-def _check_status_channel(line: _Line, number: int, revision: int) -> None:
-    line.has_fields(3 if revision == 1991 else 5)
-    line.integer(0, "index", number, number)
-    if line.fields[-1] not in ("0", "1", ""):
-        raise line.refuse("normal state", "0 or 1", quoted(line.fields[-1]))
+def _status_channel(line: Line, number: int, revision: int, repairs: Repairs) -> str:
+    try:
+        line.has_fields(3 if revision == 1991 else 5)
+        if line.fields[-1] not in ("0", "1", ""):
+            raise line.refuse("normal state", "0 or 1", quoted(line.fields[-1]))
+    except RecordingError as fault:
+        repairs.mend(fault, "of such a line only the name is read")
+    _check_index(line, number, repairs)
+    return line.fields[1] if len(line.fields) > 1 else ""
 
 
-def _nominal_frequency(line: _Line) -> float | None:
+def _nominal_frequency(line: Line) -> float | None:
     """Line frequency [Hz]; None where the field is empty or 0, as it is not critical (5.3.5)."""
     line.has_fields(1)
     if line.fields[0] == "" or line.real(0, "") == 0:
@@ -283,23 +231,29 @@ def _nominal_frequency(line: _Line) -> float | None:
     return line.positive(0, "", 1e-3, 1e6)
 
 
-def _rate(lines: _Lines) -> tuple[float | None, int]:
+def _rates(lines: Lines) -> tuple[tuple[tuple[float, int], ...], int]:
+    """Rates with their last samples, and the number of samples (5.3.6)."""
     line = lines.next("number of sampling rates")
     line.has_fields(1)
-    rates = line.integer(0, "", 0, MAX_CHANNELS)
-    if rates > 1:
-        raise line.refuse("", "one sampling rate throughout the record", f"{rates} rates")
-    line = lines.next("sampling rate and last sample")
-    line.has_fields(2)
-    samples = line.integer(1, "last sample", 1, MAX_SAMPLES)
-    if rates == 1:
-        return line.positive(0, "sampling rate [Hz]", 1e-3, 1e9), samples
-    if line.real(0, "sampling rate [Hz]") != 0:
-        raise line.refuse("sampling rate [Hz]", "0, as the file announces 0 rates", quoted(line.fields[0]))
-    return None, samples
+    count = line.integer(0, "", 0, MAX_RATES)
+    rates: list[tuple[float, int]] = []
+    for k in range(1, max(count, 1) + 1):
+        line = lines.next(
+            "sampling rate and last sample" if count < 2 else f"sampling rate {k} and last sample"
+        )
+        line.has_fields(2)
+        samples = line.integer(1, "last sample", rates[-1][1] + 1 if rates else 1, MAX_SAMPLES)
+        if count == 0:
+            if line.real(0, "sampling rate [Hz]") != 0:
+                raise line.refuse(
+                    "sampling rate [Hz]", "0, as the file announces 0 rates", quoted(line.fields[0])
+                )
+            return (), samples
+        rates.append((line.positive(0, "sampling rate [Hz]", 1e-3, 1e9), samples))
+    return tuple(rates), rates[-1][1]
 
 
-def _date_time(line: _Line, revision: int) -> tuple[int, int]:
+def _date_time(line: Line, revision: int) -> tuple[int, int]:
     """Nanoseconds since 1970 in the file's own time zone, and the number of decimals written."""
     line.has_fields(2)
     date, time = _DATE.fullmatch(line.fields[0]), _TIME.fullmatch(line.fields[1])
@@ -324,7 +278,7 @@ def _date_time(line: _Line, revision: int) -> tuple[int, int]:
     return ns, len(fraction)
 
 
-def _data_format(line: _Line) -> str:
+def _data_format(line: Line) -> str:
     line.has_fields(1)
     data_format = line.fields[0].upper()
     if data_format not in DATA_FORMATS:
@@ -332,7 +286,7 @@ def _data_format(line: _Line) -> str:
     return data_format
 
 
-def _utc_offset(line: _Line) -> int:
+def _utc_offset(line: Line) -> int:
     """What the file's times are ahead of UTC [ns]; "-5h30" is five and a half hours behind (2013, 7.4.11)."""
     line.has_fields(2)
     offset = _UTC_OFFSET.fullmatch(line.fields[0])
@@ -346,7 +300,7 @@ def _utc_offset(line: _Line) -> int:
     return (-minutes if offset[1] == "-" else minutes) * 60 * 1_000_000_000
 
 
-def _check_time_quality(line: _Line) -> None:
+def _check_time_quality(line: Line) -> None:
     line.has_fields(2)
     if not re.fullmatch(r"[0-9A-Fa-f]", line.fields[0], re.ASCII):
         raise line.refuse("time quality", "a hexadecimal digit", quoted(line.fields[0]))

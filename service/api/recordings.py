@@ -59,7 +59,7 @@ def upload_recording(
     request: Request,
     response: Response,
     motor: Annotated[str, Form(min_length=1, max_length=200, description="Name of the motor recorded.")],
-    files: Annotated[list[UploadFile], File(description="COMTRADE files: .CFG and .DAT, or .CFF.")],
+    files: Annotated[list[UploadFile], File(description="COMTRADE: .CFG and .DAT, or .CFF; or a .CEV.")],
 ) -> RecordingDetails:
     """Stores the files of one recording and queues its diagnosis."""
     context.repository.motor(motor)

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 
-from core.diagnosis.search import METHODS
+from core.diagnosis.search import DEFAULT_METHOD, METHODS
 from core.diagnosis.stator import MODELS
 from core.diagnosis.verdict import Verdict
 from core.recordings import Quantity
@@ -180,7 +180,7 @@ class DiagnosisRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    method: Method = "hcpa"
+    method: Method = DEFAULT_METHOD
     model: Model = "split-winding"
 
 

@@ -21,7 +21,7 @@ def waveform_of(recording_id: str, recording: Recording, points: int) -> Wavefor
         trigger_time=rfc3339(recording.trigger_time_ns),
         sample_rate_hz=recording.sample_rate_hz,
         samples=count,
-        time_s=(starts / recording.sample_rate_hz).tolist(),
+        time_s=recording.time_s[starts].tolist(),
         channels=[
             WaveformChannel(
                 name=channel.name,

@@ -21,7 +21,7 @@ from service.storage.repository.event_reports import diagnose_rows, fail_row, fa
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingSource, RecordingState
 
-DEFAULT_METHOD = "hcpa"
+DEFAULT_METHOD = "hybrid"
 DEFAULT_MODEL = "split-winding"
 
 

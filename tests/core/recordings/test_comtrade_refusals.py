@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from core.recordings import RecordingError, read
+from core.recordings.data_section import DataSection
 from tests.core.recordings.comtrade_files import (
     ANALOG_LINES,
     RECORD_1991,
@@ -46,11 +47,18 @@ CONFIGURATIONS: dict[str, tuple[ComtradeFile, str]] = {
     "absurd ratio": (SOUND.but(analog=analog("100,5,P", "1e200,1e-200,S")), "ratio below 1e12"),
     "skew of a sample": (
         SOUND.but(analog=analog(",0,0,-", ",0,-1000,-")),
-        "channel 'IB', skew: expected less than a sample period, 1000 us, found -1000 us",
+        "channel 'IB', skew: expected less than a sample period, 1000 us, .*found -1000 us",
     ),
     "normal state": (SOUND.but(status=("1,T,,,2", "2,R,,,0")), "normal state: expected 0 or 1, found '2'"),
     "line frequency": (SOUND.but(frequency="-50"), "line frequency: expected"),
-    "several rates": (SOUND.but(rates=("2", "1000,3", "500,5")), "one sampling rate .*found 2 rates"),
+    "rates in disorder": (
+        SOUND.but(rates=("2", "1000,5", "500,3")),
+        "rate 2 and last sample, last sample: .*6",
+    ),
+    "fewer rates than announced": (SOUND.but(rates=("2", "1000,5")), "rate 2 and last sample, last sample"),
+    "more rates than announced": (SOUND.but(rates=("1", "1000,3", "500,5")), "first sample: expected dd/mm"),
+    "a thousand rates": (SOUND.but(rates=("1000", "1000,5")), "number of sampling rates: .*from 0 to 999"),
+    "second rate of zero": (SOUND.but(rates=("2", "1000,3", "0,5")), "rate 2 .*sampling rate .*found '0'"),
     "rate of zero": (SOUND.but(rates=("1", "0,5")), "sampling rate .*found '0'"),
     "rate without rates": (SOUND.but(rates=("0", "1000,5")), "0, as the file announces 0 rates"),
     "no sample": (SOUND.but(rates=("1", "1000,0"), rows=(), numbers=(), stamps=()), "last sample"),
@@ -85,21 +93,29 @@ DATA: dict[str, tuple[ComtradeFile, str]] = {
     "numbers with a gap": (SOUND.but(numbers=(1, 2, 4, 5, 6)), "sample 3, number: expected 3, .*found 4"),
     "numbers twice": (ASCII.but(numbers=(1, 2, 2, 3, 4)), "sample 3, number: expected 3, .*found 2"),
     "head cut off": (SOUND.but(numbers=range(3, 8)), "sample 1, number: expected 1, found 3"),
-    "time stamps with a gap": (
-        SOUND.but(stamps=(0, 1000, 3000, 4000, 5000)),
-        "sample 3, time stamp: expected 2 ms .*found 3 ms",
+    "time stamps of half the rate": (
+        SOUND.but(stamps=(0, 2000, 4000, 6000, 8000)),
+        "sample 2, time stamp: expected 1 ms .*found 2 ms",
+    ),
+    "time stamps overlap": (
+        SOUND.but(stamps=(0, 1000, 2000, 1500, 2500)),
+        "sample 4, time stamp: expected 3 ms .*found 1.5 ms",
     ),
     "time stamps back": (ASCII.but(stamps=(0, 1000, 500, 3000, 4000)), "sample 3, time stamp"),
     "time stamps of another rate": (
         SOUND.but(stamps=(0, 500, 1000, 1500, 2000)),
-        "1000 Hz without a gap gives, found 1 ms",
+        "sample 3, .*1000 Hz gives, or a gap after it, found 1 ms",
     ),
     "no rate and a stamp missing": (
         SOUND.but(rates=("0", "0,5"), stamps=(0, 1000, None, 3000, 4000)),
         "increasing ones .*1 missing",
     ),
     "no rate and no time": (SOUND.but(rates=("0", "0,5"), stamps=[0] * 5), "found none that increase"),
-    "no rate and a gap": (SOUND.but(rates=("0", "0,5"), stamps=(0, 1000, 2000, 9000, 10000)), "time stamp"),
+    "no rate and time stamps back": (
+        SOUND.but(rates=("0", "0,5"), stamps=(0, 1000, 2000, 1500, 3000)),
+        "none that increase",
+    ),
+    "absurd time stamp": (ASCII.but(stamps=(0, 1000, 10**14, 3000, 4000)), "sample 3, time stamp: .*1e\\+13"),
     "value infinite": (
         RECORD_2013.but(data_format="FLOAT32", rows=[(0, 0, float("inf"), 0)] * 5),
         "sample 1, analogue channel 3",
@@ -182,6 +198,18 @@ def test_data_after_the_last_sample_are_refused(tmp_path: Path) -> None:
     data = path.with_suffix(".dat")
     data.write_bytes(data.read_bytes() + b"\x00")
     with pytest.raises(RecordingError, match=r"expected 90 bytes.*found 91"):
+        read(path)
+
+
+def test_a_file_that_is_cut_while_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = SOUND.write(tmp_path)
+
+    def cut(section: DataSection, start: int, padding: bytes) -> bool:
+        section.path.write_bytes(SOUND.data()[: start - 20])
+        return True
+
+    monkeypatch.setattr(DataSection, "is_padding_after", cut)
+    with pytest.raises(RecordingError, match=r"record.dat: size: expected 90 bytes as before, found fewer"):
         read(path)
 
 

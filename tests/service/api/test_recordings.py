@@ -11,6 +11,8 @@ from core.diagnosis.stator import MODELS
 from service.api import ApiContext, create_app
 from service.storage import Repository
 from service.storage.records import RemoteRecord
+from tests.core.recordings.cev_files import REPORT
+from tests.core.recordings.comtrade_files import RECORD_1999
 from tests.service.api.comtrade_files import CFG, DAT, IA
 from tests.service.api.serving import serving
 from tests.service.plants import NOW_NS, SECOND_NS, fault
@@ -51,6 +53,23 @@ def test_an_upload_is_stored_once_and_queued(context: ApiContext, repository: Re
     assert repository.claim_job(now_ns=2**62) is not None
     assert repository.claim_job(now_ns=2**62) is None
     assert woken
+
+
+def test_an_event_report_is_a_recording(client: httpx.Client) -> None:
+    status, document = upload(client, {"C4_10000.CEV": REPORT.content()})
+    assert status == 201
+    assert [file["name"] for file in document["files"]] == ["C4_10000.CEV"]  # type: ignore[attr-defined]
+    waveform = client.get(f"/api/v1/recordings/{document['id']}/waveform").json()
+    assert [channel["name"] for channel in waveform["channels"]] == ["IA", "IB", "VAB", "VC", "FREQ"]
+    assert waveform["trigger_time"].startswith("2024-11-21T06:30:00.25")
+
+
+def test_a_gap_shows_in_the_waveform(client: httpx.Client) -> None:
+    gap = RECORD_1999.but(stamps=(0, 1000, 2000, 9000, 10_000))
+    files = {"GAP.CFG": gap.configuration().encode(), "GAP.DAT": gap.data()}
+    _, document = upload(client, files)
+    waveform = client.get(f"/api/v1/recordings/{document['id']}/waveform").json()
+    assert waveform["time_s"] == pytest.approx([0, 0.001, 0.002, 0.009, 0.010])
 
 
 @pytest.mark.parametrize(

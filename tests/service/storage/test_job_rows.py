@@ -104,7 +104,7 @@ def test_the_latest_diagnosis_of_a_recording_counts(repository: Repository, reco
     repository.finish_job(job.id, fault(0.06), recorded_ns=NOW_NS, now_ns=NOW_NS + 2)
     (point,) = repository.trend("PUMP-A1", "mu_f", limit=10).items
     assert point.value == 0.06
-    assert [job.method for job in repository.jobs(recording_id, limit=10).items] == ["genetic", "hcpa"]
+    assert [job.method for job in repository.jobs(recording_id, limit=10).items] == ["genetic", "hybrid"]
 
 
 def test_a_failed_repetition_leaves_the_earlier_diagnosis(repository: Repository, recording_id: str) -> None:

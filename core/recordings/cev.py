@@ -1,0 +1,248 @@
+"""SEL Compressed ASCII event reports (.CEV): a strict reader, to a Recording in primary SI units.
+
+Firmware identification, date, event summary, channel labels, one line a sample, settings; every line closed
+by its checksum. Layout as in the instruction manuals of the SEL-351A, SEL-311L and SEL-387 (Compressed ASCII
+Commands). What is decided here:
+
+- The rate is SAM/CYC_A times the summary's FREQ: the relays sample in step with the line.
+- The date is that of the trigger, taken as UTC: the relay's clock names no zone.
+- The trigger is the line marked ">", or "*" where that (the largest current) has taken its place.
+- Values are primary. A unit stands behind the label, "VA(kV)" or "VAkV"; without one, currents are in A and
+  voltages in V. `$$$$$$$` and blanks are missing values.
+- A relay word is written at SAM/CYC_D; between its lines the states hold. Positions named "*" carry none.
+- An echoed command before the report and a prompt behind it are no part of it.
+
+A lenient reader believes lines with wrong checksums, takes the samples there are, and says so.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from core.recordings.cev_samples import CevSamples
+from core.recordings.channel_roles import channel_roles
+from core.recordings.code_pages import decode_text
+from core.recordings.compressed_ascii import Row, checksum, rows
+from core.recordings.comtrade_lines import quoted
+from core.recordings.errors import RecordingError
+from core.recordings.repairs import Repairs
+from core.recordings.waveform import Channel, Recording
+
+MAX_BYTES = 32 << 20
+MAX_HEAD_ROWS = 100
+
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+_START = re.compile(rb'"FID"|"MONTH_?"')
+_LONGEST_ECHO = 1000
+_REAL = re.compile(r"[0-9]{1,9}(\.[0-9]{0,12})?", re.ASCII)
+_INTEGER = re.compile(r"[0-9]{1,4}", re.ASCII)
+_SETTINGS = re.compile(rb'\s*(".*",) *"([0-9A-Fa-f]{4})"[\s\x03=>]*', re.S)
+_NOMINAL = re.compile(r"\b(?:FNOM|NFREQ)\s*:?=\s*(50|60)\b")
+
+
+@dataclass(frozen=True, slots=True)
+class EventReport:
+    """All of one event report.
+
+    fid: firmware identification. summary: the event summary's fields as written, by label.
+    settings: text of the relay's settings, "" where the report holds none.
+    """
+
+    recording: Recording
+    fid: str
+    summary: Mapping[str, str]
+    settings: str
+
+
+@dataclass(frozen=True, slots=True)
+class _Field:
+    """A value of the head, with the line it stands on."""
+
+    row: Row
+    text: str
+
+
+def read_cev(path: Path, *, lenient: bool = False) -> Recording:
+    """The recording of an event report; errors as `read_event_report`."""
+    return read_event_report(path, lenient=lenient).recording
+
+
+def read_event_report(path: Path, *, lenient: bool = False) -> EventReport:
+    """Read an event report.
+
+    lenient: mend what can be mended without guessing at values, and say so in the recording's repairs.
+    Raises RecordingError with file, line and field at fault; OSError if a file that exists cannot be read.
+    """
+    repairs = Repairs(lenient=lenient)
+    content = _content(path)
+    begin = _START.search(content[:_LONGEST_ECHO])
+    if begin is None:
+        raise RecordingError(
+            path, "line 1", expected='"FID" or "MONTH"', found=quoted(content[:60].decode("latin-1"))
+        )
+    lines = rows(path, content, begin.start(), repairs)
+    head, labels = _head(path, lines)
+    samples = CevSamples(labels)
+    settings = ""
+    for row in lines:
+        if row.fields == ("SETTINGS",):
+            settings = _settings(row, content, repairs)
+            break
+        samples.add(row)
+    recording = _recording(path, head, labels, samples, settings, repairs)
+    date = {"FID", *_DATE}
+    summary = {label: field.text for label, field in head.items() if label not in date}
+    return EventReport(recording, recording.device, summary, settings)
+
+
+def _content(path: Path) -> bytes:
+    if not path.is_file():
+        raise RecordingError(path, "file", expected="a file", found="none at this path")
+    size = path.stat().st_size
+    if size > MAX_BYTES:
+        raise RecordingError(path, "size", expected=f"at most {MAX_BYTES} bytes", found=f"{size} bytes")
+    return path.read_bytes()
+
+
+def _head(path: Path, lines: Iterator[Row]) -> tuple[dict[str, _Field], Row]:
+    """Values of the head by their labels, and the line of channel labels that ends it."""
+    head: dict[str, _Field] = {}
+    for _, labels in zip(range(MAX_HEAD_ROWS), lines, strict=False):
+        names = [label.strip("_ ").upper() for label in labels.fields]
+        if "TRIG" in names:
+            return head, labels
+        values = next(lines, None)
+        if values is None:
+            break
+        if len(values.fields) != len(names):
+            raise values.refuse("", f"{len(names)} fields as line {labels.number}", str(len(values.fields)))
+        head |= {
+            name: _Field(values, text)
+            for name, text in zip(names, values.fields, strict=True)
+            if name not in head
+        }
+    raise RecordingError(path, "channel labels", expected='a line with "TRIG"', found="none")
+
+
+def _recording(
+    path: Path,
+    head: Mapping[str, _Field],
+    labels: Row,
+    samples: CevSamples,
+    settings: str,
+    repairs: Repairs,
+) -> Recording:
+    frequency_hz = _number(head, labels, "FREQ", 1.0, 1000.0)
+    per_cycle = _number(head, labels, "SAM/CYC_A", 1.0, 10_000.0)
+    cycles = _number(head, labels, "NUM_OF_CYC", 1e-3, 1e6)
+    _check_count(path, samples.count, round(per_cycle * cycles), repairs)
+    rate_hz = frequency_hz * per_cycle
+    trigger_index = _trigger_index(path, samples, repairs)
+    values = samples.values()
+    roles = channel_roles([(name, "", unit) for name, unit in samples.channels])
+    values *= np.array([[role.scale] for role in roles])
+    nominal = _NOMINAL.search(settings)
+    return Recording(
+        samples=values,
+        sample_rate_hz=rate_hz,
+        start_time_ns=_trigger_time_ns(head, labels) - round((trigger_index or 0) / rate_hz * 1e9),
+        channels=tuple(
+            Channel(name, role.quantity, role.phase, role.unit)
+            for (name, _), role in zip(samples.channels, roles, strict=True)
+        ),
+        trigger_index=trigger_index,
+        nominal_frequency_hz=float(nominal[1]) if nominal else None,
+        device=head["FID"].text.removeprefix("FID=") if "FID" in head else "",
+        digitals=samples.digitals(),
+        repairs=repairs.notes,
+        source=str(path),
+    )
+
+
+def _check_count(path: Path, found: int, announced: int, repairs: Repairs) -> None:
+    if found == announced:
+        return
+    fault = RecordingError(
+        path, "samples", expected=f"{announced}, as SAM/CYC_A and NUM_OF_CYC give", found=f"{found} lines"
+    )
+    if found == 0:
+        raise fault
+    repairs.mend(fault, f"{found} samples are read")
+
+
+def _trigger_index(path: Path, samples: CevSamples, repairs: Repairs) -> int | None:
+    marks = samples.trigger_marks
+    if len(marks) == 1:
+        return marks[0]
+    fault = RecordingError(
+        path, "TRIG", expected='one line marked ">", whose time is the date', found=f"{len(marks)} lines"
+    )
+    repairs.mend(fault, "the date is taken for that of the first sample")
+    return None
+
+
+def _field(head: Mapping[str, _Field], labels: Row, name: str) -> _Field:
+    if name not in head:
+        raise labels.refuse(f"before it, {name}", "a value", "no such label")
+    return head[name]
+
+
+def _number(head: Mapping[str, _Field], labels: Row, name: str, at_least: float, at_most: float) -> float:
+    field = _field(head, labels, name)
+    if not _REAL.fullmatch(field.text) or not at_least <= float(field.text) <= at_most:
+        raise field.row.refuse(name, f"a number from {at_least:g} to {at_most:g}", quoted(field.text))
+    return float(field.text)
+
+
+_DATE = {"YEAR": 2200, "MONTH": 12, "DAY": 31, "HOUR": 23, "MIN": 59, "SEC": 59, "MSEC": 999}
+
+
+def _trigger_time_ns(head: Mapping[str, _Field], labels: Row) -> int:
+    """The report's date, taken as UTC [ns]; years of two digits are from 1970 on."""
+    parts: dict[str, int] = {}
+    for name, most in _DATE.items():
+        field = _field(head, labels, name)
+        if not _INTEGER.fullmatch(field.text) or int(field.text) > most:
+            raise field.row.refuse(name, f"an integer from 0 to {most}", quoted(field.text))
+        parts[name] = int(field.text)
+    year = parts["YEAR"]
+    if year < 100:
+        year += 1900 if year >= 70 else 2000
+    row = head["YEAR"].row
+    if year < 1970:
+        raise row.refuse("YEAR", "1970 to 2200", str(year))
+    try:
+        moment = datetime(
+            year, parts["MONTH"], parts["DAY"], parts["HOUR"], parts["MIN"], parts["SEC"], tzinfo=UTC
+        )
+    except ValueError as error:
+        raise row.refuse("date", "a date of the calendar", f"{error}") from None
+    elapsed = moment - _EPOCH
+    return (elapsed.days * 86_400 + elapsed.seconds) * 1_000_000_000 + parts["MSEC"] * 1_000_000
+
+
+def _settings(row: Row, content: bytes, repairs: Repairs) -> str:
+    """The quoted text behind "SETTINGS".
+
+    Its checksum may count the line ends or not, and a transfer may have changed them: each is accepted.
+    """
+    parts = _SETTINGS.fullmatch(content, row.end)
+    if parts is None:
+        fault = row.refuse("settings", 'a text in quotes and its checksum such as ,"02E1"', "something else")
+        repairs.mend(fault, "the settings are left out")
+        return ""
+    text = parts[1]
+    lines = text.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    counted = (
+        text,
+        lines.replace(b"\n", b""),
+        *(lines.replace(b"\n", end) for end in (b"\r\n", b"\n", b"\r")),
+    )
+    if parts[2].decode("ascii").upper() not in map(checksum, counted):
+        fault = row.refuse("settings, checksum", checksum(text), parts[2].decode("ascii"))
+        repairs.mend(fault, "the settings are read as they are")
+    return decode_text(lines[1:-2])

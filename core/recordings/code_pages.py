@@ -1,0 +1,46 @@
+"""Text of record files: UTF-8, or the code page its letters speak for.
+
+COMTRADE before 2013 and Compressed ASCII know no code page; relays write that of the engineer's computer.
+A wrong guess misspells a name; it never changes a number, a comma or a line: all pages share them with ASCII.
+"""
+
+import re
+
+_RUN = re.compile(rb"([A-Za-z]?)([\x80-\xff]+)(?=([A-Za-z]?))")
+_CYRILLIC = re.compile("[А-ЯЁ]*[а-яё]*")
+_CHINESE = re.compile("[\u3000-\u303f\u4e00-\u9fff\uff00-\uffef]+")
+_SURE = 0.7
+"""Share of the letters that must look Cyrillic: abbreviations such as "ТНкВ" have capitals inside."""
+
+
+def decode_text(content: bytes) -> str:
+    """The text, without a byte order mark. Every content has one: the last resort is Latin-1.
+
+    UTF-8 where it fits. Else Latin-1 where most letters above ASCII stand singly among ASCII letters, or in
+    twos between them ("Estação"). Else CP1251 or CP866 where runs of such letters are Cyrillic with capitals
+    first; else GBK where all are Chinese characters; else Latin-1.
+    """
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        pass
+    latin, foreign = 0, []
+    for before, run, after in _RUN.findall(content):
+        if (len(run) == 1 and (before or after)) or (len(run) == 2 and before and after):
+            latin += len(run)
+        elif len(run) > 1:
+            foreign.append(run)
+    if sum(map(len, foreign)) <= latin:
+        return content.decode("latin-1")
+    for page in ("cp1251", "cp866"):
+        if _cyrillic_share(foreign, page) >= _SURE:
+            return content.decode(page, errors="replace")
+    if all(_CHINESE.fullmatch(run.decode("gbk", errors="replace")) for run in foreign):
+        return content.decode("gb18030", errors="replace")
+    return content.decode("latin-1")
+
+
+def _cyrillic_share(runs: list[bytes], page: str) -> float:
+    """Bytes in runs that are Cyrillic and capitalised as people do, over all."""
+    fitting = sum(len(run) for run in runs if _CYRILLIC.fullmatch(run.decode(page, errors="replace")))
+    return fitting / sum(map(len, runs))

@@ -1,0 +1,115 @@
+"""SEL Compressed ASCII: lines of comma-separated fields, each closed by its checksum.
+
+    "FID","0143"
+
+The checksum is the sum of all bytes up to and with the comma before it, modulo 65536, in four hexadecimal
+digits (SEL-351A and SEL-311L instruction manuals, Compressed ASCII Commands).
+"""
+
+import csv
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.recordings.comtrade_lines import quoted
+from core.recordings.errors import RecordingError
+from core.recordings.repairs import Repairs
+
+STX, ETX = b"\x02", b"\x03"
+_LONGEST_LINE = 1 << 20
+_MOST_PROMPTS = 1000
+_LINE = re.compile(rb"[^\r\n]+")
+_CLOSED = re.compile(rb'(.*,) *"([0-9A-Fa-f]{4})"', re.S)
+_PROMPT = re.compile(rb"[=>\s\x02\x03]*")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One line: its number in the file and its fields without quotes and checksum.
+
+    `end` is where the line ends in the file [bytes].
+    """
+
+    path: Path
+    number: int
+    fields: tuple[str, ...]
+    end: int
+
+    def refuse(self, field: str, expected: str, found: str) -> RecordingError:
+        """The error for `field` of this line ("" for the whole), to be raised or mended."""
+        where = f"line {self.number}" + (f", {field}" if field else "")
+        return RecordingError(self.path, where, expected=expected, found=found)
+
+
+def checksum(content: bytes) -> str:
+    """Four hexadecimal digits for `content`, which ends with the comma before them."""
+    return f"{sum(content) & 0xFFFF:04X}"
+
+
+def closed(fields: str) -> bytes:
+    """A line of fields with its checksum and line end; `fields` are written as they are."""
+    content = fields.encode("ascii") + b","
+    return content + b'"' + checksum(content).encode("ascii") + b'"\r\n'
+
+
+def rows(path: Path, content: bytes, start: int, repairs: Repairs) -> Iterator[Row]:
+    """The lines from `start` on; prompts and blank lines are passed over.
+
+    A lenient reader believes fields whose checksum is wrong and leaves out lines that have none.
+    Raises RecordingError with the line at fault.
+    """
+    number = 1 + _line_ends(content[:start])
+    at, prompts = start, 0
+    for match in _LINE.finditer(content, start):
+        number += _line_ends(content[at : match.start()])
+        at = match.end()
+        if at - match.start() > _LONGEST_LINE:
+            raise RecordingError(
+                path,
+                f"line {number}",
+                expected=f"at most {_LONGEST_LINE} characters",
+                found=str(at - match.start()),
+            )
+        line = match[0].strip(b" \t" + STX + ETX)
+        if _PROMPT.fullmatch(line):
+            prompts += 1
+            if prompts > _MOST_PROMPTS:
+                raise RecordingError(
+                    path, f"line {number}", expected="an event report", found=f"{prompts} lines of prompts"
+                )
+            continue
+        try:
+            fields = _fields(path, number, line, repairs)
+        except RecordingError as fault:
+            repairs.mend(fault, "the line is left out")
+        else:
+            yield Row(path, number, fields, at)
+
+
+def _fields(path: Path, number: int, line: bytes, repairs: Repairs) -> tuple[str, ...]:
+    parts = _CLOSED.fullmatch(line)
+    if parts is None:
+        raise RecordingError(
+            path,
+            f"line {number}",
+            expected='fields and a checksum such as ,"0143"',
+            found=quoted(line[-60:].decode("latin-1")),
+        )
+    expected = checksum(parts[1])
+    if parts[2].decode("ascii").upper() != expected:
+        fault = RecordingError(
+            path, f"line {number}, checksum", expected=expected, found=parts[2].decode("ascii")
+        )
+        repairs.mend(fault, "the line is read as it is")
+    try:
+        (fields,) = csv.reader([parts[1][:-1].decode("latin-1")], strict=True, skipinitialspace=True)
+    except csv.Error as error:
+        raise RecordingError(
+            path, f"line {number}", expected="fields between commas, texts in quotes", found=str(error)
+        ) from error
+    return tuple(field.strip() for field in fields)
+
+
+def _line_ends(content: bytes) -> int:
+    return content.count(b"\n") + content.count(b"\r") - content.count(b"\r\n")

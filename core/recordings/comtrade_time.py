@@ -1,0 +1,178 @@
+"""The time base of a COMTRADE record: its rates, checked against the time stamps of its samples.
+
+Only differences of time stamps count: recorders start them anywhere. Where rates are given, stamps are not
+critical (C37.111-1999, 6.4): some or all may be missing, and a recorder that leaves them all 0 has none. But
+a step forward in them is a gap in the samples, and is kept; steps back, or another rate, contradict the file.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.recordings.comtrade_configuration import Configuration
+from core.recordings.errors import RecordingError
+from core.recordings.repairs import Repairs
+
+RATE_TOLERANCE = 1e-3
+"""Largest difference between the rate in the configuration and the one the time stamps show, fraction."""
+
+SHORT_COUNTER = 1 << 16
+"""Some recorders keep their time stamps in 16 bits; these then start again from 0 and are compared so."""
+
+MAX_STAMP = 1e13
+"""The longest that 13 characters hold, all that 2013 allows."""
+
+_BLOCK_SAMPLES = 1 << 14
+
+
+@dataclass(frozen=True, slots=True)
+class TimeBase:
+    """rate_hz: the first or the typical rate; instants_s: after the first sample [s], None if even."""
+
+    rate_hz: float
+    instants_s: NDArray[np.float64] | None
+
+
+def time_base(
+    path: Path, stamps: NDArray[np.float64], configuration: Configuration, repairs: Repairs
+) -> TimeBase:
+    """Times of the samples from their stamps, in the file's unit, and the configuration's rates.
+
+    A lenient reader goes by the rates where the stamps contradict them.
+    Raises RecordingError where stamps and rates contradict each other, or neither tells the time.
+    """
+    absurd = (stamps > MAX_STAMP) | (stamps < -MAX_STAMP)
+    if absurd.any():
+        k = int(np.argmax(absurd))
+        raise RecordingError(
+            path,
+            f"sample {k + 1}, time stamp",
+            expected=f"a number up to {MAX_STAMP:.0e}",
+            found=f"{stamps[k]:g}",
+        )
+    if not configuration.rates:
+        return _of_stamps(path, stamps * configuration.time_stamp_unit_s, configuration.time_stamp_unit_s)
+    nominal = _Nominal.of(configuration.rates)
+    instants = None
+    try:
+        instants = _with_gaps(path, stamps, nominal, configuration.time_stamp_unit_s)
+    except RecordingError as fault:
+        repairs.mend(fault, "the time stamps are ignored")
+    if instants is None and len(configuration.rates) > 1:
+        instants = nominal.times(np.arange(stamps.size))
+    return TimeBase(configuration.rates[0][0], instants)
+
+
+@dataclass(frozen=True, slots=True)
+class _Nominal:
+    """Times by the rates alone: of each rate its first sample (from 0), its time, the period [s]."""
+
+    firsts: NDArray[np.intp]
+    starts: NDArray[np.float64]
+    periods: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, rates: tuple[tuple[float, int], ...]) -> "_Nominal":
+        periods = np.array([1 / rate_hz for rate_hz, _ in rates])
+        firsts = np.array([0, *(last for _, last in rates[:-1])], dtype=np.intp)
+        # The step to the first sample of a rate is one of its periods.
+        starts = np.concatenate([[0.0], np.cumsum((np.diff(firsts) - 1) * periods[:-1] + periods[1:])])
+        return cls(firsts, starts, periods)
+
+    def times(self, samples: NDArray[np.intp]) -> NDArray[np.float64]:
+        k = np.searchsorted(self.firsts, samples, side="right") - 1
+        return self.starts[k] + (samples - self.firsts[k]) * self.periods[k]
+
+    def period(self, samples: NDArray[np.intp]) -> NDArray[np.float64]:
+        return self.periods[np.searchsorted(self.firsts, samples, side="right") - 1]
+
+
+def _with_gaps(
+    path: Path, stamps: NDArray[np.float64], nominal: _Nominal, unit_s: float
+) -> NDArray[np.float64] | None:
+    """The nominal times, later by each gap the stamps show; None where they show none.
+
+    Piece by piece: stamps of a long record need not be held in memory several times over.
+    """
+    if not (np.isfinite(stamps) & (stamps != 0)).any():
+        return None
+    first = int(np.argmax(np.isfinite(stamps)))
+    span_s = SHORT_COUNTER * unit_s
+    turns = span_s > 2 * nominal.periods.max() and _starts_again(stamps)
+    instants: NDArray[np.float64] | None = None
+    last, late_s, jumps, steps = first, 0.0, 0, 0
+    first_jump: RecordingError | None = None
+    for begin in range(0, stamps.size, _BLOCK_SAMPLES):
+        end = min(begin + _BLOCK_SAMPLES, stamps.size)
+        present = np.flatnonzero(np.isfinite(stamps[begin:end])) + begin
+        present = np.concatenate([[last], present[present > last]])
+        elapsed = (stamps[present] - stamps[first]) * unit_s
+        expected = nominal.times(present) - nominal.times(np.array([first]))
+        deviation = elapsed - expected
+        if turns:
+            deviation = (deviation + span_s / 2) % span_s - span_s / 2
+        period = nominal.period(present)
+        # Where the rate changes, recorders differ in which period the first step has: either is taken as is.
+        longer, shorter = np.maximum(period[1:], period[:-1]), np.minimum(period[1:], period[:-1])
+        change = longer != shorter
+        most = np.where(change, longer, 0.5 * longer) + unit_s
+        step = np.diff(deviation)
+        jump = np.abs(step) > most
+        jumps, steps = jumps + int(np.count_nonzero(jump)), steps + step.size
+        moved = jump | (change & (np.abs(step) > 0.25 * shorter + unit_s))
+        gap = np.where(moved, step, 0.0)
+        late = late_s + np.cumsum(gap)
+        wrong = (jump & (step < 0)) | (np.diff(expected) + gap <= 0)
+        wrong |= np.abs(deviation[1:] - late) > most + RATE_TOLERANCE * expected[1:]
+        if (wrong | jump).any():
+            k = int(np.argmax(wrong if wrong.any() else jump)) + 1
+            fault = _contradiction(path, int(present[k]), expected[k], elapsed[k], period[k])
+            if wrong.any():
+                raise fault
+            first_jump = first_jump or fault
+        if instants is None and moved.any():
+            instants = nominal.times(np.arange(stamps.size))
+        if instants is not None:
+            at = np.searchsorted(present[1:], np.arange(begin, end), side="right")
+            instants[begin:end] += np.concatenate([[late_s], late])[at]
+        last, late_s = int(present[-1]), float(late[-1]) if late.size else late_s
+    if first_jump and 2 * jumps >= steps:  # no gaps, but another rate
+        raise first_jump
+    return instants
+
+
+def _starts_again(stamps: NDArray[np.float64]) -> bool:
+    """Whether a counter of 16 bits runs over: stamps that fall, and are all below its end."""
+    return not (stamps >= SHORT_COUNTER).any() and bool((stamps[1:] < stamps[:-1]).any())
+
+
+def _contradiction(
+    path: Path, sample: int, expected_s: float, elapsed_s: float, period_s: float
+) -> RecordingError:
+    return RecordingError(
+        path,
+        f"sample {sample + 1}, time stamp",
+        expected=f"{expected_s * 1e3:.6g} ms after the first, as {1 / period_s:.10g} Hz gives, "
+        "or a gap after it",
+        found=f"{elapsed_s * 1e3:.6g} ms",
+    )
+
+
+def _of_stamps(path: Path, stamps_s: NDArray[np.float64], unit_s: float) -> TimeBase:
+    """Where the configuration names no rate: even if no stamp is off by more than a tenth of a sample."""
+    missing = int(np.isnan(stamps_s).sum())
+    steps = np.diff(stamps_s)
+    if missing or steps.size == 0 or not (steps > 0).all():
+        raise RecordingError(
+            path,
+            "time stamps",
+            expected="increasing ones on every sample, as the configuration names no sampling rate",
+            found=f"{missing} missing on {stamps_s.size} samples" if missing else "none that increase",
+        )
+    elapsed = stamps_s - stamps_s[0]
+    rate_hz = float(steps.size / elapsed[-1])
+    if (np.abs(elapsed - np.arange(stamps_s.size) / rate_hz) <= 0.1 / rate_hz + unit_s).all():
+        return TimeBase(rate_hz, None)
+    return TimeBase(float(1 / np.median(steps)), elapsed)

@@ -1,0 +1,35 @@
+"""What a lenient reader mends, and says so; what a strict reader refuses."""
+
+from core.recordings.errors import RecordingError
+
+MOST_NOTES = 20
+MOST_REPAIRS = 10_000
+"""A file wrong in more places is none that can be mended."""
+
+
+class Repairs:
+    """Collects what was mended in one file; of a strict reader (`lenient` false) nothing ever is."""
+
+    def __init__(self, *, lenient: bool) -> None:
+        self._lenient = lenient
+        self._first: dict[str, str] = {}
+        self._alike: dict[str, int] = {}
+        self._count = 0
+
+    def mend(self, fault: RecordingError, mended: str) -> None:
+        """Note the fault and what is done about it. Raises the fault of a strict reader, or of too many."""
+        self._count += 1
+        if not self._lenient or self._count > MOST_REPAIRS:
+            raise fault
+        if mended in self._first:
+            self._alike[mended] = self._alike.get(mended, 0) + 1
+        elif len(self._first) < MOST_NOTES:
+            self._first[mended] = f"{fault}: {mended}"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """One sentence a kind of repair, in the order of the file; further ones alike are counted."""
+        return tuple(
+            note + (f" (so are {self._alike[mended]} more)" if mended in self._alike else "")
+            for mended, note in self._first.items()
+        )
