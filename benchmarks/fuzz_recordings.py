@@ -28,7 +28,7 @@ from types import FrameType
 
 import numpy as np
 
-from benchmarks.fuzz_seeds import Files, Seed, mutant, seeds
+from benchmarks.fuzz_seeds import Files, mutant, seeds
 from core.recordings import Recording, RecordingError, read
 
 SECONDS_A_FILE = 1.0
@@ -38,6 +38,7 @@ MEMORY_TIMES_FILE = 10
 MEMORY_FOLDER = Path("/dev/shm")  # noqa: S108 - folders in it are made by tempfile
 """A disk would set the pace."""
 REPORT_EVERY = 500
+MUTANTS_A_SEED = 20
 TELL_EVERY_S = 60.0
 _PAGE = resource.getpagesize()
 
@@ -128,50 +129,60 @@ def _child(report: Connection, folder: Path, seed: int, corpus: Path | None) -> 
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     rng = random.Random(seed)  # noqa: S311 - material for tests
     material = seeds(corpus)
+    desk = _Desk(folder)
     for start in material:  # once unlimited: compiled and cached things count for no file
-        _write(folder, start.files)
         with contextlib.suppress(RecordingError):
-            read(folder / f"r{next(iter(start.files))}")
+            read(desk.lay(start.files))
     address_space = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * _PAGE
     weights = list(accumulate(start.weight for start in material))
     tally = Tally()
     with contextlib.suppress(BrokenPipeError):
         while True:
             (start,) = rng.choices(material, cum_weights=weights)
-            fault = _try(folder, start, mutant(start, rng), tally, address_space, lenient=rng.random() < 0.5)
-            if fault:
-                report.send(fault)
-                return
-            if tally.total == REPORT_EVERY:
+            for _ in range(MUTANTS_A_SEED):
+                files, lenient = mutant(start, rng), rng.random() < 0.5
+                entry = desk.lay(files)
+                allowed = address_space + MEMORY_BYTES + MEMORY_TIMES_FILE * sum(map(len, files.values()))
+                fault = _try(entry, start.kind, tally, allowed, lenient=lenient)
+                if fault:
+                    report.send(fault)
+                    return
+            if tally.total >= REPORT_EVERY:
                 report.send(tally)
                 tally = Tally()
 
 
-def _try(
-    folder: Path, seed: Seed, files: Files, tally: Tally, address_space: int, *, lenient: bool
-) -> str | None:
-    _write(folder, files)
-    entry = folder / f"r{next(iter(files))}"
-    allowed = MEMORY_BYTES + MEMORY_TIMES_FILE * sum(map(len, files.values()))
+class _Desk:
+    """Files of the record that is read next; those that lie there already are not written again."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._lying: Files = {}
+
+    def lay(self, files: Files) -> Path:
+        """The path to read from."""
+        for suffix, content in files.items():
+            if self._lying.get(suffix) is not content:
+                (self._folder / f"r{suffix}").write_bytes(content)
+                self._lying[suffix] = content
+        return self._folder / f"r{next(iter(files))}"
+
+
+def _try(entry: Path, kind: str, tally: Tally, address_space: int, *, lenient: bool) -> str | None:
+    """Read, and say what was wrong with it, if anything."""
     begun = time.process_time()
     try:
-        with _limited(address_space + allowed):
-            recording = read(entry, lenient=lenient)
-            objection = _objection(recording, lenient=lenient)
+        with _limited(address_space):
+            objection = _objection(read(entry, lenient=lenient), lenient=lenient)
     except RecordingError:
-        tally.refused[seed.kind] += 1
+        tally.refused[kind] += 1
         objection = None
     except (Exception, TooSlow):  # noqa: BLE001 - this is what is looked for
-        return f"{seed.kind}, lenient={lenient}:\n{traceback.format_exc()}"
+        return f"{kind}, lenient={lenient}:\n{traceback.format_exc()}"
     else:
-        tally.read[seed.kind] += 1
+        tally.read[kind] += 1
     tally.slowest_s = max(tally.slowest_s, time.process_time() - begun)
-    return f"{seed.kind}, lenient={lenient}: {objection}" if objection else None
-
-
-def _write(folder: Path, files: Files) -> None:
-    for suffix, content in files.items():
-        (folder / f"r{suffix}").write_bytes(content)
+    return f"{kind}, lenient={lenient}: {objection}" if objection else None
 
 
 @contextlib.contextmanager

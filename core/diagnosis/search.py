@@ -22,7 +22,7 @@ MAX_GLOBAL, MAX_LOCAL = 400, 120
 FINENESS = 18
 ADAPTIVENESS = 0.4
 """Section 6.5.2's setting, with a fineness that lets single coordinates reach a thousandth of their range."""
-HYBRID_GLOBAL, HYBRID_ADAPTIVENESS = 100, 0.7
+HYBRID_GLOBAL, HYBRID_ADAPTIVENESS = 60, 0.7
 """Few points, spread widely: each winding's best only has to lie in the right valley (docs/optimisers.md)."""
 HYBRID_REFINEMENT = Refinement(starts=1, tolerance=1e-4)
 SAMPLES = 60

@@ -12,9 +12,16 @@ from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.hypotheses import UNLIKELY, Explanation, explain, is_explained
 from core.diagnosis.indicators import indicators
 from core.diagnosis.quality import examine
-from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET, Fit
+from core.diagnosis.refinement import (
+    CHANNEL_RATIO,
+    FAULT_LEVEL,
+    LOAD_LEVEL,
+    PATH_RATIO,
+    TIME_OFFSET,
+    Fit,
+)
 from core.diagnosis.search import DEFAULT_METHOD, METHODS, search
-from core.diagnosis.tolerance import Systematic, systematic
+from core.diagnosis.tolerance import PARAMETERS, Systematic, systematic
 from core.diagnosis.verdict import Diagnosis, QualityFinding, Verdict
 from core.machines.base import StatorModel
 from core.machines.parameters import Motor
@@ -130,6 +137,7 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
         f"{tolerance.detection_limit(fit):.2%} could not be seen here for sure",
     ]
     offset = fit.value(TIME_OFFSET)
+    figures.append(_unknowns(case, fit))
     if abs(offset) * case.frequency_hz > USUAL_OFFSET_CYCLES:
         figures.append(
             f"the currents lie {offset * 1e6:.0f} us behind the voltages, more than one relay's channels do: "
@@ -151,6 +159,17 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
             *figures,
         ]
     return Verdict.HEALTHY, [f"no shorted turns above the limit of {limit:.2%}: best fit {level}", *figures]
+
+
+def _unknowns(case: Case, fit: Fit) -> str:
+    """What else the fit could turn at, and what it could not."""
+    path = ", resistance of the path" if PATH_RATIO in fit.standard_error else ""
+    return (
+        f"estimated beside the level: frequency ({case.frequency_hz:.2f} Hz), load, offset of the currents "
+        f"({fit.value(TIME_OFFSET) * 1e6:+.0f} us){path}; held and only bounded, by standard deviations: the "
+        f"channels' ratios ({CHANNEL_RATIO:.1%} each), the motor's resistances and inductances "
+        f"({PARAMETERS:.0%} of its negative-sequence impedance)"
+    )
 
 
 def _check_known(method: str, model: str) -> None:

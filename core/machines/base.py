@@ -75,7 +75,10 @@ class StatorModel(Protocol):
         ...
 
 
+_ANGLES = 2.0 * np.pi / 3.0 * np.arange(3)
+_AXES = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
+
+
 def winding_axis(winding: NDArray[np.int64]) -> Array:
     """n = (cos th, sin th), th = theta_f 2 pi / 3, shape (candidates, 2) (6.9)."""
-    angle = 2.0 * np.pi / 3.0 * winding
-    return np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return _AXES[winding]

@@ -1,10 +1,12 @@
 """The symmetrical machine (thesis 3.13-3.16)."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.base import Array, Circuits
-from core.machines.parameters import Motor
+from core.machines.parameters import MachineParameters, Motor
 
 
 class HealthyMachine:
@@ -23,7 +25,13 @@ class HealthyMachine:
 
 def symmetrical(motor: Motor, candidates: int) -> Circuits:
     """psi_s = L_ls i_s + psi_m, psi_r = L_lr i_r + psi_m, psi_m = L_m (i_s + i_r) (3.14, 3.15)."""
-    machine = motor.parameters
+    L, R = _matrices(motor.parameters)
+    shape = (candidates, 5, 5)
+    return Circuits(np.broadcast_to(L, shape).copy(), np.broadcast_to(R, shape).copy())
+
+
+@lru_cache
+def _matrices(machine: MachineParameters) -> tuple[Array, Array]:
     L_m = machine.magnetising_inductance_H
     L, R = np.zeros((5, 5)), np.zeros((5, 5))
     for axis in (0, 1):
@@ -35,4 +43,4 @@ def symmetrical(motor: Motor, candidates: int) -> Circuits:
         R[rotor, rotor] = machine.rotor_resistance_ohm
     L[4, 4] = machine.stator_leakage_H
     R[4, 4] = machine.stator_resistance_ohm
-    return Circuits(np.tile(L, (candidates, 1, 1)), np.tile(R, (candidates, 1, 1)))
+    return L, R

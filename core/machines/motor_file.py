@@ -1,13 +1,15 @@
-"""MOTOR.toml: nameplate, parameters, channel names and limits of one motor."""
+"""MOTOR.toml: nameplate, parameters with their intervals, channel names and limits of one motor."""
 
 import tomllib
 from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from math import inf, isfinite
 from pathlib import Path
 
 from core.machines.parameters import ChannelNames, Connection, Limits, MachineParameters, Motor, Nameplate
 
-TABLES = ("nameplate", "parameters", "channels", "limits")
+TABLES = ("nameplate", "parameters", "intervals", "channels", "limits")
+PARAMETERS = tuple(field.name for field in fields(MachineParameters))
 HIGHEST_FAULT_LIMIT = 0.2
 """The search looks no higher: a limit above it would switch the alarm off."""
 
@@ -23,14 +25,43 @@ class MotorFileError(ValueError):
         super().__init__(f"{self.source}: {field}: expected {expected}, found {found}")
 
 
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """What is known of a motor before its start was recorded: `parameters` None where the file has none."""
+
+    name: str
+    nameplate: Nameplate
+    parameters: MachineParameters | None
+    channels: ChannelNames
+    limits: Limits
+
+
 def read_motor(path: Path | str) -> Motor:
     """Read MOTOR.toml; the motor is named after the file.
 
     Raises MotorFileError for a missing or unreadable file, a missing or impossible value, an unknown key.
     """
     path = Path(path)
+    return motor_from_table(_table_of(path), name=path.stem, source=path)
+
+
+def read_plate(path: Path | str) -> Plate:
+    """Read a MOTOR.toml that may do without [parameters]; raises MotorFileError like `read_motor`."""
+    path = Path(path)
+    return _plate_from_table(_table_of(path), name=path.stem, source=path)
+
+
+def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | str) -> Motor:
+    """A motor from the tables [nameplate], [parameters] and optionally [intervals], [channels], [limits]."""
+    plate = _plate_from_table(table, name=name, source=source)
+    if plate.parameters is None:
+        raise MotorFileError(source, "[parameters]", expected="a table", found="nothing")
+    return Motor(plate.name, plate.nameplate, plate.parameters, plate.channels, plate.limits)
+
+
+def _table_of(path: Path) -> dict[str, object]:
     try:
-        table = tomllib.loads(path.read_text("utf-8"))
+        return tomllib.loads(path.read_text("utf-8"))
     except OSError as error:
         raise MotorFileError(
             path, "file", expected="a readable TOML file", found=f"none ({error.strerror})"
@@ -39,11 +70,9 @@ def read_motor(path: Path | str) -> Motor:
         raise MotorFileError(
             path, "file", expected="valid TOML in UTF-8", found=f"an error: {error}"
         ) from error
-    return motor_from_table(table, name=path.stem, source=path)
 
 
-def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | str) -> Motor:
-    """A motor from the tables [nameplate], [parameters] and optionally [channels], [limits]."""
+def _plate_from_table(table: Mapping[str, object], *, name: str, source: Path | str) -> Plate:
     unknown = sorted(set(table) - set(TABLES))
     if unknown:
         raise MotorFileError(
@@ -53,10 +82,11 @@ def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | s
             found="an unknown key",
         )
     nameplate = _Table(table, "nameplate", source)
-    machine = _Table(table, "parameters", source)
+    machine = _Table(table, "parameters", source) if "parameters" in table else None
+    intervals = _Table(table, "intervals", source, optional=True)
     limits = _Table(table, "limits", source, optional=True)
     channels = _Table(table, "channels", source, optional=True)
-    motor = Motor(
+    plate = Plate(
         name=name,
         nameplate=Nameplate(
             rated_power_W=nameplate.positive("rated_power_W"),
@@ -65,14 +95,9 @@ def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | s
             pole_pairs=nameplate.count("pole_pairs"),
             connection=nameplate.connection("connection"),
         ),
-        parameters=MachineParameters(
-            stator_resistance_ohm=machine.positive("stator_resistance_ohm"),
-            rotor_resistance_ohm=machine.positive("rotor_resistance_ohm"),
-            stator_leakage_H=machine.positive("stator_leakage_H"),
-            rotor_leakage_H=machine.positive("rotor_leakage_H"),
-            stator_self_inductance_H=machine.positive("stator_self_inductance_H"),
-            inertia_kgm2=machine.positive("inertia_kgm2"),
-        ),
+        parameters=None
+        if machine is None
+        else MachineParameters(**{parameter: machine.positive(parameter) for parameter in PARAMETERS}),
         channels=ChannelNames(
             currents=channels.names("ia", "ib", "ic"),
             phase_voltages=channels.names("va", "vb", "vc"),
@@ -82,9 +107,13 @@ def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | s
             fault_level=limits.positive("fault_level", default=Limits().fault_level, most=HIGHEST_FAULT_LIMIT)
         ),
     )
-    for section in (nameplate, machine, limits, channels):
-        section.reject_unknown()
-    return motor
+    for parameter in PARAMETERS:
+        # For people and programs that weigh the parameters; the models take the values alone.
+        intervals.interval(parameter)
+    for section in (nameplate, machine, intervals, limits, channels):
+        if section is not None:
+            section.reject_unknown()
+    return plate
 
 
 class _Table:
@@ -107,6 +136,19 @@ class _Table:
         if value > most:
             raise self._error(key, f"a fraction of at most {most:g} (0.005 means 0.5 %)", value)
         return float(value)
+
+    def interval(self, key: str) -> tuple[float, float] | None:
+        value = self._take(key, None)
+        if value is None:
+            return None
+        if (
+            not isinstance(value, list)
+            or len(value) != 2
+            or any(isinstance(end, bool) or not isinstance(end, int | float) for end in value)
+            or not 0.0 < value[0] <= value[1] < inf
+        ):
+            raise self._error(key, "[low, high], two numbers above zero", value)
+        return float(value[0]), float(value[1])
 
     def count(self, key: str) -> int:
         value = self._take(key, None)

@@ -38,7 +38,7 @@ AxisMask = NDArray[np.bool_]
 class Refinement:
     """How the local searches begin and end.
 
-    starts: points refined in a round, for each combination of the values of coordinates with `allowed` values.
+    starts: points refined in a round, for each combination of values of the coordinates with `allowed` ones.
     separation: least distance of two of them in some coordinate, a fraction of the box.
     rounds: in each after the first the global search goes on to twice as many points.
     tolerance: of the end, in fractions of the box.

@@ -15,7 +15,7 @@ UNUSED = "*"
 """Name of a position of the relay word that carries no bit."""
 
 _LABEL = re.compile(r"(?P<name>[^()]*[^() ]) *\((?P<unit>[^()]*)\)|(?P<volts>V[A-Z0-9]+)kV")
-_NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,3})?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,3})?", re.ASCII)
 _NO_VALUE = re.compile(r"\$*")
 _HEX = re.compile(r"[0-9A-Fa-f]*", re.ASCII)
 _BLOCK_ROWS = 1 << 12

@@ -7,6 +7,9 @@ A wrong guess misspells a name; it never changes a number, a comma or a line: al
 import re
 
 _RUN = re.compile(rb"([A-Za-z]?)([\x80-\xff]+)(?=([A-Za-z]?))")
+_HIGH = re.compile(rb"[\x80-\xff]")
+_SAMPLE_BYTES = 1 << 16
+"""From the first letter above ASCII on: enough to tell a page by."""
 _CYRILLIC = re.compile("[А-ЯЁ]*[а-яё]*")
 _CHINESE = re.compile("[\u3000-\u303f\u4e00-\u9fff\uff00-\uffef]+")
 _SURE = 0.7
@@ -24,8 +27,10 @@ def decode_text(content: bytes) -> str:
         return content.decode("utf-8-sig")
     except UnicodeDecodeError:
         pass
+    high = _HIGH.search(content)
+    begin = max(high.start() - 1, 0) if high else 0
     latin, foreign = 0, []
-    for before, run, after in _RUN.findall(content):
+    for before, run, after in _RUN.findall(content[begin : begin + _SAMPLE_BYTES]):
         if (len(run) == 1 and (before or after)) or (len(run) == 2 and before and after):
             latin += len(run)
         elif len(run) > 1:

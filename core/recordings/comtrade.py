@@ -39,7 +39,7 @@ from core.recordings.waveform import Channel, Digitals, Quantity, Recording
 
 __all__ = ["configuration_text", "data_bytes", "read_combined_comtrade", "read_comtrade", "write"]
 
-MAX_CONFIGURATION_BYTES = 16 << 20
+MAX_CONFIGURATION_BYTES = 4 << 20
 MAX_DATA_BYTES = 1 << 30
 MAX_STRETCHES = 1000
 """Of a record sampled unevenly, beyond which skew is not removed piece by piece."""

@@ -19,7 +19,8 @@ Schneider's Sepam relays write 1997, the draft of it."""
 
 DATA_FORMATS = ("ASCII", "BINARY", "BINARY32", "FLOAT32")
 
-MAX_CHANNELS = 999_999
+MAX_CHANNELS = 20_000
+"""The standard allows 999 999; no recorder comes near, and a file of so many would take seconds to refuse."""
 MAX_SAMPLES = 9_999_999_999
 MAX_RATES = 999
 

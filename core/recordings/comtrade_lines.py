@@ -11,7 +11,7 @@ from core.recordings.errors import RecordingError
 MAX_LINE = 10_000
 
 _INTEGER = re.compile(r"[+-]?[0-9]{1,10}", re.ASCII)
-_REAL = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]{1,4})?", re.ASCII)
+_REAL = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]{1,4})?", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,9 +32,11 @@ DEFAULT_URL = "http://127.0.0.1:8710"
 class Method(StrEnum):
     """How the fault is searched."""
 
+    HYBRID = "hybrid"
     HCPA = "hcpa"
     GENETIC = "genetic"
     PATTERN_SEARCH = "pattern-search"
+    PATTERN_SEARCH_LHS = "pattern-search-lhs"
 
 
 class Model(StrEnum):
@@ -42,6 +44,15 @@ class Model(StrEnum):
 
     SPLIT_WINDING = "split-winding"
     SHORTED_WINDING = "shorted-winding"
+
+
+class Load(StrEnum):
+    """How the load torque grows with speed."""
+
+    AUTO = "auto"
+    CONSTANT = "constant"
+    LINEAR = "linear"
+    QUADRATIC = "quadratic"
 
 
 def _print_version(wanted: bool) -> None:
@@ -73,11 +84,25 @@ def demo(
     data: Annotated[
         Path | None, typer.Option(metavar="DIR", help="Keep the data here (default: a temporary folder).")
     ] = None,
+    url: Annotated[
+        str | None,
+        typer.Option(help="Start nothing: play on the demo plant whose service answers here."),
+    ] = None,
 ) -> None:
     """Run a simulated plant of two factories and the service that watches it."""
     from service.cli.demonstrate import demonstrate
 
-    demonstrate(once=once, json_file=json_file, data=data)
+    if url is not None and data is not None:
+        raise typer.BadParameter("--data is for a plant this command starts: leave out --data or --url")
+    demonstrate(once=once, json_file=json_file, data=data, url=url)
+
+
+@app.command("demo-status")
+def demo_status(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
+    """Show each motor's verdict beside the truth, where a demo plant runs."""
+    from service.cli.demo_status import show_demo
+
+    show_demo(url, as_json=as_json)
 
 
 @app.command()
@@ -95,7 +120,10 @@ def serve(
 @app.command()
 def diagnose(
     record: Annotated[
-        Path, typer.Argument(metavar="RECORD", help="A COMTRADE recording (.CFG beside its .DAT, or .CFF).")
+        Path,
+        typer.Argument(
+            metavar="RECORD", help="COMTRADE (.CFG beside its .DAT, or .CFF) or an SEL event report (.CEV)."
+        ),
     ],
     motor: Annotated[
         Path | None,
@@ -103,7 +131,7 @@ def diagnose(
             metavar="MOTOR.toml", help="The motor (default: RECORD's name with .toml, or motor.toml)."
         ),
     ] = None,
-    method: Method = Method.HCPA,
+    method: Method = Method.HYBRID,
     model: Model = Model.SPLIT_WINDING,
     *,
     currents_only: Annotated[
@@ -113,14 +141,49 @@ def diagnose(
             help="Accept a recording without voltages; the verdict is at best a hint (watch).",
         ),
     ] = False,
+    lenient: Annotated[
+        bool,
+        typer.Option("--lenient", help="Mend what can be mended in a faulty file, and say what was."),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Tell from one recording whether a motor has shorted stator turns."""
     from service.cli.diagnose import diagnose_recording
 
     diagnose_recording(
-        record, motor, method=method.value, model=model.value, currents_only=currents_only, as_json=as_json
+        record,
+        motor,
+        method=method.value,
+        model=model.value,
+        currents_only=currents_only,
+        lenient=lenient,
+        as_json=as_json,
     )
+
+
+@app.command()
+def commission(
+    records: Annotated[
+        list[Path],
+        typer.Argument(metavar="RECORD...", help="Recordings of the motor's starts, each from before it on."),
+    ],
+    nameplate: Annotated[
+        Path,
+        typer.Option(metavar="MOTOR.toml", help="The motor: [nameplate], and [parameters] if any are known."),
+    ],
+    output: Annotated[
+        Path, typer.Option(metavar="MOTOR.toml", help="Where to write the motor with what was found.")
+    ],
+    load: Annotated[
+        Load, typer.Option(help="How the load torque grows with speed; auto: as fits best.")
+    ] = Load.AUTO,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Estimate a motor's parameters, with intervals, from recordings of its start."""
+    from service.cli.commission import commission_motor
+
+    commission_motor(records, nameplate, output, load=load.value, as_json=as_json)
 
 
 @app.command()

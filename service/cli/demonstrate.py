@@ -13,7 +13,13 @@ from rich.text import Text
 from scl import SclError
 from service.cli.output import CommandError, as_json, failing_clearly, failure_document, progress, results
 from service.demo.interruption import Interruption, interruptible
-from service.demo.plant import DemoPlant, NotReadyError, running_plant, wait_until_ready
+from service.demo.plant import (
+    DemoPlant,
+    NotReadyError,
+    plant_elsewhere,
+    running_plant,
+    wait_until_ready,
+)
 from service.demo.processes import ProgramError
 from service.demo.results import DemoMotor, document, slowest, table
 from service.demo.rounds import STATES, play_round
@@ -25,8 +31,8 @@ REST_S = 60.0
 """Between rounds when the demo goes on until Ctrl-C."""
 
 
-def demonstrate(*, once: bool, json_file: Path | None, data: Path | None) -> None:
-    """Run the demo plant; with `once`, for two rounds of triggers, else until Ctrl-C.
+def demonstrate(*, once: bool, json_file: Path | None, data: Path | None, url: str | None) -> None:
+    """Run the demo plant, or play on one that runs; with `once` two rounds of triggers, else until Ctrl-C.
 
     Raises CommandError, and writes the same to `json_file`, where something did not work.
     """
@@ -34,11 +40,12 @@ def demonstrate(*, once: bool, json_file: Path | None, data: Path | None) -> Non
         with (
             interruptible() as interruption,
             failing_clearly(SclError, ProgramError, NotReadyError, ServiceError, TruthError, OSError),
-            _data_directory(data) as directory,
         ):
             if json_file is not None:
                 json_file.write_bytes(b"")  # a place that cannot be written to is told now, not in a minute
-            _run(directory, interruption, once=once, json_file=json_file)
+            started_s = time.monotonic()
+            with _plant(interruption, data, url) as plant, ServiceClient(plant.url) as service:
+                _run(plant, service, started_s, once=once, json_file=json_file)
     except KeyboardInterrupt as interrupt:
         failure = CommandError("interrupted", details={"type": "Interrupted"})
         _tell(failure, json_file)
@@ -48,38 +55,46 @@ def demonstrate(*, once: bool, json_file: Path | None, data: Path | None) -> Non
         raise
 
 
-def _run(data: Path, interruption: Interruption, *, once: bool, json_file: Path | None) -> None:
-    started_s = time.monotonic()
+@contextmanager
+def _plant(interruption: Interruption, data: Path | None, url: str | None) -> Iterator[DemoPlant]:
+    """A plant of our own, or the one whose service answers at `url`."""
+    if url is not None:
+        yield plant_elsewhere(url, interruption.pause)
+        return
+    with _data_directory(data) as directory:
+        progress().print(f"starting two factories, six relays and the service (data and logs: {directory})")
+        with running_plant(directory, interruption.pause, _tell_line) as plant:
+            yield plant
+
+
+def _run(
+    plant: DemoPlant, service: ServiceClient, started_s: float, *, once: bool, json_file: Path | None
+) -> None:
+    motors = _motors(plant, service)
+    if once:
+        _play(plant, service, motors, ROUNDS)
+        _publish(motors, time.monotonic() - started_s, json_file)
+        _require_diagnoses(motors)
+        return
     console = progress()
-
-    def tell(line: str) -> None:
-        console.print(Text(line), soft_wrap=True)
-
-    console.print(f"starting two factories, six relays and the service (data and logs: {data})")
-    with running_plant(data, interruption.pause, tell) as plant, ServiceClient(plant.url) as service:
-        motors = _motors(plant, service)
-        if once:
-            _play(plant, service, motors, ROUNDS)
-            _publish(motors, time.monotonic() - started_s, json_file)
-            _require_diagnoses(motors)
-            return
-        console.print(f"API: {plant.url}/api/v1/motors   end: Ctrl-C")
-        try:
-            for number in count(1):
-                for motor in motors:
-                    motor.diagnoses.clear()
-                _play(plant, service, motors, 1)
-                _publish(motors, time.monotonic() - started_s, json_file, number)
-                _rest(plant)
-                started_s = time.monotonic()
-        except KeyboardInterrupt:
-            console.print("ending")
+    console.print(f"API: {plant.url}/api/v1/motors   end: Ctrl-C")
+    try:
+        for number in count(1):
+            for motor in motors:
+                motor.diagnoses.clear()
+            _play(plant, service, motors, 1)
+            _publish(motors, time.monotonic() - started_s, json_file, number)
+            _rest(plant)
+            started_s = time.monotonic()
+    except KeyboardInterrupt:
+        console.print("ending")
 
 
 def _motors(plant: DemoPlant, service: ServiceClient) -> list[DemoMotor]:
     """The service's motors with the simulator's truth, once both are up."""
     truths = ask_simulator(plant.scd, plant.scenario)
-    wait_until_ready(plant, service)
+    for relay in wait_until_ready(plant, service):
+        _tell_line(f"{relay} does not answer yet; the others go on")
     return [
         DemoMotor(str(motor["name"]), str(motor["site"]), truths[str(motor["ied"])])
         for motor in service.items("/motors")
@@ -110,6 +125,10 @@ def _publish(motors: Sequence[DemoMotor], seconds: float, json_file: Path | None
     console.print(Text(f"{spent}{words}"))
     if json_file is not None:
         json_file.write_text(as_json(document(motors, seconds)) + "\n", encoding="utf-8")
+
+
+def _tell_line(line: str) -> None:
+    progress().print(Text(line), soft_wrap=True)
 
 
 def _tell(failure: CommandError, json_file: Path | None) -> None:

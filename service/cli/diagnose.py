@@ -1,5 +1,6 @@
 """`mcc diagnose`: one recording, one motor, one verdict; no service needed."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from rich.table import Table
@@ -15,9 +16,16 @@ from service.verdicts import level, verdict_text
 
 
 def diagnose_recording(
-    record: Path, motor: Path | None, *, method: str, model: str, currents_only: bool, as_json: bool
+    record: Path,
+    motor: Path | None,
+    *,
+    method: str,
+    model: str,
+    currents_only: bool,
+    lenient: bool,
+    as_json: bool,
 ) -> None:
-    """Read, diagnose, print.
+    """Read, diagnose, print; what a lenient reader repaired is among the reasons.
 
     Raises CommandError where the recording or the motor file cannot be used, or the method is not known.
     """
@@ -25,9 +33,11 @@ def diagnose_recording(
         failing_clearly(RecordingError, MotorFileError, OSError),
         failing_clearly(DiagnosisError, exit_code=WRONG_USE),
     ):
-        recording = read(record)
+        recording = read(record, lenient=lenient)
         found = read_motor(motor or _motor_file_beside(record))
         diagnosis = diagnose(recording, found, method=method, model=model, currents_only=currents_only)
+    repaired = (f"repaired: {note}" for note in recording.repairs)
+    diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
     if as_json:
         print_document(diagnosis.as_dict())
     else:

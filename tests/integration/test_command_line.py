@@ -10,6 +10,7 @@ import pytest
 import scl
 from core.diagnosis.search import METHODS
 from core.recordings import comtrade, read
+from core.recordings.cev_writer import EventSummary, write_cev
 from mms import Client
 from service.cli import main
 from service.demo import MOTORS
@@ -65,6 +66,33 @@ def test_without_voltages_a_diagnosis_must_be_asked_for(
     assert main(["diagnose", str(path), "--motor", motor, "--json", "--currents-only"]) == 0
     hint = json.loads(capsys.readouterr().out)
     assert (hint["verdict"], hint["phase"]) == ("watch", "b")
+
+
+def test_an_event_report_of_the_relay_is_a_recording_too(
+    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = read(record)
+    per_cycle = round(whole.sample_rate_hz / 50)
+    path = write_cev(tmp_path / "C4_10000.CEV", whole, EventSummary(per_cycle, per_cycle))
+    motor = str(record.with_name("motor.toml"))
+    assert main(["diagnose", str(path), "--motor", motor, "--json"]) == 0
+    diagnosis = json.loads(capsys.readouterr().out)
+    assert (diagnosis["verdict"], diagnosis["phase"]) == ("fault", "b")
+    assert diagnosis["mu_f"] == pytest.approx(0.05, abs=0.005)
+
+
+def test_what_was_repaired_is_among_the_reasons(
+    record: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    copy = tmp_path / record.name
+    copy.write_bytes(record.read_bytes())
+    copy.with_suffix(".DAT").write_bytes(record.with_suffix(".DAT").read_bytes()[:-7])
+    motor = str(record.with_name("motor.toml"))
+    assert main(["diagnose", str(copy), "--motor", motor, "--json", "--lenient"]) == 0
+    (repaired,) = [r for r in json.loads(capsys.readouterr().out)["reasons"] if r.startswith("repaired: ")]
+    assert "samples are read" in repaired
+    assert main(["diagnose", str(record), "--motor", motor, "--json", "--lenient"]) == 0
+    assert "repaired" not in capsys.readouterr().out
 
 
 def test_a_damaged_record_names_file_field_and_expectation(

@@ -3,9 +3,19 @@
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from core.machines.motor_file import MotorFileError, read_motor
-from core.machines.parameters import Connection
+from core.machines.motor_file import MotorFileError, read_motor, read_plate
+from core.machines.motor_file_writer import write_motor
+from core.machines.parameters import (
+    ChannelNames,
+    Connection,
+    Limits,
+    MachineParameters,
+    Motor,
+    Nameplate,
+)
 
 COMPLETE = """
 [nameplate]
@@ -22,6 +32,9 @@ stator_leakage_H = 0.0328
 rotor_leakage_H = 0.0328
 stator_self_inductance_H = 0.4377
 inertia_kgm2 = 0.0229
+
+[intervals]
+stator_resistance_ohm = [8.3, 8.5]
 
 [channels]
 ia = "I1"
@@ -61,7 +74,16 @@ def test_reads_every_field(tmp_path: Path) -> None:
         ('"delta"', '"zigzag"', "[nameplate] connection", '"star" or "delta"'),
         ('ib = "I2"', "", "[channels] ib", "a channel name"),
         ('ib = "I2"', "ib = 2", "[channels] ib", "a channel name"),
-        ("[limits]", "[limit]", "limit", "one of the tables [nameplate], [parameters], [channels], [limits]"),
+        (
+            "[limits]",
+            "[limit]",
+            "limit",
+            "one of the tables [nameplate], [parameters], [intervals], [channels], [limits]",
+        ),
+        ("[8.3, 8.5]", "[8.5, 8.3]", "[intervals] stator_resistance_ohm", "[low, high]"),
+        ("[8.3, 8.5]", "8.4", "[intervals] stator_resistance_ohm", "[low, high]"),
+        ("[8.3, 8.5]", "[8.3, true]", "[intervals] stator_resistance_ohm", "[low, high]"),
+        ("[intervals]", "[intervals]\nslip = [1, 2]", "[intervals] slip", "one of inertia_kgm2"),
         ("fault_level", "fault_levle", "[limits] fault_levle", "one of fault_level"),
         ("fault_level = 0.01", "fault_level = 3", "[limits] fault_level", "a fraction of at most 0.2"),
         (
@@ -93,3 +115,50 @@ def test_a_missing_file_and_a_missing_table_are_named(tmp_path: Path) -> None:
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(MotorFileError, match="valid TOML in UTF-8"):
         read_motor(tmp_path / "binary.toml")
+
+
+def test_a_plate_may_do_without_parameters(tmp_path: Path) -> None:
+    bare = COMPLETE[: COMPLETE.index("[parameters]")]
+    plate = read_plate(written(tmp_path, bare))
+    assert plate.parameters is None
+    assert plate.nameplate.rated_power_W == 800
+    with pytest.raises(MotorFileError, match=r"\[parameters\]: expected a table, found nothing"):
+        read_motor(written(tmp_path, bare))
+
+
+above_zero = st.floats(min_value=1e-9, max_value=1e9)
+names = st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() or text == "\x7f")
+
+
+@given(
+    values=st.lists(above_zero, min_size=10, max_size=10),
+    connection=st.sampled_from(Connection),
+    currents=st.one_of(st.none(), st.tuples(names, names, names)),
+)
+def test_what_is_written_is_read_again(
+    tmp_path_factory: pytest.TempPathFactory,
+    values: list[float],
+    connection: Connection,
+    currents: tuple[str, str, str] | None,
+) -> None:
+    motor = Motor(
+        "PUMP-7",
+        Nameplate(values[0], values[1], values[2], 3, connection),
+        MachineParameters(*values[3:9]),
+        ChannelNames(currents=currents),
+        Limits(0.02),
+    )
+    path = tmp_path_factory.mktemp("motor") / "PUMP-7.toml"
+    write_motor(
+        path,
+        motor,
+        intervals={"inertia_kgm2": (values[8] * 0.9, values[8] * 1.1)},
+        remarks={"rotor_leakage_H": "fixed\nand said"},
+        heading="two\nlines",
+    )
+    again = read_motor(path)
+    assert again.channels == motor.channels
+    assert again.nameplate.connection is connection
+    assert again.limits == motor.limits
+    for name in MachineParameters.__slots__:
+        assert getattr(again.parameters, name) == pytest.approx(getattr(motor.parameters, name), rel=1e-6)

@@ -34,7 +34,7 @@ OPTIMISERS: dict[str, Minimise] = {
 
 
 @pytest.mark.parametrize("name", OPTIMISERS)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(
     seed=st.integers(0, 1000),
     dimensions=st.integers(1, 4),

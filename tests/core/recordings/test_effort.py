@@ -66,8 +66,12 @@ NARROW = (
 COSTLY: dict[str, dict[str, bytes]] = {
     "configuration of line ends": {".cfg": b"\n" * (MB)},
     "configuration of commas": {".cfg": b"," * (MB)},
+    "accents without end": {".cfg": b"a\xff\xff " * (MB // 4)},
     "names without end": {".cfg": CFG.replace(b"PLANT", b"P" * (MB))},
     "channels announced by the million": {".cfg": b"P,R,1999\n999999,999999A,0D\n" + b"1\n" * (MB // 2)},
+    "a number of digits alone": {".cfg": CFG.replace(b"0.01", b"1" * 9000 + b"x")},
+    "a report's number of digits alone": {".cev": REPORT.but(rows=["1" * MB + "x,,,,,,"]).content()},
+    "a report's number of many digits": {".cev": REPORT.but(rows=["1" * (MB - 99) + ",,,,,,"]).content()},
     "samples announced by the milliard": {
         ".cfg": CFG.replace(b"1000,5", b"1000,9999999999"),
         ".dat": b"1" * 90,

@@ -1,0 +1,281 @@
+"""Commissioning: a motor's parameters, with intervals, from recordings of its starts (thesis chapter 5).
+
+Global search on each start, refinement from its best separated points, all starts fitted together, the load's
+law chosen, then what the records do not tell is fixed and named, and the rest fitted once more.
+"""
+
+from collections.abc import Callable, Sequence
+from math import exp, isinf, log
+from time import perf_counter
+
+import numpy as np
+
+from core.commissioning.fit import Fit, Mask, Records
+from core.commissioning.identifiability import Untold, condition_number, making_up, untold
+from core.commissioning.result import Commissioning, Estimate, StartFound
+from core.commissioning.search import search
+from core.commissioning.start import Start, start_of, thinned
+from core.commissioning.uncertainty import inherited_covariance, noise_covariance, preference, quantile
+from core.commissioning.unknowns import OF_A_START, PARAMETERS, Point, Prior, prior_of
+from core.machines.base import Array
+from core.machines.candidates import LoadLaw
+from core.machines.motor_file import Plate
+from core.machines.parameters import Motor
+from core.recordings import Recording
+
+STARTING_POINTS = 6
+COARSELY = 1e-6
+LAW_TOLD = 3.0
+"""Standard deviations by which one law of the load must be better than the others to be believed."""
+LIGHT_LOAD = 0.05
+"""Load level below which its law makes no difference."""
+USUAL_RESIDUAL = 0.05
+"""Share of the current beyond which a motor of constant parameters is not what was recorded."""
+
+Progress = Callable[[float, str], None]
+
+
+def commission(
+    recordings: Sequence[Recording],
+    plate: Plate,
+    *,
+    load_law: LoadLaw | None = None,
+    span_s: tuple[float, float | None] = (0.0, None),
+    progress: Progress | None = None,
+) -> Commissioning:
+    """Estimate a motor's parameters from recordings of its starts, all fitted together.
+
+    plate: what is known beforehand. The search is centred on its parameters, and what the records do not tell
+    is taken from them; where it has none, values typical of the rating stand in.
+    load_law: how the load torque grows with speed; None chooses the one that fits.
+    span_s: part of each record that is compared, in seconds after the motor is switched on.
+    progress: called with the share that is done and what is being done.
+    Raises RecordingError where a recording lacks channels, CommissioningError where it is no start.
+    """
+    begun = perf_counter()
+    report = progress or _silent
+    prior = prior_of(plate.nameplate, plate.parameters)
+    starts = [start_of(one, plate.nameplate, plate.channels, span_s=span_s) for one in recordings]
+    if not starts:
+        raise ValueError("commissioning needs at least one recording of a start")
+    vector, evaluations = _found(starts, prior, load_law or LoadLaw.CONSTANT, report)
+    report(0.7, "choosing the law of the load")
+    law, vector, spent, law_told = _with_law([thinned(one) for one in starts], prior, vector, load_law)
+    report(0.8, "refining")
+    records, vector = _switched_on_again(Records(starts, prior, law), vector)
+    near = records.fit(vector, _all(vector), converged=COARSELY)
+    records, vector = _switched_on_again(records, near.vector)
+    spent += near.evaluations
+    whole = records.fit(vector, _all(vector))
+    fit, fixed = _what_is_told(records, whole)
+    report(1.0, "done")
+    return _result(
+        records,
+        fit,
+        fixed,
+        plate,
+        law_told=law_told,
+        condition=condition_number(whole),
+        evaluations=evaluations + spent + records.evaluations,
+        seconds=perf_counter() - begun,
+    )
+
+
+def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) -> tuple[Array, int]:
+    """Near the global minimum of all starts together, each searched on its own."""
+    shared, own, evaluations = [], [], 0
+    for k, start in enumerate(starts):
+        records = Records([thinned(start)], prior, law)
+        share = 0.7 / len(starts)
+        report(k * share, f"searching {start.source}")
+        candidates = search(records, most_points=STARTING_POINTS).vectors
+        fits = []
+        for number, candidate in enumerate(candidates):
+            report((k + 0.3 + 0.6 * number / len(candidates)) * share, f"refining {start.source}")
+            fits.append(records.fit(candidate, _all(candidate), converged=COARSELY))
+        best = min(fits, key=lambda fit: fit.squared_error)
+        shared.append(best.vector[: len(PARAMETERS)])
+        own.append(best.vector[len(PARAMETERS) :])
+        evaluations += records.evaluations
+    together = Records([thinned(start) for start in starts], prior, law)
+    vectors = np.array([np.concatenate([one, *own]) for one in shared])
+    best_of_all = vectors[int(np.argmin(together.squared_errors(vectors)))]
+    return best_of_all, evaluations + together.evaluations
+
+
+def _with_law(
+    coarse: list[Start], prior: Prior, vector: Array, wanted: LoadLaw | None
+) -> tuple[LoadLaw, Array, int, bool]:
+    """The load's law, the vector under it, what choosing took, and whether the records told it."""
+    laws = list(LoadLaw) if wanted is None else [wanted]
+    records = {law: Records(coarse, prior, law) for law in laws}
+    fits = {law: records[law].fit(vector, _all(vector), converged=COARSELY) for law in laws}
+    best, *others = sorted(laws, key=lambda law: fits[law].squared_error)
+    told = all(preference(records[best], fits[best], fits[law]) > LAW_TOLD for law in others)
+    chosen = best if told else LoadLaw.CONSTANT
+    return chosen, fits[chosen].vector, sum(fit.evaluations for fit in fits.values()), told
+
+
+def _switched_on_again(records: Records, vector: Array) -> tuple[Records, Array]:
+    """The same starts, each from the instant that its fitted switching flux says, and the vector there."""
+    point = records.coordinates.point(vector)
+    starts, own = [], point.starts.copy()
+    for k, start in enumerate(records.starts):
+        offset = float(own[k, 1])
+        again = start.switched_on_again(own[k, 2:], offset) if start.begins_with_the_start else start
+        own[k, 2:] = again.switching_flux(np.array([offset]))[0]
+        starts.append(again)
+    moved = Records(starts, records.coordinates.prior, records.load_law)
+    return moved, moved.coordinates.vector(Point(point.machine, own))
+
+
+def _what_is_told(records: Records, whole: Fit) -> tuple[Fit, list[Untold]]:
+    """The fit of what the records tell, and what they do not, held at what is expected of it."""
+    fixed: list[Untold] = []
+    fit = whole
+    names, prior = records.coordinates.names, records.coordinates.prior
+    reach = np.array([log(prior.spread[name]) for name in PARAMETERS])
+    while new := untold(records, fit) or (making_up(records, fit) if fixed else []):
+        fixed += new
+        vector, free = fit.vector.copy(), fit.free.copy()
+        # What was not told may have drifted anywhere, and taken the others along.
+        vector[: reach.size] = np.clip(vector[: reach.size], -reach, reach)
+        for one in new:
+            entry = names.index(one.name)
+            vector[entry], free[entry] = _expected(one.name, records.starts), False
+        fit = records.fit(vector, free)
+    return fit, fixed
+
+
+def _expected(name: str, starts: Sequence[Start]) -> float:
+    """Coordinate at which an unknown is fixed: the parameter expected, no load, no delay but one seen."""
+    kind, _, number = name.partition("[")
+    if kind != "time_offset_s":
+        return 0.0
+    start = starts[int(number.rstrip("]"))]
+    return (start.offset_hint_s or 0.0) / start.cycle_s
+
+
+def _result(
+    records: Records,
+    fit: Fit,
+    fixed: list[Untold],
+    plate: Plate,
+    *,
+    law_told: bool,
+    condition: float,
+    evaluations: int,
+    seconds: float,
+) -> Commissioning:
+    coordinates, prior = records.coordinates, records.coordinates.prior
+    point = coordinates.point(fit.vector)
+    half = np.zeros(fit.vector.size)
+    half[fit.free] = quantile(records, fit) * np.sqrt(
+        np.diag(noise_covariance(records, fit) + inherited_covariance(records, fit))
+    )
+    why = {one.name: _why(one, prior) for one in fixed}
+
+    def parameter(entry: int, key: str) -> Estimate:
+        value = float(getattr(point.machine, key))
+        if key in why:
+            return Estimate(value, None, why[key])
+        reach = min(float(half[entry]), 700.0)
+        return Estimate(value, (value * exp(-reach), value * exp(reach)))
+
+    estimates = {key: parameter(entry, key) for entry, key in enumerate(PARAMETERS)}
+    estimates["rotor_leakage_H"] = Estimate(
+        point.machine.rotor_leakage_H,
+        None,
+        f"{prior.leakage_ratio:g} times the stator's: terminals tell only their sum",
+    )
+    found = tuple(
+        _start_found(start, fit.residuals[k], point.starts[k], half, k, why)
+        for k, start in enumerate(records.starts)
+    )
+    return Commissioning(
+        motor=Motor(plate.name, plate.nameplate, point.machine, plate.channels, plate.limits),
+        parameters=estimates,
+        starts=found,
+        load_law=records.load_law.name.lower(),
+        condition_number=condition,
+        reasons=tuple(_reasons(estimates, found, prior, law_told=law_told)),
+        evaluations=evaluations,
+        compute_seconds=seconds,
+    )
+
+
+def _start_found(
+    start: Start, residual: Array, own: Array, half: Array, number: int, why: dict[str, str]
+) -> StartFound:
+    first = len(PARAMETERS) + number * len(OF_A_START)
+
+    def estimate(offset: int, unit: float) -> Estimate:
+        value, reason = float(own[offset]), why.get(f"{OF_A_START[offset]}[{number}]")
+        reach = float(half[first + offset]) * unit
+        return Estimate(value, None if reason else (value - reach, value + reach), reason)
+
+    rms = float(np.sqrt((residual**2).sum() / residual.shape[1]))
+    measured = float(np.sqrt((start.measured_ab**2).sum() / residual.shape[1]))
+    return StartFound(
+        record=start.source,
+        onset_s=start.onset_s,
+        compared_s=start.compared_s,
+        load_level=estimate(0, 1.0),
+        time_offset_s=estimate(1, start.cycle_s),
+        residual_rms_A=rms * start.line_per_winding_current,
+        residual_share=rms / measured,
+    )
+
+
+def _why(one: Untold, prior: Prior) -> str:
+    origin = "the motor file's value" if prior.from_file else "typical of the rating"
+    taken = origin if one.name in PARAMETERS else "fixed at its usual value"
+    if isinf(one.half_interval):
+        return f"{taken}: beside the other fixed ones it would only make up for what they are off by"
+    told = "not at all" if one.half_interval > 10.0 else f"only within {one.half_interval:.0%}"
+    together = f"; moves with {one.partner} (correlation {one.correlation:+.2f})" if one.partner else ""
+    return f"{taken}: the record tells it {told}{together}"
+
+
+def _reasons(
+    estimates: dict[str, Estimate], starts: Sequence[StartFound], prior: Prior, *, law_told: bool
+) -> list[str]:
+    reasons = []
+    doubt = prior.doubt["stator_resistance_ohm"]
+    told = [key for key in PARAMETERS if estimates[key].fixed is None]
+    if not told:
+        reasons.append(
+            "not identifiable: the compared part of the record tells no parameter of the motor; a start from "
+            "rest with its first half second does"
+        )
+    reasons += [f"{key}: {one.fixed}" for key, one in estimates.items() if one.fixed is not None]
+    if told and len(told) < len(PARAMETERS):
+        reasons.append(
+            f"the other intervals allow for fixed values off by some {doubt:.0%} (inertia: twice that)"
+        )
+    for start in starts:
+        for key, one in (("load_level", start.load_level), ("time_offset_s", start.time_offset_s)):
+            if one.fixed is not None:
+                reasons.append(f"{start.record}: {key}: {one.fixed}")
+        if told and start.residual_share > USUAL_RESIDUAL:
+            reasons.append(
+                f"{start.record}: {start.residual_share:.0%} of the current is left unexplained: noise, "
+                "saturated leakages or deep rotor bars; the intervals do not cover a model that is wrong"
+            )
+    loads = [start.load_level for start in starts]
+    if told and not law_told and any(one.fixed or abs(one.value) > LIGHT_LOAD for one in loads):
+        reasons.append(
+            "load law: the records do not tell how the load grows with speed; constant torque is assumed, on "
+            "which inertia and load level depend"
+        )
+    if not prior.from_file:
+        reasons.append("the search began at values typical of the rating: the file has no [parameters]")
+    return reasons
+
+
+def _all(vector: Array) -> Mask:
+    return np.ones(vector.size, dtype=np.bool_)
+
+
+def _silent(share: float, stage: str) -> None:
+    del share, stage

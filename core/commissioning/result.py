@@ -1,0 +1,100 @@
+"""What a commissioning found, with intervals, and in words what it could not find."""
+
+from dataclasses import dataclass
+
+from core.machines.parameters import MachineParameters, Motor
+
+Interval = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A parameter: its value, its 95 % interval, and, where it was fixed, why."""
+
+    value: float
+    ci95: Interval | None
+    fixed: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class StartFound:
+    """One record's own: when the motor was switched on [s from its first sample], how it was loaded, how late
+    the currents are, what the model leaves of them (line current, rms; share of the measured rms)."""
+
+    record: str
+    onset_s: float
+    compared_s: Interval
+    load_level: Estimate
+    time_offset_s: Estimate
+    residual_rms_A: float
+    residual_share: float
+
+
+@dataclass(frozen=True, slots=True)
+class Commissioning:
+    """Result of `commission`.
+
+    motor: nameplate and parameters, ready to be written.  parameters: estimates by the names of
+    MachineParameters.  condition_number: of the Jacobian of all unknowns, each of order one.
+    reasons: in words, what was fixed and what to mind.
+    """
+
+    motor: Motor
+    parameters: dict[str, Estimate]
+    starts: tuple[StartFound, ...]
+    load_law: str
+    condition_number: float
+    reasons: tuple[str, ...]
+    evaluations: int
+    compute_seconds: float
+
+    @property
+    def identifiable(self) -> bool:
+        """Whether any parameter of the motor was told by the records."""
+        return any(one.fixed is None for one in self.parameters.values())
+
+    @property
+    def fixed(self) -> tuple[str, ...]:
+        """Names of the parameters that were not estimated."""
+        return tuple(name for name, one in self.parameters.items() if one.fixed is not None)
+
+    @property
+    def machine(self) -> MachineParameters:
+        """The parameters as the models take them."""
+        return self.motor.parameters
+
+    def as_dict(self) -> dict[str, object]:
+        """The result as JSON takes it."""
+        finite = self.condition_number < float("inf")
+        return {
+            "identifiable": self.identifiable,
+            "parameters": {name: _estimate(one) for name, one in self.parameters.items()},
+            "fixed": list(self.fixed),
+            "load_law": self.load_law,
+            "records": [
+                {
+                    "record": start.record,
+                    "onset_s": start.onset_s,
+                    "compared_s": list(start.compared_s),
+                    "load_level": start.load_level.value,
+                    "load_level_ci95": _interval(start.load_level.ci95),
+                    "time_offset_s": start.time_offset_s.value,
+                    "time_offset_s_ci95": _interval(start.time_offset_s.ci95),
+                    "residual_rms_A": start.residual_rms_A,
+                    "residual_share": start.residual_share,
+                }
+                for start in self.starts
+            ],
+            "condition_number": self.condition_number if finite else None,
+            "reasons": list(self.reasons),
+            "evaluations": self.evaluations,
+            "compute_seconds": self.compute_seconds,
+        }
+
+
+def _estimate(one: Estimate) -> dict[str, object]:
+    return {"value": one.value, "ci95": _interval(one.ci95), "fixed": one.fixed}
+
+
+def _interval(interval: Interval | None) -> list[float] | None:
+    return None if interval is None else list(interval)

@@ -1,0 +1,119 @@
+"""What the residuals' colour makes of the estimates' scatter.
+
+    cov = inv(J'J) (J' G J) inv(J'J),   G the covariance of the noise
+
+G comes from the residuals' spectrum, smoothed (Whittle's likelihood; White, Econometrica 48(4), 1980, for
+the form): noise of the voltages reaches the residuals through the machine and is far from white. Sums over
+cycles, as in core.diagnosis.refinement, would not do: of a start a few cycles tell nearly everything.
+"""
+
+from math import sqrt
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+from scipy.stats import t as student_t
+
+from core.commissioning.fit import Fit, Records
+from core.machines.base import Array
+
+CONFIDENCE = 0.95
+SMOOTHED_HZ = 2.0
+FEWEST_BINS = 3
+"""Either side of a frequency, over which the spectrum is averaged."""
+LEAST_TOLD = 1e-14
+"""Of the best told direction's information: what is below it is rounding."""
+COHERENT_ERROR = 0.005
+"""Of the current: what no motor's model and no channel is better than, cycle after cycle."""
+
+
+def information_inverse(fit: Fit) -> Array:
+    """inv(J'J) of the free entries; finite even where the record does not tell them apart."""
+    free = int(fit.free.sum())
+    flat = [one[fit.free].reshape(free, one[0].size) for one in fit.jacobians]
+    information = sum((one @ one.T for one in flat), np.zeros((free, free)))
+    values, vectors = np.linalg.eigh(information)
+    kept = np.maximum(values, max(LEAST_TOLD * float(values.max(initial=0.0)), 1e-300))
+    return np.asarray((vectors / kept) @ vectors.T)
+
+
+def noise_covariance(records: Records, fit: Fit) -> Array:
+    """Covariance of the free entries by the residuals' own spectrum, (free, free)."""
+    bread = information_inverse(fit)
+    filling = np.zeros_like(bread)
+    for start, residual, whole in zip(records.starts, fit.residuals, fit.jacobians, strict=True):
+        slope = np.fft.rfft(whole[fit.free], axis=2)
+        # Of white noise the fit leaves 1 - leverage at a frequency: p of all 2 n values are gone.
+        n = residual.shape[1]
+        leverage = np.einsum("iak,ij,jak->k", slope.conj(), bread, slope).real / n
+        spectrum = _spectrum(residual, leverage, start.sample_rate_hz)
+        filling += np.einsum("iak,jak,k->ij", slope, slope.conj(), _sides(n) * spectrum).real / n
+    return bread @ filling @ bread
+
+
+def preference(records: Records, first: Fit, second: Fit) -> float:
+    """By how many standard deviations the first fit's residuals are less than the second's, the noise as
+    coloured as theirs: Vuong's test of models that do not contain each other (Econometrica 57(2), 1989)."""
+    gain, variance = 0.0, 0.0
+    for start, ours, theirs in zip(records.starts, first.residuals, second.residuals, strict=True):
+        n = ours.shape[1]
+        gain += float((theirs**2).sum() - (ours**2).sum())
+        apart = (np.abs(np.fft.rfft(ours - theirs, axis=1)) ** 2).sum(axis=0) / n
+        spectrum = _spectrum(ours, np.zeros(apart.size), start.sample_rate_hz)
+        variance += 4.0 * float((_sides(n) * spectrum * apart).sum())
+    return gain / sqrt(variance) if variance > 0.0 else 0.0
+
+
+def _spectrum(residual: Array, leverage: Array, sample_rate_hz: float) -> Array:
+    """Power of one axis of the noise at each frequency of its transform, smoothed, (n / 2 + 1,)."""
+    n = residual.shape[1]
+    power = (np.abs(np.fft.rfft(residual, axis=1)) ** 2).sum(axis=0) / n
+    size = min(2 * _bins(n, sample_rate_hz) + 1, power.size)
+    left = uniform_filter1d(2.0 - leverage, size, mode="reflect")
+    return np.asarray(uniform_filter1d(power, size, mode="reflect") / np.maximum(left, 0.1))
+
+
+def _sides(n: int) -> Array:
+    """How often each frequency of a real transform stands in the whole one, (n / 2 + 1,)."""
+    sides = np.full(n // 2 + 1, 2.0)
+    sides[0] = 1.0
+    if n % 2 == 0:
+        sides[-1] = 1.0
+    return sides
+
+
+def _bins(n: int, sample_rate_hz: float) -> int:
+    return max(FEWEST_BINS, round(SMOOTHED_HZ * n / sample_rate_hz))
+
+
+def inherited_covariance(records: Records, fit: Fit) -> Array:
+    """Covariance of the free entries from doubt about those that are held (Schmidt's consider analysis)."""
+    doubt = records.coordinates.doubts()
+    bread = information_inverse(fit)
+    held = ~fit.free
+    mixed = np.zeros((len(bread), int(held.sum())))
+    for whole in fit.jacobians:
+        mixed += np.einsum("iak,jak->ij", whole[fit.free], whole[held])
+    sensitivity = bread @ mixed
+    return np.asarray((sensitivity * doubt[held] ** 2) @ sensitivity.T)
+
+
+def coherent_covariance(records: Records, fit: Fit) -> Array:
+    """Covariance of the free entries if the model were off by COHERENT_ERROR of the current, alike through
+    a cycle: what decides whether a record tells a parameter, however little noise it has."""
+    bread = information_inverse(fit)
+    filling = np.zeros_like(bread)
+    for start, whole in zip(records.starts, fit.jacobians, strict=True):
+        jacobian = whole[fit.free].reshape(len(bread), whole[0].size)
+        error = COHERENT_ERROR**2 * float(np.mean(start.measured_ab**2))
+        filling += error * start.sample_rate_hz * start.cycle_s * (jacobian @ jacobian.T)
+    return bread @ filling @ bread
+
+
+def quantile(records: Records, fit: Fit) -> float:
+    """Half width of a 95 % interval in standard errors."""
+    bins = min(
+        _bins(residual.shape[1], start.sample_rate_hz)
+        for start, residual in zip(records.starts, fit.residuals, strict=True)
+    )
+    freedom = max(4 * (2 * bins + 1) - int(fit.free.sum()), 4)
+    return float(student_t.ppf(0.5 + CONFIDENCE / 2.0, freedom))

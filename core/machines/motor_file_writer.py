@@ -1,0 +1,88 @@
+"""Writer of MOTOR.toml, with the 95 % intervals of what was estimated and remarks on what was not."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+
+from core.machines.parameters import ChannelNames, Limits, Motor
+
+Interval = tuple[float, float]
+
+
+def write_motor(
+    path: Path,
+    motor: Motor,
+    *,
+    intervals: Mapping[str, Interval] | None = None,
+    remarks: Mapping[str, str] | None = None,
+    heading: str = "",
+) -> Path:
+    """Write a motor's file; it appears complete.
+
+    intervals: [low, high] of parameters, by name, for the table [intervals].
+    remarks: comments behind parameters, by name.  heading: lines of comment at the top.
+    Raises OSError from the file system.
+    """
+    partial = path.with_name(path.name + ".part")
+    partial.write_text(
+        motor_text(motor, intervals=intervals or {}, remarks=remarks or {}, heading=heading), encoding="utf-8"
+    )
+    return partial.replace(path)
+
+
+def motor_text(
+    motor: Motor, *, intervals: Mapping[str, Interval], remarks: Mapping[str, str], heading: str
+) -> str:
+    """The file's text."""
+    plate = motor.nameplate
+    lines = [_comment(line) for line in heading.splitlines()]
+    lines += [
+        "[nameplate]",
+        f"rated_power_W = {_number(plate.rated_power_W)}",
+        f"rated_voltage_V = {_number(plate.rated_voltage_V)}",
+        f"rated_frequency_Hz = {_number(plate.rated_frequency_Hz)}",
+        f"pole_pairs = {plate.pole_pairs}",
+        f"connection = {_text(plate.connection.value)}",
+        "",
+        "[parameters]",
+    ]
+    for name, value in asdict(motor.parameters).items():
+        remark = f"  {_comment(remarks[name])}" if name in remarks else ""
+        lines.append(f"{name} = {_number(value)}{remark}")
+    if intervals:
+        lines += ["", "[intervals]  # 95 %, [low, high]"]
+        lines += [f"{name} = [{_number(low)}, {_number(high)}]" for name, (low, high) in intervals.items()]
+    lines += _channels(motor.channels)
+    if motor.limits != Limits():
+        lines += ["", "[limits]", f"fault_level = {_number(motor.limits.fault_level)}"]
+    return "\n".join(lines) + "\n"
+
+
+def _channels(channels: ChannelNames) -> list[str]:
+    sets = (
+        (("ia", "ib", "ic"), channels.currents),
+        (("va", "vb", "vc"), channels.phase_voltages),
+        (("vab", "vbc", "vca"), channels.line_voltages),
+    )
+    lines = [
+        f"{key} = {_text(name)}"
+        for keys, names in sets
+        if names
+        for key, name in zip(keys, names, strict=True)
+    ]
+    return ["", "[channels]", *lines] if lines else []
+
+
+def _number(value: float) -> str:
+    return f"{value:.7g}"
+
+
+def _text(text: str) -> str:
+    """A basic string: JSON's escapes are TOML's, but for the character JSON leaves as it is."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _comment(text: str) -> str:
+    printable = "".join(character if character.isprintable() else " " for character in text)
+    return f"# {printable}".rstrip()

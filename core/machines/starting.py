@@ -1,0 +1,152 @@
+"""Starts from rest of symmetrical machines that all differ: measured voltages played through each candidate.
+
+`playback` knows one motor and asks which fault it has; here every candidate has its own resistances,
+inductances, inertia and load. The stepping is the same: the kernel knows one inertia for a batch, so a
+candidate's rotor flux is counted in units in which its torque accelerates that inertia as its own torque
+does its own inertia,
+
+    psi_r' = (J_ref / J) psi_r,   i_r as it is:   (J_ref / p) dw/dt = p (psi_r' x i_r) - (J_ref / J) T_load
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.machines.base import Array
+from core.machines.batch import find_rates, play
+from core.machines.candidates import LoadLaw
+from core.machines.parameters import MachineParameters, Nameplate
+from core.machines.playback import DELAY_MARGIN_COLUMNS, Trajectories
+from core.machines.supply import Supply
+
+REFERENCE_RUN_UP_S = 0.3
+"""Of the inertia the kernel is told: its energy at synchronous speed over rated power; any value of the order
+of real motors' keeps the matrices well scaled."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartCandidates:
+    """A batch of machines and their starts; each field of shape (candidates,) but the last.
+
+    Parameters are those of MachineParameters.  load_level: LL; time_offset_s: T_d, delay of the currents.
+    switching_flux_Vs: stator flux on the Clarke axes where the playback begins, (candidates, 2): what the
+    voltage up to there, or poles that close one after the other, left in the windings.
+    """
+
+    stator_resistance_ohm: Array
+    rotor_resistance_ohm: Array
+    stator_leakage_H: Array
+    rotor_leakage_H: Array
+    stator_self_inductance_H: Array
+    inertia_kgm2: Array
+    load_level: Array
+    time_offset_s: Array
+    switching_flux_Vs: Array
+
+    def __len__(self) -> int:
+        return self.load_level.size
+
+
+def start_candidate(
+    machine: MachineParameters, load_level: float, time_offset_s: float = 0.0
+) -> StartCandidates:
+    """A batch of one, switched on where the playback begins."""
+    return StartCandidates(
+        np.array([machine.stator_resistance_ohm]),
+        np.array([machine.rotor_resistance_ohm]),
+        np.array([machine.stator_leakage_H]),
+        np.array([machine.rotor_leakage_H]),
+        np.array([machine.stator_self_inductance_H]),
+        np.array([machine.inertia_kgm2]),
+        np.array([load_level]),
+        np.array([time_offset_s]),
+        np.zeros((1, 2)),
+    )
+
+
+class StartPlayback:
+    """Measured voltages from the instant of switching on; any number of machines at rest.
+
+    Unlike a stator's window this one begins between two samples of the record if need be: at
+    `switched_on`, a column of the supply's finer time base. compared: samples of the record, [first, last),
+    whose currents are wanted; none of them before the switching.
+    """
+
+    def __init__(
+        self,
+        nameplate: Nameplate,
+        supply: Supply,
+        switched_on: int,
+        compared: tuple[int, int],
+        load_law: LoadLaw = LoadLaw.CONSTANT,
+    ) -> None:
+        first, last = (sample * supply.substeps for sample in compared)
+        if not switched_on <= first < last:
+            raise ValueError(
+                f"samples compared: expected some from column {switched_on} on, found {compared}"
+            )
+        self.nameplate = nameplate
+        self.supply = supply
+        self.load_law = load_law
+        self._first, self._last = switched_on, last - supply.substeps + 1
+        self._wanted = slice(first - switched_on, None, supply.substeps)
+        reach = DELAY_MARGIN_COLUMNS - 1
+        self.latest_offset_s = (self._first - reach) * supply.step_s
+        self.earliest_offset_s = -(supply.voltage.shape[0] - self._last - reach) * supply.step_s
+        w_b, p = nameplate.rated_angular_frequency, nameplate.pole_pairs
+        self._torque_per_pole_pair = nameplate.rated_torque_Nm / p / w_b**load_law.value
+        self._reference_inertia = 2.0 * REFERENCE_RUN_UP_S * nameplate.rated_power_W / (w_b / p) ** 2
+
+    def squared_error(self, candidates: StartCandidates, measured_ab: Array) -> Array:
+        """Sum of squared distances of the model's to the measured current, (candidates,) [A^2] (5.1).
+
+        measured_ab: Clarke currents at the compared samples, shape (2, compared) [A].
+        """
+        difference = self.trajectories(candidates).current - measured_ab
+        return np.asarray(np.einsum("cak,cak->c", difference, difference))
+
+    def trajectories(self, candidates: StartCandidates) -> Trajectories:
+        """Currents and speed of every candidate at the compared samples.
+
+        Raises ValueError for a time offset beyond the voltages there are.
+        """
+        n, delays = len(candidates), candidates.time_offset_s
+        if n and not (self.earliest_offset_s <= delays.min() and delays.max() <= self.latest_offset_s):
+            raise ValueError(
+                f"time offsets: expected {self.earliest_offset_s:g} to {self.latest_offset_s:g} s, for which "
+                f"the record has voltages, found {delays.min():g} to {delays.max():g} s"
+            )
+        share = self._reference_inertia / candidates.inertia_kgm2
+        decay, current_from_flux = np.empty((n, 5, 5)), np.empty((n, 5, 5))
+        find_rates(*_circuits(candidates, share), decay, current_from_flux)
+        load = np.zeros((n, 3))
+        load[:, int(self.load_law)] = candidates.load_level * self._torque_per_pole_pair * share
+        flux = np.zeros((5, n))
+        flux[:2] = candidates.switching_flux_Vs.T
+        columns, supply = self._last - self._first, self.supply
+        current, speed = np.empty((n, 2, columns)), np.empty((n, columns))
+        play(
+            supply.voltage, self._first, self._last, supply.step_s, 1, delays, decay, current_from_flux, load,
+            self.nameplate.pole_pairs**2 / self._reference_inertia * supply.step_s,
+            supply.angular_frequency * supply.step_s, flux, np.zeros(n), np.empty((0, 2)), 1, np.empty(n),
+            current, speed,
+        )  # fmt: skip
+        return Trajectories(current[:, :, self._wanted], speed[:, self._wanted])
+
+
+def _circuits(candidates: StartCandidates, share: Array) -> tuple[Array, Array]:
+    """Inductances and resistances (candidates, 5, 5) of symmetrical machines (3.14, 3.15), the rotor's rows
+    multiplied by J_ref / J; the fifth circuit is idle, as in `healthy`."""
+    L_m = 1.5 * candidates.stator_self_inductance_H
+    L, R = np.zeros((len(candidates), 5, 5)), np.zeros((len(candidates), 5, 5))
+    for axis in (0, 1):
+        stator, rotor = axis, axis + 2
+        L[:, stator, stator] = candidates.stator_leakage_H + L_m
+        L[:, stator, rotor] = L_m
+        L[:, rotor, stator] = share * L_m
+        L[:, rotor, rotor] = share * (candidates.rotor_leakage_H + L_m)
+        R[:, stator, stator] = candidates.stator_resistance_ohm
+        R[:, rotor, rotor] = share * candidates.rotor_resistance_ohm
+    L[:, 4, 4] = candidates.stator_leakage_H
+    R[:, 4, 4] = candidates.stator_resistance_ohm
+    return L, R

@@ -1,0 +1,40 @@
+"""Where a running demo plant stands: each motor's latest verdict beside the truth."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from service.demo.truth import Truth
+from service.rest_client import Document, ServiceClient, segment
+
+CONDITION = ("verdict", "phase", "mu_f", "mu_f_ci95", "load_level", "recorded_time")
+LINK = ("link_state", "link_reason")
+
+
+@dataclass(frozen=True, slots=True)
+class MotorStatus:
+    """One motor: what is known of it (as GET motors/{name}/health tells), and what is true."""
+
+    health: Document
+    truth: Truth
+
+    @property
+    def is_right(self) -> bool:
+        """Whether verdict and faulted phase are those of the truth."""
+        return (self.health["verdict"], self.health["phase"]) == (self.truth.verdict, self.truth.phase)
+
+    def as_dict(self) -> dict[str, object]:
+        return {
+            "motor": self.health["motor"],
+            "site": self.health["site"],
+            **{name: self.health[name] for name in CONDITION + LINK},
+            "truth": self.truth.model_dump(),
+            "right": self.is_right,
+        }
+
+
+def ask_status(service: ServiceClient, truths: Mapping[str, Truth]) -> list[MotorStatus]:
+    """Every motor of the service. `truths`: by name of the relay. Raises ServiceError."""
+    return [
+        MotorStatus(service.get(f"/motors/{segment(str(motor['name']))}/health"), truths[str(motor["ied"])])
+        for motor in service.items("/motors")
+    ]

@@ -1,0 +1,104 @@
+"""Recordings of starts from physics that the estimator shares nothing with: the simulator's windings."""
+
+from dataclasses import dataclass, replace
+from math import sqrt
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from core.machines.motor_file import Plate
+from core.machines.parameters import ChannelNames, Limits, MachineParameters, Motor
+from core.recordings import Channel, Quantity, Recording
+from ied_sim.load import Load
+from ied_sim.plant import MotorPlant
+from ied_sim.sensors import Sensors
+from ied_sim.supply import Supply
+
+Array = NDArray[np.float64]
+
+TRUE_RATE_HZ = 20_000.0
+"""Of the simulated currents, which are interpolated where the channels sample them."""
+
+
+@dataclass(frozen=True, slots=True)
+class StartRecord:
+    """How a start is recorded: `before_s` ahead of the motor's switching on, `duration_s` after it.
+
+    busbar: voltage transformers ahead of the contactor, live all the time; else they see nothing before.
+    snr_db: of white noise on the currents, of their rms over the record; voltage_snr_db: on the voltages.
+    switched_at_s: position of the start in the supply's cycle.
+    """
+
+    load_level: float = 0.5
+    duration_s: float = 1.0
+    before_s: float = 0.04
+    sample_rate_hz: float = 10_000.0
+    time_offset_s: float = 0.0
+    busbar: bool = False
+    lines: bool = False
+    sequence: Literal["abc", "acb"] = "abc"
+    snr_db: float | None = None
+    voltage_snr_db: float | None = None
+    switched_at_s: float = 0.0
+    seed: int = 0
+
+    def of(self, motor: Motor) -> Recording:
+        """The recording: IA IB IC and three phase or two line voltages."""
+        plate = motor.nameplate
+        supply = Supply(plate.rated_voltage_V, plate.rated_frequency_Hz, sequence=self.sequence)
+        plant = MotorPlant(motor, supply, Load(self.load_level), Sensors(1.0, 1.0))
+        true = plant.start_up(self.switched_at_s, self.duration_s, TRUE_RATE_HZ)
+        behind = np.arange(true.currents_A.shape[1]) / TRUE_RATE_HZ
+        t = np.arange(round((self.duration_s + self.before_s) * self.sample_rate_hz)) / self.sample_rate_hz
+        t = t[t <= self.before_s + behind[-1]] - self.before_s
+
+        currents = np.zeros((3, t.size))
+        late = t - self.time_offset_s
+        currents[:, late >= 0.0] = CubicSpline(behind, true.currents_A, axis=1)(late[late >= 0.0])
+        voltages = supply.phase_voltages(self.switched_at_s + t)
+        if not self.busbar:
+            voltages[:, t < 0.0] = 0.0
+        random = np.random.default_rng(self.seed)
+        currents += _noise(currents, self.snr_db, random)
+        voltages += _noise(voltages, self.voltage_snr_db, random)
+        return Recording(
+            np.vstack([currents, _lines(voltages) if self.lines else voltages]),
+            self.sample_rate_hz,
+            0,
+            _channels(motor, lines=self.lines),
+            trigger_index=round(self.before_s * self.sample_rate_hz),
+            nominal_frequency_hz=plate.rated_frequency_Hz,
+            source=f"start at {self.load_level:.0%} load",
+        )
+
+
+def plate_of(motor: Motor, parameters: MachineParameters | None = None) -> Plate:
+    """The motor's nameplate with what is known of its parameters."""
+    return Plate(motor.name, motor.nameplate, parameters, ChannelNames(), Limits())
+
+
+def with_parameters(motor: Motor, **values: float) -> Motor:
+    """The motor with some of its parameters changed."""
+    return replace(motor, parameters=replace(motor.parameters, **values))
+
+
+def _noise(x: Array, snr_db: float | None, random: np.random.Generator) -> Array:
+    if snr_db is None:
+        return np.zeros_like(x)
+    level = float(np.sqrt(np.mean(x**2))) * 10.0 ** (-snr_db / 20.0)
+    return np.asarray(level * random.standard_normal(x.shape))
+
+
+def _lines(phases: Array) -> Array:
+    return np.stack([phases[0] - phases[1], phases[1] - phases[2]])
+
+
+def _channels(motor: Motor, *, lines: bool) -> tuple[Channel, ...]:
+    amps = 20.0 * motor.nameplate.rated_power_W / motor.nameplate.rated_voltage_V
+    volts = 2.0 * sqrt(2.0) * motor.nameplate.rated_voltage_V
+    currents = [Channel(f"I{p.upper()}", Quantity.CURRENT, p, "A", amps) for p in "abc"]
+    quantity = Quantity.LINE_VOLTAGE if lines else Quantity.PHASE_VOLTAGE
+    names = ("ab", "bc") if lines else ("a", "b", "c")
+    return (*currents, *(Channel(f"V{p.upper()}", quantity, p, "V", volts) for p in names))

@@ -1,0 +1,110 @@
+"""`mcc commission`: recordings of starts in, MOTOR.toml out."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from core.machines.motor_file import read_motor, read_plate
+from core.recordings import comtrade
+from service.cli import main
+from tests.core.commissioning.starts import StartRecord
+from tests.core.motors import REFERENCE
+
+NAMEPLATE = """
+[nameplate]
+rated_power_W = 800
+rated_voltage_V = 380
+rated_frequency_Hz = 50
+pole_pairs = 2
+connection = "star"
+
+[channels]
+ia = "IA"
+ib = "IB"
+ic = "IC"
+
+[limits]
+fault_level = 0.01
+"""
+
+
+@pytest.fixture
+def nameplate(tmp_path: Path) -> Path:
+    path = tmp_path / "plate.toml"
+    path.write_text(NAMEPLATE, "utf-8")
+    return path
+
+
+def recorded(folder: Path, name: str, **how: float) -> Path:
+    record = StartRecord(duration_s=0.6, snr_db=40.0, **how)  # type: ignore[arg-type]
+    return comtrade.write(folder / f"{name}.CFG", record.of(REFERENCE))
+
+
+def test_two_starts_and_a_nameplate_become_a_motor_file(
+    tmp_path: Path, nameplate: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    records = [recorded(tmp_path, "HR_1", load_level=0.7), recorded(tmp_path, "HR_2", load_level=0.2)]
+    output = tmp_path / "PUMP-7.toml"
+    arguments = ["commission", *map(str, records), "--nameplate", str(nameplate), "--output", str(output)]
+    assert main([*arguments, "--load", "constant", "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["identifiable"] is True
+    assert document["fixed"] == ["rotor_leakage_H"]
+    assert document["output"] == str(output)
+    assert [one["load_level"] for one in document["records"]] == pytest.approx([0.7, 0.2], abs=0.02)
+    motor = read_motor(output)
+    assert motor.limits.fault_level == 0.01
+    assert motor.channels.currents == ("IA", "IB", "IC")
+    for name, truth in (("stator_resistance_ohm", 8.4), ("inertia_kgm2", 0.0229)):
+        low, high = document["parameters"][name]["ci95"]
+        assert getattr(motor.parameters, name) == pytest.approx(truth, rel=0.01)
+        assert low < getattr(motor.parameters, name) < high
+    text = output.read_text("utf-8")
+    assert "[intervals]" in text
+    assert "HR_1.CFG, HR_2.CFG" in text
+    assert "rotor_leakage_H = 0.0" in text
+    assert "# fixed: 1 times the stator's" in text
+
+
+def test_a_person_reads_what_was_fixed(
+    tmp_path: Path, nameplate: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = tmp_path / "out.toml"
+    arguments = ["commission", str(recorded(tmp_path, "HR_3")), "--nameplate", str(nameplate)]
+    assert main([*arguments, "--output", str(output), "--load", "constant"]) == 0
+    shown = capsys.readouterr()
+    assert "stator_resistance_ohm" in shown.out
+    assert "fixed: 1 times the stator's" in shown.out
+    assert "no [parameters]" in shown.out
+    assert shown.err == ""
+    assert read_plate(output).parameters is not None
+
+
+def test_a_motor_already_running_is_refused_and_nothing_is_written(
+    tmp_path: Path, nameplate: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    whole = StartRecord().of(REFERENCE)
+    record = comtrade.write(
+        tmp_path / "RUN.CFG", replace(whole, samples=whole.samples[:, 7_000:], trigger_index=0)
+    )
+    output = tmp_path / "out.toml"
+    arguments = ["commission", str(record), "--nameplate", str(nameplate), "--output", str(output)]
+    assert main([*arguments, "--json"]) == 1
+    shown = capsys.readouterr()
+    error = json.loads(shown.out)["error"]
+    assert "already running" in error["found"]
+    assert "not identifiable" in error["found"]
+    assert error["field"] == "start"
+    assert "RUN.CFG" in shown.err
+    assert not output.exists()
+
+
+def test_wrong_use_names_what_is_missing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["commission", str(tmp_path / "HR_1.CFG")]) == 2
+    assert "--nameplate" in capsys.readouterr().err
+    missing = tmp_path / "nowhere.toml"
+    arguments = ["commission", "HR_1.CFG", "--nameplate", str(missing), "--output", str(tmp_path / "o.toml")]
+    assert main([*arguments, "--json"]) == 1
+    assert "nowhere.toml" in json.loads(capsys.readouterr().out)["error"]["message"]
