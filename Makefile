@@ -1,12 +1,14 @@
-# make install | demo | test | lint | bench      (PYTHON=python3.11 make install: another interpreter)
+# make install | demo | test | lint | bench | fuzz SECONDS=60      (PYTHON=python3.11 make install: another interpreter)
+# make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
 PYTHON ?= python3
 BIN := .venv/bin
 STAMP := .venv/.installed
 WARM := .venv/.compiled
 # Matrices are small here: threads of the linear algebra library only take cores from the tests' own processes.
 export OPENBLAS_NUM_THREADS ?= 1
+COMPOSE ?= docker compose
 
-.PHONY: install demo test lint bench lock clean
+.PHONY: install demo test compose-test lint bench fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -32,14 +34,22 @@ demo: install
 test: install
 	$(BIN)/python -m pytest --cov --cov-report=term
 
+compose-test: install
+	$(BIN)/python -m tests.deployment.enterprise $(COMPOSE)
+
 lint: install
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 
 bench: install
 	$(BIN)/python -m benchmarks.run
+
+# What it finds is kept in fuzz-findings/.
+fuzz: install
+	$(BIN)/python -m benchmarks.fuzz_recordings --seconds $(or $(SECONDS),60)
 
 lock: install
 	$(BIN)/python -m pip freeze --exclude-editable --exclude pip --exclude setuptools > constraints.txt

@@ -97,8 +97,8 @@ def _cells(effort: Effort, pool: Executor) -> Iterator[str]:
     yield f"0.5 s at 10 kHz, 20 dB on the currents, voltages known, {effort.seeds} seeds a cell. Expected:"
     yield "deviation at most 1.3 of the bound, bias at most 0.3, phase right in all. `own bias` is the mean"
     yield "error without what the very noise does to an efficient, unbiased estimator (the noise is known):"
-    yield f"a mean over {effort.seeds} seeds scatters by {effort.seeds**-0.5:.2f} of the bound by itself. `efficient`:"
-    yield "what such an estimator's deviation on this noise would be; luck makes it scatter about 1."
+    yield f"a mean over {effort.seeds} seeds scatters by {effort.seeds**-0.5:.2f} of the bound by itself."
+    yield "`efficient`: such an estimator's own deviation on this noise; luck makes it scatter about 1."
     yield ""
     yield from cells(seeds=effort.seeds, voltage_noise=0.0, pool=pool, sparse=effort.sparse)
 

@@ -1,7 +1,8 @@
 """A whole configuration file: its IEDs, where they are reached and which motor each one protects."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from ipaddress import ip_address
 from pathlib import Path
 
@@ -10,10 +11,13 @@ from scl.errors import Finding, SclError
 
 MMS_PORT = 102
 
+HOST_NAME = re.compile(r"(?=.{1,253}$)[A-Za-z0-9]([A-Za-z0-9-]{0,62})(\.[A-Za-z0-9][A-Za-z0-9-]{0,62})*")
+"""RFC 1123."""
+
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """Where an IED's MMS server listens: an IP address and a TCP port."""
+    """Where an IED's MMS server listens: an IP address, or a name the network knows, and a TCP port."""
 
     host: str
     port: int = MMS_PORT
@@ -111,49 +115,59 @@ class Scl:
         raise SclError(self.path, element="<IED>", expected=f'an IED with name="{name}"', found=known)
 
     def address(self, ied_name: str) -> Address:
-        """Where the IED's MMS server is reached: the P elements IP and MMS-Port (102 where there is none).
+        """Where the IED's MMS server is reached: the P elements IP, or else DNSName, and MMS-Port (or 102).
 
-        An IED on several subnetworks is reached where an access point has a server and an IP address.
+        An IED on several subnetworks is reached where an access point has a server and an address; of
+        several such, on the subnetwork that comes first. `seen_from` chooses another.
         """
         connected = self.connected_access_point(ied_name)
-        host = connected.parameters["IP"]
+        host = self._host(connected)
         port = connected.parameters.get("MMS-Port", str(MMS_PORT))
-        try:
-            ip_address(host)
-        except ValueError:
-            raise self._address_error(connected, "IP", "an IPv4 or IPv6 address", host) from None
         if not (port.isascii() and port.isdecimal() and len(port) <= 5 and 0 < int(port) < 65536):
             raise self._address_error(connected, "MMS-Port", "a port from 1 to 65535", port)
         return Address(host, int(port))
 
     def connected_access_point(self, ied_name: str) -> ConnectedAccessPoint:
-        """The ConnectedAP whose address clients use; SclError when no access point has an IP address."""
+        """The ConnectedAP whose address clients use; SclError when no access point has an address."""
         ied = self.ied(ied_name)
         serving = {point.name for point in ied.access_points if point.logical_devices}
         candidates = [
             connected
             for network in self.communication
             for connected in network.connected_access_points
-            if connected.ied == ied_name and "IP" in connected.parameters
+            if connected.ied == ied_name and connected.parameters.keys() & {"IP", "DNSName"}
         ]
         candidates.sort(key=lambda connected: connected.access_point not in serving)
         if not candidates:
             raise SclError(
                 self.path,
                 element="<Communication>",
-                expected=f'a ConnectedAP with iedName="{ied_name}" and an address with <P type="IP">',
+                expected=f'a ConnectedAP with iedName="{ied_name}" and an address (P elements IP or DNSName)',
                 found="none",
             )
         return candidates[0]
+
+    def seen_from(self, subnetwork: str) -> "Scl":
+        """The same configuration for who stands on this subnetwork: IEDs have the addresses they have there.
+
+        Raises SclError when the file has no such subnetwork.
+        """
+        networks = tuple(network for network in self.communication if network.name == subnetwork)
+        if not networks:
+            raise SclError(
+                self.path,
+                element="<Communication>",
+                expected=f'a SubNetwork with name="{subnetwork}"',
+                found=", ".join(network.name for network in self.communication[:20]) or "none at all",
+            )
+        return replace(self, communication=networks)
 
     def shared_addresses(self, ied_names: Iterable[str]) -> dict[Address, tuple[str, ...]]:
         """Addresses that several of these IEDs have, and which ones do; SclError as for `address`."""
         holders: dict[Address, list[str]] = {}
         for name in ied_names:
             address = self.address(name)
-            # One address may be written in several ways: ::1 is 0:0:0:0:0:0:0:1.
-            same = Address(str(ip_address(address.host)), address.port)
-            holders.setdefault(same, []).append(name)
+            holders.setdefault(Address(_canonical(address.host), address.port), []).append(name)
         return {address: tuple(names) for address, names in holders.items() if len(names) > 1}
 
     def feeders(self) -> tuple[MotorFeeder, ...]:
@@ -175,6 +189,19 @@ class Scl:
                             ied=ieds[0],
                         )
 
+    def _host(self, connected: ConnectedAccessPoint) -> str:
+        host = connected.parameters.get("IP")
+        if host is None:
+            name = connected.parameters["DNSName"]
+            if not HOST_NAME.fullmatch(name):
+                raise self._address_error(connected, "DNSName", "a host name", name)
+            return name
+        try:
+            ip_address(host)
+        except ValueError:
+            raise self._address_error(connected, "IP", "an IPv4 or IPv6 address", host) from None
+        return host
+
     def _address_error(
         self, connected: ConnectedAccessPoint, kind: str, expected: str, found: str
     ) -> SclError:
@@ -182,3 +209,11 @@ class Scl:
         return SclError(
             self.path, line=connected.line, element=element, expected=expected, found=repr(found[:60])
         )
+
+
+def _canonical(host: str) -> str:
+    """One address may be written in several ways: ::1 is 0:0:0:0:0:0:0:1, PUMPS.PLANT is pumps.plant."""
+    try:
+        return str(ip_address(host))
+    except ValueError:
+        return host.lower()

@@ -1,11 +1,14 @@
 """The service as a whole: collector process, diagnosis workers, REST API, on one data directory."""
 
+import os
 import signal
 import socket
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from ipaddress import IPv6Address
+from pathlib import Path
+from tempfile import TemporaryFile
 from types import FrameType
 
 import structlog
@@ -31,7 +34,7 @@ LAST_REQUESTS_S = 3
 
 
 class ServeError(RuntimeError):
-    """The service cannot listen where it should."""
+    """The service cannot listen, or keep its data, where it should."""
 
 
 def serve(settings: Settings) -> None:
@@ -41,7 +44,7 @@ def serve(settings: Settings) -> None:
     """
     signal.signal(signal.SIGTERM, _stop)
     plant = read_plant(settings)
-    settings.data_directory.mkdir(parents=True, exist_ok=True)
+    _require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False), _listener(settings) as listener:
         migrate(settings.database_url)
         repository = Repository(connect(settings.database_url))
@@ -119,6 +122,19 @@ def _diagnosing(
         yield jobs
     finally:
         jobs.stop()
+
+
+def _require_writable(directory: Path) -> None:
+    """Raises ServeError where nothing can be kept."""
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=directory):
+            pass
+    except OSError as error:
+        raise ServeError(
+            f"{directory}: expected a directory that user {os.getuid()} may write to "
+            f"(setting data_directory), found: {error.strerror}"
+        ) from error
 
 
 @contextmanager

@@ -40,6 +40,7 @@ class Settings(BaseSettings):
     data_directory: AbsolutePath = Field(default=Path("data"), validate_default=True)
     scd: AbsolutePath | None = None
     motors: AbsolutePath | None = None
+    subnetwork: str | None = None
 
     bind_address: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
     port: int = Field(default=8710, ge=0, le=65535)

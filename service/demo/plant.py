@@ -105,19 +105,25 @@ def _other_places(plant: DemoPlant) -> Iterator[str]:
         yield f"a port of {plant.scd.name} is taken; the relays answer on ports {ports} (see {plant.scd})"
 
 
-def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> None:
-    """Until the service and every relay answer. Raises ProgramError, NotReadyError, ServiceError."""
+def plant_elsewhere(url: str, pause: Callable[[float], None]) -> DemoPlant:
+    """A demo plant somebody else started, whose service answers at `url`."""
+    return DemoPlant(scl.DEMO_PLANT_SCD, SCENARIO, url, pause)
+
+
+def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> list[str]:
+    """Until the service and every relay answer. Returns the relays that do not, when it is late.
+
+    Raises ProgramError, ServiceError, NotReadyError when the service is late.
+    """
     deadline_s = time.monotonic() + START_LIMIT_S
     while True:
         plant.pause(POLL_PERIOD_S)
         if service.is_ready():
             down = [str(ied["name"]) for ied in service.items("/ieds") if ied["link_state"] != "up"]
-            if not down:
-                return
-        else:
-            down = ["the service"]
-        if time.monotonic() > deadline_s:
-            raise NotReadyError(f"not ready after {START_LIMIT_S:g} s: {', '.join(down)}")
+            if not down or time.monotonic() > deadline_s:
+                return down
+        elif time.monotonic() > deadline_s:
+            raise NotReadyError(f"{plant.url}: the service is not ready after {START_LIMIT_S:g} s")
 
 
 def _simulator(scd: Path, data: Path) -> list[str]:

@@ -76,14 +76,15 @@ def table(motors: Sequence[DemoMotor]) -> Table:
             first = number == 0
             shown.add_row(
                 Text(motor.name if first else ""),
-                _truth(motor.truth) if first else "",
+                truth_text(motor.truth) if first else "",
                 *_row(diagnosis),
             )
     return shown
 
 
-def _truth(truth: Truth) -> str:
-    condition = "healthy" if truth.theta_f is None else f"{100 * truth.mu_f:g} % {'abc'[truth.theta_f]}"
+def truth_text(truth: Truth) -> str:
+    """The truth in words: "5 % b, load 0.65"."""
+    condition = "healthy" if truth.phase is None else f"{100 * truth.mu_f:g} % {truth.phase}"
     return f"{condition}, load {truth.load_level:g}"
 
 

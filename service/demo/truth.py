@@ -23,6 +23,15 @@ class Truth(BaseModel):
     theta_f: int | None
     load_level: float
 
+    @property
+    def verdict(self) -> str:
+        """What a diagnosis should come to."""
+        return "healthy" if self.theta_f is None else "fault"
+
+    @property
+    def phase(self) -> str | None:
+        return None if self.theta_f is None else "abc"[self.theta_f]
+
 
 _TRUTHS = TypeAdapter(dict[str, Truth])
 

@@ -25,13 +25,20 @@ def read_plant(settings: Settings) -> Plant:
     return plant_of_files(
         _given(settings.scd, "scd", "the path of the plant's SCD file"),
         _given(settings.motors, "motors", "the path of the plant's motors file (TOML)"),
+        settings.subnetwork,
     )
 
 
-def plant_of_files(scd_path: Path, motors_path: Path) -> Plant:
-    """Raises PlantError: which file, which field, what was expected and what was found."""
+def plant_of_files(scd_path: Path, motors_path: Path, subnetwork: str | None = None) -> Plant:
+    """The plant, its relays at the addresses they have on the subnetwork, where one is given.
+
+    Raises PlantError: which file, which field, what was expected and what was found.
+    """
     try:
-        return _plant(scl.read(scd_path), _motors(motors_path), motors_path)
+        configuration = scl.read(scd_path)
+        if subnetwork is not None:
+            configuration = configuration.seen_from(subnetwork)
+        return _plant(configuration, _motors(motors_path), motors_path)
     except scl.SclError as error:
         line = "" if error.line is None else f"line {error.line}: "
         raise PlantError(

@@ -289,6 +289,8 @@ def test_error_survives_the_way_between_processes() -> None:
     [
         ('<P type="IP">10.0.0.7</P>', scl.Address("10.0.0.7", 102)),
         ('<P type="IP">fd00::7</P><P type="MMS-Port">10210</P>', scl.Address("fd00::7", 10210)),
+        ('<P type="DNSName">pump-1.plant.example</P>', scl.Address("pump-1.plant.example", 102)),
+        ('<P type="DNSName">pump-1</P><P type="IP">10.0.0.7</P>', scl.Address("10.0.0.7", 102)),
         (
             '<P xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" type="IP" xsi:type="tP_IP">'
             " 10.0.0.7 </P>",
@@ -306,6 +308,7 @@ def test_address(tmp_path: Path, parameters: str, address: scl.Address) -> None:
     [
         ("", 'a ConnectedAP with iedName="R1"'),
         ('<P type="IP">relay.example</P>', "an IPv4 or IPv6 address, found 'relay.example'"),
+        ('<P type="DNSName">no name</P>', "a host name, found 'no name'"),
         ('<P type="IP">10.0.0.7</P><P type="MMS-Port">70000</P>', "a port from 1 to 65535, found '70000'"),
         ('<P type="IP">10.0.0.7</P><P type="MMS-Port">x</P>', "a port from 1 to 65535"),
     ],

@@ -1,0 +1,131 @@
+"""The demo enterprise's router: the one way between a factory's network and the wide-area network.
+
+A TCP relay. It listens wherever the SCD says that a relay of the factory is reached from outside, and
+passes every connection on to the address the relay has inside. So it needs no rights of the system and no
+route in any other host, and the relays have no way out of their network.
+
+`python -m service.demo.router --scd FILE --inside FACTORY_A --outside WAN`
+"""
+
+import argparse
+import asyncio
+import signal
+import socket
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import structlog
+
+import scl
+from scl import Address, SclError
+from service.logs import configure_logging
+
+log = structlog.get_logger(__name__)
+
+CONNECT_TIMEOUT_S = 3.0
+"""Shorter than the service's own, so that the service hears a clear end and not silence."""
+
+CHUNK_BYTES = 65536
+
+EVERY_INTERFACE = "0.0.0.0"  # noqa: S104 - a router's name may resolve to its address on either network
+
+KEEP_ALIVE = {socket.TCP_KEEPIDLE: 10, socket.TCP_KEEPINTVL: 5, socket.TCP_KEEPCNT: 3}
+"""Times [s] and probes. A relay has few associations to give: none to ends that are gone."""
+
+
+@dataclass(frozen=True, slots=True)
+class Passage:
+    """From a port of the router to a relay."""
+
+    relay: str
+    port: int
+    address: Address
+
+    async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """One connection, until either side ends it."""
+        try:
+            async with asyncio.timeout(CONNECT_TIMEOUT_S):
+                relay_reader, relay_writer = await asyncio.open_connection(
+                    self.address.host, self.address.port
+                )
+        except OSError as error:  # a timeout is one
+            reason = str(error) or f"no answer within {CONNECT_TIMEOUT_S:g} s"
+            log.warning("relay unreachable", relay=self.relay, address=str(self.address), reason=reason)
+            writer.transport.abort()
+            return
+        try:
+            for end in (writer, relay_writer):
+                _keep_alive(end)
+            async with asyncio.TaskGroup() as both_ways:
+                both_ways.create_task(_copy(reader, relay_writer))
+                both_ways.create_task(_copy(relay_reader, writer))
+        except* OSError as lost:
+            log.info("connection lost", relay=self.relay, reason=str(lost.exceptions[0]))
+        finally:
+            writer.transport.abort()
+            relay_writer.transport.abort()
+
+
+def passages(scd: Path, inside: str, outside: str) -> list[Passage]:
+    """One for each relay of the subnetwork `inside`, at the port it has on `outside`. Raises SclError."""
+    document = scl.read(scd)
+    within, without = document.seen_from(inside), document.seen_from(outside)
+    relays = dict.fromkeys(
+        connected.ied for network in within.communication for connected in network.connected_access_points
+    )
+    return [Passage(name, without.address(name).port, within.address(name)) for name in relays]
+
+
+async def route(ways: Sequence[Passage], stop: asyncio.Event) -> None:
+    """Pass connections on until `stop` is set. Raises OSError when a port cannot be had."""
+    servers = []
+    for way in ways:
+        servers.append(await asyncio.start_server(way.serve, EVERY_INTERFACE, way.port, limit=CHUNK_BYTES))
+        log.info("listening", relay=way.relay, port=way.port, address=str(way.address))
+    await stop.wait()
+    for server in servers:
+        server.close()
+
+
+async def _copy(source: asyncio.StreamReader, sink: asyncio.StreamWriter) -> None:
+    """Until the source's end, which is the sink's too: MMS has no use for half a connection."""
+    while chunk := await source.read(CHUNK_BYTES):
+        sink.write(chunk)
+        await sink.drain()
+    sink.close()
+
+
+def _keep_alive(end: asyncio.StreamWriter) -> None:
+    connection: socket.socket = end.get_extra_info("socket")
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for option, value in KEEP_ALIVE.items():
+        connection.setsockopt(socket.IPPROTO_TCP, option, value)
+
+
+async def _route_until_told(ways: Sequence[Passage]) -> None:
+    stop = asyncio.Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        asyncio.get_running_loop().add_signal_handler(number, stop.set)
+    await route(ways, stop)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run until SIGTERM or SIGINT. Returns 0, or 1 with the reason on stderr."""
+    parser = argparse.ArgumentParser(prog="router", description="The way to a factory's relays.")
+    parser.add_argument("--scd", type=Path, required=True, help="SCD file with both networks.")
+    parser.add_argument("--inside", required=True, help="The factory's SubNetwork.")
+    parser.add_argument("--outside", required=True, help="The SubNetwork to listen on.")
+    options = parser.parse_args(arguments)
+    configure_logging("router")
+    try:
+        asyncio.run(_route_until_told(passages(options.scd, options.inside, options.outside)))
+    except (SclError, OSError) as error:
+        sys.stderr.write(f"router: {error}\n")
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

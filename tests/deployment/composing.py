@@ -1,0 +1,69 @@
+"""A compose command (docker compose, podman-compose), driven the way a person would: by its verbs alone."""
+
+import json
+import os
+import shlex
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PROJECT = "statorwatch-test"
+LIMIT_S = 180.0
+BUILD_LIMIT_S = 1200.0
+
+
+class ComposeError(RuntimeError):
+    """The command failed; its words are in the message."""
+
+
+class Compose:
+    """The compose file in a project of its own, beside any that runs; the API on `port` of the host."""
+
+    def __init__(self, command: str, port: int) -> None:
+        self._words = command
+        self._command = [*shlex.split(command), "-p", PROJECT]
+        self._environment = {**os.environ, "MCC_HOST_PORT": str(port)}
+
+    def __call__(self, *arguments: str, limit_s: float = LIMIT_S) -> str:
+        """Run a verb; returns what it printed. Raises ComposeError."""
+        ended = self.attempt(*arguments, limit_s=limit_s)
+        if ended.returncode:
+            raise ComposeError(f"{' '.join(arguments)}: exit code {ended.returncode}\n{ended.stdout[-4000:]}")
+        return ended.stdout
+
+    def attempt(self, *arguments: str, limit_s: float = LIMIT_S) -> "subprocess.CompletedProcess[str]":
+        """Run a verb that may fail; what it printed on both streams is in `stdout`."""
+        return subprocess.run(
+            [*self._command, *arguments],
+            cwd=ROOT,
+            env=self._environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=limit_s,
+            check=False,
+        )
+
+    def at_port(self, port: int) -> "Compose":
+        """The same project, with another port of the host for the API."""
+        return Compose(self._words, port)
+
+    def inside(self, service: str, *command: str) -> str:
+        """What a command prints in a running container."""
+        return self("exec", "-T", service, *command)
+
+    def once(self, service: str, *command: str) -> str:
+        """What a command prints in a container of its own."""
+        return self("run", "--rm", "-T", "--no-deps", service, *command)
+
+    def document(self, service: str, *command: str) -> Mapping[str, object]:
+        """The JSON document a command prints in a container of its own; some tools print lines around it."""
+        printed = "\n" + self.once(service, *command)
+        try:
+            found, _ = json.JSONDecoder().raw_decode(printed[printed.index("\n{\n") + 1 :])
+        except ValueError as error:
+            raise ComposeError(f"{' '.join(command)}: expected a JSON document, found:\n{printed}") from error
+        assert isinstance(found, dict)
+        return found

@@ -1,0 +1,62 @@
+"""`mcc demo-status` and `mcc demo --url`: a demo plant somebody else runs."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from service.cli import main
+from service.demo.status import MotorStatus
+from service.demo.truth import Truth
+from service.rest_client import Document
+from tests.integration.processes import MOTOR_NAMES, running_service, simulated_plant
+
+FAULT_B = Truth(mu_f=0.05, theta_f=1, load_level=0.65)
+
+
+def health(verdict: str | None, phase: str | None) -> Document:
+    return {"verdict": verdict, "phase": phase}
+
+
+@pytest.mark.parametrize(
+    ("found", "truth", "right"),
+    [
+        (health("fault", "b"), FAULT_B, True),
+        (health("fault", "c"), FAULT_B, False),
+        (health("watch", "b"), FAULT_B, False),
+        (health(None, None), FAULT_B, False),
+        (health("healthy", None), Truth(mu_f=0.0, theta_f=None, load_level=0.8), True),
+    ],
+)
+def test_right_is_verdict_and_phase(found: Document, truth: Truth, right: bool) -> None:
+    assert MotorStatus(found, truth).is_right is right
+
+
+@pytest.mark.timeout(300)
+def test_a_demo_elsewhere_is_played_and_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with simulated_plant(tmp_path) as plant, running_service(tmp_path, plant.scd) as service:
+        assert main(["demo-status", "--url", service.url, "--json"]) == 0
+        before = json.loads(capsys.readouterr().out)
+        assert [motor["verdict"] for motor in before["motors"]] == [None] * len(MOTOR_NAMES)
+        assert before["right"] == 0
+        assert main(["demo", "--once", "--url", service.url]) == 0
+        assert "at most" in capsys.readouterr().out
+        assert main(["demo-status", "--url", service.url, "--json"]) == 0
+        after = json.loads(capsys.readouterr().out)
+        assert after["right"] == len(MOTOR_NAMES), after
+        assert {motor["motor"]: motor["phase"] for motor in after["motors"]}["FAN-A2"] == "b"
+        assert main(["demo-status", "--url", service.url]) == 0
+        shown = capsys.readouterr().out
+        assert "6 of 6 verdicts are right" in shown
+        assert "5 % b" in shown
+
+
+def test_no_service_is_one_line_and_one_document(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["demo-status", "--url", "http://127.0.0.1:1", "--json"]) == 1
+    output = capsys.readouterr()
+    assert "no service answers" in json.loads(output.out)["error"]["message"]
+    assert output.err.count("\n") == 1
+
+
+def test_data_of_a_demo_elsewhere_is_wrong_use(tmp_path: Path) -> None:
+    assert main(["demo", "--url", "http://127.0.0.1:1", "--data", str(tmp_path)]) == 2
