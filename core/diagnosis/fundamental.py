@@ -55,12 +55,12 @@ class Phasors:
 class Fundamental:
     """One record's winding quantities at supply frequency.
 
-    first: sample of the record at which the phasors' time begins.  cycles: how many they are taken from.
+    angular_frequency: w_s [rad/s].  cycles: how many the phasors are taken from.
     """
 
     current: Phasors
     voltage: Phasors
-    first: int
+    angular_frequency: float
     cycles: int
 
 
@@ -83,7 +83,7 @@ def fundamental_of(case: Case) -> Fundamental:
         Phasors(_components(found[k, 0], found[k, 1]), fewer * _scatter(beside[k], turning, edges))
         for k in (0, 1)
     ]
-    return Fundamental(current=phasors[0], voltage=phasors[1], first=first, cycles=blocks)
+    return Fundamental(phasors[0], phasors[1], 2.0 * pi * case.frequency_hz, cycles=blocks)
 
 
 def components(phasor: ComplexArray) -> Array:

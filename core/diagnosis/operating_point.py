@@ -1,0 +1,30 @@
+"""Load from phasors alone: where a fit may begin without any search."""
+
+import numpy as np
+
+from core.diagnosis.fundamental import Fundamental
+from core.machines.candidates import Candidates
+from core.machines.parameters import Motor
+
+FAULT_LEVEL = 0.02
+"""Large enough for the fit to see which way to go, small enough not to bend the load."""
+
+
+def from_phasors(record: Fundamental, motor: Motor, winding: int) -> Candidates:
+    """A candidate with the load whose torque crosses the air gap, no offset between currents and voltages.
+
+    T_e = p (Re(v i*) - R_s |i|^2) / w_s, of the forward-turning phasors (power-invariant space vectors).
+    """
+    current, voltage = record.current.forward, record.voltage.forward
+    nameplate = motor.nameplate
+    crossing = (voltage * current.conjugate()).real - motor.parameters.stator_resistance_ohm * abs(
+        current
+    ) ** 2
+    torque = nameplate.pole_pairs * crossing / record.angular_frequency
+    return Candidates(
+        fault_level=np.full(1, FAULT_LEVEL),
+        winding=np.full(1, winding, dtype=np.int64),
+        load_level=np.full(1, torque / nameplate.rated_torque_Nm),
+        time_offset_s=np.zeros(1),
+        path_ratio=np.zeros(1),
+    )
