@@ -67,6 +67,7 @@ class Document:
         self.root = parse(path).getroot()
         name = etree.QName(self.root)
         self._prefix = f"{{{NAMESPACE}}}" if name.namespace else ""
+        self._names: dict[tuple[str, ...], tuple[str, ...]] = {}
         if name.localname != "SCL" or name.namespace not in (NAMESPACE, None):
             raise self.error(self.root, f"a root element SCL of {NAMESPACE}", str(self.root.tag))
         if not name.namespace:
@@ -86,8 +87,12 @@ class Document:
 
     def children(self, element: etree._Element | None, *tags: str) -> Iterator[etree._Element]:
         """Children of the SCL namespace with one of the tags, in file order."""
-        if element is not None:
-            yield from element.iterchildren(*(self._prefix + tag for tag in tags))
+        if element is None:
+            return iter(())
+        names = self._names.get(tags)
+        if names is None:
+            names = self._names[tags] = tuple(self._prefix + tag for tag in tags)
+        return element.iterchildren(*names)
 
     def descendants(self, element: etree._Element, tag: str) -> Iterator[etree._Element]:
         """Elements of a tag at any depth, in file order, but for those inside a Private element."""

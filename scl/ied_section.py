@@ -17,7 +17,7 @@ from scl.data_model import (
 from scl.data_sets import DataSetReader
 from scl.document import Document, node_name
 from scl.goose_addresses import GooseAddresses
-from scl.instance_values import with_instance_values
+from scl.instance_values import InstanceValues
 from scl.templates import Templates, trigger_options
 
 MOST_INSTANCES = 99
@@ -32,11 +32,13 @@ class IedSection:
         document: Document,
         element: etree._Element,
         templates: Templates,
+        instance_values: InstanceValues,
         goose_addresses: GooseAddresses,
     ) -> None:
         self._document = document
         self._element = element
         self._templates = templates
+        self._instance_values = instance_values
         self._goose_addresses = goose_addresses
         self._name = document.name(element, "name")
         # data sets name logical devices by inst, of any access point; their references need the domain
@@ -120,7 +122,7 @@ class IedSection:
             ln_class=ln_class,
             inst=inst,
             description=element.get("desc", ""),
-            data_objects=with_instance_values(document, element, self._templates.data_objects(element)),
+            data_objects=self._instance_values.laid_over(element, self._templates.data_objects(element)),
             data_sets=tuple(data_sets.values()),
             report_controls=tuple(
                 self._report_control(child, reference, data_sets)

@@ -22,17 +22,18 @@ from scl.data_model import Ied
 from scl.document import Document, content
 from scl.goose_addresses import goose_addresses
 from scl.ied_section import IedSection
+from scl.instance_values import InstanceValues
 from scl.templates import Templates
 
 
 def read(path: Path | str) -> Scl:
     """Read an ICD, CID, IID or SCD; SclError when it is missing, no safe XML or its model is unclear."""
     document = Document(Path(path))
-    templates = Templates(document)
+    templates, instance_values = Templates(document), InstanceValues(document)
     addresses = goose_addresses(document)
     ieds: dict[str, Ied] = {}
     for element in document.children(document.root, "IED"):
-        ied = IedSection(document, element, templates, addresses).read()
+        ied = IedSection(document, element, templates, instance_values, addresses).read()
         if ied.name in ieds:
             raise document.error(element, "one IED of each name", "a second one")
         ieds[ied.name] = ied

@@ -273,8 +273,11 @@ def trigger_options(
 
 def initial_value(document: Document, element: etree._Element) -> str | None:
     """Text of Val; of values by setting group, the first group's."""
-    values = list(document.children(element, "Val"))
-    chosen = next((value for value in values if value.get("sGroup") is None), values[0] if values else None)
+    chosen: etree._Element | None = None
+    for value in document.children(element, "Val"):
+        if value.get("sGroup") is None:
+            return content(value)
+        chosen = value if chosen is None else chosen
     return None if chosen is None else content(chosen)
 
 

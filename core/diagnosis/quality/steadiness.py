@@ -18,8 +18,6 @@ from core.signals.terminals import Terminals
 UNSTEADY_CURRENT = 0.18
 """Farthest that the forward current goes from its mean, of rated: a load that swings by 10 % of the rated
 torque moves it by 0.13 at most, a third of the rated load switched by as much as the limit."""
-UNSTEADY_UNPAIRED = 0.3
-"""The same where no voltages were recorded: of the current's size alone, and for a hint at best."""
 UNSTEADY_VOLTAGE = 0.1
 """The same of the voltage, of its mean: dips, switching, and cycles lost from the record."""
 
@@ -37,9 +35,8 @@ def steadiness(
         return
     course = _course(clarke(terminals.current_abc), currents.phasors, per_cycle)
     amps = _farthest(np.abs(course) if feed.assumed else course) * currents.strong / circle.rated_current_A
-    limit = UNSTEADY_UNPAIRED if feed.assumed else UNSTEADY_CURRENT
     yield finding(
-        "steadiness", amps, limit, "of rated", passed=amps <= limit,
+        "steadiness", amps, UNSTEADY_CURRENT, "of rated", passed=amps <= UNSTEADY_CURRENT,
         message=f"the current moves by {amps:.0%} of the rated one within the record: the load changes, or "
         "the motor starts or stops; record at a steady load",
     )  # fmt: skip
