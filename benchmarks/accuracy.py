@@ -81,7 +81,7 @@ class Effort:
     sparse: bool
 
 
-FULL = Effort(50, 500, 2_000, 1_000, 300, 1, sparse=False)
+FULL = Effort(50, 500, 2_000, 500, 300, 1, sparse=False)
 QUICK = Effort(4, 10, 12, 12, 3, 24, sparse=True)
 
 

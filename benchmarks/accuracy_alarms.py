@@ -24,7 +24,7 @@ MOST_ALARMS, OF_HEALTHY = 2, 2_000
 LEAST_FOUND, LEAST_PHASE = 0.99, 0.995
 BASELINE_RECORDS, BASELINE_INDEX = 3, 1_000_000
 LOWEST_LEVEL, HIGHEST_LEVEL = 0.01, 0.19
-FURTHER_KINDS = 5
+FURTHER_KINDS = 10
 """How many times fewer records the further rows have."""
 
 
@@ -237,7 +237,7 @@ def found_row(faulty: Count) -> list[str]:
 
 
 def alarms(*, healthy: int, faulty: int, pool: Executor, healthy_before: int = 0) -> Iterator[str]:
-    """Healthy and faulty records, 0.5 s at 10 kHz: resistances off; a fifth as many with inductances off too,
+    """Healthy and faulty records, 0.5 s at 10 kHz: resistances off; a tenth as many with inductances off too,
     and of other motors."""
     alarm_rows, found_rows = [], []
     kinds = [(REFERENCE, STATED), (REFERENCE, EVERYTHING), *((motor, STATED) for motor in ALL[1:])]

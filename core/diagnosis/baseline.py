@@ -6,6 +6,7 @@ voltage it keeps its size and direction, so it is averaged in that frame and sub
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from math import sqrt
 
 import numpy as np
 
@@ -27,6 +28,11 @@ class Baseline:
     scatter: float
     recordings: int
     remaining: float = REMAINING
+
+    @property
+    def error_A(self) -> float:
+        """Standard deviation of the mean."""
+        return self.scatter / sqrt(self.recordings)
 
     def taken_off(self, case: Case) -> Case:
         """The case with the standing asymmetry subtracted from its currents."""

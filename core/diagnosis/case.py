@@ -72,16 +72,6 @@ class Case:
         compared = x_ab[:, self.window.compare_from - self.window.first :]
         return np.asarray(compared[0] + 1j * compared[1], dtype=np.complex128)
 
-    def negative_sequence(self, vector: NDArray[np.complex128]) -> complex:
-        """Component of a space vector that turns backwards at supply frequency: peak space-vector length."""
-        angle = 2.0 * pi * self.frequency_hz / self.sample_rate_hz
-        whole = _whole_cycles(vector.size, self.sample_rate_hz / self.frequency_hz)
-        return complex(np.mean(vector[:whole] * np.exp(1j * angle * np.arange(whole))))
-
-    def positive_sequence(self, vector: NDArray[np.complex128]) -> complex:
-        """Component that turns forwards at supply frequency."""
-        return self.negative_sequence(vector.conj()).conjugate()
-
 
 def case_of(
     motor: Motor,
@@ -146,8 +136,3 @@ def thinned(case: Case) -> Case:
 
 def _rotation(angle: float) -> Array:
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-
-
-def _whole_cycles(samples: int, samples_per_cycle: float) -> int:
-    """Samples of the longest whole number of cycles."""
-    return round(int(samples / samples_per_cycle) * samples_per_cycle)

@@ -22,7 +22,10 @@ HIGHEST_ORDER = 13
 TAPERED = 0.25
 """Share of the record over which it fades in and out: where a load swings, the current at one end of a record
 differs from that at the other, and the step between them would pass for backward-turning current."""
-FEWEST_BLOCKS = 3
+CYCLE_SHORT = 0.05
+"""Of a cycle, what a record may lack and still count as whole: no frequency is known to the last digit."""
+MOST_CORRELATED = 0.8
+"""Correlation from cycle to cycle beyond which a record is too short to tell it."""
 EQUAL_CYCLES = 5.0
 """Weight, in cycles, of equal and independent noise on the four components."""
 
@@ -31,11 +34,13 @@ EQUAL_CYCLES = 5.0
 class Phasors:
     """Of one quantity's space vector, at the first sample compared.
 
-    components: peak, forwards re, im, backwards re, im, shape (4,).  covariance: of their noise (4, 4).
+    components: peak, forwards re, im, backwards re, im, shape (4,).  scatter: covariance (4, 4) of their
+    noise if cycles were independent.  growth: of each one's standard deviation because they are not, (4,).
     """
 
     components: Array
-    covariance: Array
+    scatter: Array
+    growth: Array
 
     @property
     def forward(self) -> complex:
@@ -45,10 +50,16 @@ class Phasors:
     def backward(self) -> complex:
         return complex(self.components[2], self.components[3])
 
+    @property
+    def covariance(self) -> Array:
+        """Of the components' noise, whatever its colour, shape (4, 4)."""
+        return np.asarray(self.scatter * np.outer(self.growth, self.growth))
+
     def shrunk(self, cycles: int) -> Array:
-        """Covariance drawn towards equal, independent components as far as few cycles leave it uncertain."""
-        equal = np.trace(self.covariance) / 4.0 * np.eye(4)
-        return np.asarray((cycles * self.covariance + EQUAL_CYCLES * equal) / (cycles + EQUAL_CYCLES))
+        """Scatter drawn towards equal, independent components as far as few cycles leave it uncertain: steady
+        enough from record to record to weigh with."""
+        equal = np.trace(self.scatter) / 4.0 * np.eye(4)
+        return np.asarray((cycles * self.scatter + EQUAL_CYCLES * equal) / (cycles + EQUAL_CYCLES))
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,22 +79,23 @@ def fundamental_of(case: Case) -> Fundamental:
     """Phasors over the last whole cycles of a record, a second at most."""
     per_cycle = case.sample_rate_hz / case.frequency_hz
     longest = min(case.current_ab.shape[1], round(LONGEST_WINDOW_S * case.sample_rate_hz))
-    cycles = int(longest / per_cycle)
-    samples = round(cycles * per_cycle)
+    cycles = int(longest / per_cycle + CYCLE_SHORT)
+    samples = min(round(cycles * per_cycle), case.current_ab.shape[1])
     first = case.current_ab.shape[1] - samples
     turning = np.exp(-2j * pi / per_cycle * np.arange(samples))
     vectors = np.stack([x[0, first:] + 1j * x[1, first:] for x in (case.current_ab, case.voltage_ab)])
     highest = max(1, min(HIGHEST_ORDER, int(0.45 * per_cycle)))
     weight = tukey(samples, TAPERED)
     found, beside = _periodic(vectors, turning, weight, highest)
-    blocks = max(cycles, FEWEST_BLOCKS)
-    edges = np.round(np.arange(blocks) * samples / blocks).astype(np.int64)
+    edges = np.round(np.arange(cycles) * samples / cycles).astype(np.int64)
     fewer = samples * float(weight @ weight) / float(weight.sum()) ** 2
-    phasors = [
-        Phasors(_components(found[k, 0], found[k, 1]), fewer * _scatter(beside[k], turning, edges))
-        for k in (0, 1)
-    ]
-    return Fundamental(phasors[0], phasors[1], 2.0 * pi * case.frequency_hz, cycles=blocks)
+    phasors = []
+    for k in (0, 1):
+        single = _cycles(beside[k], turning, edges)
+        scatter = fewer * np.cov(_components(*single), rowvar=False) / cycles
+        growth = np.sqrt([_growth(one) for one in single]).repeat(2)
+        phasors.append(Phasors(_components(found[k, 0], found[k, 1]), np.asarray(scatter), growth))
+    return Fundamental(phasors[0], phasors[1], 2.0 * pi * case.frequency_hz, cycles=cycles)
 
 
 def components(phasor: ComplexArray) -> Array:
@@ -119,12 +131,24 @@ def _periodic(
     return found[:, [highest + 1, highest - 1]], vectors - found @ basis
 
 
-def _scatter(beside: ComplexArray, turning: ComplexArray, edges: NDArray[np.int64]) -> Array:
-    """Covariance of the components from single cycles' (batch means; Law and Kelton, Simulation Modeling and
-    Analysis): noise of any colour counts."""
+def _cycles(beside: ComplexArray, turning: ComplexArray, edges: NDArray[np.int64]) -> ComplexArray:
+    """Forward and backward phasors of single cycles, (2, cycles): what they scatter is noise of any spectrum
+    (batch means; Law and Kelton, Simulation Modeling and Analysis)."""
     lengths = np.diff(edges, append=turning.size)
     turned = np.stack([beside * turning, beside * turning.conj()])
     cycles = np.empty((2, edges.size), dtype=np.complex128)
     np.add.reduceat(turned, edges, axis=1, out=cycles)
-    forward, backward = cycles / lengths
-    return np.asarray(np.cov(_components(forward, backward), rowvar=False)) / edges.size
+    return np.asarray(cycles / lengths)
+
+
+def _growth(cycles: ComplexArray) -> float:
+    """Of a mean's variance because neighbouring cycles are correlated: (1 + r) / (1 - r) for a first-order
+    autoregression, the bias of r for few cycles taken off."""
+    beside = cycles - cycles.mean()
+    energy = float(np.vdot(beside, beside).real)
+    if energy == 0.0:
+        return 1.0
+    correlation = float(np.vdot(beside[:-1], beside[1:]).real) / energy
+    unbiased = correlation + (1.0 + 3.0 * correlation) / cycles.size
+    likely = float(np.clip(unbiased, 0.0, MOST_CORRELATED)) * cycles.size / (cycles.size + EQUAL_CYCLES)
+    return (1.0 + likely) / (1.0 - likely)

@@ -6,6 +6,7 @@ figures of the best winding we ask how much backward-turning current its fit lea
 """
 
 from dataclasses import dataclass, replace
+from math import hypot
 
 import numpy as np
 
@@ -45,7 +46,8 @@ class Explanation:
     """The best winding's fit and what it leaves.
 
     record: the phasors explained.  winding: in the case's own labels.  asymmetry, unexplained:
-    backward-turning current without and with the fault, as a fraction of the forward-turning one.
+    backward-turning current without and with the fault, noise: its standard deviation, as fractions of the
+    forward-turning one.
     """
 
     record: Fundamental
@@ -54,6 +56,7 @@ class Explanation:
     healthy: Fit
     asymmetry: float
     unexplained: float
+    noise: float
     evaluations: int
 
 
@@ -95,13 +98,20 @@ def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
         healthy=healthy,
         asymmetry=before,
         unexplained=after,
+        noise=refinement.backward_noise_A / forward,
         evaluations=sum(one.evaluations for one in tried),
     )
 
 
+def feigned(explanation: Explanation, tolerance: Systematic) -> float:
+    """Backward-turning current, of the forward one, that noise, sensors and parameters reach once in a
+    hundred records."""
+    return UNLIKELY * hypot(tolerance.backward, explanation.noise)
+
+
 def is_explained(explanation: Explanation, tolerance: Systematic) -> bool:
-    """Whether shorted turns account for the asymmetry, given what sensors and parameters may be off by."""
-    allowed = max(UNLIKELY * tolerance.backward, SHARE_UNEXPLAINED * explanation.asymmetry)
+    """Whether shorted turns account for the asymmetry: what they leave is feigned, or a small share of it."""
+    allowed = max(feigned(explanation, tolerance), SHARE_UNEXPLAINED * explanation.asymmetry)
     return explanation.fit.value(FAULT_LEVEL) > 0.0 and explanation.unexplained <= allowed
 
 

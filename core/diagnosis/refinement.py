@@ -28,6 +28,8 @@ OFFSET_SCALE_S = 100e-6
 """Of the offset between a relay's channels: half width at half maximum of its Cauchy distribution."""
 ADMITTANCE_STEP = 1e-4
 """Of the difference quotient of currents by voltages, in forward voltage."""
+CONVERGED = 0.01
+"""Share of the misfit that a fit may still be able to lose."""
 NEGLIGIBLE = 1e-3
 """Share of a difference quotient's step below which a Gauss-Newton step ends the search."""
 CHANNEL_RATIO = 0.0073
@@ -54,7 +56,11 @@ PATH_RATIO = "path_ratio"
 
 
 def unknown(name: str, case: Case, model: StatorModel) -> Unknown:
-    """Range and step of an unknown; T_d within half a cycle either way, as it is known modulo one cycle."""
+    """Range and step of an unknown.
+
+    T_d is known modulo one cycle and kept within half a one either way; the quality gate lets none pass that
+    is near either end.
+    """
     cycle = 1.0 / case.frequency_hz
     return {
         FAULT_LEVEL: Unknown(FAULT_LEVEL, 2e-4, model.lowest_level, 0.5),
@@ -68,9 +74,10 @@ def unknown(name: str, case: Case, model: StatorModel) -> Unknown:
 class Fit:
     """A hypothesis at its best.
 
-    candidate: a batch of one.  misfit: squared distance of the compared components over the variance their
-    noise alone gives each of them, prior included: minus twice the log likelihood, but for a constant.
+    candidate: a batch of one.  misfit: squared distance of the compared components, weighted by what noise
+    and the sensors' class make of them, prior included: minus twice the log likelihood, but for a constant.
     left: backward-turning component of the residual, peak phasor at the record's fundamental [A, winding].
+    is_sound: the search ended at a minimum, in periodic running, which tells its unknowns apart.
     standard_error: by name of the unknowns; `degrees_of_freedom` of the noise behind it.
     at_bound: names of unknowns that ended on their bound and have no standard error.
     """
@@ -78,6 +85,7 @@ class Fit:
     candidate: Candidates
     misfit: float
     left: complex
+    is_sound: bool
     standard_error: dict[str, float]
     degrees_of_freedom: int
     at_bound: tuple[str, ...]
@@ -103,6 +111,7 @@ class Refinement:
     Components are weighted by what noise and the sensors' class make of each: noise on the voltages, say,
     falls mostly on the backward-turning current, which meets the machine's least impedance.
     near: a candidate near the truth, which tells how voltages become currents.
+    backward_noise_A: standard deviation of the backward-turning phasor, peak.
     """
 
     def __init__(self, case: Case, model: StatorModel, near: Candidates) -> None:
@@ -114,6 +123,7 @@ class Refinement:
         )
         passed = self._admittance(near)
         self._noise = current.covariance + passed @ voltage.covariance @ passed.T
+        self.backward_noise_A = sqrt(self._noise[2, 2] + self._noise[3, 3])
         cycles = self.record.cycles
         sensors = (CHANNEL_RATIO * abs(current.forward)) ** 2 / COMPONENTS_OF_A_RATIO * np.eye(4)
         weighed = current.shrunk(cycles) + passed @ voltage.shrunk(cycles) @ passed.T + sensors
@@ -122,7 +132,8 @@ class Refinement:
     def fit(self, start: Candidates, names: tuple[str, ...]) -> Fit:
         """Minimise the misfit from one candidate over the named unknowns, the others held."""
         unknowns = tuple(unknown(name, self._case, self._running.model) for name in names)
-        point, rounds = self._linearise(start, unknowns), 1
+        inside = _moved(start, unknowns, np.zeros(len(unknowns)))
+        point, rounds = self._linearise(inside, unknowns), 1
         for _ in range(MOST_ITERATIONS):
             step = np.zeros(len(unknowns))
             free = _free(point, unknowns)
@@ -185,6 +196,8 @@ class Refinement:
     def _finished(self, point: "_Point", unknowns: tuple[Unknown, ...], evaluations: int) -> Fit:
         free = _free(point, unknowns)
         slopes = point.slopes[:, free]
+        # What one more step would still gain, in the misfit's own units.
+        gain = float(np.sum((slopes @ np.linalg.lstsq(slopes, point.rows)[0]) ** 2))
         noise = self._whitening @ self._noise @ self._whitening.T
         seen = [one.name for one, is_free in zip(unknowns, free, strict=True) if is_free]
         try:
@@ -194,10 +207,13 @@ class Refinement:
         except np.linalg.LinAlgError:
             # The record does not tell the unknowns apart: no value of theirs is better than another.
             errors = [float("inf")] * len(seen)
+        balanced = self._running.state(point.candidate).balanced[0]
         return Fit(
             candidate=point.candidate,
             misfit=point.misfit,
             left=complex(point.residual[2], point.residual[3]),
+            is_sound=gain <= CONVERGED * (1.0 + point.misfit)
+            and bool(np.isfinite(errors).all() and balanced),
             standard_error=dict(zip(seen, errors, strict=True)),
             degrees_of_freedom=self.record.cycles - 1,
             at_bound=tuple(one.name for one in unknowns if one.name not in seen),

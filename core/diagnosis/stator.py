@@ -9,19 +9,13 @@ from core.diagnosis.assumed_supply import SUPPLY_UNBALANCE
 from core.diagnosis.baseline import Baseline, baseline_of, standing_current
 from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.hypotheses import UNLIKELY, Explanation, explain, is_explained
+from core.diagnosis.hypotheses import explain, is_explained
 from core.diagnosis.indicators import indicators
+from core.diagnosis.judgement import identified, judge
 from core.diagnosis.quality import examine
-from core.diagnosis.refinement import (
-    CHANNEL_RATIO,
-    FAULT_LEVEL,
-    LOAD_LEVEL,
-    PATH_RATIO,
-    TIME_OFFSET,
-    Fit,
-)
+from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
 from core.diagnosis.search import DEFAULT_METHOD, METHODS, search
-from core.diagnosis.tolerance import PARAMETERS, Systematic, systematic
+from core.diagnosis.tolerance import systematic
 from core.diagnosis.verdict import Diagnosis, QualityFinding, Verdict
 from core.machines.base import StatorModel
 from core.machines.parameters import Motor
@@ -32,9 +26,6 @@ from core.recordings import Recording, RecordingError
 from core.signals.terminals import terminals
 
 MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
-PHASES = ("a", "b", "c")
-USUAL_OFFSET_CYCLES = 1 / 80
-"""Offset in cycles (250 us at 50 Hz) up to which sensors and parameters within 10 % account for it."""
 
 
 def diagnose(
@@ -65,11 +56,15 @@ def diagnose(
     playback = Playback(MODELS[model], motor, case.supply, case.window)
     starts = search(case, playback.model, method)
     explanation = explain(case, playback.model, starts)
+    quality.append(identified(explanation))
+    if not quality[-1].passed:
+        return _refused(quality, perf_counter() - begun, model, method)
     tolerance = systematic(
         case,
         playback,
         explanation.fit,
         known_share=0.0 if baseline is None else 1.0 - baseline.remaining,
+        standing_error_A=0.0 if baseline is None else baseline.error_A,
         supply_unbalance=SUPPLY_UNBALANCE if assumed else 0.0,
     )
     verdict, reasons = judge(case, explanation, tolerance)
@@ -100,7 +95,7 @@ def diagnose(
         method=method,
         load_level_ci95=running.interval(LOAD_LEVEL),
         speed_rpm=_speed_rpm(case, playback, running),
-        detection_limit=tolerance.detection_limit(fit),
+        detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),
         indicators=indicators(case),
     )
 
@@ -119,57 +114,6 @@ def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_on
         model = SplitWinding()
         seen.append(standing_current(explain(case, model, search(case, model, DEFAULT_METHOD))))
     return baseline_of(seen)
-
-
-def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[Verdict, list[str]]:
-    """Verdict and its reasons in words."""
-    limit = case.motor.limits.fault_level
-    fit = explanation.fit
-    low, high = fit.interval(FAULT_LEVEL)
-    reach = tolerance.reach(fit)
-    phase = PHASES[case.terminal_winding(explanation.winding)]
-    level = f"{fit.value(FAULT_LEVEL):.2%} (95 % interval {max(0.0, low):.2%} to {max(0.0, high):.2%})"
-    figures = [
-        f"backward-turning current that the supply does not cause is {explanation.asymmetry:.2%} of the "
-        f"forward one; shorted turns in phase {phase} leave {explanation.unexplained:.2%}",
-        f"sensors and parameters within their tolerances can feign {tolerance.backward:.2%} of it, "
-        f"{tolerance.level:.2%} of the turns (standard deviation); a fault below "
-        f"{tolerance.detection_limit(fit):.2%} could not be seen here for sure",
-    ]
-    offset = fit.value(TIME_OFFSET)
-    figures.append(_unknowns(case, fit))
-    if abs(offset) * case.frequency_hz > USUAL_OFFSET_CYCLES:
-        figures.append(
-            f"the currents lie {offset * 1e6:.0f} us behind the voltages, more than one relay's channels do: "
-            "if they were recorded together, nameplate or parameters are not this motor's"
-        )
-    path = fit.value(PATH_RATIO)
-    bridged = f", bridged by {path:.2g} times the turns' own resistance" if path > 0.0 else ""
-    explained = is_explained(explanation, tolerance)
-    if explained and min(low, fit.value(FAULT_LEVEL) - reach) > limit:
-        return Verdict.FAULT, [
-            f"shorted turns in phase {phase}: {level}, above the limit of {limit:.2%}{bridged}",
-            *figures,
-        ]
-    if not explained and explanation.unexplained > UNLIKELY * tolerance.backward:
-        return Verdict.WATCH, ["an asymmetry that shorted turns in no phase explain", *figures]
-    if high > limit:
-        return Verdict.WATCH, [
-            f"shorted turns in phase {phase} cannot be excluded: {level}, limit {limit:.2%}{bridged}",
-            *figures,
-        ]
-    return Verdict.HEALTHY, [f"no shorted turns above the limit of {limit:.2%}: best fit {level}", *figures]
-
-
-def _unknowns(case: Case, fit: Fit) -> str:
-    """What else the fit could turn at, and what it could not."""
-    path = ", resistance of the path" if PATH_RATIO in fit.standard_error else ""
-    return (
-        f"estimated beside the level: frequency ({case.frequency_hz:.2f} Hz), load, offset of the currents "
-        f"({fit.value(TIME_OFFSET) * 1e6:+.0f} us){path}; held and only bounded, by standard deviations: the "
-        f"channels' ratios ({CHANNEL_RATIO:.1%} each), the motor's resistances and inductances "
-        f"({PARAMETERS:.0%} of its negative-sequence impedance)"
-    )
 
 
 def _check_known(method: str, model: str) -> None:

@@ -21,8 +21,8 @@ PARAMETERS = 0.06
 off."""
 
 BELIEF = float(norm.ppf(0.975))
-DETECTION = float(norm.ppf(0.999) + norm.ppf(0.9))
-"""Standard errors at which a fault is seen in nine of ten records, at one false call in a thousand."""
+SEEN = float(norm.ppf(0.9))
+"""Standard errors above the least that is called a fault, at which nine of ten records call it one."""
 PROBE_LEVEL = 0.005
 
 
@@ -41,30 +41,36 @@ class Systematic:
         """Half width of the 95 % interval of the fault level with noise and tolerances together."""
         return BELIEF * self._total(fit)
 
-    def detection_limit(self, fit: Fit) -> float:
-        """Least fault level this record would have shown."""
-        return DETECTION * self._total(fit)
+    def detection_limit(self, fit: Fit, limit: float) -> float:
+        """Level that nine of ten such records would have shown to lie above the motor's limit."""
+        return limit + (BELIEF + SEEN) * self._total(fit)
 
     def _total(self, fit: Fit) -> float:
         return hypot(self.level, fit.standard_error.get(FAULT_LEVEL, 0.0))
 
 
 def systematic(
-    case: Case, playback: Playback, fit: Fit, *, known_share: float = 0.0, supply_unbalance: float = 0.0
+    case: Case,
+    playback: Playback,
+    fit: Fit,
+    *,
+    known_share: float = 0.0,
+    standing_error_A: float = 0.0,
+    supply_unbalance: float = 0.0,
 ) -> Systematic:
     """Tolerances of one record, from its voltages, its currents and the fitted operating point.
 
-    known_share: share of them that a baseline has taken off.  supply_unbalance: standard deviation of
+    known_share: share of them that a baseline has taken off.  standing_error_A: standard deviation of what it
+    took off.  supply_unbalance: standard deviation of
     V2 / V1 where the voltages are assumed.
     """
-    one = np.ones(1)
     candidate = fit.candidate
     probes = Candidates(
         fault_level=np.array([0.0, PROBE_LEVEL]),
         winding=np.repeat(candidate.winding, 2),
         load_level=np.repeat(candidate.load_level, 2),
         time_offset_s=np.repeat(candidate.time_offset_s, 2),
-        path_ratio=np.repeat(0.0 * one, 2),
+        path_ratio=np.zeros(2),
     )
     alpha, beta = playback.steady_state(probes).current
     backward_current = (alpha - 1j * beta) / 2.0
@@ -81,7 +87,8 @@ def systematic(
         PARAMETERS * V_backward * per_volt,
     )
     changing = supply_unbalance * V_forward * per_volt
-    backward = hypot((1.0 - known_share) * float(np.linalg.norm(lasting)), changing)
+    remaining = (1.0 - known_share) * float(np.linalg.norm(lasting))
+    backward = hypot(remaining, changing, standing_error_A / forward)
     # Only the part of a complex error that lies along the fault's own current looks like a fault.
     return Systematic(backward=backward, level=backward / sqrt(2.0) / per_level)
 

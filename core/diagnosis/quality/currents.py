@@ -176,7 +176,7 @@ def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     voltage = feed.phasors.positive if positive else feed.phasors.negative
     forward, backward = (ahead, back) if positive else (back, ahead)
     share = abs(backward) / max(abs(forward), 1e-12)
-    lag = float(np.degrees(np.angle(voltage / forward)))
+    lag = float(np.degrees(np.angle(voltage * forward.conjugate())))
     within = LEAST_LAG_DEG <= lag <= MOST_LAG_DEG
     off = lag - circle.lag_deg(abs(forward) / abs(voltage))
     # Turned by a third of a cycle either way the phases are exchanged in a ring, by half a cycle reversed.

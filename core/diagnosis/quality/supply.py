@@ -95,7 +95,9 @@ def frequency(feed: Feed, nameplate: Nameplate) -> Iterator[QualityFinding]:
 
 def drive(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
     """Pulses of an inverter; the currents it feeds do not follow from voltages sampled among the pulses."""
-    if feed.assumed:
+    cycles = feed.voltage_ab.shape[1] / terminals.sample_rate_hz * feed.frequency_hz
+    if feed.assumed or cycles < 3 * LINE_WIDTH_BINS:
+        # In a few cycles the harmonics' lines lie so close that nothing is beside them.
         return
     yield _pulses(_energy_beside_harmonics(feed.voltage_ab, feed.frequency_hz, terminals.sample_rate_hz))
 

@@ -1,0 +1,90 @@
+"""The verdict: what the fits say, against what noise, sensors and parameters could feign, in words."""
+
+from core.diagnosis.case import Case
+from core.diagnosis.hypotheses import Explanation, feigned, is_explained
+from core.diagnosis.quality.finding import finding
+from core.diagnosis.refinement import (
+    CHANNEL_RATIO,
+    FAULT_LEVEL,
+    LOAD_LEVEL,
+    PATH_RATIO,
+    TIME_OFFSET,
+    Fit,
+)
+from core.diagnosis.tolerance import PARAMETERS, Systematic
+from core.diagnosis.verdict import QualityFinding, Verdict
+
+PHASES = ("a", "b", "c")
+USUAL_OFFSET_CYCLES = 1 / 80
+"""Offset in cycles (250 us at 50 Hz) up to which sensors and parameters within 10 % account for it."""
+
+
+def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[Verdict, list[str]]:
+    """Verdict and its reasons in words."""
+    limit = case.motor.limits.fault_level
+    fit = explanation.fit
+    low, high = fit.interval(FAULT_LEVEL)
+    reach = tolerance.reach(fit)
+    phase = PHASES[case.terminal_winding(explanation.winding)]
+    level = f"{fit.value(FAULT_LEVEL):.2%} (95 % interval {max(0.0, low):.2%} to {max(0.0, high):.2%})"
+    figures = [
+        f"backward-turning current that the supply does not cause is {explanation.asymmetry:.2%} of the "
+        f"forward one; shorted turns in phase {phase} leave {explanation.unexplained:.2%}",
+        f"sensors and parameters within their tolerances can feign {tolerance.backward:.2%} of it, "
+        f"{tolerance.level:.2%} of the turns (standard deviation); a fault below "
+        f"{tolerance.detection_limit(fit, limit):.2%} could not be seen here for sure",
+    ]
+    offset = fit.value(TIME_OFFSET)
+    figures.append(_unknowns(case, fit))
+    if abs(offset) * case.frequency_hz > USUAL_OFFSET_CYCLES:
+        figures.append(
+            f"the currents lie {offset * 1e6:.0f} us behind the voltages, more than one relay's channels do: "
+            "if they were recorded together, nameplate or parameters are not this motor's"
+        )
+    path = fit.value(PATH_RATIO)
+    bridged = f", bridged by {path:.2g} times the turns' own resistance" if path > 0.0 else ""
+    explained = is_explained(explanation, tolerance)
+    edges = {*fit.at_bound, *explanation.healthy.at_bound} & {LOAD_LEVEL, TIME_OFFSET}
+    if edges:
+        return Verdict.WATCH, [
+            f"the fit ends at the edge of what is searched ({', '.join(sorted(edges))}): nameplate, "
+            f"parameters or ratios are not this motor's; nearest are shorted turns in phase {phase}, {level}",
+            *figures,
+        ]
+    if explained and min(low, fit.value(FAULT_LEVEL) - reach) > limit:
+        return Verdict.FAULT, [
+            f"shorted turns in phase {phase}: {level}, above the limit of {limit:.2%}{bridged}",
+            *figures,
+        ]
+    if not explained and explanation.unexplained > feigned(explanation, tolerance):
+        return Verdict.WATCH, ["an asymmetry that shorted turns in no phase explain", *figures]
+    if high > limit:
+        return Verdict.WATCH, [
+            f"shorted turns in phase {phase} cannot be excluded: {level}, limit {limit:.2%}{bridged}",
+            *figures,
+        ]
+    return Verdict.HEALTHY, [
+        f"no shorted turns seen above the limit of {limit:.2%}: best fit {level}",
+        *figures,
+    ]
+
+
+def identified(explanation: Explanation) -> QualityFinding:
+    """Whether the fits ended somewhere: a machine that can run so, and unknowns the record tells apart."""
+    unsound = sum(not fit.is_sound for fit in (explanation.fit, explanation.healthy))
+    return finding(
+        "identifiability", unsound, 0, "fits", passed=unsound == 0,
+        message="no steady running of this motor comes near the record, or the record does not tell load, "
+        "level and offset apart: nameplate and parameters, or the recording, are not this motor's",
+    )  # fmt: skip
+
+
+def _unknowns(case: Case, fit: Fit) -> str:
+    """What else the fit could turn at, and what it could not."""
+    path = ", resistance of the path" if PATH_RATIO in fit.standard_error else ""
+    return (
+        f"estimated beside the level: frequency ({case.frequency_hz:.2f} Hz), load, offset of the currents "
+        f"({fit.value(TIME_OFFSET) * 1e6:+.0f} us){path}; held and only bounded, by standard deviations: the "
+        f"channels' ratios ({CHANNEL_RATIO:.1%} each), the motor's resistances and inductances "
+        f"({PARAMETERS:.0%} of its negative-sequence impedance)"
+    )
