@@ -42,7 +42,7 @@ class Case:
 
     current_ab, voltage_ab: of the windings on the Clarke axes, shape (2, n) [A, V]; line_per_winding_current
     turns the current's magnitude into that of the lines (sqrt 3 in delta).
-    sequence: that of the supply, before mirroring.
+    sequence: that of the supply, before mirroring.  voltages_assumed: none were recorded.
     """
 
     motor: Motor
@@ -53,6 +53,7 @@ class Case:
     frequency_hz: float
     sequence: PhaseSequence
     window: Window
+    voltages_assumed: bool = False
 
     @property
     def line_per_winding_current(self) -> float:

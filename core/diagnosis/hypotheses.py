@@ -16,6 +16,7 @@ from core.diagnosis.operating_point import from_phasors
 from core.diagnosis.refinement import (
     FAULT_LEVEL,
     LOAD_LEVEL,
+    OFFSET_SCALE_S,
     PATH_RATIO,
     TIME_OFFSET,
     Fit,
@@ -71,11 +72,14 @@ def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
     refinement = Refinement(case, model, starts.best)
     fits, tried = [], []
     for winding, found in enumerate(starts.by_winding):
-        # A light load on a strongly unbalanced supply has two valleys, the search's and that without offset.
-        directly = from_phasors(refinement.record, case.motor, winding)
-        both = [refinement.fit(start, unknowns) for start in (found, directly)]
-        fits.append(min(both, key=_misfit))
-        tried += both
+        tried.append(refinement.fit(found, unknowns))
+        if abs(tried[-1].value(TIME_OFFSET)) > OFFSET_SCALE_S:
+            # A light load on a strongly unbalanced supply has two valleys; the other is that without offset.
+            directly = from_phasors(refinement.record, case.motor, winding)
+            tried.append(refinement.fit(directly, unknowns))
+            fits.append(min(tried[-2:], key=_misfit))
+        else:
+            fits.append(tried[-1])
     winding = _likeliest(fits)
     fit = fits[winding]
     healthy = refinement.fit(replace(fit.candidate, fault_level=np.zeros(1)), (LOAD_LEVEL, TIME_OFFSET))

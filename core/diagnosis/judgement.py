@@ -17,6 +17,9 @@ from core.diagnosis.verdict import QualityFinding, Verdict
 PHASES = ("a", "b", "c")
 USUAL_OFFSET_CYCLES = 1 / 80
 """Offset in cycles (250 us at 50 Hz) up to which sensors and parameters within 10 % account for it."""
+DOUBTFUL_OFFSET_CYCLES = 1 / 40
+"""Offset in cycles (500 us at 50 Hz) beyond which it is likelier that the motor is another, or a ratio wrong:
+twice the true currents need 900 us and more."""
 
 
 def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[Verdict, list[str]]:
@@ -26,7 +29,9 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
     low, high = fit.interval(FAULT_LEVEL)
     reach = tolerance.reach(fit)
     phase = PHASES[case.terminal_winding(explanation.winding)]
-    level = f"{fit.value(FAULT_LEVEL):.2%} (95 % interval {max(0.0, low):.2%} to {max(0.0, high):.2%})"
+    level = f"{max(0.0, fit.value(FAULT_LEVEL)):.2%}"
+    if FAULT_LEVEL not in fit.at_bound:
+        level += f" (95 % interval {max(0.0, low):.2%} to {max(0.0, high):.2%})"
     figures = [
         f"backward-turning current that the supply does not cause is {explanation.asymmetry:.2%} of the "
         f"forward one; shorted turns in phase {phase} leave {explanation.unexplained:.2%}",
@@ -34,12 +39,14 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
         f"{tolerance.level:.2%} of the turns (standard deviation); a fault below "
         f"{tolerance.detection_limit(fit, limit):.2%} could not be seen here for sure",
     ]
-    offset = fit.value(TIME_OFFSET)
     figures.append(_unknowns(case, fit))
-    if abs(offset) * case.frequency_hz > USUAL_OFFSET_CYCLES:
+    offset = fit.value(TIME_OFFSET)
+    # Without voltages there is nothing that an offset could be against.
+    late = 0.0 if case.voltages_assumed else abs(offset) * case.frequency_hz
+    if late > USUAL_OFFSET_CYCLES:
         figures.append(
             f"the currents lie {offset * 1e6:.0f} us behind the voltages, more than one relay's channels do: "
-            "if they were recorded together, nameplate or parameters are not this motor's"
+            "if they were recorded together, nameplate, ratios or parameters are not this motor's"
         )
     path = fit.value(PATH_RATIO)
     bridged = f", bridged by {path:.2g} times the turns' own resistance" if path > 0.0 else ""
@@ -52,6 +59,12 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
             *figures,
         ]
     if explained and min(low, fit.value(FAULT_LEVEL) - reach) > limit:
+        if late > DOUBTFUL_OFFSET_CYCLES:
+            return Verdict.WATCH, [
+                "no motor with this nameplate lags so: check ratios and parameters first; nearest are shorted "
+                f"turns in phase {phase}, {level}{bridged}",
+                *figures,
+            ]
         return Verdict.FAULT, [
             f"shorted turns in phase {phase}: {level}, above the limit of {limit:.2%}{bridged}",
             *figures,

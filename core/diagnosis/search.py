@@ -11,8 +11,7 @@ from core.diagnosis.errors import DiagnosisError
 from core.machines.base import Array, StatorModel
 from core.machines.candidates import Candidates
 from core.machines.playback import Playback
-from core.optimisers import genetic, hcpa, hybrid, pattern_search
-from core.optimisers.hybrid import Refinement
+from core.optimisers import genetic, hcpa, pattern_search
 
 HIGHEST_FAULT_LEVEL = 0.2
 HIGHEST_LOAD_LEVEL = 1.25
@@ -24,7 +23,6 @@ ADAPTIVENESS = 0.4
 """Section 6.5.2's setting, with a fineness that lets single coordinates reach a thousandth of their range."""
 HYBRID_GLOBAL, HYBRID_ADAPTIVENESS = 60, 0.7
 """Few points, spread widely: each winding's best only has to lie in the right valley (docs/optimisers.md)."""
-HYBRID_REFINEMENT = Refinement(starts=1, tolerance=1e-4)
 SAMPLES = 60
 """Latin hypercube points of which the pattern search begins at the best (section 6.5.1)."""
 PATTERN_EVALUATIONS = 500
@@ -65,18 +63,11 @@ def search(case: Case, model: StatorModel, method: str) -> Starts:
     coarse = thinned(case)
     playback = Playback(model, case.motor, coarse.supply, coarse.window)
 
-    measured = coarse.current_ab[:, coarse.window.first : coarse.window.last]
-    compared = coarse.window.compare_from - coarse.window.first
-
     def cost(points: Array) -> Array:
         return playback.squared_error(candidates_at(points), coarse.current_ab)
 
-    def residuals(points: Array) -> Array:
-        errors = playback.trajectories(candidates_at(points)).current - measured
-        return errors[:, :, compared:].reshape(len(points), -1)
-
     cycle = 1.0 / case.frequency_hz
-    result = METHODS[method](Objective(cost, residuals, cycle))
+    result = METHODS[method](Objective(cost, cycle))
     by_winding = (_best(result, 0, cycle), _best(result, 1, cycle), _best(result, 2, cycle))
     return Starts(
         by_winding=by_winding,
@@ -88,11 +79,9 @@ def search(case: Case, model: StatorModel, method: str) -> Starts:
 
 @dataclass(frozen=True, slots=True)
 class Objective:
-    """What a method minimises over points (m, 4), as in `candidates_at`: the cost, or the residuals (m, n)
-    whose squares sum to it; the cycle's length [s], which T_d is known up to."""
+    """What a method minimises over points (m, 4), as in `candidates_at`; T_d is known up to a cycle [s]."""
 
     cost: Callable[[Array], Array]
-    residuals: Callable[[Array], Array]
     cycle_s: float
 
     def bounds(self, lowest_winding: float, highest_winding: float) -> tuple[tuple[float, float], ...]:
@@ -129,16 +118,16 @@ def _hcpa(objective: Objective) -> OptimizeResult:
 
 
 def _hybrid(objective: Objective) -> OptimizeResult:
-    return hybrid.minimise(
+    """The global stage alone: refinement.py makes every winding's best point precise, on phasors."""
+    return hcpa.minimise(
         objective.cost,
         objective.choice,
-        residuals=objective.residuals,
-        refinement=HYBRID_REFINEMENT,
         adaptiveness=HYBRID_ADAPTIVENESS,
         fineness=FINENESS,
+        exclusion=0.0,
         max_global=HYBRID_GLOBAL,
+        max_local=0,
         allowed=(None, WINDINGS, None, None),
-        periodic=(2,),
         batch=True,
     )
 

@@ -1,6 +1,7 @@
 """Diagnosis of one recording: quality gate, global search, refinement, choice of hypothesis, verdict."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -22,7 +23,7 @@ from core.machines.parameters import Motor
 from core.machines.playback import Playback, electrical_to_rpm
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
-from core.recordings import Recording, RecordingError
+from core.recordings import Quantity, Recording, RecordingError
 from core.signals.terminals import terminals
 
 MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
@@ -41,8 +42,8 @@ def diagnose(
 
     method: global search, one of search.METHODS.  model: one of MODELS; mu_f is its equivalent level.
     baseline: the motor's standing asymmetry (learn_baseline), taken off the currents first.
-    currents_only: accept a recording without voltages; a balanced supply is assumed, and the verdict is never
-    better than "watch".
+    currents_only: use no voltages, recorded or not; a balanced supply is assumed, and a fault is called
+    "watch" at most.
     Raises RecordingError where the recording lacks channels the motor needs, DiagnosisError for an unknown
     method or model. Everything else a recording can be guilty of makes it undiagnosable, with the reason.
     """
@@ -129,7 +130,7 @@ def _accept(
     """The case the stages work on, or None where a check fails; every check's finding; whether the voltages
     are assumed."""
     measured = terminals(
-        recording,
+        _currents_of(recording) if currents_only else recording,
         currents=motor.channels.currents,
         phase_voltages=None if currents_only else motor.channels.phase_voltages,
         line_voltages=None if currents_only else motor.channels.line_voltages,
@@ -148,7 +149,15 @@ def _accept(
         return None, quality, assumed
     rate, frequency = measured.sample_rate_hz, passed.frequency_hz
     case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
-    return case, quality, assumed
+    return replace(case, voltages_assumed=assumed), quality, assumed
+
+
+def _currents_of(recording: Recording) -> Recording:
+    """The recording as if its voltages had not been recorded."""
+    kept = [k for k, channel in enumerate(recording.channels) if channel.quantity is Quantity.CURRENT]
+    return replace(
+        recording, samples=recording.samples[kept], channels=tuple(recording.channels[k] for k in kept)
+    )
 
 
 def _speed_rpm(case: Case, playback: Playback, fit: Fit) -> float:
