@@ -11,6 +11,7 @@ from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, ValidationError
 from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDict
+from pydantic_settings import SettingsError as UnreadableEnvironment
 
 AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
 PATHS = ("data_directory", "scd", "motors")
@@ -77,6 +78,13 @@ class Settings(BaseSettings):
         given = {name: value for name, value in (options or {}).items() if value is not None}
         try:
             return cls.model_validate({**table, **EnvSettingsSource(cls)(), **given})
+        except UnreadableEnvironment as error:
+            raise SettingsError(
+                "environment",
+                "MCC_...",
+                expected='lists and tables as JSON, such as ["mcc"]',
+                found=str(error),
+            ) from error
         except ValidationError as error:
             raise _first_problem(error, config) from error
 

@@ -17,9 +17,9 @@ from core.diagnosis.verdict import QualityFinding, Verdict
 PHASES = ("a", "b", "c")
 USUAL_OFFSET_CYCLES = 1 / 80
 """Offset in cycles (250 us at 50 Hz) up to which sensors and parameters within 10 % account for it."""
-DOUBTFUL_OFFSET_CYCLES = 1 / 40
-"""Offset in cycles (500 us at 50 Hz) beyond which it is likelier that the motor is another, or a ratio wrong:
-twice the true currents need 900 us and more."""
+DOUBTFUL_OFFSET_CYCLES = 1 / 24
+"""Offset in cycles (830 us at 50 Hz) beyond which it is likelier that the motor is another, or a ratio wrong:
+twice the true currents need 900 us and more, severe faults with parameters 10 % off up to 660."""
 
 
 def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[Verdict, list[str]]:
@@ -27,7 +27,6 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
     limit = case.motor.limits.fault_level
     fit = explanation.fit
     low, high = fit.interval(FAULT_LEVEL)
-    reach = tolerance.reach(fit)
     phase = PHASES[case.terminal_winding(explanation.winding)]
     level = f"{max(0.0, fit.value(FAULT_LEVEL)):.2%}"
     if FAULT_LEVEL not in fit.at_bound:
@@ -51,18 +50,18 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
     path = fit.value(PATH_RATIO)
     bridged = f", bridged by {path:.2g} times the turns' own resistance" if path > 0.0 else ""
     explained = is_explained(explanation, tolerance)
-    edges = {*fit.at_bound, *explanation.healthy.at_bound} & {LOAD_LEVEL, TIME_OFFSET}
+    edges = {LOAD_LEVEL, TIME_OFFSET}.intersection(fit.at_bound)
     if edges:
         return Verdict.WATCH, [
             f"the fit ends at the edge of what is searched ({', '.join(sorted(edges))}): nameplate, "
             f"parameters or ratios are not this motor's; nearest are shorted turns in phase {phase}, {level}",
             *figures,
         ]
-    if explained and min(low, fit.value(FAULT_LEVEL) - reach) > limit:
+    if explained and low > limit and fit.value(FAULT_LEVEL) > tolerance.least_fault(fit, limit):
         if late > DOUBTFUL_OFFSET_CYCLES:
             return Verdict.WATCH, [
-                "no motor with this nameplate lags so: check ratios and parameters first; nearest are shorted "
-                f"turns in phase {phase}, {level}{bridged}",
+                "no motor with this nameplate lags so: check ratios and parameters first; nearest are "
+                f"shorted turns in phase {phase}, {level}{bridged}",
                 *figures,
             ]
         return Verdict.FAULT, [

@@ -21,6 +21,8 @@ PARAMETERS = 0.06
 off."""
 
 BELIEF = float(norm.ppf(0.975))
+ALARM = float(norm.ppf(1.0 - 0.001 / 3.0))
+"""Standard errors that none of three windings' levels exceeds in 999 of 1,000 healthy records."""
 SEEN = float(norm.ppf(0.9))
 """Standard errors above the least that is called a fault, at which nine of ten records call it one."""
 PROBE_LEVEL = 0.005
@@ -37,13 +39,14 @@ class Systematic:
     backward: float
     level: float
 
-    def reach(self, fit: Fit) -> float:
-        """Half width of the 95 % interval of the fault level with noise and tolerances together."""
-        return BELIEF * self._total(fit)
+    def least_fault(self, fit: Fit, limit: float) -> float:
+        """Least level called a fault: believed to be above the motor's limit, and no false alarm."""
+        total = self._total(fit)
+        return max(limit + BELIEF * total, ALARM * total)
 
     def detection_limit(self, fit: Fit, limit: float) -> float:
         """Level that nine of ten such records would have shown to lie above the motor's limit."""
-        return limit + (BELIEF + SEEN) * self._total(fit)
+        return self.least_fault(fit, limit) + SEEN * self._total(fit)
 
     def _total(self, fit: Fit) -> float:
         return hypot(self.level, fit.standard_error.get(FAULT_LEVEL, 0.0))

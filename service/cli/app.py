@@ -169,7 +169,9 @@ def commission(
     ],
     nameplate: Annotated[
         Path,
-        typer.Option(metavar="MOTOR.toml", help="The motor: [nameplate], and [parameters] if any are known."),
+        typer.Option(
+            metavar="MOTOR.toml", help="The motor: its nameplate table, and parameters if any are known."
+        ),
     ],
     output: Annotated[
         Path, typer.Option(metavar="MOTOR.toml", help="Where to write the motor with what was found.")

@@ -25,7 +25,13 @@ def connect(url: str) -> Engine:
     # A figure that is not a number has no place in a JSON document; better to fail here than in a reader.
     serializer = partial(json.dumps, allow_nan=False)
     if parsed.get_backend_name() != "sqlite":
-        return create_engine(parsed, json_serializer=serializer, pool_pre_ping=True)
+        try:
+            return create_engine(parsed, json_serializer=serializer, pool_pre_ping=True)
+        except ModuleNotFoundError as error:
+            raise StorageError(
+                f"database_url: {parsed.drivername} needs the Python package {error.name!r}, which is not "
+                "installed beside this service: pip install it there"
+            ) from error
     if parsed.database in (None, "", ":memory:"):
         raise StorageError(
             "database_url: expected an SQLite file, found a database in memory (two processes use it)"

@@ -53,6 +53,12 @@ def test_what_is_wrong_is_named(tmp_path: Path, content: str, message: str) -> N
     assert message in str(failure.value)
 
 
+def test_a_list_in_the_environment_that_is_no_json_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MCC_ALLOWED_HOSTS", "mcc.example")
+    with pytest.raises(SettingsError, match=r"allowed_hosts.*|JSON"):
+        Settings.load()
+
+
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(SettingsError, match=r"none\.toml: file: expected a TOML file, found no file"):
         Settings.load(tmp_path / "none.toml")

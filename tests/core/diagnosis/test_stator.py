@@ -180,6 +180,26 @@ def test_a_current_that_no_load_draws_is_no_verdict(factor: float) -> None:
     assert any("edge" in reason or "not this motor's" in reason for reason in result.reasons)
 
 
+@pytest.mark.parametrize("motor", ALL, ids=IDS)
+@pytest.mark.parametrize("load", [0.1, 0.5])
+@pytest.mark.parametrize("level", [0.0, 0.05])
+def test_currents_twice_their_size_are_called_no_fault(motor: Motor, load: float, level: float) -> None:
+    """A transformer's ratio taken for half of what it is: another motor's currents, whatever is nearest."""
+    truth = running(motor, load, fault=Fault(level, 1), unbalance=0.01) if level else running(motor, load)
+    record = recording(truth, noise=0.002)
+    samples = record.samples.copy()
+    samples[:3] *= 2.0
+    assert diagnose(replace(record, samples=samples), motor).verdict is not Verdict.FAULT
+
+
+def test_without_voltages_means_without_those_recorded_too() -> None:
+    record = recording(running(REFERENCE, 0.5, unbalance=0.03), noise=0.002)
+    currents = replace(record, samples=record.samples[:3], channels=record.channels[:3])
+    both = [diagnose(one, REFERENCE, currents_only=True) for one in (record, currents)]
+    assert both[0].mu_f == both[1].mu_f
+    assert both[0].verdict is Verdict.WATCH
+
+
 def test_levels_at_the_detection_limit_are_found_in_most_records() -> None:
     """Sensors within their class: at the limit the page promises nine of ten; seven of twelve leaves luck."""
     found = 0

@@ -1,10 +1,12 @@
 """The router: what a relay's client sees through it, and without it."""
 
+import socket
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
+from threading import Thread
 
 import pytest
 
@@ -12,8 +14,8 @@ import scl
 from mms import Client, ConnectFailed, FunctionalConstraint
 from scl.demo_enterprise import write_demo_enterprise
 from service.demo.addresses import free_ports
-from service.demo.router import main, passages
-from tests.integration.processes import simulated_plant
+from service.demo.router import MOST_CONNECTIONS, main, passages
+from tests.integration.processes import eventually, simulated_plant
 
 RELAY = "A1_SEL710"
 TRIGGER = f"{RELAY}CON/RBGGIO1.SPCSO01.stVal"
@@ -87,6 +89,44 @@ def test_a_relay_answers_through_the_router(enterprise: Path, tmp_path: Path) ->
             assert f"127.0.0.1:{inside['A2_SEL710']}" in line
             with Client.connect("127.0.0.1", outside[RELAY]) as client:
                 assert client.read(TRIGGER, FunctionalConstraint.ST) is False, "the others work"
+
+
+def is_passed_on(connection: socket.socket) -> bool:
+    """Whether the relay's side, which greets, is there."""
+    try:
+        return connection.recv(5) == b"relay"
+    except ConnectionResetError:
+        return False
+
+
+def test_connections_to_one_relay_are_bounded(enterprise: Path, tmp_path: Path) -> None:
+    with socket.create_server(("127.0.0.1", 0), backlog=2 * MOST_CONNECTIONS) as relay, ExitStack() as open_:
+
+        def greet() -> None:
+            with suppress(OSError):  # the test has ended
+                while True:
+                    open_.enter_context(relay.accept()[0]).sendall(b"relay")
+
+        inside = dict(zip(("A1_SEL710", "A2_SEL710", "A3_SEL710"), free_ports(3), strict=True))
+        inside[RELAY] = relay.getsockname()[1]
+        outside = dict(zip(inside, free_ports(3), strict=True))
+        scd = tmp_path / "enterprise.scd"
+        on_loopback(enterprise, scd, inside, outside)
+        Thread(target=greet, daemon=True).start()
+
+        def connect() -> socket.socket:
+            return open_.enter_context(socket.create_connection(("127.0.0.1", outside[RELAY]), 5))
+
+        with router(scd) as process:
+            connections = [connect() for _ in range(MOST_CONNECTIONS)]
+            assert all(is_passed_on(connection) for connection in connections)
+            assert not is_passed_on(connect())
+            assert process.stderr is not None
+            line = process.stderr.readline()
+            assert "connection refused" in line
+            assert RELAY in line
+            connections[0].close()
+            assert eventually(lambda: is_passed_on(connect()), 5), "a place is free again"
 
 
 def test_a_network_that_is_not_in_the_file_is_named(
