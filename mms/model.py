@@ -50,7 +50,7 @@ class Model:
 
         ModelError if the text is wrong in any way, or if the library makes less of it than it says.
         """
-        attributes = checked(text)
+        attributes = checked(text, ied_name)
         self._lib = lib
         self._nodes: dict[str, int] = {}
         with tempfile.NamedTemporaryFile("w", encoding="utf-8", suffix=".cfg") as file:
@@ -64,7 +64,7 @@ class Model:
         lib.IedModel_setIedNameForDynamicModel(self.pointer, name.encode("ascii"))
         try:
             for attribute in attributes:
-                self.node(f"{name}{attribute}", Node.DATA_ATTRIBUTE)
+                self.node(attribute, Node.DATA_ATTRIBUTE)
         except ModelError:
             self.destroy()
             raise

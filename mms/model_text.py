@@ -14,6 +14,7 @@ from mms.references import FunctionalConstraint
 _LINE_LIMIT: Final = 1022  # the parser's buffer, less its terminator
 _ITEM_LIMIT: Final = 64  # MMS item name, IEC 61850-8-1
 _OPENING = re.compile(r"(MODEL|LD|LN|DO|DA|DS|GC|SMVC)(?:\(([^()]*)\))?(=.*)?\{")
+_ELEMENT = re.compile(r"\[([0-9]{1,5})\]\{")  # of an array of objects or structs
 _CLOSED = re.compile(r"(DA|DE|RC|LC|LOG|SG|PA)\(([^()]*(?:\([^()]*\))?[^()]*)\)(=.*)?;?")
 _INITIAL = re.compile(r'="[^"]*"|=[-+]?[0-9]+(\.[0-9]*)?([eE][-+]?[0-9]+)?')
 
@@ -39,15 +40,19 @@ class _Reading:
     data_sets: set[str] = field(default_factory=set)  # "LD/LN.name"
     wanted_items: list[tuple[int, str]] = field(default_factory=list)
     wanted_data_sets: list[tuple[int, str]] = field(default_factory=list)
-    attributes: list[str] = field(default_factory=list)  # "LD/LN.DO.DA", LD without the IED's name
+    attributes: list[tuple[str, str]] = field(default_factory=list)  # LD's inst, "LN.DO.DA"
+    own_names: dict[str, str] = field(default_factory=dict)  # by inst, of LDs not called by IED name and inst
     model_name: str = ""
 
     def path(self) -> list[str]:
         return [name for _, name in self.open_blocks]
 
 
-def checked(text: str) -> tuple[str, ...]:
-    """Every data attribute in the text, "inst/LN.DO.DA"; ModelError naming the line of the first fault."""
+def checked(text: str, ied_name: str | None = None) -> tuple[str, ...]:
+    """Every data attribute in the text, "LD/LN.DO.DA" with the LD as clients see it.
+
+    `ied_name` replaces the model's name. ModelError naming the line of the first fault.
+    """
     reading = _Reading()
     for number, line in enumerate(text.splitlines(), 1):
         _read_line(reading, number, line.strip())
@@ -63,7 +68,10 @@ def checked(text: str) -> tuple[str, ...]:
     for number, name in reading.wanted_data_sets:
         if name not in reading.data_sets:
             raise ModelError(f"line {number}", "a data set of the same logical node", name)
-    return tuple(reading.attributes)
+    name = reading.model_name if ied_name is None else ied_name
+    return tuple(
+        f"{reading.own_names.get(device, f'{name}{device}')}/{path}" for device, path in reading.attributes
+    )
 
 
 def _read_line(reading: _Reading, number: int, line: str) -> None:
@@ -76,6 +84,10 @@ def _read_line(reading: _Reading, number: int, line: str) -> None:
         if not reading.open_blocks:
             raise ModelError(where, "no more }", "a } too many")
         reading.open_blocks.pop()
+        return
+    element = _ELEMENT.fullmatch(line)
+    if element and reading.open_blocks and reading.open_blocks[-1][0] in ("DO", "DA"):
+        reading.open_blocks.append((reading.open_blocks[-1][0], f"({element.group(1)})"))
         return
     opening = _OPENING.fullmatch(line)
     entry = opening or _CLOSED.fullmatch(line)
@@ -100,6 +112,9 @@ def _note(reading: _Reading, where: str, number: int, keyword: str, words: list[
     match keyword:
         case "MODEL":
             reading.model_name = words[0] if words else ""
+        case "LD":
+            if len(words) > 1:
+                reading.own_names[words[0]] = words[1]
         case "DS":
             reading.data_sets.add(f"{path[1]}/{path[2]}.{words[0]}")
         case "DA":
@@ -122,10 +137,13 @@ def _note_attribute(reading: _Reading, where: str, path: list[str], words: list[
     except ValueError as error:
         raise ModelError(where, "a functional constraint from 0 to 18", words[3]) from error
     device, node, *names = path
-    item = "$".join([node, constraint, *names])
+    # MMS lists an array's name, and what its elements hold under no name of their own
+    indices = [depth for depth, name in enumerate(names) if name.startswith("(")]
+    listed = names[: indices[0]] if indices else names
+    item = "$".join([node, constraint, *listed])
     if len(item) > _ITEM_LIMIT:
         raise ModelError(where, f"an MMS name of at most {_ITEM_LIMIT} characters", item)
     reading.items.update(
-        f"{device}/" + "$".join([node, constraint, *names[:depth]]) for depth in range(len(names) + 1)
+        f"{device}/" + "$".join([node, constraint, *listed[:depth]]) for depth in range(len(listed) + 1)
     )
-    reading.attributes.append(f"{device}/{node}." + ".".join(names))
+    reading.attributes.append((device, ".".join((node, *names)).replace(".(", "(")))

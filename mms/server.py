@@ -103,9 +103,9 @@ class Server:
         lib.IedServerConfig_enableFileService(config, file_root is not None)
         if file_root is not None:
             lib.IedServerConfig_setFileServiceBasePath(config, f"{file_root.resolve()}/".encode())
-        off = False
+        off, on = False, True
         lib.IedServerConfig_enableDynamicDataSetService(config, off)
-        lib.IedServerConfig_enableLogService(config, off)
+        lib.IedServerConfig_enableLogService(config, on)  # lists log control blocks, keeps no logs
         lib.IedServerConfig_useIntegratedGoosePublisher(config, off)
         server = lib.IedServer_createWithConfig(self._model.pointer, None, config)
         lib.IedServerConfig_destroy(config)

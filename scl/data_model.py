@@ -209,19 +209,7 @@ class LogControl:
 
 
 @dataclass(frozen=True, slots=True)
-class GooseControl:
-    """A GOOSE control block; the multicast address is None where the communication section has none."""
-
-    name: str
-    application_id: str
-    data_set: str | None
-    configuration_revision: int
-    fixed_offsets: bool
-    address: "GooseAddress | None" = None
-
-
-@dataclass(frozen=True, slots=True)
-class GooseAddress:
+class MulticastAddress:
     """mac: six bytes. Times in ms, None where the file gives none."""
 
     mac: bytes
@@ -230,6 +218,32 @@ class GooseAddress:
     vlan_priority: int
     minimum_time_ms: int | None = None
     maximum_time_ms: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class GooseControl:
+    """A GOOSE control block; the multicast address is None where the communication section has none."""
+
+    name: str
+    application_id: str
+    data_set: str | None
+    configuration_revision: int
+    fixed_offsets: bool
+    address: MulticastAddress | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SampledValueControl:
+    """sample_mode: what sample_rate counts: 0 samples a period, 1 samples a second, 2 seconds a sample."""
+
+    name: str
+    stream_id: str
+    data_set: str | None
+    configuration_revision: int
+    sample_mode: int
+    sample_rate: int
+    multicast: bool
+    address: MulticastAddress | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,6 +267,7 @@ class LogicalNode:
     log_controls: tuple[LogControl, ...] = ()
     logs: tuple[str, ...] = ()
     goose_controls: tuple[GooseControl, ...] = ()
+    sampled_value_controls: tuple[SampledValueControl, ...] = ()
     setting_groups: SettingGroups | None = None
 
     @property

@@ -5,7 +5,7 @@ import re
 from lxml import etree
 
 from scl.data_model import DataSet, DataSetMember, FunctionalConstraint, Ied
-from scl.document import Document, decimal, node_name
+from scl.document import NAME, Document, decimal, node_name
 
 LONGEST_REFERENCE = 129
 ARRAY_INDEX = re.compile(r"\(([0-9]{1,6})\)")
@@ -19,12 +19,14 @@ class DataSetReader:
         self._domains = domains
         self._members: list[tuple[etree._Element, DataSetMember]] = []
 
-    def data_sets(self, node: etree._Element, reference: str, device: str) -> dict[str, DataSet]:
-        """The data sets of an LN or LN0 element of a logical device, by name."""
+    def data_sets(self, elements: list[etree._Element], reference: str, device: str) -> dict[str, DataSet]:
+        """The data sets of a logical node of a device, by name; those no client could name are left out."""
         document = self._document
         data_sets: dict[str, DataSet] = {}
-        for element in document.children(node, "DataSet"):
-            name = document.name(element, "name")
+        for element in elements:
+            name = document.usable_name(element, "name")
+            if name is None:
+                continue
             if name in data_sets:
                 document.note(element, "a second data set of this name: the first one counts")
                 continue
@@ -50,6 +52,9 @@ class DataSetReader:
         if constraint not in FunctionalConstraint.__members__ or not element.get("doName"):
             document.note(element, "names no data without doName and a known fc: member left out")
             return None
+        if not all(NAME.fullmatch(element.get(word) or "x") for word in ("prefix", "lnClass", "lnInst")):
+            document.note(element, "names no logical node: member left out")
+            return None
         logical_node = "".join(node_name(document, element, "lnInst"))
         indexed_path = ".".join(filter(None, (element.get("doName"), element.get("daName"))))
         # edition 1 writes an array index into the name, "phsAHar(2)"; edition 2 has the attribute ix
@@ -60,7 +65,8 @@ class DataSetReader:
         path = ARRAY_INDEX.sub("", indexed_path)
         reference = f"{self._domains[inst]}/{logical_node}.{path}"
         if len(reference) > LONGEST_REFERENCE:
-            raise document.error(element, f"a reference of at most {LONGEST_REFERENCE} characters", reference)
+            document.note(element, f"a reference of over {LONGEST_REFERENCE} characters: member left out")
+            return None
         member = DataSetMember(
             reference=reference,
             fc=FunctionalConstraint[constraint],

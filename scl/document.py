@@ -4,6 +4,7 @@ The file is hostile until proven otherwise: no document type, no entities, no ne
 """
 
 import re
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,6 +18,7 @@ NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 IED_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 IDENTITY = ("name", "id", "inst", "iedName", "apName", "prefix", "lnClass", "lnType", "type", "doName")
 EXCERPT = 60
+MOST_FINDINGS = 1000
 
 
 def parse(path: Path) -> etree._ElementTree:
@@ -68,6 +70,7 @@ class Document:
         name = etree.QName(self.root)
         self._prefix = f"{{{NAMESPACE}}}" if name.namespace else ""
         self._names: dict[tuple[str, ...], tuple[str, ...]] = {}
+        self._names_seen: set[str] = set()  # found to be names
         if name.localname != "SCL" or name.namespace not in (NAMESPACE, None):
             raise self.error(self.root, f"a root element SCL of {NAMESPACE}", str(self.root.tag))
         if not name.namespace:
@@ -83,7 +86,20 @@ class Document:
         )
 
     def note(self, element: etree._Element, message: str) -> None:
-        self.findings.append(Finding(_line(element), excerpt(element), message))
+        """Add a finding; of very many only the first are kept, and the last of those says so."""
+        if len(self.findings) < MOST_FINDINGS:
+            self.findings.append(Finding(_line(element), excerpt(element), message))
+        elif len(self.findings) == MOST_FINDINGS:
+            self.findings.append(Finding(_line(element), excerpt(element), "more is odd: not listed"))
+
+    def is_own(self, element: etree._Element) -> bool:
+        """Whether an element is of the SCL namespace, not a vendor's."""
+        tag = str(element.tag)
+        return tag.startswith(self._prefix) if self._prefix else not tag.startswith("{")
+
+    def qualified(self, tag: str) -> str:
+        """A tag as the parser gives it in this document, with its namespace."""
+        return self._prefix + tag
 
     def children(self, element: etree._Element | None, *tags: str) -> Iterator[etree._Element]:
         """Children of the SCL namespace with one of the tags, in file order."""
@@ -91,8 +107,16 @@ class Document:
             return iter(())
         names = self._names.get(tags)
         if names is None:
-            names = self._names[tags] = tuple(self._prefix + tag for tag in tags)
+            names = self._names[tags] = tuple(map(self.qualified, tags))
         return element.iterchildren(*names)
+
+    def grouped(self, element: etree._Element) -> defaultdict[str, list[etree._Element]]:
+        """Children of the SCL namespace by tag, in file order."""
+        groups: defaultdict[str, list[etree._Element]] = defaultdict(list)
+        for child in element:
+            if self.is_own(child):
+                groups[str(child.tag)[len(self._prefix) :]].append(child)
+        return groups
 
     def descendants(self, element: etree._Element, tag: str) -> Iterator[etree._Element]:
         """Elements of a tag at any depth, in file order, but for those inside a Private element."""
@@ -117,18 +141,13 @@ class Document:
             raise self.error(element, f"an attribute {attribute}", "none")
         return value
 
-    def label(self, element: etree._Element, attribute: str) -> str:
-        """A name outside the data model; an empty one, with a finding, where it is missing."""
-        value = element.get(attribute)
-        if not value:
-            self.note(element, f"no {attribute}")
-        return value or ""
-
     def name(self, element: etree._Element, attribute: str, *, default: str | None = None) -> str:
         """An attribute that becomes part of a reference: letters, digits, _ and - only."""
         value = element.get(attribute, default)
         if value is None:
             raise self.error(element, f"an attribute {attribute}", "none")
+        if value in self._names_seen:
+            return value
         if value != value.strip():
             self.note(element, f"blanks around {attribute}={value!r} are passed over")
             value = value.strip()
@@ -136,7 +155,17 @@ class Document:
             raise self.error(
                 element, f"{attribute} of 1 to 64 letters, digits, underscores and hyphens", repr(value)
             )
+        if value:
+            self._names_seen.add(value)
         return value
+
+    def usable_name(self, element: etree._Element, attribute: str) -> str | None:
+        """A name as `name` gives it; None, with a finding, where there is none a client could use."""
+        value = element.get(attribute, "").strip()
+        if NAME.fullmatch(value):
+            return value
+        self.note(element, f"{attribute}={value[:EXCERPT]!r} is no name of letters, digits and _: left out")
+        return None
 
     def integer(
         self, element: etree._Element, attribute: str, default: int, *, maximum: int = 2**32 - 1

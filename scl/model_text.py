@@ -6,7 +6,7 @@ left out (initial values of bit strings, say) or refused (names longer than the 
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from scl.configuration import Scl
 from scl.data_model import (
@@ -19,7 +19,9 @@ from scl.data_model import (
     LogControl,
     LogicalDevice,
     LogicalNode,
+    MulticastAddress,
     ReportControl,
+    SampledValueControl,
 )
 from scl.errors import SclError
 
@@ -46,6 +48,7 @@ TYPES = {
     "FLOAT32": 10,
     "FLOAT64": 11,
     "Enum": 12,
+    "Octet16": 13,  # the library has octet strings of 6, of 8 and of up to 64
     "Octet64": 13,
     "Octet6": 14,
     "EntryID": 15,
@@ -66,6 +69,8 @@ TYPES = {
     "PhyComAddr": 29,
     "Currency": 30,
     "OptFlds": 31,
+    "SvOptFlds": 31,
+    "LogOptFlds": 31,
     "TrgOps": 32,
 }
 INTEGER_RANGES = {
@@ -125,16 +130,23 @@ def model_text(scl: Scl, ied_name: str) -> str:
 
 
 def _model(ied: Ied) -> Iterator[str]:
-    yield f"MODEL({ied.name}){{"
+    """A domain is called by IED name and inst, or by an ldName of its own.
+
+    The library cannot lead a data set of a domain with a name of its own to members in another: with such a
+    domain in the IED the model has no name, and every logical device carries its domain's whole name as inst.
+    """
+    own_names = any(device.named for device in ied.logical_devices)
+    domains = {device.inst: device.name if own_names else device.inst for device in ied.logical_devices}
+    yield "MODEL{" if own_names else f"MODEL({ied.name}){{"
     for device in ied.logical_devices:
-        yield f"LD({device.inst} {device.name}){{" if device.named else f"LD({device.inst}){{"
+        yield f"LD({domains[device.inst]}){{"
         for node in device.logical_nodes:
-            yield from _node(ied, device, node)
+            yield from _node(ied, device, node, domains)
         yield "}"
     yield "}"
 
 
-def _node(ied: Ied, device: LogicalDevice, node: LogicalNode) -> Iterator[str]:
+def _node(ied: Ied, device: LogicalDevice, node: LogicalNode, domains: Mapping[str, str]) -> Iterator[str]:
     yield f"LN({node.name}){{"
     if node.setting_groups is not None and node.ln_class == "LLN0":
         yield f"SG({node.setting_groups.active} {node.setting_groups.number})"
@@ -143,22 +155,29 @@ def _node(ied: Ied, device: LogicalDevice, node: LogicalNode) -> Iterator[str]:
     for data_set in node.data_sets:
         yield f"DS({data_set.name}){{"
         for member in data_set.members:
-            yield from _member(ied, device, member)
+            yield from _member(ied, device, member, domains)
         yield "}"
     for report in node.report_controls:
         yield from _report(report, owner=ied.reports_show_owner)
     for log_control in node.log_controls:
-        yield _log_control(device, node, log_control)
+        yield _log_control(domains[device.inst], node, log_control)
     for log in node.logs:
         yield f"LOG({log});"
     for goose in node.goose_controls:
         yield from _goose(goose)
+    for stream in node.sampled_value_controls:
+        yield from _sampled_values(stream)
     yield "}"
 
 
 def _object(data_object: DataObject, *, transient: bool) -> Iterator[str]:
     transient = transient or data_object.transient
     yield f"DO({data_object.name} {data_object.count}){{"
+    yield from _elements(data_object.count, list(_object_parts(data_object, transient=transient)))
+    yield "}"
+
+
+def _object_parts(data_object: DataObject, *, transient: bool) -> Iterator[str]:
     for part in data_object.objects:
         yield from _object(part, transient=transient)
     for attribute in data_object.attributes:
@@ -166,7 +185,16 @@ def _object(data_object: DataObject, *, transient: bool) -> Iterator[str]:
             # an editable setting is also read as the active group's: libiec61850 wants both, SG first
             yield from _attribute(attribute, FunctionalConstraint.SG, transient=transient)
         yield from _attribute(attribute, attribute.fc, transient=transient)
-    yield "}"
+
+
+def _elements(count: int, parts: list[str]) -> Iterator[str]:
+    """The parts of an object or struct; of an array, once for each element."""
+    if not count:
+        yield from parts
+    for index in range(count):
+        yield f"[{index}]{{"
+        yield from parts
+        yield "}"
 
 
 def _attribute(
@@ -178,10 +206,17 @@ def _attribute(
     triggers = attribute.trigger_options.value | (TRANSIENT if transient else 0)
     head = f"DA({attribute.name} {attribute.count} {kind} {CONSTRAINTS[constraint]} {triggers} 0)"
     if attribute.basic_type == "Struct":
+        parts = [
+            line
+            for part in attribute.attributes
+            for line in _attribute(part, constraint, transient=transient)
+        ]
         yield f"{head}{{"
-        for part in attribute.attributes:
-            yield from _attribute(part, constraint, transient=transient)
+        yield from _elements(attribute.count, parts)
         yield "}"
+        return
+    if attribute.count:
+        yield f"{head};"  # the parser has no notation for one value of all elements
         return
     value = _initial_value(attribute)
     yield f"{head};" if value is None else f"{head}={value};"
@@ -229,7 +264,9 @@ def _string(text: str, longest: int, *, ascii_only: bool) -> str:
     return f'"{encoded[:longest].decode(errors="ignore").rstrip("{")}"'
 
 
-def _member(ied: Ied, device: LogicalDevice, member: DataSetMember) -> Iterator[str]:
+def _member(
+    ied: Ied, device: LogicalDevice, member: DataSetMember, domains: Mapping[str, str]
+) -> Iterator[str]:
     """A data set entry, LN$FC$DO$DA [array element [component]]; one that names no data is left out."""
     if ied.resolve(member) is None:
         return
@@ -237,7 +274,7 @@ def _member(ied: Ied, device: LogicalDevice, member: DataSetMember) -> Iterator[
     array = _array_depth(ied, member, names)
     words = ["$".join((member.logical_node, member.fc, *names[:array]))]
     if member.logical_device != device.inst:
-        words[0] = f"{member.logical_device}/{words[0]}"
+        words[0] = f"{domains[member.logical_device]}/{words[0]}"
     if member.index is not None and array is not None:
         words += [str(member.index), "$".join(names[array:])]
     yield f"DE({' '.join(words).rstrip()});"
@@ -266,8 +303,8 @@ def _report(report: ReportControl, *, owner: bool) -> Iterator[str]:
         )
 
 
-def _log_control(device: LogicalDevice, node: LogicalNode, log: LogControl) -> str:
-    reference = "-" if log.log is None else f"{device.inst}/{node.name}${log.log}"
+def _log_control(domain: str, node: LogicalNode, log: LogControl) -> str:
+    reference = "-" if log.log is None else f"{domain}/{node.name}${log.log}"
     return (
         f"LC({log.name} {log.data_set or '-'} {reference} {log.trigger_options.value} "
         f"{log.integrity_period_ms} {int(log.enabled)} {int(log.reason_code)});"
@@ -275,18 +312,30 @@ def _log_control(device: LogicalDevice, node: LogicalNode, log: LogControl) -> s
 
 
 def _goose(goose: GooseControl) -> Iterator[str]:
-    if goose.data_set is None:
-        return
     address = goose.address
     times = (None, None) if address is None else (address.minimum_time_ms, address.maximum_time_ms)
     minimum, maximum = (-1 if time is None else time for time in times)
     yield (
-        f"GC({goose.name} {_word(goose.application_id)} {goose.data_set} {goose.configuration_revision} "
-        f"{int(goose.fixed_offsets)} {minimum} {maximum} ){{"
+        f"GC({goose.name} {_word(goose.application_id)} {goose.data_set or '-'} "
+        f"{goose.configuration_revision} {int(goose.fixed_offsets)} {minimum} {maximum} ){{"
     )
-    if address is not None:
-        yield (f"PA({address.vlan_priority} {address.vlan_id} {address.application_id} {address.mac.hex()});")
+    yield from _multicast_address(address)
     yield "}"
+
+
+def _sampled_values(stream: SampledValueControl) -> Iterator[str]:
+    yield (
+        f"SMVC({stream.name} {_word(stream.stream_id)} {stream.data_set or '-'} "
+        f"{stream.configuration_revision} {stream.sample_mode} {stream.sample_rate} 0 "
+        f"{int(not stream.multicast)}){{"
+    )
+    yield from _multicast_address(stream.address)
+    yield "}"
+
+
+def _multicast_address(address: MulticastAddress | None) -> Iterator[str]:
+    if address is not None:
+        yield f"PA({address.vlan_priority} {address.vlan_id} {address.application_id} {address.mac.hex()});"
 
 
 def _word(text: str | None) -> str:

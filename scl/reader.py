@@ -18,19 +18,21 @@ from scl.configuration import (
     SubNetwork,
     Substation,
 )
+from scl.conformance import check_conformance
 from scl.data_model import Ied
 from scl.document import Document, content
-from scl.goose_addresses import goose_addresses
 from scl.ied_section import IedSection
 from scl.instance_values import InstanceValues
+from scl.multicast_addresses import multicast_addresses
 from scl.templates import Templates
 
 
 def read(path: Path | str) -> Scl:
     """Read an ICD, CID, IID or SCD; SclError when it is missing, no safe XML or its model is unclear."""
     document = Document(Path(path))
+    check_conformance(document)
     templates, instance_values = Templates(document), InstanceValues(document)
-    addresses = goose_addresses(document)
+    addresses = multicast_addresses(document)
     ieds: dict[str, Ied] = {}
     for element in document.children(document.root, "IED"):
         ied = IedSection(document, element, templates, instance_values, addresses).read()
@@ -46,7 +48,7 @@ def read(path: Path | str) -> Scl:
         ieds=tuple(ieds.values()),
         communication=communication,
         substations=substations,
-        warnings=tuple(document.findings),
+        warnings=tuple(sorted(document.findings, key=lambda finding: finding.line)),
     )
 
 
@@ -54,7 +56,6 @@ def _header(document: Document) -> Header:
     root = document.root
     header = document.child(root, "Header")
     if header is None:
-        document.note(root, "no Header")
         header = etree.Element("Header")
     if root.get("version") is None:
         edition = "1"
@@ -87,12 +88,12 @@ def _communication(document: Document, ieds: dict[str, Ied]) -> tuple[SubNetwork
 def _connected_access_point(
     document: Document, network: etree._Element, element: etree._Element, ieds: dict[str, Ied]
 ) -> ConnectedAccessPoint:
-    ied = document.label(element, "iedName")
+    ied = element.get("iedName", "")
     if ied not in ieds:
         document.note(element, "names an IED this file does not hold")
     return ConnectedAccessPoint(
         ied=ied,
-        access_point=document.label(element, "apName"),
+        access_point=element.get("apName", ""),
         subnetwork=network.get("name", ""),
         parameters=_address_parameters(document, element),
         line=element.sourceline or 0,
@@ -103,14 +104,14 @@ def _address_parameters(document: Document, element: etree._Element) -> dict[str
     """The P elements of an Address by type, with or without xsi:type; the first of a type counts."""
     parameters: dict[str, str] = {}
     for parameter in document.children(document.child(element, "Address"), "P"):
-        parameters.setdefault(document.label(parameter, "type"), content(parameter))
+        parameters.setdefault(parameter.get("type", ""), content(parameter))
     return parameters
 
 
 def _substations(document: Document, ieds: dict[str, Ied]) -> tuple[Substation, ...]:
     return tuple(
         Substation(
-            name=document.label(substation, "name"),
+            name=substation.get("name", ""),
             description=substation.get("desc", ""),
             bays=tuple(
                 _bay(document, level, bay, ieds)
@@ -125,7 +126,7 @@ def _substations(document: Document, ieds: dict[str, Ied]) -> tuple[Substation, 
 def _bay(document: Document, level: etree._Element, bay: etree._Element, ieds: dict[str, Ied]) -> Bay:
     attached = _attached(document, document.children(bay, "LNode"), ieds)
     return Bay(
-        name=document.label(bay, "name"),
+        name=bay.get("name", ""),
         description=bay.get("desc", ""),
         voltage_level=level.get("name", ""),
         equipment=tuple(
@@ -141,8 +142,8 @@ def _equipment(
 ) -> Equipment:
     attached = _attached(document, document.descendants(element, "LNode"), ieds)
     equipment = Equipment(
-        name=document.label(element, "name"),
-        type=document.label(element, "type"),
+        name=element.get("name", ""),
+        type=element.get("type", ""),
         description=element.get("desc", ""),
         ieds=attached,
     )

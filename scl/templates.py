@@ -72,33 +72,47 @@ class Templates:
         self._document = document
         self._elements: dict[tuple[str, str], etree._Element] = {}
         self._resolved: dict[tuple[str, str], _Resolved] = {}
-        self._nodes: dict[str, tuple[DataObject, ...]] = {}
+        self._node_types: dict[str, list[etree._Element]] = {}
+        self._nodes: dict[etree._Element, tuple[DataObject, ...]] = {}
         self._inherited: dict[
             tuple[str, FunctionalConstraint, TriggerOptions], tuple[DataAttribute, ...]
         ] = {}
         self._copies = 0
         self._enumerations: dict[str, Enumeration] = {}
         for section in document.children(document.root, "DataTypeTemplates"):
-            for element in document.children(section, "LNodeType", "DOType", "DAType", "EnumType"):
-                key = etree.QName(element).localname, document.required(element, "id")
+            for element in document.children(section, "LNodeType"):
+                self._node_types.setdefault(element.get("id", ""), []).append(element)
+            for element in document.children(section, "DOType", "DAType", "EnumType"):
+                key = etree.QName(element).localname, element.get("id", "")
                 if key in self._elements:
                     document.note(element, "a second type of this id: the first one counts")
                 else:
                     self._elements[key] = element
 
-    def data_objects(self, node: etree._Element) -> tuple[DataObject, ...]:
+    def data_objects(self, node: etree._Element, ln_class: str, ied_type: str) -> tuple[DataObject, ...]:
         """The data objects of a logical node (an LN or LN0 element) as its LNodeType defines them."""
-        document = self._document
-        type_id = document.required(node, "lnType")
-        if type_id not in self._nodes:
-            definition = self._find("LNodeType", type_id, node)
+        definition = self._node_type(node, ln_class, ied_type)
+        if definition not in self._nodes:
             objects: list[DataObject] = []
             for name, member in self._named(definition, "DO"):
-                part, count = self._resolve("DOType", member, ()), self._count(member)
-                self._check(member, _Extent().plus(name, count, part.extent))
-                objects.append(self._data_object(name, count, member, part))
-            self._nodes[type_id] = tuple(objects)
-        return self._nodes[type_id]
+                part = self._resolve("DOType", member, ())
+                self._check(member, _Extent().plus(name, 0, part.extent))
+                objects.append(self._data_object(name, 0, member, part))
+            self._nodes[definition] = tuple(objects)
+        return self._nodes[definition]
+
+    def _node_type(self, node: etree._Element, ln_class: str, ied_type: str) -> etree._Element:
+        """The LNodeType a node names. Types of several classes and of several IED types may share an id."""
+        type_id = self._document.required(node, "lnType")
+        found = self._node_types.get(type_id)
+        if not found:
+            raise self._document.error(node, f'a LNodeType with id="{type_id}" in DataTypeTemplates', "none")
+        if len(found) == 1:
+            return found[0]
+        return max(
+            found,
+            key=lambda each: (each.get("lnClass") == ln_class, each.get("iedType", "") in ("", ied_type)),
+        )
 
     def _find(self, kind: str, type_id: str, user: etree._Element) -> etree._Element:
         element = self._elements.get((kind, type_id))
@@ -257,7 +271,7 @@ def trigger_options(
     document: Document, element: etree._Element | None, *, general_interrogation: bool
 ) -> TriggerOptions:
     """dchg, qchg, dupd, period and gi of a DA or TrgOps element; gi is set by default in TrgOps."""
-    options = TriggerOptions.NONE
+    options = 0
     for attribute, option in (
         ("dchg", TriggerOptions.DATA_CHANGE),
         ("qchg", TriggerOptions.QUALITY_CHANGE),
@@ -265,10 +279,10 @@ def trigger_options(
         ("period", TriggerOptions.INTEGRITY),
     ):
         if document.boolean(element, attribute):
-            options |= option
+            options |= option.value
     if general_interrogation and document.boolean(element, "gi", default=True):
-        options |= TriggerOptions.GENERAL_INTERROGATION
-    return options
+        options |= TriggerOptions.GENERAL_INTERROGATION.value
+    return TriggerOptions(options)
 
 
 def initial_value(document: Document, element: etree._Element) -> str | None:

@@ -1,8 +1,5 @@
 """The model text: what libiec61850 serves from it is the file's data model; nothing breaks its grammar."""
 
-import socket
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -13,27 +10,8 @@ from mms import FunctionalConstraint
 from scl import Scl, SclError
 from scl.data_model import LogicalNode
 from scl.model_text import model_text
+from tests.scl.browsing import served
 from tests.scl.documents import NODE_ZERO, TEMPLATES, scl_text, write_scl
-
-
-@contextmanager
-def served(text: str) -> Iterator[mms.Client]:
-    """A client of a server that serves the model text; another port is tried when one is taken meanwhile."""
-    for attempt in range(5):
-        with socket.socket() as listener:
-            listener.bind(("127.0.0.1", 0))
-            port = listener.getsockname()[1]
-        server = mms.Server(text, port=port)
-        try:
-            server.start()
-        except mms.ServerStartFailed:
-            server.close()
-            if attempt == 4:
-                raise
-            continue
-        break
-    with server, mms.Client.connect("127.0.0.1", port) as client:
-        yield client
 
 
 def read_text(tmp_path: Path, **parts: str) -> str:
@@ -97,7 +75,7 @@ EVERYTHING = """
     <DA name="pos" bType="Dbpos" fc="ST"><Val>on</Val></DA>
     <DA name="mode" bType="Enum" type="Mode" fc="ST"><Val>5</Val></DA>
     <DA name="odd" bType="Enum" type="Mode" fc="ST"><Val>nowhere</Val></DA>
-    <DA name="opt" bType="SvOptFlds" fc="SP"/>
+    <DA name="opt" bType="Optional" fc="SP"/>
     <DA name="set" bType="INT32" fc="SE"><Val>7</Val></DA>
   </DOType>
   <EnumType id="Mode"><EnumVal ord="1">on</EnumVal></EnumType>
@@ -163,14 +141,16 @@ def test_control_blocks_are_written_for_the_parser(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("member", "entry"),
     [
-        ('doName="Har" daName="mag.f" ix="1" fc="MX"', "DE(GGIO1$MX$Har 1 mag$f);"),
-        ('doName="Har(1)" daName="mag.f" fc="MX"', "DE(GGIO1$MX$Har 1 mag$f);"),
-        ('doName="Har" ix="1" fc="MX"', "DE(GGIO1$MX$Har 1);"),
+        ('doName="Har.har" daName="mag.f" ix="1" fc="MX"', "DE(GGIO1$MX$Har$har 1 mag$f);"),
+        ('doName="Har.har(1)" daName="mag.f" fc="MX"', "DE(GGIO1$MX$Har$har 1 mag$f);"),
+        ('doName="Har.har" ix="1" fc="MX"', "DE(GGIO1$MX$Har$har 1);"),
         ('doName="Ind1" ix="1" fc="ST"', "DE(GGIO1$ST$Ind1);"),
     ],
 )
 def test_array_elements_in_data_sets(tmp_path: Path, member: str, entry: str) -> None:
-    templates = TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="Har" type="MV" count="3"/>')
+    templates = TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="Har" type="HMV"/>').replace(
+        "<DAType ", '<DOType id="HMV" cdc="HMV"><SDO name="har" type="MV" count="3"/></DOType><DAType ', 1
+    )
     node_zero = NODE_ZERO.replace(
         "/>", f'><DataSet name="DS"><FCDA ldInst="LD0" lnClass="GGIO" lnInst="1" {member}/></DataSet></LN0>'
     )
@@ -182,8 +162,10 @@ def test_members_in_other_logical_devices_and_ld_names(tmp_path: Path) -> None:
       <DataSet name="DS"><FCDA ldInst="LD0" lnClass="LLN0" doName="Mod" daName="stVal" fc="ST"/></DataSet>
       </LN0>"""
     lines = read_text(tmp_path, nodes=nodes).splitlines()
-    assert "LD(LD1 Second){" in lines
-    assert "DE(LD0/LLN0$ST$Mod$stVal);" in lines
+    assert lines[0] == "MODEL{"
+    assert "LD(R1LD0){" in lines
+    assert "LD(Second){" in lines
+    assert "DE(R1LD0/LLN0$ST$Mod$stVal);" in lines
 
 
 def test_transient_objects_are_marked(tmp_path: Path) -> None:

@@ -192,7 +192,29 @@ def test_logs_settings_and_goose(tmp_path: Path) -> None:
             {"templates": TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="Ind1" type="MV"/>')},
             "a second member of this name",
         ),
-        ({"templates": TEMPLATES.replace('type="Mod"/>', 'type="Mod" count="n"/>')}, "array count 'n'"),
+        ({"templates": TEMPLATES.replace('name="mag"', 'name="mag" count="n"')}, "array count 'n'"),
+        (
+            {
+                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
+                f'<FCDA lnClass="GGIO" doName="{"x" * 130}" fc="ST"/></DataSet></LN0>'
+            },
+            "a reference of over 129 characters: member left out",
+        ),
+        (
+            {"node_zero": '<LN0 lnType="LLN0"><DataSet name="D 1"/><ReportControl/></LN0>'},
+            "name='D 1' is no name of letters, digits and _: left out",
+        ),
+        (
+            {
+                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
+                '<FCDA lnClass="G G" doName="Ind1" fc="ST"/></DataSet></LN0>'
+            },
+            "names no logical node: member left out",
+        ),
+        (
+            {"nodes": '<LN lnClass="GGIO" inst="1" lnType="GGIO"><DOI/></LN>'},
+            "an instance without name: left out",
+        ),
         ({"communication": COMMUNICATION.replace('apName="S1"', "")}, 'iedName="R1">: no apName'),
         (
             {
@@ -229,13 +251,6 @@ def test_oddities_become_warnings_with_a_line(tmp_path: Path, parts: dict[str, s
         (
             {"nodes": f'<LN prefix="{"P" * 40}" lnClass="GGIO" inst="{"1" * 40}" lnType="GGIO"/>'},
             "a name of at most 64 characters",
-        ),
-        (
-            {
-                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
-                f'<FCDA lnClass="GGIO" doName="{"x" * 130}" fc="ST"/></DataSet></LN0>'
-            },
-            "a reference of at most 129 characters",
         ),
         ({"nodes": '</LDevice><LDevice inst="LD0">' + NODE_ZERO}, "one LDevice of each inst"),
         ({"root": 'xmlns="urn:something"'}, "a root element SCL"),

@@ -1,33 +1,34 @@
-"""Multicast addresses of GOOSE control blocks, from the GSE elements of the communication section."""
+"""Multicast addresses of GOOSE and sampled value control blocks, from the communication section."""
 
 import re
 from collections.abc import Mapping
 
 from lxml import etree
 
-from scl.data_model import GooseAddress
+from scl.data_model import MulticastAddress
 from scl.document import Document, content, decimal
 
 MAC = re.compile(r"(?:[0-9A-Fa-f]{2}[-:]?){5}[0-9A-Fa-f]{2}")
 
-GooseAddresses = Mapping[tuple[str, str, str], GooseAddress]
-"""By IED name, logical device inst and control block name."""
+MulticastAddresses = Mapping[tuple[str, str, str, str], MulticastAddress]
+"""By element (GSE or SMV), IED name, logical device inst and control block name."""
 
 
-def goose_addresses(document: Document) -> GooseAddresses:
+def multicast_addresses(document: Document) -> MulticastAddresses:
     """The addresses of a document; unusable ones become findings."""
-    addresses: dict[tuple[str, str, str], GooseAddress] = {}
+    addresses: dict[tuple[str, str, str, str], MulticastAddress] = {}
     for section in document.children(document.root, "Communication"):
         for connected in document.descendants(section, "ConnectedAP"):
-            for element in document.children(connected, "GSE"):
-                key = connected.get("iedName", ""), element.get("ldInst", ""), element.get("cbName", "")
+            ied = connected.get("iedName", "")
+            for element in document.children(connected, "GSE", "SMV"):
                 address = _address(document, element)
+                block = ied, element.get("ldInst", ""), element.get("cbName", "")
                 if address is not None:
-                    addresses.setdefault(key, address)
+                    addresses.setdefault((etree.QName(element).localname, *block), address)
     return addresses
 
 
-def _address(document: Document, element: etree._Element) -> GooseAddress | None:
+def _address(document: Document, element: etree._Element) -> MulticastAddress | None:
     parameters = {
         parameter.get("type", ""): content(parameter)
         for parameter in document.children(document.child(element, "Address"), "P")
@@ -39,7 +40,7 @@ def _address(document: Document, element: etree._Element) -> GooseAddress | None
     if not MAC.fullmatch(mac) or application_id is None or vlan_id is None or vlan_priority is None:
         document.note(element, "no usable multicast address: left out")
         return None
-    return GooseAddress(
+    return MulticastAddress(
         mac=bytes.fromhex(re.sub("[-:]", "", mac)),
         application_id=application_id,
         vlan_id=vlan_id & 0xFFF,

@@ -1,0 +1,114 @@
+"""Where a document departs from the SCL schema: findings with lines, never a refusal."""
+
+from collections.abc import Iterator
+
+from lxml import etree
+
+from scl.document import Document
+from scl.schema import RULES, UNDESCRIBED, VALUES, Rule
+
+
+def check_conformance(document: Document) -> None:
+    """Note what is missing, misplaced or unknown in the SCL namespace, and values the schema does not allow.
+
+    Other namespaces and Private elements are vendors' own and passed over.
+    """
+    _Checker(document).check()
+
+
+class _Checker:
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._rules = {document.qualified(tag): (tag, rule) for tag, rule in RULES.items()}
+        self._undescribed = {document.qualified(tag): tag for tag in UNDESCRIBED}
+        self._tags = {**{qualified: tag for qualified, (tag, _) in self._rules.items()}, **self._undescribed}
+        # The same few combinations of attributes come by the hundred thousand: by tag and names, what is
+        # wrong with them and which of them have a value to look at.
+        self._known_attributes: dict[
+            tuple[str, tuple[str, ...]], tuple[tuple[str, ...], tuple[str, ...]]
+        ] = {}
+        self._known_values: dict[tuple[str, str, str], str | None] = {}
+
+    def check(self) -> None:
+        pending = [self._document.root]
+        while pending:
+            element = pending.pop()
+            known = self._rules.get(str(element.tag))
+            if known is None:
+                continue
+            tag, rule = known
+            self._check_attributes(element, tag, rule)
+            if len(element):
+                children = self._children(element)
+                self._check_children(element, rule, children)
+                pending.extend(child for child, _ in reversed(children))
+            elif rule.least:
+                self._note_missing(element, rule.least)
+
+    def _children(self, element: etree._Element) -> list[tuple[etree._Element, str]]:
+        """Children of the SCL namespace and their tags; those of no known tag are noted and left out."""
+        found = []
+        for child in element:
+            tag = self._tags.get(str(child.tag))
+            if tag is not None:
+                found.append((child, tag))
+            elif self._document.is_own(child):
+                self._document.note(child, "the SCL schema has no such element: passed over")
+        return found
+
+    def _check_children(
+        self, element: etree._Element, rule: Rule, children: list[tuple[etree._Element, str]]
+    ) -> None:
+        place, before = 0, ""
+        seen: set[str] = set()
+        for child, tag in children:
+            here = rule.order.get(tag)
+            if here is None:
+                self._document.note(child, f"stands in {_name(element)}, where the SCL schema has none")
+                continue
+            if here < place:
+                self._document.note(child, f"stands after {before}, which it precedes in the SCL schema")
+            else:
+                place, before = here, tag
+            if tag in rule.most and tag in seen:
+                self._document.note(child, f"a second {tag} in {_name(element)}: the SCL schema has one")
+            seen.add(tag)
+        self._note_missing(element, (tag for tag in rule.least if tag not in seen))
+
+    def _note_missing(self, element: etree._Element, tags: Iterator[str] | tuple[str, ...]) -> None:
+        for tag in tags:
+            self._document.note(element, f"no {tag}, which the SCL schema requires")
+
+    def _check_attributes(self, element: etree._Element, tag: str, rule: Rule) -> None:
+        names = tuple(element.keys())
+        known = self._known_attributes.get((tag, names))
+        if known is None:
+            valued = tuple(name for name in names if (tag, name) in VALUES)
+            known = self._known_attributes[tag, names] = tuple(_attribute_faults(rule, names)), valued
+        for fault in known[0]:
+            self._document.note(element, fault)
+        for name in known[1]:
+            wrong = self._value_fault(tag, name, str(element.get(name)))
+            if wrong is not None:
+                self._document.note(element, wrong)
+
+    def _value_fault(self, tag: str, name: str, value: str) -> str | None:
+        key = tag, name, value
+        if key not in self._known_values:
+            rule = VALUES[tag, name]
+            right = rule.pattern.fullmatch(value.strip())
+            self._known_values[key] = None if right else f"{name}={value[:60]!r} is not {rule.expected}"
+        return self._known_values[key]
+
+
+def _attribute_faults(rule: Rule, names: tuple[str, ...]) -> Iterator[str]:
+    for name in rule.required:
+        if name not in names:
+            yield f"no {name}, which the SCL schema requires"
+    for name in names:
+        if name not in rule.attributes and not name.startswith("{"):
+            yield f"the SCL schema has no attribute {name} here: passed over"
+
+
+def _name(element: etree._Element) -> str:
+    return etree.QName(element).localname
