@@ -9,7 +9,10 @@ COPY pyproject.toml constraints.txt ./
 RUN python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['dependencies'], sep='\n')" > requirements.txt \
  && /opt/statorwatch/bin/pip install --constraint constraints.txt --requirement requirements.txt
 COPY . .
-RUN python -m pip wheel --no-deps --wheel-dir /wheels . \
+# What builds the wheel, pinned too: pip up to 25.2 reads the first of the two for it, later ones the second.
+RUN echo "setuptools==84.2.1" > build-constraints.txt \
+ && PIP_CONSTRAINT=/src/build-constraints.txt PIP_BUILD_CONSTRAINT=/src/build-constraints.txt \
+    python -m pip wheel --no-deps --wheel-dir /wheels . \
  && /opt/statorwatch/bin/pip install --no-deps /wheels/*.whl \
  && /opt/statorwatch/bin/pip uninstall --yes pip setuptools \
  && find /opt/statorwatch -type d -name tests -prune -exec rm -rf {} + \

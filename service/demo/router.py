@@ -13,7 +13,7 @@ import signal
 import socket
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import structlog
@@ -26,6 +26,9 @@ log = structlog.get_logger(__name__)
 
 CONNECT_TIMEOUT_S = 3.0
 """Shorter than the service's own, so that the service hears a clear end and not silence."""
+
+MOST_CONNECTIONS = 8
+"""To one relay at a time: as many as relays give associations, and a bound on the router's memory."""
 
 CHUNK_BYTES = 65536
 
@@ -42,9 +45,22 @@ class Passage:
     relay: str
     port: int
     address: Address
+    _places: asyncio.Semaphore = field(
+        default_factory=lambda: asyncio.Semaphore(MOST_CONNECTIONS), repr=False, compare=False
+    )
 
     async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        """One connection, until either side ends it."""
+        """One connection, until either side ends it; ended at once when MOST_CONNECTIONS are open."""
+        if self._places.locked():
+            client, *_ = writer.get_extra_info("peername") or ("gone",)
+            reason = f"{MOST_CONNECTIONS} connections are open"
+            log.warning("connection refused", relay=self.relay, client=client, reason=reason)
+            writer.transport.abort()
+            return
+        async with self._places:
+            await self._pass_on(reader, writer)
+
+    async def _pass_on(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         try:
             async with asyncio.timeout(CONNECT_TIMEOUT_S):
                 relay_reader, relay_writer = await asyncio.open_connection(

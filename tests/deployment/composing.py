@@ -2,14 +2,15 @@
 
 import json
 import os
+import re
 import shlex
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PROJECT = "statorwatch-test"
-LIMIT_S = 180.0
+LIMIT_S = 300.0
 BUILD_LIMIT_S = 1200.0
 
 
@@ -21,8 +22,8 @@ class Compose:
     """The compose file in a project of its own, beside any that runs; the API on `port` of the host."""
 
     def __init__(self, command: str, port: int) -> None:
-        self._words = command
-        self._command = [*shlex.split(command), "-p", PROJECT]
+        self._command = [*shlex.split(command), "-f", str(ROOT / "docker-compose.yml"), "-p", PROJECT]
+        self.port = port
         self._environment = {**os.environ, "MCC_HOST_PORT": str(port)}
 
     def __call__(self, *arguments: str, limit_s: float = LIMIT_S) -> str:
@@ -34,9 +35,23 @@ class Compose:
 
     def attempt(self, *arguments: str, limit_s: float = LIMIT_S) -> "subprocess.CompletedProcess[str]":
         """Run a verb that may fail; what it printed on both streams is in `stdout`."""
+        return self._run([*self._command, *arguments], ROOT, limit_s)
+
+    def follow(self, script: str, directory: Path | str) -> str:
+        """Run shell lines as a page has them; this command is their `docker compose`. Raises ComposeError."""
+        command = shlex.join(self._command)
+        meant = f'docker() {{ [ "$1" = compose ] && shift && {command} "$@"; }}\nset -e\n{script}'
+        ended = self._run(["sh", "-c", meant], directory, LIMIT_S)
+        if ended.returncode:
+            raise ComposeError(f"{script}\nexit code {ended.returncode}\n{ended.stdout[-4000:]}")
+        return ended.stdout
+
+    def _run(
+        self, command: Sequence[str], directory: Path | str, limit_s: float
+    ) -> "subprocess.CompletedProcess[str]":
         return subprocess.run(
-            [*self._command, *arguments],
-            cwd=ROOT,
+            command,
+            cwd=directory,
             env=self._environment,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -46,9 +61,9 @@ class Compose:
             check=False,
         )
 
-    def at_port(self, port: int) -> "Compose":
-        """The same project, with another port of the host for the API."""
-        return Compose(self._words, port)
+    def containers(self) -> list[str]:
+        """Identifiers of the project's containers."""
+        return re.findall(r"^[0-9a-f]{12,64}$", self("ps", "-q"), re.MULTILINE)
 
     def inside(self, service: str, *command: str) -> str:
         """What a command prints in a running container."""

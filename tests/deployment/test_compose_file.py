@@ -10,6 +10,7 @@ import yaml
 
 import scl
 from scl.demo_enterprise import WAN, write_demo_enterprise
+from tests.deployment.documented import blocks
 
 ROOT = Path(__file__).parents[2]
 DOCKERFILE = (ROOT / "Dockerfile").read_text(encoding="utf-8")
@@ -31,6 +32,28 @@ def test_images_are_pinned() -> None:
     assert set(bases) == {"docker.io/library/python:3.11-slim-bookworm"}
 
 
+def test_what_builds_the_wheel_is_pinned_too() -> None:
+    wheel = re.search(r"^RUN (?:.*\\\n)*.*pip wheel .*", DOCKERFILE, re.MULTILINE)
+    assert wheel
+    assert re.search(r'echo "setuptools==[\d.]+" > build-constraints\.txt', wheel[0])
+    for setting in ("PIP_CONSTRAINT", "PIP_BUILD_CONSTRAINT"):
+        assert f" {setting}=/src/build-constraints.txt " in wheel[0]
+
+
+def test_one_service_builds_and_no_registry_is_asked() -> None:
+    assert {service["pull_policy"] for service in SERVICES.values()} == {"never"}
+    assert [name for name, service in SERVICES.items() if "build" in service] == ["mcc"]
+
+
+@pytest.mark.parametrize("name", SERVICES)
+def test_what_a_container_may_use_is_bounded(name: str) -> None:
+    service = SERVICES[name]
+    memory_files, memory = ("256m", "2g") if name == "mcc" else ("64m", "512m")
+    assert service["tmpfs"] == [f"/tmp:size={memory_files}"]  # noqa: S108 - the container's own
+    assert service["mem_limit"] == memory
+    assert service["pids_limit"] == 256
+
+
 @pytest.mark.parametrize("name", SERVICES)
 def test_no_container_has_rights_it_does_not_need(name: str) -> None:
     service = SERVICES[name]
@@ -38,6 +61,8 @@ def test_no_container_has_rights_it_does_not_need(name: str) -> None:
     assert service["cap_drop"] == ["ALL"]
     assert service["security_opt"] == ["no-new-privileges:true"]
     assert not service.keys() & {"cap_add", "privileged", "user", "devices", "network_mode", "pid"}
+    port_102 = ["net.ipv4.ip_unprivileged_port_start=102"] if name.startswith("relay-") else None
+    assert service.get("sysctls") == port_102
 
 
 def test_the_image_is_not_run_as_root() -> None:
@@ -73,3 +98,16 @@ def test_hosts_are_those_of_the_scd(tmp_path: Path) -> None:
     environment = SERVICES["mcc"]["environment"]
     assert isinstance(environment, dict)
     assert environment["MCC_SUBNETWORK"] == WAN
+    for name, site in (("router-a", "FACTORY_A"), ("router-b", "FACTORY_B")):
+        check = SERVICES[name]["healthcheck"]
+        assert isinstance(check, dict)
+        ports = list(sites.values()).count(site)
+        assert check["test"].endswith(f"| grep -qx {ports}"), "one port for each relay"
+
+
+def test_the_lines_for_backup_and_restore_are_found() -> None:
+    back_up, restore = (block.splitlines() for block in blocks("Back-up and restore"))
+    assert all(line.startswith("docker compose ") for line in back_up[:3] + restore)
+    assert back_up[3:] == ["tar -tf backup.tar > /dev/null && echo whole"]
+    assert back_up[1].endswith("> backup.tar")
+    assert restore[1].endswith("< backup.tar")
