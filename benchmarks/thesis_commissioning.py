@@ -5,8 +5,7 @@ python -m benchmarks.thesis_commissioning [--seeds N] [--first-seed N] [--images
 prints the section as Markdown.
 
 Records come from the simulator's phase windings (tests/core/commissioning/starts.py), which share no code
-with the models. The motor is the thesis's (Table 3.2); the estimator is told the middle of Table 5.1, never
-the truth.
+with the models. The motor is Table 3.2's; the estimator is told the middle of Table 5.1, never the truth.
 """
 
 import argparse
@@ -41,7 +40,6 @@ from tests.core.commissioning.starts import StartRecord, plate_of
 from tests.core.motors import REFERENCE
 
 Array = NDArray[np.float64]
-
 IMAGES = Path(__file__).parent.parent / "docs" / "images" / "thesis"
 MIDDLE = 0.5 * (LOWER + UPPER)
 TRUTH = np.array([8.4, 8.2, 0.0328, 0.4377, 0.0229 / INERTIA_OF_H])

@@ -28,6 +28,8 @@ HIGHEST_RATE_HZ = 1e12
 """Beyond it a rate is a mistake, and angles lose their digits."""
 
 FEWEST_SAMPLES = 8
+LARGEST_PHASOR = 1e307
+"""Close to what a double holds."""
 SMALLEST_SIZE = 1e-300
 """Of samples; below it they are nothing."""
 
@@ -64,7 +66,7 @@ def harmonic_phasors(
     # Re{X e^jθ} sqrt(2) = sqrt(2) (Re X cos θ - Im X sin θ)
     basis = np.concatenate([sqrt(2) * np.cos(theta), -sqrt(2) * np.sin(theta), np.ones((n, 1))], axis=1)
     solution, _, rank, _ = np.linalg.lstsq(basis, (x / size).reshape(-1, n).T)
-    if rank < basis.shape[1]:
+    if rank < basis.shape[1] or np.abs(solution).max(initial=0.0) > LARGEST_PHASOR / size:
         raise SignalError(
             f"orders {tuple(orders)} of {frequency_hz:g} Hz cannot be told apart in {n} samples "
             f"at {sample_rate_hz:g} Hz"
