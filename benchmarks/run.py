@@ -1,8 +1,8 @@
 """Side-by-side measurements, ratios in one run: python -m benchmarks.run (make bench)."""
 
-from benchmarks import diagnosis, machine_models, recordings, transfer
+from benchmarks import diagnosis, machine_models, many_points, recordings, transfer
 
-SUBJECTS = (machine_models, diagnosis, recordings, transfer)
+SUBJECTS = (machine_models, diagnosis, many_points, recordings, transfer)
 
 
 def main() -> None:

