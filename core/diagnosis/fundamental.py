@@ -11,6 +11,7 @@ from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import toeplitz
 from scipy.signal.windows import tukey
 
 from core.diagnosis.case import LONGEST_WINDOW_S, Case
@@ -121,14 +122,27 @@ def _periodic(
 
     Returns coefficients of orders 1 and -1 (m, 2), and what of the vectors (m, n) is beside all harmonics.
     """
-    basis = np.empty((2 * highest + 1, turning.size), dtype=np.complex128)
-    basis[highest] = 1.0
-    for order in range(1, highest + 1):
-        basis[highest - order] = basis[highest - order + 1] * turning
-        basis[highest + order] = basis[highest - order].conj()
-    weighted = basis.conj() * weight
-    found = np.asarray(np.linalg.solve(weighted @ basis.T, weighted @ vectors.T).T, dtype=np.complex128)
-    return found[:, [highest + 1, highest - 1]], vectors - found @ basis
+    powers = np.empty((highest + 1, turning.size), dtype=np.complex128)
+    powers[0] = 1.0
+    for order in range(highest):
+        np.multiply(powers[order], turning, out=powers[order + 1])
+    # Inner products of the harmonics depend on the difference of their orders alone.
+    low, high = _sums(powers, weight), _sums(powers, weight * powers[highest])
+    differences = np.concatenate([low, high[1:]])
+    gram = toeplitz(differences)
+    # The basis turns the other way than `powers`: order k of it is their conjugate.
+    forwards, backwards = _sums(powers, weight * vectors), _sums(powers, weight * vectors.conj()).conj()
+    products = np.concatenate([backwards[:, :0:-1], forwards], axis=1)
+    found = np.asarray(np.linalg.solve(gram, products.T).T, dtype=np.complex128)
+    periodic = np.einsum("mk,kn->mn", found[:, highest:].conj(), powers).conj()
+    periodic += np.einsum("mk,kn->mn", found[:, highest - 1 :: -1], powers[1:])
+    return found[:, [highest + 1, highest - 1]], vectors - periodic
+
+
+# einsum, not @: see core/signals/phasors.py.
+def _sums(powers: ComplexArray, values: ComplexArray | Array) -> ComplexArray:
+    """Of values (..., n) times each power (orders, n), shape (..., orders)."""
+    return np.asarray(np.einsum("...n,kn->...k", values, powers))
 
 
 def _cycles(beside: ComplexArray, turning: ComplexArray, edges: NDArray[np.int64]) -> ComplexArray:

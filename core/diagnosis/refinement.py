@@ -30,8 +30,8 @@ ADMITTANCE_STEP = 1e-4
 """Of the difference quotient of currents by voltages, in forward voltage."""
 CONVERGED = 0.01
 """Share of the misfit that a fit may still be able to lose."""
-NEGLIGIBLE = 1e-3
-"""Share of a difference quotient's step below which a Gauss-Newton step ends the search."""
+NEGLIGIBLE = 3e-3
+"""Share of a difference quotient's step below which a Gauss-Newton step is not worth taking."""
 CHANNEL_RATIO = 0.0073
 """Standard deviation of a channel's complex ratio: within 1 % in size and 50 us in time at 50 Hz, uniformly,
 as protection relays and their transformers are specified (1 % / sqrt 3, and 50 us / sqrt 12 as an angle)."""
@@ -138,6 +138,8 @@ class Refinement:
             step = np.zeros(len(unknowns))
             free = _free(point, unknowns)
             step[free] = -np.linalg.lstsq(point.slopes[:, free], point.rows)[0]
+            if all(abs(s) <= NEGLIGIBLE * one.step for s, one in zip(step.tolist(), unknowns, strict=True)):
+                break
             for damping in (1.0, 0.3, 0.1, 0.03):
                 moved = self._linearise(_moved(point.candidate, unknowns, damping * step), unknowns)
                 rounds += 1
@@ -146,8 +148,6 @@ class Refinement:
             else:
                 break
             point = moved
-            if all(abs(s) <= NEGLIGIBLE * one.step for s, one in zip(step, unknowns, strict=True)):
-                break
         return self._finished(point, unknowns, evaluations=rounds * (1 + 2 * len(unknowns)))
 
     def _admittance(self, candidate: Candidates) -> Array:

@@ -196,7 +196,8 @@ def _coefficients(
     basis: NDArray[np.complex128], gram: NDArray[np.float64], x: NDArray[np.complex128]
 ) -> NDArray[np.complex128]:
     """Least-squares coefficients of x (n) in the basis (orders, n)."""
-    return np.asarray(np.linalg.solve(gram, np.einsum("kn,n->k", basis.conj(), x)), dtype=np.complex128)
+    products = np.einsum("kn,n->k", basis, x.conj()).conj()
+    return np.asarray(np.linalg.solve(gram, products), dtype=np.complex128)
 
 
 def _combine(weights: NDArray[np.complex128], basis: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -215,11 +216,14 @@ def _orders_below_nyquist(frequency_hz: float, sample_rate_hz: float) -> NDArray
 
 def _rotating_vectors(theta: NDArray[np.float64], orders: NDArray[np.int64]) -> NDArray[np.complex128]:
     """exp(j k theta) of each order k, shape (orders, n)."""
-    powers = [np.ones(theta.size, dtype=np.complex128)]
     once = np.exp(1j * theta)
-    for _ in range(int(orders.max())):
-        powers.append(powers[-1] * once)
-    return np.array([powers[k] if k >= 0 else powers[-k].conj() for k in orders])
+    powers = np.empty((int(orders.max()) + 1, theta.size), dtype=np.complex128)
+    powers[0] = 1.0
+    for k in range(1, len(powers)):
+        np.multiply(powers[k - 1], once, out=powers[k])
+    vectors = powers[np.abs(orders)]
+    np.conj(vectors, out=vectors, where=orders[:, np.newaxis] < 0)
+    return vectors
 
 
 def _inner_products(step: float, n: int, orders: NDArray[np.int64]) -> NDArray[np.float64]:
