@@ -51,7 +51,7 @@ def diagnose(
     _check_known(method, model)
     case, quality, assumed = _accept(recording, motor, currents_only=currents_only)
     if case is None:
-        return _refused(quality, perf_counter() - begun, model, method)
+        return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
     if baseline is not None:
         case = baseline.taken_off(case)
     playback = Playback(MODELS[model], motor, case.supply, case.window)
@@ -59,7 +59,7 @@ def diagnose(
     explanation = explain(case, playback.model, starts)
     quality.append(identified(explanation))
     if not quality[-1].passed:
-        return _refused(quality, perf_counter() - begun, model, method)
+        return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
     tolerance = systematic(
         case,
         playback,
@@ -98,6 +98,7 @@ def diagnose(
         speed_rpm=_speed_rpm(case, playback, running),
         detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),
         indicators=indicators(case),
+        currents_only=assumed,
     )
 
 
@@ -165,7 +166,9 @@ def _speed_rpm(case: Case, playback: Playback, fit: Fit) -> float:
     return float(electrical_to_rpm(mean, case.motor.nameplate.pole_pairs)[0])
 
 
-def _refused(quality: list[QualityFinding], seconds: float, model: str, method: str) -> Diagnosis:
+def _refused(
+    quality: list[QualityFinding], seconds: float, model: str, method: str, *, currents_only: bool
+) -> Diagnosis:
     return Diagnosis(
         verdict=Verdict.UNDIAGNOSABLE,
         mu_f=None,
@@ -180,6 +183,7 @@ def _refused(quality: list[QualityFinding], seconds: float, model: str, method: 
         reasons=tuple(f"{finding.name}: {finding.message}" for finding in quality if not finding.passed),
         model=model,
         method=method,
+        currents_only=currents_only,
     )
 
 

@@ -64,7 +64,7 @@ class Diagnosis:
     load_level: load torque over rated torque.  time_offset_s: delay of the currents against the voltages.
     residual_rms_A: rms of measured minus modelled current over both Clarke axes.
     speed_rpm: of the shaft, from the fit.  detection_limit: least mu_f this recording would have shown.
-    indicators: model-free figures beside the fit.
+    indicators: model-free figures beside the fit.  currents_only: the voltages are assumed, none were used.
     """
 
     verdict: Verdict
@@ -84,6 +84,7 @@ class Diagnosis:
     speed_rpm: float | None = None
     detection_limit: float | None = None
     indicators: Indicators | None = None
+    currents_only: bool = False
 
     @property
     def phase(self) -> Literal["a", "b", "c"] | None:
@@ -111,4 +112,5 @@ class Diagnosis:
             "speed_rpm": self.speed_rpm,
             "detection_limit": self.detection_limit,
             "indicators": None if self.indicators is None else self.indicators.as_dict(),
+            "currents_only": self.currents_only,
         }

@@ -26,7 +26,9 @@ class HealthyMachine:
 def symmetrical(motor: Motor, candidates: int) -> Circuits:
     """psi_s = L_ls i_s + psi_m, psi_r = L_lr i_r + psi_m, psi_m = L_m (i_s + i_r) (3.14, 3.15)."""
     L, R = _matrices(motor.parameters)
-    return Circuits(np.repeat(L[np.newaxis], candidates, axis=0), np.repeat(R[np.newaxis], candidates, axis=0))
+    return Circuits(
+        np.repeat(L[np.newaxis], candidates, axis=0), np.repeat(R[np.newaxis], candidates, axis=0)
+    )
 
 
 @lru_cache

@@ -90,7 +90,8 @@ class Diagnosis(Document):
 
     mu_f: equivalent fault level, fraction of the phase turns. theta_f: 0, 1, 2 = winding on terminals
     a, b, c. load_level: load torque over rated torque. speed_rpm: of the shaft, from the fit.
-    detection_limit: least mu_f this recording would have shown. Diagnoses of earlier versions lack some.
+    detection_limit: least mu_f this recording would have shown. currents_only: the voltages are assumed.
+    Diagnoses of earlier versions lack some.
     """
 
     verdict: Verdict
@@ -111,6 +112,7 @@ class Diagnosis(Document):
     speed_rpm: float | None = None
     detection_limit: float | None = None
     indicators: Indicators | None = None
+    currents_only: bool = False
 
 
 class EventReport(Document):

@@ -1,6 +1,7 @@
 """Recordings of every kind that nobody meant to make: the diagnosis answers or raises what it documents, and
 neither warns nor hangs nor calls a healthy motor faulty."""
 
+import json
 import math
 import resource
 import time
@@ -47,6 +48,7 @@ def outcome(record: Recording, *, currents_only: bool = False) -> Diagnosis | No
     assert refused == (result.mu_f is None)
     assert result.reasons
     assert all(math.isfinite(one.value) and math.isfinite(one.limit) for one in result.quality)
+    assert json.loads(json.dumps(result.as_dict(), allow_nan=False))["verdict"] == str(result.verdict)
     return result
 
 

@@ -198,6 +198,8 @@ def test_without_voltages_means_without_those_recorded_too() -> None:
     both = [diagnose(one, REFERENCE, currents_only=True) for one in (record, currents)]
     assert both[0].mu_f == both[1].mu_f
     assert both[0].verdict is Verdict.WATCH
+    assert both[0].as_dict()["currents_only"] is True
+    assert diagnose(record, REFERENCE).as_dict()["currents_only"] is False
 
 
 def test_levels_at_the_detection_limit_are_found_in_most_records() -> None:
@@ -362,7 +364,7 @@ def test_the_document_has_the_keys_of_the_contract() -> None:
     assert list(document) == [
         "verdict", "mu_f", "mu_f_ci95", "theta_f", "phase", "load_level", "time_offset_s", "residual_rms_A",
         "evaluations", "compute_seconds", "quality", "reasons", "model", "method", "load_level_ci95",
-        "speed_rpm", "detection_limit", "indicators",
+        "speed_rpm", "detection_limit", "indicators", "currents_only",
     ]  # fmt: skip
     assert document["method"] == "hybrid"
 

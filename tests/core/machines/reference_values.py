@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.parameters import Connection, Motor
-from tests.core.motors import ALL, REFERENCE
+from tests.core.motors import ALL, MEDIUM, REFERENCE
 from tests.core.page_equations import integrate
 
 Array = NDArray[np.float64]
@@ -25,6 +25,7 @@ RATE_HZ, SAMPLES = 10_000.0, 20_001
 START = np.arange(0, 6_000, 31)
 """Samples of the start that are kept, at ever other places in the cycle."""
 STEADY = np.arange(19_000, SAMPLES, 7)
+BROKEN_BARS = (REFERENCE, MEDIUM)
 BROKEN_SHARE, BROKEN_SAMPLES = 0.05, 100_001
 BROKEN = np.arange(50_000, BROKEN_SAMPLES, 37)
 """Samples kept of 10 s with broken bars, for a spectrum of the last 5 s."""
@@ -63,12 +64,12 @@ def compute(model: str, motor: Motor, level: float) -> NDArray[np.float32]:
     return np.vstack([current, speed]).astype(np.float32)
 
 
-def compute_broken_bars() -> NDArray[np.float32]:
-    """i_s alpha, i_s beta and speed of the reference machine with broken bars at BROKEN, balanced supply."""
+def compute_broken_bars(motor: Motor) -> NDArray[np.float32]:
+    """i_s alpha, i_s beta and speed of a machine with broken bars at BROKEN, balanced supply."""
     times = np.concatenate([[0], BROKEN]) / RATE_HZ
     current, speed = integrate(
-        "healthy", REFERENCE, 0.0, 0, LOAD_LEVEL,
-        lambda t: voltage_at(REFERENCE, t, negative=0.0, fifth=0.0), np.zeros(5), 0.0, times,
+        "healthy", motor, 0.0, 0, LOAD_LEVEL,
+        lambda t: voltage_at(motor, t, negative=0.0, fifth=0.0), np.zeros(5), 0.0, times,
         broken_share=BROKEN_SHARE,
     )  # fmt: skip
     return np.vstack([current, speed])[:, 1:].astype(np.float32)
@@ -82,7 +83,8 @@ def main() -> None:
                 name = key(model, motor, level)
                 if name not in values:
                     values[name] = compute(model, motor, level)
-    values["broken-bars"] = compute_broken_bars()
+    for motor in BROKEN_BARS:
+        values[f"broken-bars {motor.name}"] = compute_broken_bars(motor)
     with FILE.open("wb") as file:
         np.savez_compressed(file, allow_pickle=False, **values)
 

@@ -70,11 +70,12 @@ def test_the_lower_sideband_is_that_of_theory_at_constant_speed(motor: Motor) ->
     assert found[2] < 1e-3 * lower
 
 
-def test_both_sidebands_agree_with_dop853() -> None:
+@pytest.mark.parametrize("motor", reference.BROKEN_BARS, ids=lambda motor: motor.name)
+def test_both_sidebands_agree_with_dop853(motor: Motor) -> None:
     """10 s from rest with the machine's own inertia: waveform and spectrum of the last 5 s."""
     with np.load(reference.FILE) as file:
-        expected = file["broken-bars"]
-    track = ten_seconds(REFERENCE, Beginning.REST)
+        expected = file[f"broken-bars {motor.name}"]
+    track = ten_seconds(motor, Beginning.REST)
     current, speed = track.current[0][:, reference.BROKEN], track.speed[0, reference.BROKEN]
     t, mean_speed = reference.BROKEN / RATE, float(expected[2].mean())
     found = lines(current[0] + 1j * current[1], t, mean_speed)
@@ -82,7 +83,8 @@ def test_both_sidebands_agree_with_dop853() -> None:
     assert np.abs(truth[1:] / truth[0]).min() > 0.005
     assert np.abs(found) == pytest.approx(np.abs(truth), rel=5e-4)
     assert np.abs(speed / expected[2] - 1.0).max() < 1e-4
-    assert np.sqrt(np.mean((current - expected[:2]) ** 2) / np.mean(expected[:2] ** 2)) < 1e-3
+    # A millionth in speed is a hundredth of a radian of the rotor's angle after these ten seconds.
+    assert np.sqrt(np.mean((current - expected[:2]) ** 2) / np.mean(expected[:2] ** 2)) < 2e-4
 
 
 def test_no_broken_bar_is_the_healthy_machine() -> None:
