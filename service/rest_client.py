@@ -28,9 +28,12 @@ class ServiceClient:
     def __init__(self, url: str) -> None:
         self._url = url
         try:
-            self._http = httpx.Client(base_url=url, timeout=TIMEOUT_S, trust_env=False)
+            parsed = httpx.URL(url)
         except httpx.InvalidURL as error:
             raise ServiceError(f"{url}: expected a URL such as http://127.0.0.1:8710: {error}") from error
+        if parsed.scheme not in ("http", "https") or not parsed.host:
+            raise ServiceError(f"{url}: expected a URL such as http://127.0.0.1:8710")
+        self._http = httpx.Client(base_url=parsed, timeout=TIMEOUT_S, trust_env=False)
 
     def __enter__(self) -> Self:
         return self

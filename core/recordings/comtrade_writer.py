@@ -97,6 +97,8 @@ def configuration_text(
     Times are cut to microseconds before 2013; without a trigger the first sample is named.
     Raises ValueError if the edition cannot hold the recording, or a channel has no full scale.
     """
+    if revision not in _FORMATS:
+        raise ValueError(f"there is no edition {revision} of COMTRADE, only {', '.join(map(str, _FORMATS))}")
     if data_format not in _FORMATS[revision]:
         raise ValueError(
             f"edition {revision} has no format {data_format}, only {', '.join(_FORMATS[revision])}"

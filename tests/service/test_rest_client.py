@@ -76,10 +76,15 @@ def test_a_service_that_is_not_ready() -> None:
         assert not client.is_ready()
 
 
-@pytest.mark.parametrize("url", ["http://[", "nonsense", "http://127.0.0.1:9"])
-def test_addresses_where_nobody_answers(url: str) -> None:
+@pytest.mark.parametrize("url", ["http://[", "nonsense", "127.0.0.1:8710", "ftp://127.0.0.1", "http://"])
+def test_what_is_no_address_of_a_service(url: str) -> None:
+    with pytest.raises(ServiceError, match="expected a URL such as"):
+        ServiceClient(url)
+
+
+def test_an_address_where_nobody_answers() -> None:
     with (
-        pytest.raises(ServiceError, match=r"expected a URL|no service answers"),
-        ServiceClient(url) as client,
+        ServiceClient("http://127.0.0.1:9") as client,
+        pytest.raises(ServiceError, match="no service answers"),
     ):
         client.get("/motors")

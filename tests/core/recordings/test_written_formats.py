@@ -205,6 +205,7 @@ def test_what_an_event_report_cannot_hold(
     [
         (1991, "BINARY32", ".cfg", "edition 1991 has no format BINARY32, only ASCII, BINARY"),
         (1999, "FLOAT32", ".cfg", "edition 1999 has no format FLOAT32"),
+        (2005, "BINARY", ".cfg", "no edition 2005 of COMTRADE, only 1991, 1999, 2013"),
         (1999, "BINARY", ".cff", "a combined file is of the 2013 edition"),
     ],
 )
