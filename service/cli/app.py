@@ -133,6 +133,14 @@ def diagnose(
     ] = None,
     method: Method = Method.HYBRID,
     model: Model = Model.SPLIT_WINDING,
+    baseline: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="RECORD",
+            help="A recording of the same motor and relay known to be healthy; at least three, each with "
+            "--baseline. What they show standing is taken off.",
+        ),
+    ] = None,
     *,
     currents_only: Annotated[
         bool,
@@ -155,6 +163,7 @@ def diagnose(
         motor,
         method=method.value,
         model=model.value,
+        baseline=baseline or [],
         currents_only=currents_only,
         lenient=lenient,
         as_json=as_json,

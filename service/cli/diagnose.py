@@ -1,5 +1,6 @@
 """`mcc diagnose`: one recording, one motor, one verdict; no service needed."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.stator import diagnose
+from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file import MotorFileError, read_motor
 from core.recordings import RecordingError, read
@@ -21,11 +22,14 @@ def diagnose_recording(
     *,
     method: str,
     model: str,
+    baseline: Sequence[Path],
     currents_only: bool,
     lenient: bool,
     as_json: bool,
 ) -> None:
     """Read, diagnose, print; what a lenient reader repaired is among the reasons.
+
+    baseline: recordings of the same motor known to be healthy; their standing asymmetry is taken off.
 
     Raises CommandError where the recording or the motor file cannot be used, or the method is not known.
     """
@@ -35,7 +39,15 @@ def diagnose_recording(
     ):
         recording = read(record, lenient=lenient)
         found = read_motor(motor or _motor_file_beside(record))
-        diagnosis = diagnose(recording, found, method=method, model=model, currents_only=currents_only)
+        healthy = [read(one, lenient=lenient) for one in baseline]
+        diagnosis = diagnose(
+            recording,
+            found,
+            method=method,
+            model=model,
+            baseline=learn_baseline(healthy, found, currents_only=currents_only) if healthy else None,
+            currents_only=currents_only,
+        )
     repaired = (f"repaired: {note}" for note in recording.repairs)
     diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
     if as_json:

@@ -1,13 +1,22 @@
-"""How `mcc diagnose` prints a verdict."""
+"""How `mcc diagnose` prints a verdict, and what a baseline does for it."""
 
+import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from core.diagnosis.verdict import QualityFinding
+from core.machines.motor_file_writer import write_motor
+from core.recordings import comtrade
+from service.cli import main
 from service.cli.diagnose import _table
 from service.cli.output import results
+from tests.core.motors import REFERENCE
+from tests.core.phase_circuits import Fault, recording, running
 from tests.service.plants import undiagnosable
 
 CLIPPED = "IA reads its full scale in 12 samples"
@@ -27,3 +36,53 @@ def test_what_keeps_a_record_from_being_diagnosed_is_said_once(capsys: pytest.Ca
     assert shown.count(CLIPPED) == 1
     (passed,) = [line for line in shown.splitlines() if "checks passed" in line]
     assert passed.split()[-2] == "1"
+
+
+@pytest.fixture
+def pump(tmp_path: Path) -> Callable[..., Path]:
+    """Writes recordings of one motor whose relay reads phase b 3 % high, and its motor file beside them."""
+    write_motor(tmp_path / "motor.toml", REFERENCE)
+
+    def write(name: str, load_level: float, *, fault: Fault | None = None) -> Path:
+        operation = running(REFERENCE, load_level, fault=fault)
+        record = recording(
+            operation, noise=0.002, current_gains=(1.0, 1.03, 1.0), seed=round(100 * load_level)
+        )
+        channels = tuple(
+            replace(channel, full_scale=2.0 * float(np.abs(x).max()))
+            for channel, x in zip(record.channels, record.samples, strict=True)
+        )
+        return comtrade.write(tmp_path / f"{name}.CFG", replace(record, channels=channels))
+
+    return write
+
+
+def test_healthy_recordings_take_off_what_the_relay_feigns(
+    pump: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    healthy = [pump(f"OK{k}", load_level) for k, load_level in enumerate((0.3, 0.5, 0.7, 0.9))]
+    baseline = [word for path in healthy[:3] for word in ("--baseline", str(path))]
+    faulty = pump("ILL", 0.6, fault=Fault(0.015, 1))
+
+    def diagnosed(path: Path, *options: str) -> dict[str, Any]:
+        assert main(["diagnose", str(path), "--json", *options]) == 0
+        found: dict[str, Any] = json.loads(capsys.readouterr().out)
+        return found
+
+    alone, relative = diagnosed(faulty), diagnosed(faulty, *baseline)
+    assert abs(alone["mu_f"] - 0.015) > 0.002
+    assert relative["mu_f"] == pytest.approx(0.015, abs=0.001)
+    assert (relative["verdict"], relative["phase"]) == ("fault", "b")
+    assert "relative to a baseline of 3 healthy recordings" in relative["reasons"]
+    assert diagnosed(healthy[3])["mu_f"] > 0.002
+    assert diagnosed(healthy[3], *baseline)["verdict"] == "healthy"
+    assert relative["detection_limit"] < 0.7 * alone["detection_limit"]
+
+
+def test_two_recordings_are_no_baseline(
+    pump: Callable[..., Path], capsys: pytest.CaptureFixture[str]
+) -> None:
+    paths = [str(pump(f"OK{k}", 0.5)) for k in range(3)]
+    words = ["--baseline", paths[1], "--baseline", paths[2], "--json"]
+    assert main(["diagnose", paths[0], *words]) == 2
+    assert "at least 3 healthy recordings, found 2" in json.loads(capsys.readouterr().out)["error"]["message"]
