@@ -196,7 +196,7 @@ def coverage_row(measured: Sequence[Estimates]) -> list[str]:
     """Coverage, root mean square error and mean error over the bound, and phases, of single-record trials."""
     kept = [one for one in measured if not one.refused]
     if not kept:
-        return ["all refused", "", "", "", mark(passed=False)]
+        return ["", str(len(measured)), "", "", "", mark(passed=False)]
     covered = sum(one.covered for one in kept)
     scaled = np.array([one.errors[0] / one.bound for one in kept])
     beyond = np.array([(one.errors[0] - one.first_order[0]) / one.bound for one in kept])
@@ -205,6 +205,7 @@ def coverage_row(measured: Sequence[Estimates]) -> list[str]:
     share = covered / len(kept)
     return [
         rate_text(covered, len(kept)),
+        str(len(measured) - len(kept)),
         f"{np.sqrt(np.mean(scaled**2)):.2f}",
         f"{beyond.mean():+.2f}",
         f"{right} of {len(visible)}",
@@ -213,7 +214,8 @@ def coverage_row(measured: Sequence[Estimates]) -> list[str]:
 
 
 COVERAGE_HEADER = (
-    "covered", "rms error / bound", "own bias / bound", "phase right, mu 1 % and more", "covered 92 to 98 %",
+    "covered", "refused", "rms error / bound", "own bias / bound", "phase right, mu 1 % and more",
+    "covered 92 to 98 %",
 )  # fmt: skip
 
 

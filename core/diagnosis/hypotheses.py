@@ -82,7 +82,9 @@ def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
             fits.append(tried[-1])
     winding = _likeliest(fits)
     fit = fits[winding]
-    healthy = refinement.fit(replace(fit.candidate, fault_level=np.zeros(1)), (LOAD_LEVEL, TIME_OFFSET))
+    # Far from here where many turns are shorted: the windings that are not come to stand beside it.
+    nearest = min(fits, key=_size)
+    healthy = refinement.fit(replace(nearest.candidate, fault_level=np.zeros(1)), (LOAD_LEVEL, TIME_OFFSET))
     tried.append(healthy)
 
     forward = abs(refinement.record.current.forward)
@@ -129,6 +131,10 @@ def _likeliest(fits: list[Fit]) -> int:
 
 def _misfit(fit: Fit) -> float:
     return fit.misfit
+
+
+def _size(fit: Fit) -> float:
+    return abs(fit.value(FAULT_LEVEL))
 
 
 def _with_path(fit: Fit) -> Candidates:

@@ -30,6 +30,8 @@ ADMITTANCE_STEP = 1e-4
 """Of the difference quotient of currents by voltages, in forward voltage."""
 CONVERGED = 0.01
 """Share of the misfit that a fit may still be able to lose."""
+KEPT = 0.25
+"""Of the fall that a step promises, the least it must keep to be taken: with less, steps overshoot."""
 NEGLIGIBLE = 3e-3
 """Share of a difference quotient's step below which a Gauss-Newton step is not worth taking."""
 CHANNEL_RATIO = 0.0073
@@ -135,19 +137,19 @@ class Refinement:
         inside = _moved(start, unknowns, np.zeros(len(unknowns)))
         point, rounds = self._linearise(inside, unknowns), 1
         for _ in range(MOST_ITERATIONS):
-            step = np.zeros(len(unknowns))
-            free = _free(point, unknowns)
-            step[free] = -np.linalg.lstsq(point.slopes[:, free], point.rows)[0]
+            step, promised = _newton_step(point, unknowns)
             if all(abs(s) <= NEGLIGIBLE * one.step for s, one in zip(step.tolist(), unknowns, strict=True)):
                 break
+            best = point
             for damping in (1.0, 0.3, 0.1, 0.03):
                 moved = self._linearise(_moved(point.candidate, unknowns, damping * step), unknowns)
                 rounds += 1
-                if moved.misfit <= point.misfit:
+                best = min(best, moved, key=_misfit)
+                if point.misfit - moved.misfit >= KEPT * damping * (2.0 - damping) * promised:
                     break
-            else:
+            if best is point:
                 break
-            point = moved
+            point = best
         return self._finished(point, unknowns, evaluations=rounds * (1 + 2 * len(unknowns)))
 
     def _admittance(self, candidate: Candidates) -> Array:
@@ -196,8 +198,7 @@ class Refinement:
     def _finished(self, point: "_Point", unknowns: tuple[Unknown, ...], evaluations: int) -> Fit:
         free = _free(point, unknowns)
         slopes = point.slopes[:, free]
-        # What one more step would still gain, in the misfit's own units.
-        gain = float(np.sum((slopes @ np.linalg.lstsq(slopes, point.rows)[0]) ** 2))
+        gain = _newton_step(point, unknowns)[1]
         noise = self._whitening @ self._noise @ self._whitening.T
         seen = [one.name for one, is_free in zip(unknowns, free, strict=True) if is_free]
         try:
@@ -235,6 +236,19 @@ class _Point:
     misfit: float
     rows: Array
     slopes: Array
+
+
+def _misfit(point: _Point) -> float:
+    return point.misfit
+
+
+def _newton_step(point: _Point, unknowns: tuple[Unknown, ...]) -> tuple[Array, float]:
+    """Step of the unknowns that are free to move, and the misfit's fall if the model were linear."""
+    step = np.zeros(len(unknowns))
+    free = _free(point, unknowns)
+    slopes = point.slopes[:, free]
+    step[free] = -np.linalg.lstsq(slopes, point.rows)[0]
+    return step, float(np.sum((slopes @ step[free]) ** 2))
 
 
 def _free(point: _Point, unknowns: tuple[Unknown, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

@@ -36,6 +36,8 @@ CLEAN = 0.8
 BACKWARD = 1.3
 """Backward over forward current, in the supply's own sense: exchanged phases make 2 and more; a motor without
 load on a supply unbalanced by 5 %, with severe shorts, comes near 1."""
+STRONGLY_UNBALANCED = 0.05
+"""Of a supply: more of it, and a motor that runs light looks as if two of its phases were exchanged."""
 LEAST_LAG_DEG, MOST_LAG_DEG = -20.0, 110.0
 """Of the current behind the voltage: a motor's 0 to 90, and delays between the channels."""
 
@@ -186,8 +188,8 @@ def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     yield finding(
         "phase order", lag if ring else share, nearest if ring else BACKWARD,
         "degrees behind" if ring else "backward over forward", passed=not swapped and not ring,
-        message="the currents turn against the voltages: two phases are exchanged" if swapped else
-        f"the currents lie {lag:.0f} degrees behind the voltages, a third of a cycle off: the phases are "
+        message=f"the currents turn against the voltages: two phases are exchanged{_doubt(feed)}"
+        if swapped else f"the currents lie {lag:.0f} degrees behind the voltages, a third of a cycle off: the phases are "
         "exchanged in a ring",
     )  # fmt: skip
     if swapped or ring:
@@ -197,3 +199,11 @@ def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
         message=f"the currents lie {lag:.0f} degrees behind the voltages, half a cycle off: all currents (or "
         "voltages) are reversed, or the machine generates",
     )  # fmt: skip
+
+
+def _doubt(feed: Feed) -> str:
+    unbalance = feed.phasors.unbalance_factor
+    unbalance = min(unbalance, 1.0 / max(unbalance, 1e-12))
+    if unbalance < STRONGLY_UNBALANCED:
+        return ""
+    return f", or the motor runs light on a supply unbalanced by {unbalance:.0%}: record again under load"

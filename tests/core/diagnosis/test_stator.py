@@ -380,6 +380,24 @@ def test_residual_of_a_delta_is_given_in_line_amperes() -> None:
     assert result.residual_rms_A == pytest.approx(np.sqrt(2) * noise, rel=0.05)
 
 
+@pytest.mark.parametrize("motor", ALL, ids=lambda motor: motor.name)
+@pytest.mark.parametrize("unbalance", [0.03, 0.05, -0.05, 0.07j])
+def test_many_shorted_turns_are_no_reason_to_refuse(motor: Motor, unbalance: complex) -> None:
+    """Far from the healthy machine, whose own fit is sought from a long way off."""
+    for level, load_level in ((0.1, 0.12), (0.15, 0.05), (0.19, 0.12), (0.19, 0.3)):
+        for winding in (0, 1):
+            operation = running(motor, load_level, fault=Fault(level, winding), unbalance=unbalance)
+            result = diagnose(recording(operation, noise=0.003, seconds=0.3), motor)
+            assert (result.verdict, result.theta_f) == (Verdict.FAULT, winding), (level, load_level)
+            assert result.mu_f == pytest.approx(level, rel=0.05)
+
+
+def test_a_motor_running_light_on_a_strongly_unbalanced_supply_may_look_exchanged() -> None:
+    record = recording(running(MEDIUM, 0.05, fault=Fault(0.1, 0), unbalance=0.1), noise=0.003)
+    (reason,) = diagnose(record, MEDIUM).reasons
+    assert "two phases are exchanged, or the motor runs light on a supply unbalanced by 10%" in reason
+
+
 def test_a_diagnosis_is_repeatable() -> None:
     def figures(result: Diagnosis) -> tuple[object, ...]:
         return result.mu_f, result.load_level, result.evaluations
