@@ -189,8 +189,8 @@ def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
         "phase order", lag if ring else share, nearest if ring else BACKWARD,
         "degrees behind" if ring else "backward over forward", passed=not swapped and not ring,
         message=f"the currents turn against the voltages: two phases are exchanged{_doubt(feed)}"
-        if swapped else f"the currents lie {lag:.0f} degrees behind the voltages, a third of a cycle off: the phases are "
-        "exchanged in a ring",
+        if swapped else f"the currents lie {lag:.0f} degrees behind the voltages, a third of a cycle off: "
+        "the phases are exchanged in a ring",
     )  # fmt: skip
     if swapped or ring:
         return
