@@ -1,4 +1,4 @@
-"""Local refinement: Gauss-Newton on the model's currents, and what its Jacobian says of the uncertainty.
+"""Local refinement: Gauss-Newton on the model's currents, braked after Levenberg-Marquardt where it overshoots.
 
 The Jacobian comes from central differences, all of them one batch of compiled steady states. The covariance
 allows for coloured noise, on currents and voltages: it is how their phasors vary from cycle to cycle.
@@ -21,7 +21,7 @@ from core.machines.candidates import Candidates
 from core.machines.running import SteadyRunning
 
 CONFIDENCE = 0.95
-MOST_ITERATIONS = 12
+MOST_ROUNDS = 40
 HIGHEST_PATH_RATIO = 4.0
 """Beyond it a path draws a current in the voltage's own direction, as many an asymmetry does that is none."""
 OFFSET_SCALE_S = 100e-6
@@ -30,8 +30,10 @@ ADMITTANCE_STEP = 1e-4
 """Of the difference quotient of currents by voltages, in forward voltage."""
 CONVERGED = 0.01
 """Share of the misfit that a fit may still be able to lose."""
-KEPT = 0.25
-"""Of the fall that a step promises, the least it must keep to be taken: with less, steps overshoot."""
+POOR, GOOD = 0.25, 0.75
+"""Of the fall that a step promised, what it kept: less, and steps are braked; more, and they are let go."""
+FIRST_DAMPING, MOST_DAMPING = 0.1, 1e6
+SMALLEST_FALL = 1e-30
 NEGLIGIBLE = 3e-3
 """Share of a difference quotient's step below which a Gauss-Newton step is not worth taking."""
 CHANNEL_RATIO = 0.0073
@@ -135,21 +137,19 @@ class Refinement:
         """Minimise the misfit from one candidate over the named unknowns, the others held."""
         unknowns = tuple(unknown(name, self._case, self._running.model) for name in names)
         inside = _moved(start, unknowns, np.zeros(len(unknowns)))
-        point, rounds = self._linearise(inside, unknowns), 1
-        for _ in range(MOST_ITERATIONS):
-            step, promised = _newton_step(point, unknowns)
-            if all(abs(s) <= NEGLIGIBLE * one.step for s, one in zip(step.tolist(), unknowns, strict=True)):
-                break
-            best = point
-            for damping in (1.0, 0.3, 0.1, 0.03):
-                moved = self._linearise(_moved(point.candidate, unknowns, damping * step), unknowns)
-                rounds += 1
-                best = min(best, moved, key=_misfit)
-                if point.misfit - moved.misfit >= KEPT * damping * (2.0 - damping) * promised:
-                    break
-            if best is point:
-                break
-            point = best
+        point, rounds, damping = self._linearise(inside, unknowns), 1, 0.0
+        while rounds <= MOST_ROUNDS and damping <= MOST_DAMPING and not _has_arrived(point, unknowns):
+            moved = self._linearise(
+                _moved(point.candidate, unknowns, _step(point, unknowns, damping)), unknowns
+            )
+            rounds += 1
+            kept = (point.misfit - moved.misfit) / _promised(point, moved, unknowns)
+            if kept < POOR:
+                damping = max(FIRST_DAMPING, 4.0 * damping)
+            elif kept > GOOD:
+                damping = damping / 4.0 if damping > FIRST_DAMPING else 0.0
+            if moved.misfit < point.misfit:
+                point = moved
         return self._finished(point, unknowns, evaluations=rounds * (1 + 2 * len(unknowns)))
 
     def _admittance(self, candidate: Candidates) -> Array:
@@ -198,7 +198,8 @@ class Refinement:
     def _finished(self, point: "_Point", unknowns: tuple[Unknown, ...], evaluations: int) -> Fit:
         free = _free(point, unknowns)
         slopes = point.slopes[:, free]
-        gain = _newton_step(point, unknowns)[1]
+        # What one more step would still gain, in the misfit's own units.
+        gain = float(np.sum((slopes @ _step(point, unknowns, 0.0)[free]) ** 2))
         noise = self._whitening @ self._noise @ self._whitening.T
         seen = [one.name for one, is_free in zip(unknowns, free, strict=True) if is_free]
         try:
@@ -238,17 +239,28 @@ class _Point:
     slopes: Array
 
 
-def _misfit(point: _Point) -> float:
-    return point.misfit
-
-
-def _newton_step(point: _Point, unknowns: tuple[Unknown, ...]) -> tuple[Array, float]:
-    """Step of the unknowns that are free to move, and the misfit's fall if the model were linear."""
+def _step(point: _Point, unknowns: tuple[Unknown, ...], damping: float) -> Array:
+    """Levenberg-Marquardt step of the unknowns that are free to move; undamped, that of Gauss and Newton."""
     step = np.zeros(len(unknowns))
     free = _free(point, unknowns)
-    slopes = point.slopes[:, free]
-    step[free] = -np.linalg.lstsq(slopes, point.rows)[0]
-    return step, float(np.sum((slopes @ step[free]) ** 2))
+    slopes, rows = point.slopes[:, free], point.rows
+    if damping > 0.0:
+        brakes = np.diag(np.sqrt(damping * np.sum(slopes**2, axis=0)))
+        slopes, rows = np.vstack([slopes, brakes]), np.append(rows, np.zeros(len(brakes)))
+    step[free] = -np.linalg.lstsq(slopes, rows)[0]
+    return step
+
+
+def _has_arrived(point: _Point, unknowns: tuple[Unknown, ...]) -> bool:
+    step = _step(point, unknowns, 0.0).tolist()
+    return all(abs(s) <= NEGLIGIBLE * one.step for s, one in zip(step, unknowns, strict=True))
+
+
+def _promised(point: _Point, moved: _Point, unknowns: tuple[Unknown, ...]) -> float:
+    """Fall of the misfit on the way to `moved`, were the model linear; never quite nothing."""
+    way = [float((getattr(moved.candidate, x.name) - getattr(point.candidate, x.name))[0]) for x in unknowns]
+    change = point.slopes @ np.array(way)
+    return max(float(-2.0 * (change @ point.rows) - change @ change), SMALLEST_FALL)
 
 
 def _free(point: _Point, unknowns: tuple[Unknown, ...]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
