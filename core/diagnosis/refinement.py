@@ -1,4 +1,4 @@
-"""Local refinement: Gauss-Newton on the model's currents, braked after Levenberg-Marquardt where it overshoots.
+"""Local refinement: Gauss-Newton on the model's currents, braked like Levenberg-Marquardt where it overshoots.
 
 The Jacobian comes from central differences, all of them one batch of compiled steady states. The covariance
 allows for coloured noise, on currents and voltages: it is how their phasors vary from cycle to cycle.
@@ -138,10 +138,13 @@ class Refinement:
         unknowns = tuple(unknown(name, self._case, self._running.model) for name in names)
         inside = _moved(start, unknowns, np.zeros(len(unknowns)))
         point, rounds, damping = self._linearise(inside, unknowns), 1, 0.0
-        while rounds <= MOST_ROUNDS and damping <= MOST_DAMPING and not _has_arrived(point, unknowns):
-            moved = self._linearise(
-                _moved(point.candidate, unknowns, _step(point, unknowns, damping)), unknowns
-            )
+        while rounds <= MOST_ROUNDS and damping <= MOST_DAMPING:
+            step = _step(point, unknowns, 0.0)
+            if all(abs(s) <= NEGLIGIBLE * one.step for s, one in zip(step.tolist(), unknowns, strict=True)):
+                break
+            if damping > 0.0:
+                step = _step(point, unknowns, damping)
+            moved = self._linearise(_moved(point.candidate, unknowns, step), unknowns)
             rounds += 1
             kept = (point.misfit - moved.misfit) / _promised(point, moved, unknowns)
             if kept < POOR:
@@ -249,11 +252,6 @@ def _step(point: _Point, unknowns: tuple[Unknown, ...], damping: float) -> Array
         slopes, rows = np.vstack([slopes, brakes]), np.append(rows, np.zeros(len(brakes)))
     step[free] = -np.linalg.lstsq(slopes, rows)[0]
     return step
-
-
-def _has_arrived(point: _Point, unknowns: tuple[Unknown, ...]) -> bool:
-    step = _step(point, unknowns, 0.0).tolist()
-    return all(abs(s) <= NEGLIGIBLE * one.step for s, one in zip(step, unknowns, strict=True))
 
 
 def _promised(point: _Point, moved: _Point, unknowns: tuple[Unknown, ...]) -> float:
