@@ -1,4 +1,4 @@
-"""Local refinement: Gauss-Newton on the model's currents, braked like Levenberg-Marquardt where it overshoots.
+"""Local refinement: Gauss-Newton on the model's currents, Levenberg-Marquardt where that overshoots.
 
 The Jacobian comes from central differences, all of them one batch of compiled steady states. The covariance
 allows for coloured noise, on currents and voltages: it is how their phasors vary from cycle to cycle.
