@@ -74,6 +74,7 @@ class Connection:
     ) -> None:  # fmt: skip
         """Associate with the MMS server at `host` (a name or IPv4 address) and `port`.
 
+        A name may have several addresses, dead ones among them: each is tried in its share of the time.
         Raises ConnectFailed. The library may report success and then lose the association at the first
         request: a probe follows every connect, and the whole is tried again when just that happens.
         """
@@ -83,32 +84,24 @@ class Connection:
         self._lock = threading.RLock()
         self._pointer = 0
         self._handlers: list[object] = []  # C holds them until the connection is destroyed
-        address = self._resolve(host, port)
+        addresses = self._resolve(host, port)
         deadline = time.monotonic() + connect_timeout_s
-        for attempt in range(1, _ATTEMPTS + 1):
-            remaining_s = deadline - time.monotonic()
-            if remaining_s <= 0 and attempt > 1:
-                break
-            self._notice = _ClosedNotice(on_closed)
-            code = self._attempt(address, port, max(remaining_s, 0.001))
-            if code == 0 and self._notice.arm():
+        code = _CONNECTION_LOST
+        for turn, address in enumerate(addresses):
+            now = time.monotonic()
+            code = self._associate(address, port, now + (deadline - now) / (len(addresses) - turn), on_closed)
+            if code == 0:
                 self._state = _State.OPEN
                 _open_connections.add(self)
                 return
-            self._destroy()
-            if code not in (0, _CONNECTION_LOST):
-                reason = errors.client_error(self.host, "connect", code).message
-                raise errors.ConnectFailed(self.host, "connect", code, reason)
-            log.debug("%s: the association was lost at once, attempt %d of %d", self.host, attempt, _ATTEMPTS)
-            time.sleep(_PAUSE_BETWEEN_ATTEMPTS_S)
-        raise errors.ConnectFailed(
-            self.host,
-            "connect",
-            _CONNECTION_LOST,
-            "the relay ends every association at once: no session left?",
-        )
+        reason = errors.client_error(self.host, "connect", code).message
+        if code == _CONNECTION_LOST:
+            reason = "the relay ends every association at once: no session left?"
+        if len(addresses) > 1:
+            reason += f" (the last of its addresses {', '.join(addresses)})"
+        raise errors.ConnectFailed(self.host, "connect", code, reason)
 
-    def _resolve(self, host: str, port: int) -> bytes:
+    def _resolve(self, host: str, port: int) -> tuple[str, ...]:
         if not 0 < port < 65536:
             raise errors.ConnectFailed(self.host, "connect", 0, f"not a TCP port: {port}")
         try:
@@ -117,7 +110,26 @@ class Connection:
             raise errors.ConnectFailed(
                 self.host, "connect", 0, f"cannot resolve the name: {error}"
             ) from error
-        return str(found[0][4][0]).encode("ascii")
+        return tuple(dict.fromkeys(str(address[0]) for *_, address in found))
+
+    def _associate(
+        self, address: str, port: int, deadline: float, on_closed: Callable[[], None] | None
+    ) -> int:
+        """Returns 0 when the association stands, _CONNECTION_LOST when it was lost at once each time."""
+        for attempt in range(1, _ATTEMPTS + 1):
+            remaining_s = deadline - time.monotonic()
+            if remaining_s <= 0 and attempt > 1:
+                break
+            self._notice = _ClosedNotice(on_closed)
+            code = self._attempt(address.encode("ascii"), port, max(remaining_s, 0.001))
+            if code == 0 and self._notice.arm():
+                return 0
+            self._destroy()
+            if code not in (0, _CONNECTION_LOST):
+                return code
+            log.debug("%s: the association was lost at once, attempt %d of %d", self.host, attempt, _ATTEMPTS)
+            time.sleep(_PAUSE_BETWEEN_ATTEMPTS_S)
+        return _CONNECTION_LOST
 
     def _attempt(self, address: bytes, port: int, timeout_s: float) -> int:
         lib = self.lib

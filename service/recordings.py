@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 ENTRY_SUFFIXES = (".CFG", ".CFF", ".CEV")
+WAVEFORM_SUFFIXES = (*ENTRY_SUFFIXES, ".DAT")
 MAX_NAME_LENGTH = 100
 _DIGEST = re.compile(r"[0-9a-f]{64}")
 
@@ -54,6 +55,11 @@ class StoredRecording:
     def name(self) -> str:
         """Name of the record: that of its leading file without suffix."""
         return self.entry.stem
+
+    @property
+    def waveform_files(self) -> tuple[StoredFile, ...]:
+        """Those that say what was recorded; without the ones that only describe it (.HDR, .INF)."""
+        return tuple(file for file in self.files if Path(file.name).suffix in WAVEFORM_SUFFIXES)
 
     @property
     def entry(self) -> Path:

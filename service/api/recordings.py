@@ -19,13 +19,13 @@ from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, pa
 from service.api.problems import FieldError, ProblemError, problems
 from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile, Waveform
 from service.api.waveform import waveform_of
-from service.recordings import ENTRY_SUFFIXES, RecordingStoreError, StoredRecording
+from service.recordings import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
 from service.storage.records import RecordingEntry
 from service.storage.states import RecordingState
 
 router = APIRouter(tags=["recordings"])
 
-UPLOAD_SUFFIXES = {*ENTRY_SUFFIXES, ".DAT", ".HDR", ".INF"}
+UPLOAD_SUFFIXES = {*WAVEFORM_SUFFIXES, ".HDR", ".INF"}
 MAX_UPLOAD_FILES = 4
 CHUNK_BYTES = 1 << 16
 
@@ -50,7 +50,10 @@ def list_recordings(
     status_code=HTTPStatus.CREATED,
     responses=problems(400, 404, 413)
     | {
-        200: {"model": RecordingDetails, "description": "These files were uploaded for this motor before."},
+        200: {
+            "model": RecordingDetails,
+            "description": "The motor has this recording already.",
+        },
         201: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The recording."}}},
     },
 )
@@ -61,7 +64,7 @@ def upload_recording(
     motor: Annotated[str, Form(min_length=1, max_length=200, description="Name of the motor recorded.")],
     files: Annotated[list[UploadFile], File(description="COMTRADE: .CFG and .DAT, or .CFF; or a .CEV.")],
 ) -> RecordingDetails:
-    """Stores the files of one recording and queues its diagnosis."""
+    """Stores the files of one recording and queues its diagnosis; one the motor has stays as it is."""
     context.repository.motor(motor)
     stored = _store_upload(context, files)
     added = context.repository.add_recording(stored, motor=motor, now_ns=time.time_ns())

@@ -131,7 +131,7 @@ class RecordingFileRow(Base):
     recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), primary_key=True)
     name: Mapped[str] = mapped_column(primary_key=True)
     size_bytes: Mapped[int]
-    sha256: Mapped[str] = mapped_column(String(64))
+    sha256: Mapped[str] = mapped_column(String(64), index=True)
 
 
 class EventReportRow(Base):

@@ -1,10 +1,14 @@
 """The demo enterprise, run for real: `make compose-test COMPOSE="docker compose"`.
 
 Builds and starts every container, triggers every motor over REST from outside, cuts a factory off while one
-of its relays records, restarts what a person might, tries what may be wrong on a host, backs up and restores,
-takes all down.
+of its relays records (for 20 s, and for so long that records are lost), restarts what a person might, tries
+what may be wrong on a host, backs up, restores, brings an older database up to date, takes all down.
 """
 
+import json
+import re
+import shlex
+import signal
 import socket
 import subprocess
 import sys
@@ -21,9 +25,15 @@ from service.demo.addresses import free_ports
 from service.rest_client import ServiceClient, ServiceError
 from tests.deployment.composing import BUILD_LIMIT_S, ROOT, Compose, ComposeError
 from tests.deployment.documented import blocks
+from tests.deployment.long_outage import (
+    a_link_down_for_long_costs_what_the_relay_discards,
+    an_upload_of_what_is_known_changes_nothing,
+)
 from tests.deployment.observed import START_LIMIT_S, Enterprise
 from tests.integration.processes import MOTOR_NAMES
 
+DOCKERFILE = (ROOT / "Dockerfile").read_text(encoding="utf-8")
+SERVICES = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))["services"]
 OUTAGE_S = 20.0
 LARGEST_IMAGE_MB = 700
 PUBLIC_BASE_MB = 130
@@ -61,6 +71,22 @@ for package in ("core", "ied_sim", "mms", "scl", "service"):
 print("source", digest.hexdigest())
 """
 
+OLDER_DATABASE = """
+from alembic import command
+from service.settings import Settings
+from service.storage import connect
+from service.storage.migrations import config
+with connect(Settings.load(None).database_url).begin() as connection:
+    command.downgrade(config(connection), "0001")
+"""
+"""What a volume holds that the first version wrote."""
+
+REVISION = """
+import sqlite3
+database = sqlite3.connect("/data/statorwatch.sqlite")
+print("revision", *database.execute("SELECT version_num FROM alembic_version").fetchone())
+"""
+
 
 def build(enterprise: Enterprise) -> None:
     enterprise.compose("build", limit_s=BUILD_LIMIT_S)
@@ -75,10 +101,9 @@ def build(enterprise: Enterprise) -> None:
 def every_container_starts_without_rights(enterprise: Enterprise) -> None:
     assert not enterprise.compose.containers()
     enterprise.compose("up", "-d")
-    services = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))["services"]
-    assert len(enterprise.compose.containers()) == len(services)
+    assert len(enterprise.compose.containers()) == len(SERVICES)
     question = "grep -E '^(Uid|Cap|NoNewPrivs)' /proc/1/status; touch /here 2>&1; df -m /tmp"
-    for service in services:
+    for service in SERVICES:
         answer = enterprise.compose.inside(service, "sh", "-c", question)
         assert "Uid:" + 4 * "\t10001" in answer, f"{service}: {answer}"
         for capabilities in ("Inh", "Prm", "Eff", "Bnd", "Amb"):
@@ -112,14 +137,21 @@ def ends_where_make_demo_ends(enterprise: Enterprise) -> None:
     def all_diagnosed() -> bool:
         return all(enterprise.trend(motor) for motor in MOTOR_NAMES)
 
+    def table_shown() -> bool:
+        shown = enterprise.compose("logs", "demo").partition("Diagnoses and truth")[2]
+        return all(motor in shown for motor in MOTOR_NAMES)
+
     enterprise.wait("every motor has a point in its trend", all_diagnosed, START_LIMIT_S)
+    enterprise.wait("the demo's table of what was found beside the truth", table_shown, START_LIMIT_S)
     enterprise.require_right_verdicts()
     enterprise.compose("stop", "demo")
 
 
 def health_checks_tell_well_from_ill(enterprise: Enterprise) -> None:
-    composition = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))
-    checks = {name: composition["services"][name]["healthcheck"]["test"] for name in ("router-a", "relay-a1")}
+    checks = {name: SERVICES[name]["healthcheck"]["test"] for name in ("router-a", "relay-a1")}
+    of_the_image = re.search(r"^HEALTHCHECK (?:.*\\\n)*\s*CMD (\[.*\])$", DOCKERFILE, re.MULTILINE)
+    assert of_the_image
+    checks["mcc"] = shlex.join(json.loads(of_the_image[1]))
     for owner, check in checks.items():
         for service in checks:
             told = enterprise.compose.attempt("exec", "-T", service, "sh", "-c", f"({check}) && echo healthy")
@@ -182,11 +214,8 @@ def a_taken_port_is_named_and_the_rest_works(enterprise: Enterprise) -> None:
     motor, relay = "PUMP-A1", "A1_SEL710"
     before, points = enterprise.recordings(), enterprise.trend(motor)
     enterprise.compose("stop", "mcc")
-    port = enterprise.compose.port
-    with socket.create_server(("127.0.0.1", port)):
-        refused = enterprise.compose.attempt("start", "mcc").stdout
-        assert any(str(port) in line and "already in use" in line for line in refused.splitlines()), refused
-        assert not enterprise.service.is_ready()
+    with socket.create_server(("127.0.0.1", enterprise.compose.port)):
+        _require_port_named(enterprise, enterprise.compose.attempt("start", "mcc").stdout)
         # Another host of the wide-area network, through the router of factory A.
         enterprise.compose.inside("router-b", "python", "-c", RECORD_TWICE, relay, "WAN")
     enterprise.compose("start", "mcc")
@@ -195,10 +224,19 @@ def a_taken_port_is_named_and_the_rest_works(enterprise: Enterprise) -> None:
     enterprise.require_continuation(before)
 
 
+def _require_port_named(enterprise: Enterprise, refused: str) -> None:
+    port = str(enterprise.compose.port)
+    assert any(port in line and "already in use" in line for line in refused.splitlines()), refused
+    assert not enterprise.service.is_ready()
+
+
 def a_volume_that_cannot_be_written_to_is_named(enterprise: Enterprise) -> None:
     wrong = ("-e", "MCC_DATA_DIRECTORY=/plant")
     refused = enterprise.compose.attempt("run", "--rm", "-T", "--no-deps", *wrong, "mcc", "mcc", "serve")
     assert "mcc: /plant: expected a directory that user 10001 may write to" in refused.stdout, refused.stdout
+    relay = ("ied-sim", "--scd", "/plant/plant.scd", "--files", "/plant", "--ied", "A1_SEL710")
+    refused = enterprise.compose.attempt("run", "--rm", "-T", "--no-deps", "relay-a1", *relay)
+    assert "ied-sim: [Errno 30] Read-only file system: '/plant/A1_SEL710'" in refused.stdout, refused.stdout
     assert enterprise.service.is_ready(), "the service that runs is disturbed"
 
 
@@ -235,9 +273,35 @@ def the_documented_backup_restores(enterprise: Enterprise) -> None:
         assert enterprise.trend(motor)[: len(old)] == old
 
 
+def an_older_database_is_brought_up_to_date(enterprise: Enterprise) -> None:
+    before, points = enterprise.recordings(), {motor: enterprise.trend(motor) for motor in MOTOR_NAMES}
+    newest = _revision(enterprise.compose.inside("mcc", "python", "-c", REVISION))
+    enterprise.compose("stop", "mcc")
+    enterprise.compose.once("mcc", "python", "-c", OLDER_DATABASE)
+    assert _revision(enterprise.compose.once("mcc", "python", "-c", REVISION)) == "0001" < newest
+    enterprise.compose("start", "mcc")
+    enterprise.wait_for_links()
+    assert _revision(enterprise.compose.inside("mcc", "python", "-c", REVISION)) == newest
+    enterprise.require_continuation(before)
+    for motor, old in points.items():
+        assert enterprise.trend(motor)[: len(old)] == old
+
+
+def _revision(printed: str) -> str:
+    (revision,) = (line.split()[1] for line in printed.splitlines() if line.startswith("revision "))
+    return revision
+
+
 def stopped_and_started_again_it_goes_on(enterprise: Enterprise) -> None:
     before, points = enterprise.recordings(), {motor: enterprise.trend(motor) for motor in MOTOR_NAMES}
     enterprise.down()
+    with socket.create_server(("127.0.0.1", enterprise.compose.port)):
+        _require_port_named(enterprise, enterprise.compose.attempt("up", "-d").stdout)
+        others = [name for name in SERVICES if name.startswith(("relay", "router"))]
+        running = [
+            name for name in others if enterprise.compose.attempt("exec", "-T", name, "true").returncode == 0
+        ]
+        say(f"  with the port taken, up started {len(running)} of {len(others)} relays and routers")
     enterprise.compose("up", "-d")
     enterprise.wait_for_links()
 
@@ -264,11 +328,14 @@ STEPS = (
     relays_are_reached_through_the_router_alone,
     every_motor_is_triggered_from_outside,
     records_made_during_an_outage_arrive,
+    a_link_down_for_long_costs_what_the_relay_discards,
+    an_upload_of_what_is_known_changes_nothing,
     an_unreachable_relay_is_named_and_the_rest_works,
     a_taken_port_is_named_and_the_rest_works,
     a_volume_that_cannot_be_written_to_is_named,
     restarts_lose_nothing,
     the_documented_backup_restores,
+    an_older_database_is_brought_up_to_date,
     stopped_and_started_again_it_goes_on,
     everything_is_taken_down,
 )
@@ -293,6 +360,7 @@ def main(command: str) -> int:
     (port,) = free_ports(1)
     compose = Compose(command, port)
     started_s = time.monotonic()
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("terminated: taking everything down"))
     with _taken_down(compose), ServiceClient(f"http://127.0.0.1:{port}") as service:
         enterprise = Enterprise(compose, service)
         for step in STEPS:

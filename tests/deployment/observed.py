@@ -72,6 +72,8 @@ class Enterprise:
     def require_right_verdicts(self) -> None:
         status = self.compose.document("mcc", "mcc", "demo-status", "--json")
         assert status["right"] == len(MOTOR_NAMES), status
+        shown = self.compose.once("mcc", "mcc", "demo-status")
+        assert all(motor in shown for motor in MOTOR_NAMES), shown
 
     def keep_log(self) -> None:
         """Before `down` takes it away: stops the MCC, and remembers what its log says of transfers."""
@@ -90,4 +92,5 @@ class Enterprise:
         now = self.recordings()
         assert before.items() <= now.items()
         assert len(set(now.values())) == len(now), sorted(now.values())
-        require_once_each(self._earlier + transfers(self.compose("logs", "mcc")), now)
+        pulled = [str(row["id"]) for row in self.service.items("/recordings") if row["source"] == "relay"]
+        require_once_each(self._earlier + transfers(self.compose("logs", "mcc")), pulled)

@@ -33,6 +33,36 @@ def test_an_unknown_name_is_a_failed_connect(host: str) -> None:
         Client.connect(host, 102)
 
 
+NOBODY = "255.255.255.255"
+"""No connection can be made to it, and the system says so at once."""
+
+
+def named(monkeypatch: pytest.MonkeyPatch, *addresses: str) -> None:
+    """Have every name stand for these addresses."""
+    found = [(socket.AF_INET, socket.SOCK_STREAM, 6, "", (address, 0)) for address in addresses]
+    monkeypatch.setattr(socket, "getaddrinfo", lambda *_: found)
+
+
+def test_each_address_of_a_name_is_tried(monkeypatch: pytest.MonkeyPatch, relay: Server) -> None:
+    named(monkeypatch, NOBODY, LOOPBACK)
+    with Client.connect("relay-a1", relay.port) as client:
+        assert client.read(IND01, FunctionalConstraint.ST) is False
+
+
+def test_a_silent_address_leaves_time_for_the_next(monkeypatch: pytest.MonkeyPatch, relay: Server) -> None:
+    with socket.create_server(("127.0.0.2", relay.port)):
+        named(monkeypatch, "127.0.0.2", LOOPBACK)
+        with Client.connect("relay-a1", relay.port, connect_timeout_s=4.0) as client:
+            assert client.read(IND01, FunctionalConstraint.ST) is False
+
+
+def test_a_name_none_of_whose_addresses_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+    named(monkeypatch, NOBODY, LOOPBACK)
+    port = free_port()
+    with pytest.raises(ConnectFailed, match=rf"relay-a1:{port}: .*addresses {NOBODY}, {LOOPBACK}"):
+        Client.connect("relay-a1", port)
+
+
 @pytest.mark.parametrize("port", [0, -1, 65536])
 def test_a_port_that_is_none_is_a_failed_connect(port: int) -> None:
     with pytest.raises(ConnectFailed, match="not a TCP port"):

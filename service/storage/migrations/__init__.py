@@ -4,22 +4,38 @@ from pathlib import Path
 
 from alembic import command
 from alembic.config import Config
+from alembic.migration import MigrationContext
+from alembic.script import ScriptDirectory
 from sqlalchemy import Connection
 
 from service.storage.engine import connect
+from service.storage.errors import StorageError
 
 
 def migrate(url: str) -> None:
     """Creates the tables or brings older ones up to date; nothing to do is fine too.
 
-    Raises StorageError (no such URL), sqlalchemy.exc.SQLAlchemyError (the database does not answer).
+    Raises StorageError (no such URL, a newer version's database), sqlalchemy.exc.SQLAlchemyError (the
+    database does not answer).
     """
     engine = connect(url)
     try:
         with engine.begin() as connection:
-            command.upgrade(config(connection), "head")
+            settings = config(connection)
+            _require_known(connection, settings)
+            command.upgrade(settings, "head")
     finally:
         engine.dispose()
+
+
+def _require_known(connection: Connection, settings: Config) -> None:
+    present = MigrationContext.configure(connection).get_current_revision()
+    known = [revision.revision for revision in ScriptDirectory.from_config(settings).walk_revisions()]
+    if present is not None and present not in known:
+        raise StorageError(
+            f"database_url: expected tables of revision {known[0]} or older, found {present}: a newer "
+            "version has used this database; start that version, or restore the back-up made before"
+        )
 
 
 def config(connection: Connection) -> Config:

@@ -3,7 +3,7 @@
 import uuid
 from dataclasses import dataclass
 
-from sqlalchemy import select
+from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session
 
 from service.recordings import StoredRecording
@@ -99,14 +99,15 @@ class RecordingRows(Sessions):
     ) -> AddedRecording:
         """A record whose files are stored: its row, its first job and its event report, all or nothing.
 
-        From a relay: `ied` and `remote`; uploaded: neither. Identity is relay (or motor), name and digest:
-        the same record again changes nothing but the event report. Raises NotFoundError, StateConflictError.
+        From a relay: `ied` and `remote`; uploaded: neither. Two of a relay are the same by name and digest;
+        of two of a motor one of which was uploaded, it is enough that the waveform's files hold the same.
+        The same record again changes nothing but the event report. Raises NotFoundError, StateConflictError.
         """
         if (ied is None) != (remote is None):
             raise ValueError("a recording comes from a relay (ied and remote) or is uploaded (neither)")
         with self._write() as session:
             found(session, MotorRow, motor, "motor")
-            row = _stored_before(session, motor, ied, remote.name if remote else stored.name, stored.digest)
+            row = _stored_before(session, motor, ied, remote.name if remote else stored.name, stored)
             created = row is None
             if row is None:
                 if ied is None or remote is None:
@@ -168,12 +169,29 @@ def new_job(recording_id: str, method: str, model: str, now_ns: int) -> JobRow:
 
 
 def _stored_before(
-    session: Session, motor: str, ied: str | None, name: str, digest: str
+    session: Session, motor: str, ied: str | None, name: str, stored: StoredRecording
 ) -> RecordingRow | None:
-    same = select(RecordingRow).where(RecordingRow.name == name, RecordingRow.digest == digest)
     if ied is None:
-        return only(session, same.where(RecordingRow.ied.is_(None), RecordingRow.motor == motor))
-    return only(session, same.where(RecordingRow.ied == ied))
+        return _of_the_same_waveform(session, motor, stored)
+    same = select(RecordingRow).where(
+        RecordingRow.ied == ied, RecordingRow.name == name, RecordingRow.digest == stored.digest
+    )
+    return only(session, same) or _of_the_same_waveform(session, motor, stored, RecordingRow.ied.is_(None))
+
+
+def _of_the_same_waveform(
+    session: Session, motor: str, stored: StoredRecording, *further: ColumnElement[bool]
+) -> RecordingRow | None:
+    """Whoever fetches a record on site may rename its files, and leave out those that only describe it."""
+    contents = {file.sha256 for file in stored.waveform_files}
+    holders = (
+        select(RecordingFileRow.recording_id)
+        .where(RecordingFileRow.sha256.in_(contents))
+        .group_by(RecordingFileRow.recording_id)
+        .having(func.count(RecordingFileRow.sha256.distinct()) == len(contents))
+    )
+    query = select(RecordingRow).where(RecordingRow.motor == motor, RecordingRow.id.in_(holders), *further)
+    return only(session, query.order_by(RecordingRow.announced_ns, RecordingRow.id))
 
 
 def _announced(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:

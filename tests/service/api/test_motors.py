@@ -14,7 +14,7 @@ def diagnosed(repository: Repository, store: RecordingStore) -> list[str]:
     """Three recordings of PUMP-A1, a second apart."""
     ids = []
     for i, diagnosis in enumerate([fault(0.01), fault(0.02), undiagnosable()]):
-        stored = store.store({f"E{i}.CFF": b"samples"})
+        stored = store.store({f"E{i}.CFF": b"samples %d" % i})
         added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS + i)
         claimed = repository.claim_job(now_ns=NOW_NS + i)
         assert claimed is not None

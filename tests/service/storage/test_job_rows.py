@@ -133,7 +133,7 @@ def test_a_result_that_is_no_json_is_refused(repository: Repository, recording_i
 
 def test_trend_and_health(repository: Repository, store: RecordingStore) -> None:
     for i, diagnosis in enumerate([fault(0.01), fault(0.02), undiagnosable()]):
-        repository.add_recording(store.store({f"U{i}.CFF": b"x"}), motor="FAN-A2", now_ns=NOW_NS + i)
+        repository.add_recording(store.store({f"U{i}.CFF": bytes([i])}), motor="FAN-A2", now_ns=NOW_NS + i)
         job_id = claim(repository, NOW_NS + i).job.id
         repository.finish_job(job_id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + 9)
     points = repository.trend("FAN-A2", "mu_f", limit=10).items

@@ -1,12 +1,16 @@
 from pathlib import Path
 
 import pytest
+from alembic import command
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import Engine, inspect, text
 
-from service.storage import StorageError, connect, migrate
+from service.recordings import RecordingStore
+from service.storage import Repository, StorageError, connect, migrate
+from service.storage.migrations import config
 from service.storage.models import Base
+from tests.service.plants import NOW_NS
 
 
 def test_migrations_make_the_tables_of_the_models(engine: Engine) -> None:
@@ -18,6 +22,26 @@ def test_migrations_make_the_tables_of_the_models(engine: Engine) -> None:
 def test_migrating_again_changes_nothing(database_url: str, engine: Engine) -> None:
     migrate(database_url)
     assert "recordings" in inspect(engine).get_table_names()
+
+
+def test_an_older_database_is_brought_up_to_date_with_all_it_holds(
+    database_url: str, engine: Engine, repository: Repository, store: RecordingStore
+) -> None:
+    stored = store.store({"EVENT.CFG": b"config", "EVENT.DAT": b"samples"})
+    before = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS).recording
+    with engine.begin() as connection:
+        command.downgrade(config(connection), "0001")
+    migrate(database_url)
+    test_migrations_make_the_tables_of_the_models(engine)
+    assert repository.recordings(limit=10).items == (before,)
+    assert not repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS).created
+
+
+def test_a_newer_versions_database_is_left_alone(database_url: str, engine: Engine) -> None:
+    with engine.begin() as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    with pytest.raises(StorageError, match=r"revision 0002 or older, found 9999: .* restore the back-up"):
+        migrate(database_url)
 
 
 def test_sqlite_is_shared_safely(engine: Engine) -> None:

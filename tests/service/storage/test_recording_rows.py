@@ -127,6 +127,57 @@ def test_an_upload_is_one_recording_a_motor(repository: Repository, store: Recor
     assert repository.recordings(limit=10, motor="FAN-A2").items == (added[2].recording,)
 
 
+# On site, a relay's own software gives a record's files names of its own and no header.
+PULLED = {"C_0001.CFG": b"config", "C_0001.DAT": b"samples", "C_0001.HDR": b"summary"}
+ON_SITE = {"WEEK 47.CFG": b"config", "WEEK 47.DAT": b"samples"}
+
+
+def test_an_upload_of_what_was_pulled_is_known(repository: Repository, store: RecordingStore) -> None:
+    pulled = repository.add_recording(
+        store.store(PULLED), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
+    )
+    uploaded = repository.add_recording(store.store(ON_SITE), motor="PUMP-A1", now_ns=NOW_NS + 1)
+    assert (uploaded.created, uploaded.recording) == (False, pulled.recording)
+    assert len(repository.jobs(pulled.recording.id, limit=10).items) == 1
+    elsewhere = repository.add_recording(store.store(ON_SITE), motor="FAN-A2", now_ns=NOW_NS + 1)
+    assert elsewhere.created, "of another motor"
+
+
+def test_a_pull_of_what_was_uploaded_is_known(repository: Repository, store: RecordingStore) -> None:
+    uploaded = repository.add_recording(store.store(ON_SITE), motor="PUMP-A1", now_ns=NOW_NS)
+    repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=NOW_NS + 1)
+    pulled = repository.add_recording(
+        store.store(PULLED), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS + 2
+    )
+    assert (pulled.created, pulled.recording) == (False, uploaded.recording)
+    assert repository.recordings(limit=10).items == (uploaded.recording,), "the announcement is gone"
+    assert repository.known_remote_records("A1_SEL710") == {REMOTE}, "it is not pulled again"
+
+
+@pytest.mark.parametrize("other", [{"C_0001.DAT": b"SAMPLES"}, {"C_0001.CFG": b"CONFIG"}])
+def test_an_upload_that_shares_one_file_with_another_recording(
+    repository: Repository, store: RecordingStore, other: dict[str, bytes]
+) -> None:
+    added = [
+        repository.add_recording(store.store(files), motor="PUMP-A1", now_ns=NOW_NS)
+        for files in (PULLED, PULLED | other, ON_SITE)
+    ]
+    assert [a.created for a in added] == [True, True, False]
+    assert added[2].recording == added[0].recording
+
+
+def test_two_records_a_relay_lists_are_two_whatever_they_hold(
+    repository: Repository, store: RecordingStore
+) -> None:
+    second = {f"C_0002{name[6:]}": content for name, content in PULLED.items()}
+    for name, files in (("C_0001", PULLED), ("C_0002", second)):
+        remote = RemoteRecord(name, 11, NOW_NS)
+        repository.add_recording(
+            store.store(files), motor="PUMP-A1", ied="A1_SEL710", remote=remote, now_ns=NOW_NS
+        )
+    assert len(repository.recordings(limit=10).items) == 2
+
+
 def test_nothing_is_added_when_a_part_fails(repository: Repository, store: RecordingStore) -> None:
     with pytest.raises(NotFoundError, match="there is no event report 'nope'"):
         repository.add_recording(record(store), motor="PUMP-A1", event_report_id="nope", now_ns=NOW_NS)
