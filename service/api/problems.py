@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException
 from structlog.typing import FilteringBoundLogger
 
 from service.recordings import RecordingStoreError
-from service.storage.errors import NotFoundError, StateConflictError
+from service.storage.errors import NotFoundError, StateConflictError, UnusableBaselineError
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
@@ -103,6 +103,10 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(NotFoundError)
     def _not_found(request: Request, error: NotFoundError) -> JSONResponse:
         return problem_response(request.url.path, HTTPStatus.NOT_FOUND, str(error))
+
+    @app.exception_handler(UnusableBaselineError)
+    def _unusable(request: Request, error: UnusableBaselineError) -> JSONResponse:
+        return problem_response(request.url.path, HTTPStatus.CONFLICT, str(error))
 
     @app.exception_handler(StateConflictError)
     def _conflict(request: Request, error: StateConflictError) -> JSONResponse:

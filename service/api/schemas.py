@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from typing import Annotated, Literal
+from uuid import UUID
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
 
@@ -146,6 +147,18 @@ class Recording(Document):
     announced_time: Time = Field(validation_alias="announced_ns")
     fetched_time: Time | None = Field(validation_alias="fetched_ns")
     recorded_time: Time | None = Field(validation_alias="recorded_ns")
+
+
+class BaselineRequest(BaseModel):
+    """The recordings that stand for a motor's healthy condition."""
+
+    recording_ids: set[UUID] = Field(min_length=3, max_length=100)
+
+
+class Baseline(Document):
+    """The motor's healthy recordings; empty where it has no baseline."""
+
+    recordings: list[Recording]
 
 
 class RecordingFile(Document):

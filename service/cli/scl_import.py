@@ -11,7 +11,7 @@ import scl
 from scl import Address, Scl, SclError
 from scl.data_model import Ied
 from service.cli.output import failing_clearly, one_line, print_document, results
-from service.plant.files import trigger_control
+from service.plant.recognition import recognise
 
 
 def show_scl(file: Path, *, as_json: bool) -> None:
@@ -28,6 +28,9 @@ def show_scl(file: Path, *, as_json: bool) -> None:
     console = results()
     console.print(_motors(document))
     console.print(_relays(document))
+    for ied in document.ieds:
+        for words in recognise(ied).missing:
+            console.print(Text(f"{ied.name}: not recognised: {words}"))
     for warning in _warnings(document):
         console.print(Text(f"warning: {one_line(warning)}", style="yellow"))
 
@@ -67,7 +70,10 @@ def _describe_relay(document: Scl, ied: Ied) -> dict[str, object]:
             reference for report in ied.report_controls(buffered=True) for reference in report.references
         ],
         "record_made": [placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdMade")],
-        "trigger": trigger_control(ied),
+        "trigger": recognise(ied).trigger,
+        "report": recognise(ied).report_control,
+        "metering": recognise(ied).metering_data_set,
+        "not_recognised": list(recognise(ied).missing),
         "controls": [placed.reference for placed in ied.data_objects(common_data_class="SPC")],
     }
 
@@ -128,7 +134,7 @@ def _relays(document: Scl) -> Table:
         address = _usable_address(document, ied.name)
         reports = sum(len(report.references) for report in ied.report_controls(buffered=True))
         made = [placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdMade")]
-        trigger = trigger_control(ied) or "no trigger"
+        trigger = recognise(ied).trigger or "no trigger"
         table.add_row(
             Text(f"{ied.name}\n{ied.manufacturer} {ied.type}".strip()),
             Text("none" if address is None else str(address)),

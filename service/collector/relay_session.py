@@ -134,6 +134,9 @@ class RelaySession:
         """Have reports from where the last saved one left off; without reports, the directory is polled."""
         self._unsaved_entry_id = None
         control = self._relay.report_control
+        if control is None:
+            log.info("the relay reports no records, the directory is polled", relay=self._relay.name)
+            return
         try:
             entry_id = self._repository.entry_id(self._relay.name)
             # A block enabled without an EntryID begins with the overflow bit set, whatever it lost.
@@ -171,7 +174,7 @@ class RelaySession:
         node, _, names = member.reference.partition("$")
         reference = f"{node}.{names.partition('$')[2]}".replace("$", ".")
         status = member.value[0] if isinstance(member.value, tuple) and member.value else member.value
-        if f"{reference}.".startswith(f"{self._relay.record_made}."):
+        if self._relay.record_made is not None and f"{reference}.".startswith(f"{self._relay.record_made}."):
             return status is True
         return self._relay.fault_number is not None and f"{reference}.".startswith(
             f"{self._relay.fault_number}."

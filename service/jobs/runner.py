@@ -141,10 +141,11 @@ class JobRunner:
             return True
         try:
             entry = self._store.entry(claimed.digest)
+            baseline = tuple(self._store.entry(digest) for digest in claimed.baseline)
         except RecordingStoreError as error:
             self._repository.reject_recording(job.id, str(error), now_ns=time.time_ns())
             return True
-        task = DiagnosisTask(entry, motor, job.method, job.model)
+        task = DiagnosisTask(entry, motor, job.method, job.model, baseline)
         future = self._pool.schedule(self._task, args=(task,), timeout=self._limits.job_timeout_s)
         self._in_flight[job.id] = future
         future.add_done_callback(partial(self._done, claimed))

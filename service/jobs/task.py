@@ -10,12 +10,16 @@ from core.machines.parameters import Motor
 
 @dataclass(frozen=True, slots=True)
 class DiagnosisTask:
-    """One recording to diagnose: the file a reader starts from, its motor, and how."""
+    """One recording to diagnose: the file a reader starts from, its motor, and how.
+
+    baseline: files of the motor's healthy recordings, whose standing asymmetry is taken off; or none.
+    """
 
     entry: Path
     motor: Motor
     method: str
     model: str
+    baseline: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,13 +11,10 @@ from pathlib import Path
 import scl
 from core.machines.motor_file import MotorFileError, motor_from_table
 from core.machines.parameters import Motor
-from scl.data_model import Ied
 from service.plant.errors import PlantError
 from service.plant.model import Plant, PlantMotor, Relay, Site
+from service.plant.recognition import REMOTE_BIT, recognise
 from service.settings import Settings, SettingsError
-
-TRIGGER_CONTROL = "RBGGIO1.SPCSO01"
-"""Remote bit RB01 of the SEL-700 family, which the relay's event report trigger equation (ER) listens to."""
 
 
 def read_plant(settings: Settings) -> Plant:
@@ -143,27 +140,18 @@ def _one_relay_an_address(configuration: scl.Scl, relays: Iterable[str]) -> None
         )
 
 
-def trigger_control(ied: Ied) -> str | None:
-    """Reference of the control that has this relay record an event; None where it offers none."""
-    controls = (placed.reference for placed in ied.data_objects(common_data_class="SPC"))
-    return _first(reference for reference in controls if reference.endswith(f"/{TRIGGER_CONTROL}"))
-
-
 def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
     """The references the service uses, found in the relay's own model."""
     ied = configuration.ied(feeder.ied)
     address = configuration.address(feeder.ied)
-
-    def required(reference: str | None, expected: str) -> str:
-        if reference is None:
-            raise PlantError(configuration.path, f"relay {ied.name}", expected=expected, found="none")
-        return reference
-
-    record_made = required(
-        _first(placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdMade")),
-        "a disturbance recorder's RcdMade (logical node class RDRE)",
-    )
-    reports = ied.report_controls(buffered=True, covering=record_made)
+    points = recognise(ied)
+    if points.trigger is None:
+        raise PlantError(
+            configuration.path,
+            f"relay {ied.name}",
+            expected=f"the remote bit {REMOTE_BIT} or RcdTrg of an RDRE (CDC SPC) that triggers a record",
+            found="none",
+        )
     return Relay(
         name=ied.name,
         site=feeder.site,
@@ -171,25 +159,9 @@ def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
         port=address.port,
         manufacturer=ied.manufacturer,
         type=ied.type,
-        trigger_control=required(
-            trigger_control(ied), f"the remote bit {TRIGGER_CONTROL} (CDC SPC) that triggers a record"
-        ),
-        record_made=record_made,
-        fault_number=_first(placed.reference for placed in ied.data_objects(ln_class="RDRE", name="FltNum")),
-        report_control=required(
-            _first(reference for report in reports for reference in report.references),
-            f"a buffered report control whose data set holds {record_made}",
-        ),
-        metering_data_set=_metering_data_set(ied),
+        trigger_control=points.trigger,
+        record_made=points.record_made,
+        fault_number=points.record_number,
+        report_control=points.report_control,
+        metering_data_set=points.metering_data_set,
     )
-
-
-def _metering_data_set(ied: Ied) -> str | None:
-    currents = _first(placed.reference for placed in ied.data_objects(ln_class="MMXU", name="A"))
-    if currents is None:
-        return None
-    return _first(data_set.reference for data_set in ied.data_sets() if data_set.covers(currents))
-
-
-def _first(references: Iterable[str]) -> str | None:
-    return next(iter(references), None)

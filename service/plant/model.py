@@ -16,8 +16,9 @@ class Relay:
     """A motor relay: where it answers and the IEC 61850 references the service uses.
 
     trigger_control: control whose operation makes an event recording, "A1_SEL710CON/RBGGIO1.SPCSO01".
-    record_made, fault_number: status the relay sets when a record is ready; fault_number may be absent.
-    report_control: buffered report "A1_SEL710CFG/LLN0.BR.BRep01" whose data set holds record_made.
+    record_made, fault_number: status the relay sets when a record is ready, None where it has none.
+    report_control: buffered report "A1_SEL710CFG/LLN0.BR.BRep01" whose data set holds record_made, None
+    where there is none: then the directory alone tells of records.
     metering_data_set: data set with the measured currents, None where the relay offers none.
     """
 
@@ -28,9 +29,9 @@ class Relay:
     manufacturer: str
     type: str
     trigger_control: str
-    record_made: str
+    record_made: str | None
     fault_number: str | None
-    report_control: str
+    report_control: str | None
     metering_data_set: str | None
 
 

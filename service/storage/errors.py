@@ -14,6 +14,13 @@ class NotFoundError(StorageError):
         super().__init__(f"there is no {kind} {name[:100]!r}")
 
 
+class UnusableBaselineError(StorageError):
+    """A recording that cannot stand for a motor's healthy condition."""
+
+    def __init__(self, recording_id: str, reason: str) -> None:
+        super().__init__(f"recording {recording_id} cannot be part of a baseline: {reason}")
+
+
 class StateConflictError(StorageError):
     """A step that does not follow from the present state, e.g. a failed event report cannot be triggered."""
 

@@ -134,6 +134,16 @@ class RecordingFileRow(Base):
     sha256: Mapped[str] = mapped_column(String(64), index=True)
 
 
+class BaselineRecordingRow(Base):
+    """A recording that stands for a motor's healthy condition."""
+
+    __tablename__ = "baseline_recordings"
+
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), primary_key=True)
+    chosen_ns: Mapped[int]
+
+
 class EventReportRow(Base):
     __tablename__ = "event_reports"
 

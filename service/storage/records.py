@@ -129,11 +129,13 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class ClaimedJob:
-    """A job with what the worker needs: the motor's name and the digest of the recording's files."""
+    """A job with what the worker needs: the motor's name, the digest of the recording's files, and those of
+    the motor's baseline."""
 
     job: Job
     motor: str
     digest: str
+    baseline: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -96,7 +96,7 @@ def test_a_motor_the_scd_does_not_have(motors: Path) -> None:
             "(P elements IP and MMS-Port), found 127.0.0.1:10210 for 2 of them",
         ),
         ('<P type="MMS-Port">10211</P>', '<P type="MMS-Port">70000</P>', "expected a port from 1 to 65535"),
-        ("RcdMade", "RcdMad", "relay A1_SEL710: expected a disturbance recorder's RcdMade"),
+        ("SPCSO01", "SPCSX01", "relay A1_SEL710: expected the remote bit RBGGIO1.SPCSO01 or RcdTrg"),
         ("</SCL>", "", "expected"),
     ],
 )
@@ -122,3 +122,11 @@ def test_files_that_are_not_there(motors: Path, tmp_path: Path) -> None:
         read_plant(settings(motors, tmp_path / "none.scd"))
     with pytest.raises(SettingsError, match="settings: scd: expected the path of the plant's SCD file"):
         read_plant(Settings(motors=motors))
+
+
+def test_a_relay_that_tells_of_no_record_is_taken_and_polled(motors: Path, tmp_path: Path) -> None:
+    content = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8").replace("RcdMade", "RcdMad")
+    (tmp_path / "old.scd").write_text(content, encoding="utf-8")
+    relay = read_plant(settings(motors, tmp_path / "old.scd")).relay("A1_SEL710")
+    assert (relay.record_made, relay.report_control) == (None, None)
+    assert relay.trigger_control == "A1_SEL710CON/RBGGIO1.SPCSO01"

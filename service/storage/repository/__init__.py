@@ -1,5 +1,6 @@
 """The only code that touches the tables, one module a subject."""
 
+from service.storage.repository.baselines import BaselineRows
 from service.storage.repository.condition import ConditionRows
 from service.storage.repository.event_reports import EventReportRows
 from service.storage.repository.jobs import JobRows
@@ -7,7 +8,7 @@ from service.storage.repository.plant import PlantRows
 from service.storage.repository.recordings import RecordingRows
 
 
-class Repository(PlantRows, EventReportRows, RecordingRows, JobRows, ConditionRows):
+class Repository(PlantRows, EventReportRows, RecordingRows, JobRows, ConditionRows, BaselineRows):
     """All there is to ask of and tell the database; every method is one transaction.
 
     Safe to share between threads: each call takes its own connection. Two processes may each have one.

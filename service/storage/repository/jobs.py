@@ -9,6 +9,7 @@ from core.diagnosis.verdict import Diagnosis
 from service.storage.errors import StateConflictError
 from service.storage.models import DiagnosisRow, JobRow, RecordingRow
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, Page
+from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.event_reports import diagnose_rows, fail_rows
 from service.storage.repository.recordings import DEFAULT_METHOD, DEFAULT_MODEL, new_job
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
@@ -54,7 +55,9 @@ class JobRows(Sessions):
                 raise StateConflictError(
                     "recording", recording.id, present=recording.state, wanted="diagnosed"
                 )
-            return ClaimedJob(job(row), recording.motor, recording.digest)
+            healthy = baseline_rows(session, recording.motor)
+            digests = tuple(one.digest for one in healthy if one.digest is not None)
+            return ClaimedJob(job(row), recording.motor, recording.digest, digests)
 
     def release_job(self, job_id: str) -> None:
         """Puts a running job back as if it had not been claimed: for a clean stop. Raises NotFoundError."""

@@ -1,5 +1,6 @@
 """The task of the worker processes, with real files and the real diagnosis."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,9 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.recordings import RecordingStore
 from service.storage import Repository
+from tests.core.motors import REFERENCE
+from tests.core.phase_circuits import recording as waveforms
+from tests.core.phase_circuits import running
 from tests.service.jobs.waiting import wait_until
 from tests.service.plants import NOW_NS, motor
 
@@ -85,3 +89,35 @@ def test_worker_processes_diagnose(repository: Repository, store: RecordingStore
     assert health.diagnosis is not None
     assert health.diagnosis.verdict in set(Verdict)
     assert health.diagnosis.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000
+
+
+def written(path: Path, record: Recording) -> Path:
+    channels = tuple(
+        replace(channel, full_scale=2.0 * float(np.abs(x).max()))
+        for channel, x in zip(record.channels, record.samples, strict=True)
+    )
+    return write(path, replace(record, channels=channels))
+
+
+def test_what_the_baseline_shows_is_taken_off(tmp_path: Path) -> None:
+    def record(name: str, load_level: float) -> Path:
+        """A healthy motor whose relay reads phase b 3 % high."""
+        operation = running(REFERENCE, load_level)
+        gains, seed = (1.0, 1.03, 1.0), round(100 * load_level)
+        return written(tmp_path / name, waveforms(operation, noise=0.002, current_gains=gains, seed=seed))
+
+    healthy = tuple(record(f"OK{k}", load_level) for k, load_level in enumerate((0.3, 0.6, 0.9)))
+    alone = DiagnosisTask(record("NEW", 0.5), REFERENCE, "hybrid", "split-winding")
+    outcomes = [diagnose_recording(one) for one in (alone, replace(alone, baseline=healthy))]
+    feigned, relative = (one.diagnosis for one in outcomes if isinstance(one, Diagnosed))
+    assert feigned.mu_f is not None
+    assert relative.mu_f is not None
+    assert relative.mu_f < 0.3 * feigned.mu_f
+    assert "relative to a baseline of 3 healthy recordings" in relative.reasons
+
+
+def test_a_baseline_that_cannot_be_learnt_rejects_with_its_reason(tmp_path: Path) -> None:
+    entry = write(tmp_path / "EVENT", recording())
+    outcome = diagnose_recording(replace(task(entry), baseline=(entry, tmp_path / "GONE.CFG", entry)))
+    assert isinstance(outcome, Rejected)
+    assert "the motor's baseline cannot be learnt" in outcome.reason
