@@ -13,9 +13,12 @@ import typer
 
 import scl
 from ied_sim import warm_up
-from ied_sim.errors import SimulatorError
-from ied_sim.scenario import RelayScenario, ScenarioError, healthy_reference, read_scenario
+from ied_sim.errors import ScenarioError, SimulatorError, TableError
+from ied_sim.profile import DEFAULT, read_profile, shipped
+from ied_sim.scenario import RelayScenario, healthy_reference, read_scenario
 from ied_sim.simulator import Simulator
+from ied_sim.standalone import IED_NAME, standalone
+from scl import Address
 
 app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})
 
@@ -26,12 +29,27 @@ def _print_version(wanted: bool) -> None:
         raise typer.Exit
 
 
+def _print_profiles(wanted: bool) -> None:
+    if wanted:
+        for name in shipped():
+            _say(f"{name:<16}{read_profile(name).description}")
+        raise typer.Exit
+
+
 @app.command()
 def ied_sim(
-    scd: Annotated[Path, typer.Option("--scd", help="SCD file with the relays and their addresses.")],
+    scd: Annotated[
+        Path | None, typer.Option("--scd", help="SCD file with the relays and their addresses.")
+    ] = None,
+    profile: Annotated[
+        str | None,
+        typer.Option(help="In place of --scd: one relay of this kind (a name, or a .toml file)."),
+    ] = None,
     ied: Annotated[
         list[str] | None, typer.Option("--ied", help="Serve this relay only; may be given again.")
     ] = None,
+    host: Annotated[str, typer.Option(help="With --profile: address to listen at.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="With --profile: port to listen at.")] = 10102,
     scenario: Annotated[
         Path | None, typer.Option(help="Motors, loads and faults (docs/scenario.md); healthy motors without.")
     ] = None,
@@ -44,23 +62,33 @@ def ied_sim(
     at: Annotated[
         float, typer.Option(metavar="SECONDS", help="With --truth: time since the simulator's start.")
     ] = 0.0,
+    _profiles: Annotated[
+        bool,
+        typer.Option("--profiles", callback=_print_profiles, is_eager=True, help="List profiles and stop."),
+    ] = False,
     _version: Annotated[
         bool,
         typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop."),
     ] = False,
 ) -> None:
     """Serve simulated motor relays over IEC 61850 MMS until interrupted."""
+    if (scd is None) == (profile is None):
+        raise typer.BadParameter("give either --scd or --profile")
     logging.basicConfig(stream=sys.stderr, level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     try:
-        document = scl.read(scd)
+        if profile is not None:
+            name = ied[0] if ied else IED_NAME
+            document = standalone(read_profile(profile), name, Address(host, port))
+        elif scd is not None:
+            document = scl.read(scd)
         names = ied or [found.name for found in document.ieds]
-        scenarios = _scenarios(document, scenario)
+        scenarios = _scenarios(document, scenario, profile or DEFAULT)
         if truth:
             told = {name: scenarios[name].truth(at) for name in names if document.ied(name)}
             _say(json.dumps(told))
             return
         _serve(document, names, scenarios, files)
-    except (SimulatorError, ScenarioError, scl.SclError, OSError) as error:
+    except (SimulatorError, TableError, scl.SclError, OSError) as error:
         typer.echo(f"ied-sim: {error}", err=True)
         raise typer.Exit(1) from error
 
@@ -70,9 +98,9 @@ def main() -> None:
     app()
 
 
-def _scenarios(document: scl.Scl, path: Path | None) -> dict[str, RelayScenario]:
+def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, RelayScenario]:
     """A scenario for every IED of the file: that of the scenario file, or the healthy reference motor."""
-    scenarios = {found.name: healthy_reference(found.name) for found in document.ieds}
+    scenarios = {found.name: healthy_reference(found.name, profile) for found in document.ieds}
     given = {} if path is None else read_scenario(path)
     for name in given:
         if name not in scenarios:

@@ -5,33 +5,39 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from datetime import UTC, datetime
 
 from core.recordings import Channel, Quantity, Recording
-from ied_sim.event_files import EventFiles
 from ied_sim.plant import MotorPlant
-from ied_sim.scenario import RecorderSettings
 from ied_sim.sensors import CHANNELS
 
 log = logging.getLogger(__name__)
 
-FIRMWARE = "SEL-710-SIM-R100-V0-Z001001-D20250101"
+
+@dataclass(frozen=True, slots=True)
+class RecorderSettings:
+    """What an event record spans, and how many records the relay keeps."""
+
+    sample_rate_hz: float = 10_000.0
+    pre_trigger_s: float = 0.2
+    post_trigger_s: float = 0.8
+    capacity: int = 20
 
 
 @dataclass(frozen=True, slots=True)
-class EventRecord:
-    """A record that is complete on the relay's disk."""
+class Capture:
+    """Analogue channels around a trigger at `time_ns`, and what the relay calls the event."""
 
-    number: int
-    trigger_time_ns: int
+    time_ns: int
+    kind: str
+    recording: Recording
 
 
 class EventRecorder:
-    """Captures `plant` around each trigger and calls `announce` once the record can be fetched.
+    """Captures `plant` around each trigger and hands it to `keep` once its last sample has been.
 
     epoch_ns: UTC of the plant's time zero. A capture ends the post-trigger time after its trigger, as in a
-    relay that has to wait for its samples; a trigger meanwhile makes no second record. `announce` is called
-    in the capture's own thread.
+    relay that has to wait for its samples; a trigger meanwhile makes no second record. `keep` is called in
+    the capture's own thread.
     """
 
     def __init__(
@@ -39,33 +45,31 @@ class EventRecorder:
         relay_name: str,
         plant: MotorPlant,
         settings: RecorderSettings,
-        files: EventFiles,
         *,
         epoch_ns: int,
-        announce: Callable[[EventRecord], None],
+        keep: Callable[[Capture], None],
     ) -> None:
         self._relay_name = relay_name
         self._plant = plant
         self._settings = settings
-        self._files = files
         self._epoch_ns = epoch_ns
-        self._announce = announce
+        self._keep = keep
         self._lock = threading.Lock()
         self._stopping = threading.Event()
         self._capturing = False
         self._capture = threading.Thread()
 
-    def trigger(self, time_ns: int) -> bool:
+    def trigger(self, time_ns: int, kind: str) -> bool:
         """Start a capture at UTC `time_ns`; False if one is under way or the recorder has stopped."""
         with self._lock:
             if self._capturing or self._stopping.is_set():
                 return False
             self._capturing = True
             self._capture = threading.Thread(
-                target=self._run, args=(time_ns,), name=f"{self._relay_name} capture", daemon=True
+                target=self._run, args=(time_ns, kind), name=f"{self._relay_name} capture", daemon=True
             )
             self._capture.start()
-        log.info("%s: event recorder triggered", self._relay_name)
+        log.info("%s: event recorder triggered: %s", self._relay_name, kind)
         return True
 
     def stop(self) -> None:
@@ -75,27 +79,29 @@ class EventRecorder:
         if self._capture.ident is not None:
             self._capture.join()
 
-    def _run(self, trigger_ns: int) -> None:
+    def _run(self, trigger_ns: int, kind: str) -> None:
         try:
-            record = self._capture_event(trigger_ns)
-            if record is not None:
-                self._announce(record)
+            recording = self._capture_event(trigger_ns)
+            if recording is not None:
+                self._keep(Capture(trigger_ns, kind, recording))
+        except OSError:
+            log.exception("%s: an event record is lost: it cannot be written", self._relay_name)
         finally:
             self._capturing = False
 
-    def _capture_event(self, trigger_ns: int) -> EventRecord | None:
-        """Simulate at once, then wait for the samples' own time; None where nothing came of it."""
+    def _capture_event(self, trigger_ns: int) -> Recording | None:
+        """Simulate at once, wait for the samples' own time, and again if the motor was switched meanwhile."""
+        switched = self._switching(trigger_ns)
         recording = self._record(trigger_ns)
         complete_ns = trigger_ns + round(self._settings.post_trigger_s * 1e9)
         if self._stopping.wait(max(0.0, (complete_ns - time.time_ns()) * 1e-9)):
             return None
-        try:
-            number = self._files.store(recording, self._summary(recording))
-        except OSError:
-            log.exception("%s: an event record is lost: it cannot be written", self._relay_name)
-            return None
-        log.info("%s: event record %d is complete", self._relay_name, number)
-        return EventRecord(number, trigger_ns)
+        return recording if self._switching(trigger_ns) == switched else self._record(trigger_ns)
+
+    def _switching(self, trigger_ns: int) -> object:
+        begin_s = (trigger_ns - self._epoch_ns) * 1e-9 - self._settings.pre_trigger_s
+        end_s = begin_s + self._settings.pre_trigger_s + self._settings.post_trigger_s
+        return self._plant.contactor and self._plant.contactor.closures(begin_s, end_s)
 
     def _record(self, trigger_ns: int) -> Recording:
         settings, plant = self._settings, self._plant
@@ -111,22 +117,6 @@ class EventRecorder:
             trigger_index=before,
             nominal_frequency_hz=plant.motor.nameplate.rated_frequency_Hz,
             station=self._relay_name,
-            device=FIRMWARE,
-        )
-
-    def _summary(self, recording: Recording) -> str:
-        """The .HDR file: what a relay's event summary tells, in plain text."""
-        trigger_ns = recording.trigger_time_ns
-        seconds, nanoseconds = divmod(trigger_ns, 1_000_000_000)
-        trigger = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S")
-        frequency_hz = self._plant.supply.frequency((trigger_ns - self._epoch_ns) * 1e-9)
-        return (
-            f"RELAY     {self._relay_name}\r\n"
-            f"FID       {FIRMWARE}\r\n"
-            f"EVENT     ER TRIG (RB01)\r\n"
-            f"TRIGGER   {trigger}.{nanoseconds:09d} UTC\r\n"
-            f"FREQ      {frequency_hz:.2f} Hz\r\n"
-            f"SAMPLES   {recording.samples.shape[1]} at {recording.sample_rate_hz:g} Hz\r\n"
         )
 
 

@@ -41,6 +41,22 @@ class Metering:
         apparent = abs(self.complex_power_VA)
         return self.complex_power_VA.real / apparent if apparent > 0 else 0.0
 
+    @property
+    def current_A(self) -> float:
+        """Mean of the three currents."""
+        return float(np.mean(np.abs(self.currents_A)))
+
+    @property
+    def voltage_V(self) -> float:
+        """Mean of the three line voltages."""
+        return float(np.mean(np.abs(self.line_voltages_V)))
+
+    @property
+    def unbalance(self) -> float:
+        """|I2| / |I1|; 0 where nothing flows."""
+        positive, negative, _ = np.abs(self.sequence(self.currents_A))
+        return float(negative / positive) if positive > 0 else 0.0
+
     def sequence(self, phasors: NDArray[np.complex128]) -> NDArray[np.complex128]:
         """Positive, negative and zero sequence of three phasors."""
         a = _TURN**self.direction
@@ -53,35 +69,42 @@ def meter(plant: MotorPlant, time_s: float) -> Metering:
     frequency_Hz = plant.supply.frequency(time_s)
     duration_s = METERING_CYCLES / frequency_Hz
     rate_Hz = METERING_STEP_RATE_HZ
-    start_s = time_s - duration_s
-    samples = plant.window(start_s, duration_s, rate_Hz, step_rate_hz=rate_Hz)
+    samples = plant.window(time_s - duration_s, duration_s, rate_Hz, step_rate_hz=rate_Hz)
+    return metered(samples, frequency_Hz, rate_Hz, plant.supply.direction)
+
+
+def metered(samples: NDArray[np.float64], frequency_Hz: float, rate_Hz: float, direction: int) -> Metering:
+    """The phasors of samples of IA IB IC VA VB VC, shape (6, n), a few cycles long."""
     angle = 2 * np.pi * frequency_Hz / rate_Hz * np.arange(samples.shape[1])
     # Fitted, not summed: the window need not hold a whole number of samples per cycle.
     basis = np.vstack((np.cos(angle), -np.sin(angle)))
     fitted, *_ = np.linalg.lstsq(basis.T, samples.T)
     phasors = (fitted[0] + 1j * fitted[1]) / np.sqrt(2)
     phasors *= np.exp(-1j * np.angle(phasors[3]))
-    return Metering(frequency_Hz, phasors[:3], phasors[3:], plant.supply.direction)
+    return Metering(frequency_Hz, phasors[:3], phasors[3:], direction)
 
 
-def metered_values(metering: Metering) -> dict[str, float | complex]:
+def metered_values(metering: Metering, mmxu: str | None, msqi: str | None) -> dict[str, float | complex]:
     """Values of the metering data objects, by their reference within the relay; complex ones are vectors."""
-    mmxu, msqi = "MET/METMMXU1", "MET/METMSQI1"
     power = metering.complex_power_VA
-    values: dict[str, float | complex] = {
-        f"{mmxu}.Hz": metering.frequency_Hz,
-        f"{mmxu}.TotW": power.real,
-        f"{mmxu}.TotVAr": power.imag,
-        f"{mmxu}.TotVA": abs(power),
-        f"{mmxu}.TotPF": metering.power_factor,
-    }
-    vectors = {
-        f"{mmxu}.A": (("phsA", "phsB", "phsC"), metering.currents_A),
-        f"{mmxu}.PhV": (("phsA", "phsB", "phsC"), metering.phase_voltages_V),
-        f"{mmxu}.PPV": (("phsAB", "phsBC", "phsCA"), metering.line_voltages_V),
-        f"{msqi}.SeqA": (("c1", "c2", "c3"), metering.sequence(metering.currents_A)),
-        f"{msqi}.SeqV": (("c1", "c2", "c3"), metering.sequence(metering.phase_voltages_V)),
-    }
+    values: dict[str, float | complex] = {}
+    vectors = {}
+    if mmxu is not None:
+        values = {
+            f"{mmxu}.Hz": metering.frequency_Hz,
+            f"{mmxu}.TotW": power.real,
+            f"{mmxu}.TotVAr": power.imag,
+            f"{mmxu}.TotVA": abs(power),
+            f"{mmxu}.TotPF": metering.power_factor,
+        }
+        vectors = {
+            f"{mmxu}.A": (("phsA", "phsB", "phsC"), metering.currents_A),
+            f"{mmxu}.PhV": (("phsA", "phsB", "phsC"), metering.phase_voltages_V),
+            f"{mmxu}.PPV": (("phsAB", "phsBC", "phsCA"), metering.line_voltages_V),
+        }
+    if msqi is not None:
+        vectors[f"{msqi}.SeqA"] = (("c1", "c2", "c3"), metering.sequence(metering.currents_A))
+        vectors[f"{msqi}.SeqV"] = (("c1", "c2", "c3"), metering.sequence(metering.phase_voltages_V))
     for reference, (names, phasors) in vectors.items():
         values |= {
             f"{reference}.{name}": complex(phasor) for name, phasor in zip(names, phasors, strict=True)

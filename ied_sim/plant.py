@@ -6,17 +6,19 @@ one plant are consistent with each other and the same every time.
 """
 
 from dataclasses import dataclass
-from math import ceil, sqrt
+from math import ceil, inf, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.parameters import Connection, Motor
+from ied_sim.contactor import Closure, Contactor
 from ied_sim.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
 from ied_sim.integration import integrate
 from ied_sim.load import Load
 from ied_sim.sensors import Sensors
 from ied_sim.supply import Supply
+from ied_sim.warming import Warming
 from ied_sim.windings import WindingCircuit, winding_circuit
 
 Array = NDArray[np.float64]
@@ -27,6 +29,10 @@ HIGHEST_STEP_RATE_HZ = 200_000.0
 RATE_PER_STEP = 2.0
 """Fastest decay, in decays a step: RK4 is stable to 2.78, and such a mode follows its drive."""
 SETTLING_S = 1.0
+DISTURBANCE_MEMORY_S = 2.0
+"""How long after a supply event a window is simulated from before it."""
+START_MEMORY_S = 10.0
+"""How long after the contactor closed a window is simulated from rest."""
 RATED_POWER_FACTOR_TIMES_EFFICIENCY = 0.7
 
 
@@ -41,7 +47,11 @@ class Operation:
 
 @dataclass(frozen=True, slots=True)
 class MotorPlant:
-    """One motor with everything around it. `fault` None means a healthy motor; `seed` that of the noise."""
+    """One motor with everything around it. `fault` None means a healthy motor; `seed` that of the noise.
+
+    warming None: the windings have the parameters' resistance throughout.  broken_bars: share of the cage's.
+    contactor: connects the motor; None where it always runs. A motor that is connected starts from rest.
+    """
 
     motor: Motor
     supply: Supply
@@ -49,6 +59,9 @@ class MotorPlant:
     sensors: Sensors
     fault: FaultCourse | None = None
     seed: int = 0
+    warming: Warming | None = None
+    broken_bars: float = 0.0
+    contactor: Contactor | None = None
 
     def window(
         self, start_s: float, duration_s: float, sample_rate_hz: float, *, step_rate_hz: float = STEP_RATE_HZ
@@ -87,16 +100,60 @@ class MotorPlant:
         With `current_delay_s` the currents are those of so much earlier than the voltages beside them.
         """
         begin_s = start_s - current_delay_s
-        circuit = self.circuit(start_s)
-        settling = ceil(settling_s * sample_rate_hz)
-        first_s = begin_s - settling / sample_rate_hz
         samples = round(duration_s * sample_rate_hz)
-        state = self._running_state(circuit, first_s)
-        currents, speed = self._simulate(
-            circuit, state, first_s, settling + samples, sample_rate_hz, step_rate_hz
-        )
+        end_s = begin_s + samples / sample_rate_hz
+        always = (Closure(),)
+        closures = always if self.contactor is None else self.contactor.closures(begin_s, end_s)
+        currents, speed = np.zeros((3, samples)), np.zeros(samples)
+        for closure in closures:
+            here = self._connected(closure, begin_s, samples, sample_rate_hz, settling_s, step_rate_hz)
+            first, line_currents, turning = here
+            currents[:, first : first + turning.size] = line_currents
+            speed[first : first + turning.size] = turning
         times = start_s + np.arange(samples) / sample_rate_hz
-        return Operation(currents[:, settling:], self.supply.phase_voltages(times), speed[settling:])
+        return Operation(currents, self.supply.phase_voltages(times), speed)
+
+    def _connected(
+        self,
+        closure: Closure,
+        begin_s: float,
+        samples: int,
+        sample_rate_hz: float,
+        settling_s: float,
+        step_rate_hz: float,
+    ) -> tuple[int, Array, Array]:
+        """First sample, line currents and speed while connected, of `samples` from `begin_s` on."""
+        last = samples
+        if closure.opened_s < inf:
+            last = min(samples, ceil((closure.opened_s - begin_s) * sample_rate_hz))
+        if begin_s - closure.closed_s > START_MEMORY_S:
+            circuit = self.circuit(begin_s)
+            from_s = self.supply.disturbed_since(begin_s, DISTURBANCE_MEMORY_S) - settling_s
+            settling = ceil((begin_s - from_s) * sample_rate_hz)
+            from_s = begin_s - settling / sample_rate_hz
+            state = self._running_state(circuit, from_s)
+            currents, speed = self._simulate(
+                circuit, state, from_s, settling + last, sample_rate_hz, step_rate_hz
+            )
+            return 0, currents[:, settling:], speed[settling:]
+        return self._from_rest(closure.closed_s, begin_s, last, sample_rate_hz, step_rate_hz)
+
+    def _from_rest(
+        self, closed_s: float, begin_s: float, last: int, sample_rate_hz: float, step_rate_hz: float
+    ) -> tuple[int, Array, Array]:
+        """As `_connected`, of a motor at rest until `closed_s`; samples lie on the grid of `begin_s`."""
+        first = ceil((closed_s - begin_s) * sample_rate_hz)
+        if last <= first:
+            return 0, np.zeros((3, 0)), np.zeros(0)
+        circuit = self.circuit(closed_s)
+        first_s = begin_s + first / sample_rate_hz
+        state = np.zeros(circuit.loops + 2)
+        if first_s > closed_s:
+            # The contactor does not wait for a sample: the time up to the first one is simulated apart.
+            self._simulate(circuit, state, closed_s, 2, 1 / (first_s - closed_s), step_rate_hz)
+        currents, speed = self._simulate(circuit, state, first_s, last - first, sample_rate_hz, step_rate_hz)
+        seen = max(0, -first)
+        return max(0, first), currents[:, seen:], speed[seen:]
 
     def start_up(self, start_s: float, duration_s: float, sample_rate_hz: float) -> Operation:
         """Direct start from rest: the voltage comes at `start_s`."""
@@ -117,7 +174,13 @@ class MotorPlant:
 
     def circuit(self, time_s: float) -> WindingCircuit:
         """The winding circuit at one moment; a window has that of its start."""
-        return winding_circuit(self.motor.parameters, self.motor.nameplate.connection, self.fault_at(time_s))
+        return winding_circuit(
+            self.motor.parameters,
+            self.motor.nameplate.connection,
+            self.fault_at(time_s),
+            resistance_factor=1.0 if self.warming is None else self.warming.resistance_factor(time_s),
+            broken_bars=self.broken_bars,
+        )
 
     def _simulate(
         self,

@@ -1,35 +1,56 @@
-"""One simulated relay: its data model served over MMS, its remote bits, its event recorder, its meters."""
+"""One simulated relay: its model served over MMS, its controls, its event recorder, its view of the motor."""
 
 import cmath
-import time
-from collections.abc import Mapping
+import logging
+import threading
+from collections.abc import Callable
 from math import degrees
 from pathlib import Path
 
+import numpy as np
+
+from ied_sim.contactor import Closure
 from ied_sim.errors import SimulatorError
 from ied_sim.event_files import EventFiles
-from ied_sim.event_recorder import EventRecord, EventRecorder
-from ied_sim.metering import meter, metered_values
+from ied_sim.event_recorder import Capture, EventRecorder
+from ied_sim.front import FrontDoors
+from ied_sim.journal import Journal
+from ied_sim.metering import Metering, metered_values
+from ied_sim.misbehaviour import ON_THE_WIRE, Kind, Switchboard
+from ied_sim.motor_watch import MotorWatch
+from ied_sim.plant import rated_current
+from ied_sim.protection import Protection
+from ied_sim.record_keeper import Identity, RecordKeeper
+from ied_sim.relay_clock import RelayClock
+from ied_sim.relay_misbehaviour import RelayMisbehaviour
+from ied_sim.relay_points import RelayPoints
+from ied_sim.relay_server import RelayServer
+from ied_sim.relay_settings import relay_settings
+from ied_sim.relay_word import RelayWord
 from ied_sim.scenario import RelayScenario
-from mms import GOOD, ControlAction, Quality, Server, Timestamp, Value
+from ied_sim.texts import Maker, Story, texts
+from mms import AddCause, ControlAction, Server, Value
 from scl import Address, Scl
 from scl.model_text import model_text
 
-RECORD_MADE = "PRO/FLTRDRE1.RcdMade"
-RECORD_NUMBER = "PRO/FLTRDRE1.FltNum"
-TRIP = "PRO/TRIPPTRC1.Tr"
-TRIGGER_BIT = "CON/RBGGIO1.SPCSO01"
+log = logging.getLogger(__name__)
+
+METERING_PERIOD_S = 1.0
+METERING_REFRESH_S = 10.0
+WATCHFUL_PERIOD_S = 0.1
+"""Between looks while something is about to happen: a start, a trip."""
 
 _STAGING = ".staging"
+_TRIP_BITS = {"overcurrent": "50P1T", "thermal": "49T", "unbalance": "46UBT"}
+_TRIP_KINDS = {"overcurrent": "PHASE 50 TRIP", "thermal": "THERMAL TRIP", "unbalance": "UNBALANCE TRIP"}
 
 
 class Relay:
-    """The relay `ied_name` of an SCD file, protecting what its scenario says.
+    """The relay `ied_name` of an SCD file, of the kind and protecting what its scenario says.
 
-    files: the simulator's directory; the relay's own files are in files/<IED>. epoch_ns: UTC of the plant's
-    time zero. RB01 going from false to true triggers the event recorder; remote bits stay as operated.
-    RcdMade falls with each trigger and rises when the record can be fetched.
-    Raises SimulatorError where the data model is not that of such a relay; SclError, ModelError, OSError.
+    address: where clients find it.  files: the simulator's directory; the relay's own files are in
+    files/<IED>.  epoch_ns: UTC of the plant's time zero.  doors: where it gets a front if it needs one.
+    Raises SimulatorError where the data model is not that of its profile; SclError, ModelError, OSError.
     """
 
     def __init__(
@@ -41,87 +62,269 @@ class Relay:
         address: Address,
         files: Path,
         epoch_ns: int,
+        doors: FrontDoors | None = None,
     ) -> None:
-        ied = document.ied(ied_name)
-        for reference in (RECORD_MADE, RECORD_NUMBER, TRIP, TRIGGER_BIT):
-            if ied.find(reference) is None:
-                raise SimulatorError(
-                    f"{document.path}: {ied_name} has no {reference}, so it is no SEL-710; "
-                    "choose the relays to simulate with --ied"
-                )
+        profile = scenario.profile
         self.name = ied_name
-        self._plant = scenario.plant
+        self._scenario = scenario
         self._epoch_ns = epoch_ns
-        self._domains = {device.inst: device.name for device in ied.logical_devices}
-        event_files = EventFiles(files / ied_name, files / _STAGING / ied_name, scenario.recorder.capacity)
+        self._rated_A = rated_current(scenario.plant.motor)
+        self._points = RelayPoints(document.ied(ied_name), profile, str(document.path))
+        self.switchboard = Switchboard(scenario.misbehaviour, lambda: self._seconds(RelayClock.now_ns()))
+        self._check_switches()
+        self._clock = RelayClock(self.switchboard)
+        self._word = RelayWord()
+        self._bits = dict.fromkeys(self._points.controls, False)
+        self._journal = Journal(
+            scenario.recorder.capacity, since_ns=epoch_ns, profile_every_s=scenario.load_profile_s
+        )
+        self._watch = MotorWatch(scenario.plant, self._rated_A)
+        self._protection = Protection(scenario.protection, self._rated_A)
+        self._closure: Closure | None = None
+        self._start_noted = True
+        self._load_is_above = False
+        self._looked_ns = epoch_ns
+        self.hurries = False
+        """Something has happened that the next look should not be late for."""
+        self._timers: list[threading.Timer] = []
+        self._settings = relay_settings(ied_name, scenario)
+        self._offered: dict[str, Maker] = {}
+        root, staging = files / ied_name, files / _STAGING / ied_name
+        self._event_files = self._make_event_files(root, staging)
+        identity = Identity(ied_name, profile.firmware, scenario.plant.supply.direction, self._settings)
+        self._keeper = RecordKeeper(
+            identity, self._event_files, self._journal, self._word, self._clock, self.switchboard
+        )
         self._recorder = EventRecorder(
+            ied_name, scenario.plant, scenario.recorder, epoch_ns=epoch_ns, keep=self._keep
+        )
+        self._relay_server = RelayServer(
             ied_name,
-            scenario.plant,
-            scenario.recorder,
-            event_files,
-            epoch_ns=epoch_ns,
-            announce=self._announce,
-        )
-        self.server = Server(
             model_text(document, ied_name),
-            address=address.host,
-            port=address.port,
-            file_root=files / ied_name,
+            self._points,
+            profile,
+            self._clock,
+            address=self._listening_at(address, doors),
+            root=root,
+            staging=staging,
+            operated=self._operate,
+            texts={path: self._text(maker) for path, maker in self._offered.items()},
         )
-        self._trigger_bit = self._reference(TRIGGER_BIT)
-        bits = [placed.reference for placed in ied.data_objects(ln_class="GGIO", common_data_class="SPC")]
-        self._bits = dict.fromkeys(bits, False)
-        for reference in bits:
-            self.server.on_operate(reference, self._operate)
+        self._misbehaviour = RelayMisbehaviour(
+            self.switchboard, self._relay_server, self._points, profile.report_buffer_bytes
+        )
+        self._begin(RelayClock.now_ns())
 
-        statuses: dict[str, Value] = {f"{reference}.stVal": False for reference in bits}
-        statuses[self._reference(f"{RECORD_MADE}.stVal")] = False
-        statuses[self._reference(f"{RECORD_NUMBER}.stVal")] = event_files.last_number or 0
-        statuses[self._reference(f"{TRIP}.general")] = False
-        now_ns = time.time_ns()
-        self._publish(statuses, now_ns)
-        possible = self._measurements(now_ns)
-        self._measured = [reference for reference in possible if ied.find(reference) is not None]
-        self.update_metering(now_ns)
+    @property
+    def server(self) -> Server:
+        return self._relay_server.server
+
+    @property
+    def serves_itself(self) -> bool:
+        """Whether its server has a thread of its own: one that restarts cannot share a pump."""
+        return Kind.RESTART in self.switchboard.kinds
 
     def stop(self) -> None:
         """Abandon a capture under way; the server itself belongs to its pump."""
+        for timer in self._timers:
+            timer.cancel()
+        if self._event_files is not None:
+            self._event_files.stop()
         self._recorder.stop()
+        self._misbehaviour.stop()
+
+    def look(self, time_ns: int) -> float:
+        """Look at the motor at UTC `time_ns`: meter, protect, keep the journal. Used by one thread.
+
+        Returns when it wants to look again [s].
+        """
+        time_s = self._seconds(time_ns)
+        self.hurries = False
+        self._misbehaviour.look()
+        seen = self._watch.look(time_s)
+        self._refresh_metering(seen, time_ns)
+        closure = self._watch.closure(time_s)
+        self._journal.note_operation(
+            max(0.0, (time_ns - self._looked_ns) * 1e-9), seen, running=closure is not None
+        )
+        self._looked_ns = time_ns
+        self._follow_start(closure, time_s)
+        tripped = self._protection.look(seen, time_s)
+        if closure is not None and tripped:
+            self._trip(tripped, time_ns)
+        self._journal.note_load(time_ns, seen, self._protection.thermal_capacity)
+        self._watch_load(seen, time_ns)
+        return METERING_PERIOD_S if self._start_noted and not self._is_watchful else WATCHFUL_PERIOD_S
 
     def update_metering(self, time_ns: int) -> None:
         """Meter the motor at UTC `time_ns` and publish the values."""
-        values = self._measurements(time_ns)
-        self._publish({reference: values[reference] for reference in self._measured}, time_ns)
+        self._publish_metering(self._watch.look(self._seconds(time_ns)), time_ns)
 
-    def _operate(self, action: ControlAction) -> bool:
-        """Set or clear a remote bit, unless it is but a test; runs in the pump's thread."""
+    @property
+    def _is_watchful(self) -> bool:
+        protection = self._scenario.protection
+        return bool(self.switchboard.kinds or protection.overcurrent or protection.unbalance)
+
+    def _seconds(self, time_ns: int) -> float:
+        return (time_ns - self._epoch_ns) * 1e-9
+
+    # what happens
+
+    def _operate(self, action: ControlAction) -> bool | AddCause:
+        """Set or clear a control, unless it is but a test; runs in the pump's thread."""
+        switches = self._switches.get(action.reference)
+        if self.switchboard.is_on(Kind.REFUSED_CONTROL) and switches is None:
+            return AddCause.BLOCKED_BY_INTERLOCKING
         if action.test:
             return True
-        now_ns = time.time_ns()
+        now_ns = RelayClock.now_ns()
         value = bool(action.value)
         rises = value and not self._bits[action.reference]
-        self._bits[action.reference] = value
-        changes: dict[str, Value] = {f"{action.reference}.stVal": value}
-        if rises and action.reference == self._trigger_bit and self._recorder.trigger(now_ns):
-            changes[self._reference(f"{RECORD_MADE}.stVal")] = False
-        self._publish(changes, now_ns)
+        self._set_control(action.reference, now_ns, value=value)
+        if switches is not None:
+            self.switchboard.switch(switches, on=value)
+        if rises:
+            self._on_rise(action.reference, now_ns)
+            if action.reference in self._points.pulsed:
+                quarter_s = 0.25 / self._scenario.plant.supply.frequency(self._seconds(now_ns))
+                self._later(
+                    quarter_s, lambda: self._set_control(action.reference, RelayClock.now_ns(), value=False)
+                )
         return True
 
-    def _announce(self, record: EventRecord) -> None:
-        """Tell the clients of a record; runs in the capture's thread."""
-        made: dict[str, Value] = {
-            self._reference(f"{RECORD_NUMBER}.stVal"): record.number,
-            self._reference(f"{RECORD_MADE}.stVal"): True,
-        }
-        self._publish(made, time.time_ns())
+    def _set_control(self, reference: str, time_ns: int, *, value: bool) -> None:
+        self._bits[reference] = value
+        number = reference.rpartition("SPCSO")[2]
+        self._word.set(f"RB{number}", value, time_ns)
+        self._relay_server.publish({f"{reference}.stVal": value}, time_ns)
 
-    def _measurements(self, time_ns: int) -> dict[str, Value]:
+    def _on_rise(self, reference: str, now_ns: int) -> None:
+        if reference in self._points.triggers:
+            self._trigger(now_ns, "ER TRIG (RB01)" if "RBGGIO" in reference else "ER TRIG (RCDTRG)")
+        elif reference == self._points.control("start"):
+            self._start_motor(now_ns)
+        elif reference == self._points.control("stop"):
+            self._stop_motor(now_ns)
+        elif reference == self._points.control("clear"):
+            self._keeper.clear()
+
+    def _start_motor(self, now_ns: int) -> None:
+        contactor = self._scenario.plant.contactor
+        if contactor is None or not contactor.close(self._seconds(now_ns)):
+            return
+        log.info("%s: the motor is started", self.name)
+        self.hurries = True
+        for bit in ("TRIP", *_TRIP_BITS.values(), "STOPPED"):
+            self._word.set(bit, False, now_ns)  # noqa: FBT003
+        self._word.set("STARTING", True, now_ns)  # noqa: FBT003
+        self._publish_status(dict.fromkeys(("trip", *_TRIP_BITS), False), now_ns)
+        if self._scenario.triggers.motor_start:
+            self._trigger(now_ns, "ER MOTOR START")
+
+    def _stop_motor(self, now_ns: int) -> None:
+        contactor = self._scenario.plant.contactor
+        if contactor is None or not contactor.open(self._seconds(now_ns)):
+            return
+        log.info("%s: the motor is stopped", self.name)
+        self._word.set("STARTING", False, now_ns)  # noqa: FBT003
+        self._word.set("RUNNING", False, now_ns)  # noqa: FBT003
+        self._word.set("STOPPED", True, now_ns)  # noqa: FBT003
+
+    def _trip(self, elements: list[str], now_ns: int) -> None:
+        log.info("%s: trip: %s", self.name, ", ".join(elements))
+        self._word.set("TRIP", True, now_ns)  # noqa: FBT003
+        for element in elements:
+            self._journal.note_trip(element)
+            self._word.set(_TRIP_BITS[element], True, now_ns)  # noqa: FBT003
+        self._publish_status(dict.fromkeys(("trip", *elements), True), now_ns)
+        self._stop_motor(now_ns)
+        if self._scenario.triggers.trip:
+            self._trigger(now_ns, _TRIP_KINDS[elements[0]])
+
+    def _watch_load(self, seen: Metering, now_ns: int) -> None:
+        level = self._scenario.triggers.load_above
+        above = level is not None and self._start_noted and seen.current_A > level * self._rated_A
+        if above and not self._load_is_above:
+            self._trigger(now_ns, "ER LOAD")
+        self._load_is_above = above
+
+    def _follow_start(self, closure: Closure | None, time_s: float) -> None:
+        """Note a start in the journal once it has ended."""
+        if closure != self._closure and closure is not None and closure.closed_s >= 0:
+            self._start_noted = False
+        self._closure = closure
+        if self._start_noted or closure is None:
+            self._start_noted = True
+            return
+        start = self._watch.start(closure)
+        lasted_s = float(start.time_s[-1]) if start.duration_s is None else start.duration_s
+        if time_s >= closure.closed_s + lasted_s:
+            self._start_noted = True
+            self._journal.note_start(self._epoch_ns + round(closure.closed_s * 1e9), start)
+            end_ns = self._epoch_ns + round((closure.closed_s + lasted_s) * 1e9)
+            self._word.set("STARTING", False, end_ns)  # noqa: FBT003
+            self._word.set("RUNNING", True, end_ns)  # noqa: FBT003
+
+    def _trigger(self, now_ns: int, kind: str) -> None:
+        if self._recorder.trigger(now_ns, kind):
+            self._word.pulse("ER", now_ns, 5_000_000)
+            self._publish_status({"record_made": False, "record_started": True}, now_ns)
+
+    def _keep(self, capture: Capture) -> None:
+        """Store a record and tell the clients of it; runs in the capture's thread."""
+        number = self._keeper.keep(capture)
+        log.info("%s: event record %d is complete", self.name, number)
+        self._publish_status(
+            {"record_number": number, "record_made": True, "record_started": False}, RelayClock.now_ns()
+        )
+
+    def _later(self, delay_s: float, action: Callable[[], None]) -> None:
+        timer = threading.Timer(delay_s, action)
+        timer.daemon = True
+        self._timers = [each for each in self._timers if each.is_alive()] + [timer]
+        timer.start()
+
+    # what clients see
+
+    def _begin(self, now_ns: int) -> None:
+        statuses: dict[str, Value] = {f"{reference}.stVal": False for reference in self._bits}
+        self._relay_server.publish(statuses, now_ns)
+        self._publish_status(
+            dict.fromkeys(("record_made", "record_started", "trip", *_TRIP_BITS), False), now_ns
+        )
+        self._publish_status({"record_number": self._keeper.last_number or 0}, now_ns)
+        running = self._watch.closure(self._seconds(now_ns)) is not None
+        self._word.set("RUNNING" if running else "STOPPED", True, now_ns)  # noqa: FBT003
+        self._closure = self._watch.closure(self._seconds(now_ns))
+        # Nothing is metered yet: the first look, within a second, does that.
+        nothing = Metering(0.0, np.zeros(3, complex), np.zeros(3, complex), 1)
+        self._measured = [name for name in self._measurements(nothing) if self._points.has(name)]
+        self._published, self._published_ns = nothing, now_ns
+        self._looked_ns = now_ns
+
+    def _publish_status(self, values: dict[str, Value], now_ns: int) -> None:
+        """Statuses by their key in the profile; those it does not name are left out."""
+        named = {self._points.value_of(key): value for key, value in values.items()}
+        found = {reference: value for reference, value in named.items() if reference is not None}
+        if found:
+            self._relay_server.publish(found, now_ns)
+
+    def _publish_metering(self, seen: Metering, time_ns: int) -> None:
+        self._published, self._published_ns = seen, time_ns
+        values = self._measurements(seen)
+        self._relay_server.publish({name: values[name] for name in self._measured}, time_ns)
+
+    def _refresh_metering(self, seen: Metering, time_ns: int) -> None:
+        """Publish what has changed; what has not, now and then."""
+        if seen is not self._published or time_ns - self._published_ns >= METERING_REFRESH_S * 1e9:
+            self._publish_metering(seen, time_ns)
+
+    def _measurements(self, seen: Metering) -> dict[str, Value]:
         """Every attribute a metering data object may have, by reference."""
+        points = self._scenario.profile.points
         attributes: dict[str, Value] = {}
-        for inst_reference, value in metered_values(
-            meter(self._plant, (time_ns - self._epoch_ns) * 1e-9)
-        ).items():
-            reference = self._reference(inst_reference)
+        for inst_reference, value in metered_values(seen, points.metering, points.sequence).items():
+            reference = self._points.reference(inst_reference)
             if isinstance(value, complex):
                 for vector in ("instCVal", "cVal"):
                     attributes[f"{reference}.{vector}.mag.f"] = abs(value)
@@ -131,25 +334,56 @@ class Relay:
                     attributes[f"{reference}.{magnitude}.f"] = value
         return attributes
 
-    def _publish(self, values: Mapping[str, Value], time_ns: int) -> None:
-        """Update attributes as one change, with quality and time of their data objects."""
-        changes: dict[str, Value | Quality] = dict(values)
-        for reference in values:
-            data_object = _data_object(reference)
-            changes[f"{data_object}.q"] = GOOD
-            changes[f"{data_object}.t"] = Timestamp(time_ns)
-        self.server.update_many(changes)
+    # what it is made of
 
-    def _reference(self, reference: str) -> str:
-        """The reference clients use, with the domain in place of the logical device's inst."""
-        inst, _, rest = reference.partition("/")
-        return f"{self._domains[inst]}/{rest}"
+    def _make_event_files(self, root: Path, staging: Path) -> EventFiles | None:
+        profile = self._scenario.profile
+        staging.mkdir(parents=True, exist_ok=True)
+        root.mkdir(parents=True, exist_ok=True)
+        if profile.files is None:
+            return None
+        self._offered = texts(profile.files.reports, settings=profile.files.settings)
+        return EventFiles(
+            root / profile.files.folder,
+            staging,
+            capacity=self._scenario.recorder.capacity,
+            prefix=profile.files.name,
+            formats=profile.record.written(),
+        )
 
+    def _listening_at(self, address: Address, doors: FrontDoors | None) -> Address:
+        """Where the server listens: behind a front if clients must see what the server cannot do."""
+        files = self._scenario.profile.files
+        unusual = files is not None and (
+            files.separator != "/" or files.listed != "path" or files.entries_per_listing is not None
+        )
+        if not unusual and not self.switchboard.kinds & ON_THE_WIRE:
+            return address
+        if doors is None:
+            raise SimulatorError(
+                f"{self.name}: its profile or scenario needs a front, and it has no place for one"
+            )
+        return doors.add(address, files, self.switchboard, self._points.report_ids())
 
-_VALUE_ATTRIBUTES = frozenset({"stVal", "general", "instMag", "mag", "instCVal", "cVal"})
+    def _text(self, maker: Maker) -> Callable[[], bytes]:
+        return lambda: maker(self._story(RelayClock.now_ns()))
 
+    def _story(self, now_ns: int) -> Story:
+        return Story(
+            relay=self.name,
+            firmware=self._scenario.profile.firmware,
+            motor=self._scenario.plant.motor,
+            rated_current_A=self._rated_A,
+            journal=self._journal,
+            word=self._word,
+            settings=self._settings,
+            now_ns=now_ns,
+            offset_ns=self._clock.written(now_ns) - now_ns,
+        )
 
-def _data_object(attribute: str) -> str:
-    """Reference of the data object that a value attribute belongs to."""
-    names = attribute.split(".")
-    return ".".join(names[: next(place for place, name in enumerate(names) if name in _VALUE_ATTRIBUTES)])
+    def _check_switches(self) -> None:
+        self._switches = {self._points.reference(each): each for each in self.switchboard.switches()}
+        for unknown in sorted(self._switches.keys() - set(self._points.controls)):
+            raise SimulatorError(
+                f"{self.name}: the misbehaviour's switch {unknown} is no control of this relay"
+            )

@@ -3,177 +3,50 @@
 One TOML file, explained in docs/scenario.md.
 """
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import radians, sqrt
 from pathlib import Path
-from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import ValidationError
 
 from core.machines.motor_file import MotorFileError, motor_from_table
 from core.machines.parameters import MachineParameters, Motor, Nameplate
-from ied_sim.fault import FaultCourse
-from ied_sim.load import Load
-from ied_sim.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant, rated_current
-from ied_sim.sensors import Sensors
-from ied_sim.supply import Harmonic, Supply
+from ied_sim.contactor import Contactor
+from ied_sim.errors import ScenarioError
+from ied_sim.event_recorder import RecorderSettings
+from ied_sim.misbehaviour import Misbehaviour
+from ied_sim.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant
+from ied_sim.profile import DEFAULT, Profile, Record, Triggers, read_profile
+from ied_sim.protection import ProtectionSettings
+from ied_sim.scenario_tables import (
+    FileTable,
+    LoadTable,
+    MotorTable,
+    RecorderTable,
+    SensorsTable,
+    SupplyTable,
+    TriggersTable,
+)
+from ied_sim.toml_errors import first_error, read_table
 from ied_sim.windings import highest_fault_resistance
 
-CURRENT_HEADROOM = 12
-"""Full scale of the current channels over the rated current's peak: a start-up current must fit."""
-VOLTAGE_HEADROOM = 2
-
-Share = Annotated[float, Field(ge=-0.5, le=0.5)]
-SixShares = tuple[Share, Share, Share, Share, Share, Share]
-Turns = Annotated[float, Field(ge=0, le=0.5)]
-
-
-class ScenarioError(ValueError):
-    """A scenario cannot be used: which file, which field, what was expected and what was found."""
-
-    def __init__(self, path: Path | str, field: str, *, expected: str, found: str) -> None:
-        self.path = Path(path)
-        self.field = field
-        self.expected = expected
-        self.found = found
-        super().__init__(f"{self.path}: {field}: expected {expected}, found {found}")
-
-
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class _Harmonic(_Section):
-    order: Annotated[int, Field(ge=2, le=50)]
-    fraction: Annotated[float, Field(ge=0, le=0.5)]
-    angle_deg: float = 0.0
-
-    @model_validator(mode="after")
-    def _has_a_sequence(self) -> Self:
-        if self.order % 3 == 0:
-            raise ValueError(f"order {self.order} has no sequence and drives no current into three wires")
-        return self
-
-
-class _Supply(_Section):
-    line_voltage_V: Annotated[float, Field(gt=0)] | None = None
-    frequency_Hz: Annotated[float, Field(gt=10, lt=500)] | None = None
-    frequency_drift_Hz: Annotated[float, Field(ge=0, le=2)] = 0.0
-    drift_period_s: Annotated[float, Field(ge=10)] = 300.0
-    unbalance: Annotated[float, Field(ge=0, le=0.3)] = 0.0
-    unbalance_angle_deg: float = 0.0
-    harmonics: tuple[_Harmonic, ...] = ()
-    sequence: Literal["abc", "acb"] = "abc"
-
-    def supply(self, nameplate: Nameplate) -> Supply:
-        return Supply(
-            line_voltage_V=self.line_voltage_V or nameplate.rated_voltage_V,
-            frequency_Hz=self.frequency_Hz or nameplate.rated_frequency_Hz,
-            frequency_drift_Hz=self.frequency_drift_Hz,
-            drift_period_s=self.drift_period_s,
-            unbalance=self.unbalance,
-            unbalance_angle_rad=radians(self.unbalance_angle_deg),
-            harmonics=tuple(Harmonic(h.order, h.fraction, radians(h.angle_deg)) for h in self.harmonics),
-            sequence=self.sequence,
-        )
-
-
-class _Load(_Section):
-    level: Annotated[float, Field(ge=0, le=1.5)] = 0.5
-    swing: Annotated[float, Field(ge=0, le=0.5)] = 0.0
-    swing_period_s: Annotated[float, Field(ge=0.1)] = 20.0
-
-    def load(self) -> Load:
-        return Load(self.level, self.swing, self.swing_period_s)
-
-
-class _TimelinePoint(_Section):
-    at_s: float
-    level: Turns
-
-
-class _Fault(_Section):
-    phase: Literal["a", "b", "c"]
-    level: Turns | None = None
-    timeline: Annotated[tuple[_TimelinePoint, ...], Field(min_length=1)] | None = None
-    resistance_ohm: Annotated[float, Field(ge=0)] = 0.0
-
-    @model_validator(mode="after")
-    def _is_one_course_in_time(self) -> Self:
-        if (self.level is None) == (self.timeline is None):
-            raise ValueError("give either level or timeline")
-        times = [point.at_s for point in self.timeline or ()]
-        if times != sorted(set(times)):
-            raise ValueError("at_s must rise from each point of timeline to the next")
-        return self
-
-    def course(self) -> FaultCourse:
-        constant = ((0.0, self.level or 0.0),)
-        points = tuple((p.at_s, p.level) for p in self.timeline) if self.timeline else constant
-        return FaultCourse("abc".index(self.phase), points, self.resistance_ohm)
-
-
-class _Sensors(_Section):
-    gain_errors: SixShares = (0.0,) * 6
-    offsets: SixShares = (0.0,) * 6
-    current_delay_us: Annotated[float, Field(ge=0, le=20_000)] = 0.0
-    noise: Annotated[float, Field(ge=0, le=0.5)] = 0.0
-    full_scale_A: Annotated[float, Field(gt=0)] | None = None
-    full_scale_V: Annotated[float, Field(gt=0)] | None = None
-
-    def sensors(self, motor: Motor) -> Sensors:
-        phase_peak_V = sqrt(2 / 3) * motor.nameplate.rated_voltage_V
-        return Sensors(
-            full_scale_A=self.full_scale_A or CURRENT_HEADROOM * sqrt(2) * rated_current(motor),
-            full_scale_V=self.full_scale_V or VOLTAGE_HEADROOM * phase_peak_V,
-            gain_errors=self.gain_errors,
-            offsets=self.offsets,
-            current_delay_s=self.current_delay_us * 1e-6,
-            noise=self.noise,
-        )
-
-
-class _Recorder(_Section):
-    sample_rate_Hz: Annotated[float, Field(ge=500, le=100_000)] = 10_000.0
-    pre_trigger_s: Annotated[float, Field(ge=0, le=10)] = 0.2
-    post_trigger_s: Annotated[float, Field(gt=0, le=30)] = 0.8
-    capacity: Annotated[int, Field(ge=1, le=10_000)] = 20
-
-
-class _Motor(_Section):
-    ied: Annotated[str, Field(min_length=1)]
-    seed: Annotated[int, Field(ge=0)] = 0
-    nameplate: dict[str, object]
-    parameters: dict[str, object]
-    supply: _Supply = _Supply()
-    load: _Load = _Load()
-    fault: _Fault | None = None
-    sensors: _Sensors = _Sensors()
-    recorder: _Recorder = _Recorder()
-
-
-class _File(_Section):
-    motor: tuple[_Motor, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class RecorderSettings:
-    """What an event record spans, and how many records the relay keeps."""
-
-    sample_rate_hz: float = 10_000.0
-    pre_trigger_s: float = 0.2
-    post_trigger_s: float = 0.8
-    capacity: int = 20
+LOAD_PROFILE_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
 class RelayScenario:
-    """What one relay protects and how it records."""
+    """What one relay protects, what kind of relay it is, how it records and what it does wrong.
+
+    load_profile_s: time between rows of the load profile.
+    """
 
     plant: MotorPlant
-    recorder: RecorderSettings = field(default_factory=RecorderSettings)
+    profile: Profile
+    recorder: RecorderSettings
+    triggers: Triggers = field(default_factory=Triggers)
+    protection: ProtectionSettings = field(default_factory=ProtectionSettings)
+    misbehaviour: tuple[Misbehaviour, ...] = ()
+    load_profile_s: float = LOAD_PROFILE_S
 
     def truth(self, time_s: float) -> dict[str, float | int | None]:
         """The true condition at a time since the start: mu_f (the equivalent level), theta_f, load_level."""
@@ -189,19 +62,12 @@ class RelayScenario:
 
 
 def read_scenario(path: Path) -> dict[str, RelayScenario]:
-    """Scenario of each IED by its name. Raises ScenarioError."""
+    """Scenario of each IED by its name. Raises ScenarioError, ProfileError."""
+    table = read_table(path, ScenarioError)
     try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise ScenarioError(
-            path, "file", expected="a readable file", found=error.strerror or str(error)
-        ) from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise ScenarioError(path, "file", expected="TOML in UTF-8", found=str(error)) from error
-    try:
-        motors = _File.model_validate(table).motor
+        motors = FileTable.model_validate(table).motor
     except ValidationError as error:
-        raise _scenario_error(path, table, error) from error
+        raise first_error(path, _place(table, error), error, ScenarioError) from error
     scenarios: dict[str, RelayScenario] = {}
     for motor in motors:
         if motor.ied in scenarios:
@@ -212,8 +78,11 @@ def read_scenario(path: Path) -> dict[str, RelayScenario]:
     return scenarios
 
 
-def healthy_reference(ied: str) -> RelayScenario:
-    """A healthy 800 W motor (thesis Table 3.2) at half load: what a relay protects that no scenario names."""
+def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayScenario:
+    """A healthy 800 W motor (thesis Table 3.2) at half load: what a relay protects that no scenario names.
+
+    Raises ProfileError where there is no such profile.
+    """
     motor = Motor(
         name=ied,
         nameplate=Nameplate(rated_power_W=800, rated_voltage_V=380, rated_frequency_Hz=50, pole_pairs=2),
@@ -226,17 +95,22 @@ def healthy_reference(ied: str) -> RelayScenario:
             inertia_kgm2=0.0229,
         ),
     )
+    kind = read_profile(profile)
     return RelayScenario(
         MotorPlant(
             motor=motor,
-            supply=_Supply().supply(motor.nameplate),
-            load=_Load().load(),
-            sensors=_Sensors(noise=0.002).sensors(motor),
-        )
+            supply=SupplyTable().supply(motor.nameplate),
+            load=LoadTable().load(),
+            sensors=SensorsTable(noise=0.002).sensors(motor),
+            contactor=Contactor(),
+        ),
+        profile=kind,
+        recorder=_recorder(kind.record, RecorderTable(), motor.nameplate.rated_frequency_Hz),
+        triggers=kind.triggers,
     )
 
 
-def _relay_scenario(path: Path, section: _Motor) -> RelayScenario:
+def _relay_scenario(path: Path, section: MotorTable) -> RelayScenario:
     where = f"[motor {section.ied}]"
     try:
         motor = motor_from_table(
@@ -256,7 +130,7 @@ def _relay_scenario(path: Path, section: _Motor) -> RelayScenario:
                 expected=f"at most {highest_ohm:.3g}, above which the shorted loop is too fast to simulate",
                 found=f"{course.resistance_ohm:g}",
             )
-    recorder = section.recorder
+    profile = _profile(path, section)
     return RelayScenario(
         plant=MotorPlant(
             motor=motor,
@@ -265,28 +139,58 @@ def _relay_scenario(path: Path, section: _Motor) -> RelayScenario:
             sensors=section.sensors.sensors(motor),
             fault=course,
             seed=section.seed,
+            warming=None if section.warming is None else section.warming.warming(),
+            broken_bars=section.broken_bars,
+            contactor=Contactor(open_at_first=section.stopped),
         ),
-        recorder=RecorderSettings(
-            recorder.sample_rate_Hz, recorder.pre_trigger_s, recorder.post_trigger_s, recorder.capacity
-        ),
+        profile=profile,
+        recorder=_recorder(profile.record, section.recorder, motor.nameplate.rated_frequency_Hz),
+        triggers=_triggers(profile.triggers, section.triggers),
+        protection=section.protection.settings(),
+        misbehaviour=tuple(each.misbehaviour() for each in section.misbehaviour),
+        load_profile_s=section.recorder.load_profile_s,
     )
 
 
-def _scenario_error(path: Path, table: Mapping[str, object], error: ValidationError) -> ScenarioError:
-    """The first of the errors, with the motor called by its IED where it has one."""
-    first = error.errors()[0]
-    location = list(first["loc"])
-    place = ".".join(str(part) for part in location)
-    if len(location) >= 2 and isinstance(location[1], int):
-        motors = table.get("motor")
-        motor = motors[location[1]] if isinstance(motors, list) else None
-        name = motor.get("ied") if isinstance(motor, dict) else None
-        field = ".".join(str(part) for part in location[2:])
-        place = f"[motor {name if isinstance(name, str) else location[1] + 1}] {field}".rstrip()
-    if first["type"] == "missing":
-        return ScenarioError(path, place, expected="this field", found="nothing")
-    if first["type"] == "extra_forbidden":
-        return ScenarioError(path, place, expected="no such field", found="one; is the name right?")
-    expected = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
-    found = first["input"]
-    return ScenarioError(path, place, expected=expected, found=repr(found)[:80])
+def _profile(path: Path, section: MotorTable) -> Profile:
+    """The motor's relay profile, with the record formats of the scenario where it names some."""
+    profile = read_profile(section.profile or DEFAULT, beside=path.parent)
+    if section.recorder.formats is None:
+        return profile
+    try:
+        record = Record.model_validate(profile.record.model_dump() | {"formats": section.recorder.formats})
+    except ValidationError as error:
+        place = f"[motor {section.ied}] recorder.formats"
+        raise first_error(path, place, error, ScenarioError) from error
+    return profile.model_copy(update={"record": record})
+
+
+def _recorder(record: Record, section: RecorderTable, frequency_Hz: float) -> RecorderSettings:
+    """The profile's record at this line frequency, with what the scenario puts in its place."""
+    per_cycle = record.samples_per_cycle
+    rate_Hz = record.sample_rate_Hz if per_cycle is None else per_cycle * frequency_Hz
+    before_s = record.pre_trigger_cycles / frequency_Hz
+    after_s = (record.cycles - record.pre_trigger_cycles) / frequency_Hz
+    return RecorderSettings(
+        sample_rate_hz=section.sample_rate_Hz or rate_Hz or 0.0,
+        pre_trigger_s=before_s if section.pre_trigger_s is None else section.pre_trigger_s,
+        post_trigger_s=section.post_trigger_s or after_s,
+        capacity=section.capacity or record.capacity,
+    )
+
+
+def _triggers(of_profile: Triggers, section: TriggersTable) -> Triggers:
+    given = {key: value for key, value in section.model_dump().items() if value is not None}
+    return of_profile.model_copy(update=given)
+
+
+def _place(table: Mapping[str, object], error: ValidationError) -> str:
+    """Where the first error is, with the motor called by its IED where it has one."""
+    location = list(error.errors()[0]["loc"])
+    if len(location) < 2 or not isinstance(location[1], int):
+        return ".".join(str(part) for part in location)
+    motors = table.get("motor")
+    motor = motors[location[1]] if isinstance(motors, list) else None
+    name = motor.get("ied") if isinstance(motor, dict) else None
+    field = ".".join(str(part) for part in location[2:])
+    return f"[motor {name if isinstance(name, str) else location[1] + 1}] {field}".rstrip()

@@ -8,12 +8,14 @@ from types import TracebackType
 from typing import Self
 
 from ied_sim.errors import SimulatorError
+from ied_sim.front import FrontDoors
 from ied_sim.relay import Relay
 from ied_sim.scenario import RelayScenario, healthy_reference
 from mms import ServerPump, ServerStartFailed
 from scl import Address, Scl
 
-METERING_PERIOD_S = 1.0
+LOOK_PERIOD_S = 0.05
+"""Between looks for relays that want to look at their motors; each says when it does."""
 
 
 class Simulator:
@@ -30,36 +32,49 @@ class Simulator:
         names = tuple(dict.fromkeys(ieds)) or tuple(ied.name for ied in document.ieds)
         self.addresses: dict[str, Address] = {name: document.address(name) for name in names}
         epoch_ns = time.time_ns()
-        self._relays = [
-            Relay(
+        self._begin_s = time.monotonic()
+        self._doors = FrontDoors()
+        self.relays: dict[str, Relay] = {}
+        for name, address in self.addresses.items():
+            relay = Relay(
                 document,
                 name,
                 scenarios.get(name) or healthy_reference(name),
                 address=address,
                 files=files,
                 epoch_ns=epoch_ns,
+                doors=self._doors,
             )
-            for name, address in self.addresses.items()
-        ]
-        self._pump = ServerPump(relay.server for relay in self._relays)
+            self.relays[name] = relay
+        self._pump = ServerPump(relay.server for relay in self.relays.values() if not relay.serves_itself)
         self._stopping = threading.Event()
-        self._metering = threading.Thread(target=self._meter, name="metering", daemon=True)
+        self._looking = threading.Thread(target=self._look, name="looking", daemon=True)
 
     def start(self) -> None:
         """Serve; SimulatorError names the relay whose address and port cannot be had."""
         try:
             self._pump.start()
+            for relay in self.relays.values():
+                if relay.serves_itself:
+                    relay.server.start()
         except ServerStartFailed as error:
-            raise self._start_error(error) from error
-        self._metering.start()
+            raise self._start_error(error.host) from error
+        taken = self._doors.start()
+        if taken is not None:
+            self.stop()
+            raise self._start_error(str(taken))
+        self._looking.start()
 
     def stop(self) -> None:
         """Close all connections, abandon captures under way."""
         self._stopping.set()
-        if self._metering.is_alive():
-            self._metering.join()
-        for relay in self._relays:
+        if self._looking.is_alive():
+            self._looking.join()
+        self._doors.stop()
+        for relay in self.relays.values():
             relay.stop()
+            if relay.serves_itself:
+                relay.server.stop()
         self._pump.stop()
 
     def __enter__(self) -> Self:
@@ -71,17 +86,22 @@ class Simulator:
     ) -> None:
         self.stop()
 
-    def _meter(self) -> None:
-        while not self._stopping.wait(METERING_PERIOD_S):
-            for relay in self._relays:
-                relay.update_metering(time.time_ns())
+    def _look(self) -> None:
+        """Every relay looks at its motor when it wants to; they begin one after the other."""
+        relays = tuple(self.relays.values())
+        due_s = [k / max(1, len(relays)) for k in range(len(relays))]
+        while not self._stopping.wait(LOOK_PERIOD_S):
+            now_s = time.monotonic() - self._begin_s
+            for k, relay in enumerate(relays):
+                if due_s[k] <= now_s or relay.hurries:
+                    due_s[k] = now_s + relay.look(time.time_ns())
 
-    def _start_error(self, error: ServerStartFailed) -> SimulatorError:
+    def _start_error(self, where: str) -> SimulatorError:
         for name, address in self.addresses.items():
-            if error.host == f"{address.host}:{address.port}":
+            if where in (f"{address.host}:{address.port}", str(address)):
                 return SimulatorError(
                     f"{name}: cannot listen on {address.host} port {address.port}: the port is taken or "
                     "needs rights this process lacks, or the address is not this machine's; "
                     "stop what listens there, or change IP and MMS-Port in the SCD file"
                 )
-        return SimulatorError(str(error))
+        return SimulatorError(f"cannot listen on {where}: the port was taken meanwhile; start again")

@@ -24,6 +24,36 @@ class Harmonic:
 
 
 @dataclass(frozen=True, slots=True)
+class SupplyEvent:
+    """A dip, swell or interruption: phases' voltages times `factor` from `at_s` for `duration_s` [s].
+
+    phases: indices of those concerned, 0 to 2.  every_s: it comes again after so long; None for once.
+    """
+
+    at_s: float
+    duration_s: float
+    factor: float
+    phases: tuple[int, ...] = (0, 1, 2)
+    every_s: float | None = None
+
+    def under_way(self, time_s: Array) -> NDArray[np.bool_]:
+        """Whether it is, at the times [s], same shape."""
+        since = time_s - self.at_s
+        if self.every_s is not None:
+            since = np.where(since >= 0, since % self.every_s, since)
+        happening: NDArray[np.bool_] = (since >= 0) & (since < self.duration_s)
+        return happening
+
+    def latest_begin_s(self, time_s: float) -> float | None:
+        """When it last began at or before `time_s`, None if never."""
+        if time_s < self.at_s:
+            return None
+        if self.every_s is None:
+            return self.at_s
+        return time_s - (time_s - self.at_s) % self.every_s
+
+
+@dataclass(frozen=True, slots=True)
 class Supply:
     """Voltages of a three-phase busbar.
 
@@ -41,6 +71,7 @@ class Supply:
     unbalance_angle_rad: float = 0.0
     harmonics: tuple[Harmonic, ...] = ()
     sequence: Literal["abc", "acb"] = "abc"
+    events: tuple[SupplyEvent, ...] = ()
 
     @property
     def direction(self) -> int:
@@ -66,4 +97,17 @@ class Supply:
             h = harmonic.order
             voltages += harmonic.fraction * np.cos(h * (angle - behind) + harmonic.angle_rad)
         voltages *= sqrt(2 / 3) * self.line_voltage_V
+        for event in self.events:
+            happening = event.under_way(time_s)
+            for phase in event.phases:
+                voltages[phase, happening] *= event.factor
         return voltages
+
+    def disturbed_since(self, time_s: float, memory_s: float) -> float:
+        """Begin of the earliest event felt at `time_s`, up to `memory_s` after its end; `time_s` if none."""
+        begins = [time_s]
+        for event in self.events:
+            begin_s = event.latest_begin_s(time_s)
+            if begin_s is not None and time_s < begin_s + event.duration_s + memory_s:
+                begins.append(begin_s)
+        return min(begins)

@@ -79,11 +79,20 @@ def highest_fault_resistance(parameters: MachineParameters, fastest_rate: float)
 
 
 def winding_circuit(
-    parameters: MachineParameters, connection: Connection, fault: TurnFault | None = None
+    parameters: MachineParameters,
+    connection: Connection,
+    fault: TurnFault | None = None,
+    *,
+    resistance_factor: float = 1.0,
+    broken_bars: float = 0.0,
 ) -> WindingCircuit:
     """The loops of a motor, healthy (`fault` None or of no turns) or with a part of one phase bridged.
 
     With mu = 0 there is no fault loop at all, so a healthy motor is exactly that.
+    resistance_factor: stator and rotor resistance over that of the parameters (warm windings).
+    broken_bars: share k = n / N of the cage's bars that are broken, all in one place. One rotor coil then has
+    R (1 + 3 k / (1 - 2 k)): along its axis the cage has lost the share 2 k of its conductance, across it
+    none (Bellini et al., doi:10.1109/28.968187).
     """
     if fault is not None and fault.turns == 0:
         fault = None
@@ -114,6 +123,8 @@ def winding_circuit(
     on_rotor = np.arange(N.size) >= stator
     leakage = np.where(on_rotor, parameters.rotor_leakage_H, N * parameters.stator_leakage_H)
     resistance = np.where(on_rotor, parameters.rotor_resistance_ohm, N * parameters.stator_resistance_ohm)
+    resistance *= resistance_factor
+    resistance[stator] *= 1 + 3 * broken_bars / (1 - 2 * broken_bars)
 
     between = np.subtract.outer(axis, axis)
     coupling = parameters.stator_self_inductance_H * np.outer(N, N)

@@ -6,6 +6,7 @@ or a report control block names but the model has not. Each of these is an error
 
 import re
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Final
 
 from mms.errors import ModelError
@@ -53,6 +54,16 @@ def checked(text: str, ied_name: str | None = None) -> tuple[str, ...]:
 
     `ied_name` replaces the model's name. ModelError naming the line of the first fault.
     """
+    reading = _read(text)
+    name = reading.model_name if ied_name is None else ied_name
+    return tuple(
+        f"{reading.own_names.get(device, f'{name}{device}')}/{path}" for device, path in reading.attributes
+    )
+
+
+@lru_cache(maxsize=4)
+def _read(text: str) -> _Reading:
+    """All of the text; kept, because many servers may have one text under names of their own."""
     reading = _Reading()
     for number, line in enumerate(text.splitlines(), 1):
         _read_line(reading, number, line.strip())
@@ -68,10 +79,7 @@ def checked(text: str, ied_name: str | None = None) -> tuple[str, ...]:
     for number, name in reading.wanted_data_sets:
         if name not in reading.data_sets:
             raise ModelError(f"line {number}", "a data set of the same logical node", name)
-    name = reading.model_name if ied_name is None else ied_name
-    return tuple(
-        f"{reading.own_names.get(device, f'{name}{device}')}/{path}" for device, path in reading.attributes
-    )
+    return reading
 
 
 def _read_line(reading: _Reading, number: int, line: str) -> None:

@@ -4,8 +4,12 @@ from collections.abc import Iterator
 
 from lxml import etree
 
-from scl.document import Document
+from scl.document import MOST_FINDINGS, Document
 from scl.schema import RULES, UNDESCRIBED, VALUES, Rule
+
+_Tag = str | bytes | bytearray | etree.QName
+_Shape = tuple[_Tag, tuple[_Tag, ...]]
+"""An element's tag, and the tags of its children or the names of its attributes."""
 
 
 def check_conformance(document: Document) -> None:
@@ -22,28 +26,36 @@ class _Checker:
         self._rules = {document.qualified(tag): (tag, rule) for tag, rule in RULES.items()}
         self._undescribed = {document.qualified(tag): tag for tag in UNDESCRIBED}
         self._tags = {**{qualified: tag for qualified, (tag, _) in self._rules.items()}, **self._undescribed}
-        # The same few combinations of attributes come by the hundred thousand: by tag and names, what is
-        # wrong with them and which of them have a value to look at.
-        self._known_attributes: dict[
-            tuple[str, tuple[str, ...]], tuple[tuple[str, ...], tuple[str, ...]]
-        ] = {}
+        self._sound: set[_Shape] = set()
+        # By tag and names of attributes: what is wrong with them, and which have a value to look at.
+        self._known_attributes: dict[_Shape, tuple[tuple[str, ...], tuple[str, ...]]] = {}
         self._known_values: dict[tuple[str, str, str], str | None] = {}
 
     def check(self) -> None:
         pending = [self._document.root]
         while pending:
             element = pending.pop()
-            known = self._rules.get(str(element.tag))
-            if known is None:
-                continue
-            tag, rule = known
-            self._check_attributes(element, tag, rule)
-            if len(element):
-                children = self._children(element)
-                self._check_children(element, rule, children)
-                pending.extend(child for child, _ in reversed(children))
-            elif rule.least:
-                self._note_missing(element, rule.least)
+            tag = element.tag
+            children = list(element)
+            # The same few shapes come by the hundred thousand: one found sound is not looked at again.
+            shape = tag, tuple([child.tag for child in children])
+            if shape not in self._sound:
+                known = self._rules.get(str(tag))
+                if known is None:
+                    continue
+                children = self._checked_children(element, known[1], shape)
+            self._check_attributes(element)
+            children.reverse()
+            pending.extend(children)
+
+    def _checked_children(self, element: etree._Element, rule: Rule, shape: _Shape) -> list[etree._Element]:
+        """Those of a known tag; the shape is sound where there was nothing to note or to leave out."""
+        noted = len(self._document.findings)
+        children = self._children(element)
+        self._check_children(element, rule, children)
+        if len(self._document.findings) == noted and len(children) == len(element) and noted < MOST_FINDINGS:
+            self._sound.add(shape)
+        return [child for child, _ in children]
 
     def _children(self, element: etree._Element) -> list[tuple[etree._Element, str]]:
         """Children of the SCL namespace and their tags; those of no known tag are noted and left out."""
@@ -79,16 +91,18 @@ class _Checker:
         for tag in tags:
             self._document.note(element, f"no {tag}, which the SCL schema requires")
 
-    def _check_attributes(self, element: etree._Element, tag: str, rule: Rule) -> None:
-        names = tuple(element.keys())
-        known = self._known_attributes.get((tag, names))
+    def _check_attributes(self, element: etree._Element) -> None:
+        qualified, names = element.tag, tuple(element.keys())
+        known = self._known_attributes.get((qualified, names))
         if known is None:
+            tag, rule = self._rules[str(qualified)]
             valued = tuple(name for name in names if (tag, name) in VALUES)
-            known = self._known_attributes[tag, names] = tuple(_attribute_faults(rule, names)), valued
+            known = tuple(_attribute_faults(rule, names)), valued
+            self._known_attributes[qualified, names] = known
         for fault in known[0]:
             self._document.note(element, fault)
         for name in known[1]:
-            wrong = self._value_fault(tag, name, str(element.get(name)))
+            wrong = self._value_fault(self._rules[str(qualified)][0], name, str(element.get(name)))
             if wrong is not None:
                 self._document.note(element, wrong)
 

@@ -280,6 +280,10 @@ class LogicalNode:
         found = next((child for child in self.data_objects if child.name == name), None)
         return found.find(rest) if found is not None and rest else found
 
+    def holds(self, path: str, constraint: FunctionalConstraint) -> bool:
+        """Whether there is data of a constraint at a path below the node."""
+        return _has(self.find(path), constraint)
+
 
 @dataclass(frozen=True, slots=True)
 class PlacedObject:
@@ -360,9 +364,7 @@ class Ied:
     def resolve(self, member: DataSetMember) -> DataObject | DataAttribute | None:
         """What a data set member names; None when the data model has no such data of its constraint."""
         found = self.find(f"{member.logical_device}/{member.logical_node}.{member.path}")
-        constraints = found.constraints() if isinstance(found, DataObject) else {found.fc} if found else set()
-        editable = member.fc is FunctionalConstraint.SG and FunctionalConstraint.SE in constraints
-        return found if member.fc in constraints or editable else None
+        return found if _has(found, member.fc) else None
 
     def data_sets(self, *, covering: str | None = None) -> tuple[DataSet, ...]:
         """All data sets, or those with a member that covers a reference."""
@@ -386,3 +388,10 @@ class Ied:
                     continue
                 if covering is None or (report.data_set is not None and report.data_set.covers(covering)):
                     yield report
+
+
+def _has(found: DataObject | DataAttribute | None, constraint: FunctionalConstraint) -> bool:
+    """Whether what was found has data of a constraint; an editable setting is read as the active one too."""
+    constraints = found.constraints() if isinstance(found, DataObject) else {found.fc} if found else set()
+    editable = constraint is FunctionalConstraint.SG and FunctionalConstraint.SE in constraints
+    return constraint in constraints or editable

@@ -1,11 +1,12 @@
 """Data sets of a logical node: their FCDA elements as references (IEC 61850-6 clause 9.3.7)."""
 
 import re
+from functools import lru_cache
 
 from lxml import etree
 
 from scl.data_model import DataSet, DataSetMember, FunctionalConstraint, Ied
-from scl.document import NAME, Document, decimal, node_name
+from scl.document import NAME, Document, decimal
 
 LONGEST_REFERENCE = 129
 ARRAY_INDEX = re.compile(r"\(([0-9]{1,6})\)")
@@ -38,8 +39,12 @@ class DataSetReader:
 
     def check(self, ied: Ied) -> None:
         """Findings for members that name no data of the IED, once all of it has been read."""
+        nodes = {
+            (device.inst, node.name): node for device in ied.logical_devices for node in device.logical_nodes
+        }
         for element, member in self._members:
-            if ied.resolve(member) is None:
+            node = nodes.get((member.logical_device, member.logical_node))
+            if node is None or not node.holds(member.path, member.fc):
                 self._document.note(element, f"the data model has no {member.reference} [{member.fc}]")
 
     def _member(self, element: etree._Element, device: str) -> DataSetMember | None:
@@ -52,17 +57,18 @@ class DataSetReader:
         if constraint not in FunctionalConstraint.__members__ or not element.get("doName"):
             document.note(element, "names no data without doName and a known fc: member left out")
             return None
-        if not all(NAME.fullmatch(element.get(word) or "x") for word in ("prefix", "lnClass", "lnInst")):
+        logical_node = _logical_node(
+            element.get("prefix", ""), element.get("lnClass", ""), element.get("lnInst", "")
+        )
+        if logical_node is None:
             document.note(element, "names no logical node: member left out")
             return None
-        logical_node = "".join(node_name(document, element, "lnInst"))
-        indexed_path = ".".join(filter(None, (element.get("doName"), element.get("daName"))))
-        # edition 1 writes an array index into the name, "phsAHar(2)"; edition 2 has the attribute ix
-        indices = ARRAY_INDEX.findall(indexed_path) or [element.get("ix", "")]
-        index = decimal(indices[0])
-        if index is None and indices[0]:
-            document.note(element, f"ix={indices[0]!r} is no number: left out")
-        path = ARRAY_INDEX.sub("", indexed_path)
+        if not element.get("lnClass"):
+            document.required(element, "lnClass")
+        path, index_text = _path(element.get("doName", ""), element.get("daName", ""), element.get("ix", ""))
+        index = decimal(index_text)
+        if index is None and index_text:
+            document.note(element, f"ix={index_text!r} is no number: left out")
         reference = f"{self._domains[inst]}/{logical_node}.{path}"
         if len(reference) > LONGEST_REFERENCE:
             document.note(element, f"a reference of over {LONGEST_REFERENCE} characters: member left out")
@@ -77,3 +83,25 @@ class DataSetReader:
         )
         self._members.append((element, member))
         return member
+
+
+# Relays of one make repeat the same members thousands of times.
+@lru_cache(maxsize=8192)
+def _logical_node(prefix: str, ln_class: str, inst: str) -> str | None:
+    """The node's name, None where a part of it is none."""
+    return (
+        prefix + ln_class + inst
+        if all(NAME.fullmatch(word or "x") for word in (prefix, ln_class, inst))
+        else None
+    )
+
+
+@lru_cache(maxsize=8192)
+def _path(do_name: str, da_name: str, ix: str) -> tuple[str, str]:
+    """The path below the node without array index, and the index as it is written.
+
+    Edition 1 writes it into the name, "phsAHar(2)"; edition 2 has the attribute ix.
+    """
+    indexed_path = ".".join(filter(None, (do_name, da_name)))
+    indices = ARRAY_INDEX.findall(indexed_path) or [ix]
+    return ARRAY_INDEX.sub("", indexed_path), indices[0]

@@ -113,12 +113,7 @@ def model_text(scl: Scl, ied_name: str) -> str:
         )
     lines: list[str] = []
     for line in _model(ied):
-        words = line.partition("=")[0].split()
-        if (
-            len(line.encode()) > LONGEST_LINE_BYTES
-            or max(map(len, words)) > LONGEST_WORD
-            or len(lines) >= MOST_LINES
-        ):
+        if _is_too_long(line) or len(lines) >= MOST_LINES:
             raise SclError(
                 scl.path,
                 element=f'<IED name="{ied_name}">',
@@ -127,6 +122,13 @@ def model_text(scl: Scl, ied_name: str) -> str:
             )
         lines.append(line)
     return "\n".join(lines) + "\n"
+
+
+def _is_too_long(line: str) -> bool:
+    if len(line) <= LONGEST_WORD:  # nor is then any word of it too long
+        return False
+    words = line.partition("=")[0].split()
+    return len(line.encode()) > LONGEST_LINE_BYTES or max(map(len, words)) > LONGEST_WORD
 
 
 def _model(ied: Ied) -> Iterator[str]:

@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import scl
+from ied_sim.event_recorder import RecorderSettings
 from ied_sim.relay import Relay
-from ied_sim.scenario import RecorderSettings, healthy_reference
+from ied_sim.scenario import healthy_reference
 from mms import Client, Report, ServerPump, ServerStartFailed, Value
 from scl import Address
 

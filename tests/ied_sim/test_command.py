@@ -137,10 +137,11 @@ def test_a_directory_that_cannot_be_made_is_named(plant: Path, tmp_path: Path) -
 def test_meters_are_updated_while_serving(
     plant: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ied_sim.simulator.METERING_PERIOD_S", 0.05)
+    monkeypatch.setattr("ied_sim.relay.METERING_PERIOD_S", 0.05)
+    monkeypatch.setattr("ied_sim.relay.METERING_REFRESH_S", 0.05)
     scenarios = {"A1_SEL710": healthy_reference("A1_SEL710")}
     with Simulator(scl.read(plant), scenarios, files=tmp_path, ieds=["A1_SEL710"]) as simulator:
-        server = simulator._relays[0].server
+        server = simulator.relays["A1_SEL710"].server
         first = server.read("A1_SEL710MET/METMMXU1.Hz.t")
         wait_until(lambda: server.read("A1_SEL710MET/METMMXU1.Hz.t") != first, "new meter values")
 

@@ -177,8 +177,9 @@ def _made(served: ServedRelay) -> bool:
     return len(served.names()) >= 3
 
 
-def test_nothing_but_events_is_in_the_file_store(served: ServedRelay) -> None:
-    assert {entry.name.strip("/") for entry in served.client.files("")} <= {"EVENTS"}
+def test_nothing_but_what_the_profile_offers_is_in_the_file_store(served: ServedRelay) -> None:
+    folders = {entry.name.strip("/").split("/")[0] for entry in served.client.files("")}
+    assert folders <= {"EVENTS", "REPORTS", "SETTINGS"}
 
 
 def test_meters_show_the_motor(served: ServedRelay) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+import ied_sim
 import scl
 from core.diagnosis.search import METHODS
 from core.recordings import comtrade, read
@@ -169,6 +170,28 @@ def test_an_scd_is_described(capsys: pytest.CaptureFixture[str]) -> None:
     assert "CON/RBGGIO1.SPCSO01" in shown
     assert "A1_SEL710CON" not in shown, "the relay's name stands in its own column"
     assert relay["trigger"] == "A1_SEL710CON/RBGGIO1.SPCSO01"
+
+
+@pytest.mark.parametrize(
+    ("profile", "trigger", "missing"),
+    [
+        ("sel-710-ed1", "TEMPLATECON/RBGGIO1.SPCSO01", ["no RcdMade of an RDRE"]),
+        ("rdre", "TEMPLATERec_FaultRecorder/DEF_RDRE1.RcdTrg", []),
+        ("rdre-readonly", None, ["no control that makes a record"]),
+        ("files-none", "TEMPLATECON/RBGGIO1.SPCSO01", ["no RcdMade of an RDRE"]),
+    ],
+)
+def test_what_is_recognised_in_other_relays_and_what_is_not(
+    profile: str, trigger: str | None, missing: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    icd = str(Path(ied_sim.__file__).parent / "profiles" / f"{profile}.icd")
+    assert main(["import-scl", icd, "--json"]) == 0
+    (relay,) = json.loads(capsys.readouterr().out)["relays"]
+    assert relay["trigger"] == trigger
+    assert [words.split(" (")[0].split(":")[0] for words in relay["not_recognised"]] == missing
+    assert main(["import-scl", icd]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert all(f"not recognised: {words}" in shown for words in missing)
 
 
 @pytest.mark.parametrize(

@@ -48,7 +48,8 @@ def test_each_motor_has_its_site_relay_and_address(plant: Scl) -> None:
 def test_trigger_is_a_direct_control_with_a_full_oper_structure(plant: Scl) -> None:
     controls = plant.ied("B1_SEL710").data_objects(ln_class="GGIO", common_data_class="SPC")
     assert [control.reference for control in controls] == [
-        f"B1_SEL710CON/RBGGIO1.SPCSO{number:02d}" for number in range(1, 33)
+        *(f"B1_SEL710CON/RBGGIO1.SPCSO{number:02d}" for number in range(1, 33)),
+        *(f"B1_SEL710CON/PRBGGIO1.SPCSO{number:02d}" for number in range(1, 9)),
     ]
     trigger = controls[0].data_object
     assert trigger.control_model == "direct-with-normal-security"

@@ -24,7 +24,7 @@ class BaselineRows(Sessions):
     ) -> tuple[RecordingEntry, ...]:
         """Has these recordings be the motor's baseline in place of any others; without any it has none.
 
-        It holds for diagnoses that begin from now on. Raises NotFoundError (for another motor's recording too),
+        For diagnoses that begin from now on. Raises NotFoundError (for another motor's recording too),
         UnusableBaselineError (one that is not diagnosed, or was refused).
         """
         with self._write() as session:
