@@ -1,13 +1,9 @@
 """One simulated relay: its model served over MMS, its controls, its event recorder, its view of the motor."""
 
-import cmath
 import logging
 import threading
 from collections.abc import Callable
-from math import degrees
 from pathlib import Path
-
-import numpy as np
 
 from ied_sim.contactor import Closure
 from ied_sim.errors import SimulatorError
@@ -15,7 +11,7 @@ from ied_sim.event_files import EventFiles
 from ied_sim.event_recorder import Capture, EventRecorder
 from ied_sim.front import FrontDoors
 from ied_sim.journal import Journal
-from ied_sim.metering import Metering, metered_values
+from ied_sim.metering import Metering
 from ied_sim.misbehaviour import ON_THE_WIRE, Kind, Switchboard
 from ied_sim.motor_watch import MotorWatch
 from ied_sim.plant import rated_current
@@ -26,17 +22,17 @@ from ied_sim.relay_misbehaviour import RelayMisbehaviour
 from ied_sim.relay_points import RelayPoints
 from ied_sim.relay_server import RelayServer
 from ied_sim.relay_settings import relay_settings
+from ied_sim.relay_values import RelayValues
 from ied_sim.relay_word import RelayWord
 from ied_sim.scenario import RelayScenario
 from ied_sim.texts import Maker, Story, texts
-from mms import AddCause, ControlAction, Server, Value
+from mms import AddCause, ControlAction, Server
 from scl import Address, Scl
 from scl.model_text import model_text
 
 log = logging.getLogger(__name__)
 
 METERING_PERIOD_S = 1.0
-METERING_REFRESH_S = 10.0
 WATCHFUL_PERIOD_S = 0.1
 """Between looks while something is about to happen: a start, a trip."""
 
@@ -110,6 +106,9 @@ class Relay:
             operated=self._operate,
             texts={path: self._text(maker) for path, maker in self._offered.items()},
         )
+        self._values = RelayValues(
+            self._relay_server, self._points, profile.points.metering, profile.points.sequence
+        )
         self._misbehaviour = RelayMisbehaviour(
             self.switchboard, self._relay_server, self._points, profile.report_buffer_bytes
         )
@@ -128,6 +127,7 @@ class Relay:
         """Abandon a capture under way; the server itself belongs to its pump."""
         for timer in self._timers:
             timer.cancel()
+            timer.join()
         if self._event_files is not None:
             self._event_files.stop()
         self._recorder.stop()
@@ -142,7 +142,7 @@ class Relay:
         self.hurries = False
         self._misbehaviour.look()
         seen = self._watch.look(time_s)
-        self._refresh_metering(seen, time_ns)
+        self._values.refresh_metering(seen, time_ns)
         closure = self._watch.closure(time_s)
         self._journal.note_operation(
             max(0.0, (time_ns - self._looked_ns) * 1e-9), seen, running=closure is not None
@@ -158,7 +158,7 @@ class Relay:
 
     def update_metering(self, time_ns: int) -> None:
         """Meter the motor at UTC `time_ns` and publish the values."""
-        self._publish_metering(self._watch.look(self._seconds(time_ns)), time_ns)
+        self._values.metering(self._watch.look(self._seconds(time_ns)), time_ns)
 
     @property
     def _is_watchful(self) -> bool:
@@ -194,9 +194,9 @@ class Relay:
 
     def _set_control(self, reference: str, time_ns: int, *, value: bool) -> None:
         self._bits[reference] = value
-        number = reference.rpartition("SPCSO")[2]
-        self._word.set(f"RB{number}", value, time_ns)
-        self._relay_server.publish({f"{reference}.stVal": value}, time_ns)
+        if "RBGGIO" in reference:
+            self._word.set(f"RB{reference[-2:]}", value, time_ns)
+        self._values.controls({reference: value}, time_ns)
 
     def _on_rise(self, reference: str, now_ns: int) -> None:
         if reference in self._points.triggers:
@@ -217,7 +217,7 @@ class Relay:
         for bit in ("TRIP", *_TRIP_BITS.values(), "STOPPED"):
             self._word.set(bit, False, now_ns)  # noqa: FBT003
         self._word.set("STARTING", True, now_ns)  # noqa: FBT003
-        self._publish_status(dict.fromkeys(("trip", *_TRIP_BITS), False), now_ns)
+        self._values.status(dict.fromkeys(("trip", *_TRIP_BITS), False), now_ns)
         if self._scenario.triggers.motor_start:
             self._trigger(now_ns, "ER MOTOR START")
 
@@ -236,7 +236,7 @@ class Relay:
         for element in elements:
             self._journal.note_trip(element)
             self._word.set(_TRIP_BITS[element], True, now_ns)  # noqa: FBT003
-        self._publish_status(dict.fromkeys(("trip", *elements), True), now_ns)
+        self._values.status(dict.fromkeys(("trip", *elements), True), now_ns)
         self._stop_motor(now_ns)
         if self._scenario.triggers.trip:
             self._trigger(now_ns, _TRIP_KINDS[elements[0]])
@@ -268,13 +268,13 @@ class Relay:
     def _trigger(self, now_ns: int, kind: str) -> None:
         if self._recorder.trigger(now_ns, kind):
             self._word.pulse("ER", now_ns, 5_000_000)
-            self._publish_status({"record_made": False, "record_started": True}, now_ns)
+            self._values.status({"record_made": False, "record_started": True}, now_ns)
 
     def _keep(self, capture: Capture) -> None:
         """Store a record and tell the clients of it; runs in the capture's thread."""
         number = self._keeper.keep(capture)
         log.info("%s: event record %d is complete", self.name, number)
-        self._publish_status(
+        self._values.status(
             {"record_number": number, "record_made": True, "record_started": False}, RelayClock.now_ns()
         )
 
@@ -284,55 +284,14 @@ class Relay:
         self._timers = [each for each in self._timers if each.is_alive()] + [timer]
         timer.start()
 
-    # what clients see
-
     def _begin(self, now_ns: int) -> None:
-        statuses: dict[str, Value] = {f"{reference}.stVal": False for reference in self._bits}
-        self._relay_server.publish(statuses, now_ns)
-        self._publish_status(
-            dict.fromkeys(("record_made", "record_started", "trip", *_TRIP_BITS), False), now_ns
-        )
-        self._publish_status({"record_number": self._keeper.last_number or 0}, now_ns)
-        running = self._watch.closure(self._seconds(now_ns)) is not None
-        self._word.set("RUNNING" if running else "STOPPED", True, now_ns)  # noqa: FBT003
+        """What clients see before anything has happened; the first look, within a second, meters."""
+        self._values.controls(self._bits, now_ns)
+        fallen = dict.fromkeys(("record_made", "record_started", "trip", *_TRIP_BITS), False)
+        self._values.status({**fallen, "record_number": self._keeper.last_number or 0}, now_ns)
         self._closure = self._watch.closure(self._seconds(now_ns))
-        # Nothing is metered yet: the first look, within a second, does that.
-        nothing = Metering(0.0, np.zeros(3, complex), np.zeros(3, complex), 1)
-        self._measured = [name for name in self._measurements(nothing) if self._points.has(name)]
-        self._published, self._published_ns = nothing, now_ns
+        self._word.set("STOPPED" if self._closure is None else "RUNNING", True, now_ns)  # noqa: FBT003
         self._looked_ns = now_ns
-
-    def _publish_status(self, values: dict[str, Value], now_ns: int) -> None:
-        """Statuses by their key in the profile; those it does not name are left out."""
-        named = {self._points.value_of(key): value for key, value in values.items()}
-        found = {reference: value for reference, value in named.items() if reference is not None}
-        if found:
-            self._relay_server.publish(found, now_ns)
-
-    def _publish_metering(self, seen: Metering, time_ns: int) -> None:
-        self._published, self._published_ns = seen, time_ns
-        values = self._measurements(seen)
-        self._relay_server.publish({name: values[name] for name in self._measured}, time_ns)
-
-    def _refresh_metering(self, seen: Metering, time_ns: int) -> None:
-        """Publish what has changed; what has not, now and then."""
-        if seen is not self._published or time_ns - self._published_ns >= METERING_REFRESH_S * 1e9:
-            self._publish_metering(seen, time_ns)
-
-    def _measurements(self, seen: Metering) -> dict[str, Value]:
-        """Every attribute a metering data object may have, by reference."""
-        points = self._scenario.profile.points
-        attributes: dict[str, Value] = {}
-        for inst_reference, value in metered_values(seen, points.metering, points.sequence).items():
-            reference = self._points.reference(inst_reference)
-            if isinstance(value, complex):
-                for vector in ("instCVal", "cVal"):
-                    attributes[f"{reference}.{vector}.mag.f"] = abs(value)
-                    attributes[f"{reference}.{vector}.ang.f"] = degrees(cmath.phase(value))
-            else:
-                for magnitude in ("instMag", "mag"):
-                    attributes[f"{reference}.{magnitude}.f"] = value
-        return attributes
 
     # what it is made of
 

@@ -10,9 +10,12 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from typer.testing import CliRunner
 
 import scl
+from ied_sim.cli import app
 from ied_sim.errors import SimulatorError
+from ied_sim.profile import shipped
 from ied_sim.scenario import healthy_reference
 from ied_sim.simulator import Simulator
 from mms import Client
@@ -138,7 +141,7 @@ def test_meters_are_updated_while_serving(
     plant: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("ied_sim.relay.METERING_PERIOD_S", 0.05)
-    monkeypatch.setattr("ied_sim.relay.METERING_REFRESH_S", 0.05)
+    monkeypatch.setattr("ied_sim.relay_values.METERING_REFRESH_S", 0.05)
     scenarios = {"A1_SEL710": healthy_reference("A1_SEL710")}
     with Simulator(scl.read(plant), scenarios, files=tmp_path, ieds=["A1_SEL710"]) as simulator:
         server = simulator.relays["A1_SEL710"].server
@@ -155,3 +158,31 @@ def test_a_simulator_that_cannot_start_can_still_be_stopped(plant: Path, tmp_pat
         with pytest.raises(SimulatorError, match="A1_SEL710"):
             simulator.start()
     simulator.stop()
+
+
+def test_one_relay_of_a_profile_is_served_without_an_scd(tmp_path: Path) -> None:
+    port = str(free_port())
+    with serving("--profile", "rdre", "--port", port, "--files", tmp_path) as (process, lines):
+        assert lines == [f"SIM_RELAY 127.0.0.1 {port}", "ready"]
+        with Client.connect("127.0.0.1", int(port)) as client:
+            assert "SIM_RELAYRec_FaultRecorder" in client.logical_devices()
+        process.terminate()
+        assert process.wait(20) == 0
+
+
+def test_an_unknown_profile_is_told_with_those_there_are() -> None:
+    code, _, error = run("--profile", "siprotec")
+    assert code == 1
+    assert "expected one of files-none" in error
+
+
+def test_a_call_names_an_scd_or_a_profile() -> None:
+    ended = CliRunner().invoke(app, [])
+    assert ended.exit_code == 2
+    assert "give either --scd or --profile" in " ".join(ended.output.split())
+
+
+def test_the_profiles_are_listed() -> None:
+    listed = CliRunner().invoke(app, ["--profiles"])
+    assert listed.exit_code == 0
+    assert [line.split()[0] for line in listed.output.splitlines()] == list(shipped())

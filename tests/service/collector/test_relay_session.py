@@ -13,7 +13,7 @@ from service.collector.relay_session import Inbox, RelaySession
 from service.recordings import Incoming
 from service.storage.states import EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import Bench, eventually
-from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
+from tests.service.collector.scripted_relay import CONTROL, NAME, REPORT_CONTROL, ScriptedRelay
 
 
 def test_a_wish_becomes_a_stored_record(bench: Bench, relay: ScriptedRelay) -> None:
@@ -296,7 +296,7 @@ def test_a_relay_that_stays_down_is_mentioned_now_and_then(
 def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRelay, resumed: bool) -> None:
     """A block that is enabled without an EntryID begins with the bit set."""
     report = Report(
-        rcb_reference=bench.relay.report_control,
+        rcb_reference=REPORT_CONTROL,
         report_id="",
         entry_id=None,
         sequence_number=0,

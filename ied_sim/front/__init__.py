@@ -1,0 +1,9 @@
+"""What stands between a relay's server and its clients where they must see things the server cannot do.
+
+The MMS library answers at once, lists files its own way and never freezes. A front passes its octets on,
+later, changed or not at all.
+"""
+
+from ied_sim.front.door import FrontDoors
+
+__all__ = ["FrontDoors"]

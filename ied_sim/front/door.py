@@ -1,0 +1,205 @@
+"""The TCP side: connections accepted in a relay's place and passed on to its server."""
+
+import asyncio
+import logging
+import socket
+import threading
+from asyncio import StreamReader, StreamWriter
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+from ied_sim.front.rewriting import Rewriter
+from ied_sim.front.transport import CONNECT_CONFIRM, DATA, Message, read_message, unit_size, units_of
+from ied_sim.misbehaviour import Kind, Switchboard
+from ied_sim.profile import Files
+from scl import Address
+
+log = logging.getLogger(__name__)
+
+_THAW_LOOK_S = 0.02
+
+
+@dataclass(slots=True)
+class _Session:
+    """One client's connection and the one to the server behind it."""
+
+    client: StreamWriter
+    server: StreamWriter
+    rewriter: Rewriter
+    unit_size: int = 1024
+    file_bytes: int = field(default=0)
+
+
+class FrontDoor:
+    """Accepts at `outside` what the server at `inside` answers. Used by the loop of FrontDoors."""
+
+    def __init__(
+        self,
+        outside: Address,
+        inside: Address,
+        files: Files | None,
+        switchboard: Switchboard,
+        report_ids: Mapping[str, str],
+    ) -> None:
+        self.outside = outside
+        self._inside = inside
+        self._files = files
+        self._switchboard = switchboard
+        self._report_ids = report_ids
+        self._sessions = 0
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._listening: asyncio.Server | None = None
+
+    async def open(self) -> None:
+        """Listen. Raises OSError where the address cannot be had."""
+        self._listening = await asyncio.start_server(self._accept, self.outside.host, self.outside.port)
+
+    async def close(self) -> None:
+        """End all sessions."""
+        if self._listening is not None:
+            self._listening.close()
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    async def _accept(self, reader: StreamReader, writer: StreamWriter) -> None:
+        task = asyncio.current_task()
+        assert task is not None  # noqa: S101 - asyncio calls this in one
+        self._tasks.add(task)
+        most = self._switchboard.number(Kind.FEW_SESSIONS)
+        try:
+            if most is None or self._sessions < most:
+                self._sessions += 1
+                try:
+                    await self._serve(reader, writer)
+                finally:
+                    self._sessions -= 1
+        except asyncio.CancelledError:
+            log.debug("a session ends with the simulator")
+        finally:
+            writer.close()
+            self._tasks.discard(task)
+
+    async def _serve(self, reader: StreamReader, writer: StreamWriter) -> None:
+        try:
+            from_server, to_server = await asyncio.open_connection(self._inside.host, self._inside.port)
+        except OSError:
+            return
+        session = _Session(writer, to_server, Rewriter(self._files, self._switchboard, self._report_ids))
+        both = (self._requests(reader, session), self._responses(from_server, session))
+        tasks = [asyncio.ensure_future(each) for each in both]
+        try:
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+            to_server.close()
+
+    async def _requests(self, reader: StreamReader, session: _Session) -> None:
+        with suppress(asyncio.IncompleteReadError, ConnectionError):
+            while True:
+                message = await read_message(reader)
+                await self._thawed()
+                if message.kind == DATA:
+                    rewritten = session.rewriter.request(message.user_data)
+                    session.server.write(_units(message, rewritten, session.unit_size))
+                else:
+                    session.server.write(b"".join(message.units))
+                await session.server.drain()
+
+    async def _responses(self, reader: StreamReader, session: _Session) -> None:
+        with suppress(asyncio.IncompleteReadError, ConnectionError):
+            while True:
+                message = await read_message(reader)
+                delay_s = self._switchboard.number(Kind.SLOW_REPLIES)
+                if delay_s is not None:
+                    await asyncio.sleep(delay_s)
+                await self._thawed()
+                if not self._pass_on(message, session):
+                    return
+                await session.client.drain()
+
+    def _pass_on(self, message: Message, session: _Session) -> bool:
+        """Write a server's message to the client; False where the connection is cut instead."""
+        if message.kind == CONNECT_CONFIRM:
+            session.unit_size = unit_size(message)
+        if message.kind != DATA:
+            session.client.write(b"".join(message.units))
+            return True
+        rewritten = session.rewriter.response(message.user_data)
+        session.file_bytes += rewritten.file_bytes
+        most = self._switchboard.number(Kind.CUT_MID_FILE)
+        if most is None:
+            session.file_bytes = 0
+        elif rewritten.file_bytes and session.file_bytes > most:
+            session.client.transport.abort()
+            return False
+        session.client.write(_units(message, rewritten.user_data, session.unit_size))
+        return True
+
+    async def _thawed(self) -> None:
+        """Wait while the relay is frozen."""
+        while self._switchboard.is_on(Kind.FROZEN):
+            await asyncio.sleep(_THAW_LOOK_S)
+
+
+def _units(message: Message, user_data: bytes, size: int) -> bytes:
+    """As they came where nothing was changed."""
+    return b"".join(message.units) if user_data == message.user_data else units_of(user_data, size)
+
+
+class FrontDoors:
+    """All doors of a simulator, on one thread; none, no thread."""
+
+    def __init__(self) -> None:
+        self._doors: list[FrontDoor] = []
+        self._running: tuple[asyncio.AbstractEventLoop, threading.Thread] | None = None
+
+    def add(
+        self,
+        outside: Address,
+        files: Files | None,
+        switchboard: Switchboard,
+        report_ids: Mapping[str, str],
+    ) -> Address:
+        """A door at `outside`; returns where the server behind it is to listen."""
+        inside = Address("127.0.0.1", _free_port())
+        self._doors.append(FrontDoor(outside, inside, files, switchboard, report_ids))
+        return inside
+
+    def start(self) -> Address | None:
+        """Open all doors; None, or the address of the first that cannot be had."""
+        if not self._doors:
+            return None
+        loop = asyncio.new_event_loop()
+        thread = threading.Thread(target=loop.run_forever, name="front", daemon=True)
+        self._running = (loop, thread)
+        thread.start()
+        for door in self._doors:
+            try:
+                asyncio.run_coroutine_threadsafe(door.open(), loop).result()
+            except OSError:
+                return door.outside
+        return None
+
+    def stop(self) -> None:
+        """Close all doors; harmless where none was opened."""
+        if self._running is None:
+            return
+        loop, thread = self._running
+        self._running = None
+        for door in self._doors:
+            asyncio.run_coroutine_threadsafe(door.close(), loop).result()
+        loop.call_soon_threadsafe(loop.stop)
+        thread.join()
+        loop.close()
+
+
+def _free_port() -> int:
+    """A port nobody listens at. Another program may be faster to take it; the server then says so."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port

@@ -1,0 +1,105 @@
+"""What a relay or its network can do wrong, and when it does: switched on by time or by a control."""
+
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from enum import StrEnum
+from math import inf
+
+
+class Kind(StrEnum):
+    """Ways to misbehave; docs/simulator.md tells what each does."""
+
+    SLOW_REPLIES = "slow-replies"
+    CUT_MID_FILE = "cut-mid-file"
+    GROWING_FILE = "growing-file"
+    PARTIAL_LISTING = "partial-listing"
+    WRONG_SIZE = "wrong-size"
+    NAMES_WITHOUT_PATH = "names-without-path"
+    NAMES_WITH_PATH = "names-with-path"
+    REPORT_TAKEN = "report-taken"
+    BUFFER_OVERFLOW = "buffer-overflow"
+    EMPTY_RPTID = "empty-rptid"
+    CLOCK_OFFSET = "clock-offset"
+    LOCAL_TIME = "local-time"
+    RESTART = "restart"
+    REFUSED_CONTROL = "refused-control"
+    FEW_SESSIONS = "few-sessions"
+    FROZEN = "frozen"
+
+
+PARAMETERS: dict[Kind, tuple[str, float]] = {
+    Kind.SLOW_REPLIES: ("delay_s", 2.0),
+    Kind.CUT_MID_FILE: ("after_bytes", 1000.0),
+    Kind.GROWING_FILE: ("grow_s", 3.0),
+    Kind.PARTIAL_LISTING: ("entries", 2.0),
+    Kind.WRONG_SIZE: ("by_bytes", 7.0),
+    Kind.CLOCK_OFFSET: ("offset_s", 3600.0),
+    Kind.LOCAL_TIME: ("offset_s", 3600.0),
+    Kind.FEW_SESSIONS: ("sessions", 1.0),
+}
+"""The one number some kinds have: its name and what it is where none is given."""
+
+ON_THE_WIRE = frozenset(
+    {Kind.SLOW_REPLIES, Kind.CUT_MID_FILE, Kind.PARTIAL_LISTING, Kind.WRONG_SIZE, Kind.NAMES_WITHOUT_PATH}
+    | {Kind.NAMES_WITH_PATH, Kind.EMPTY_RPTID, Kind.FEW_SESSIONS, Kind.FROZEN}
+)
+"""Kinds that are made between client and server; the others the relay makes itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Misbehaviour:
+    """One kind with its number; on from `at_s` on, or from the rise of the control `switch`, for `for_s` [s].
+
+    It ends earlier when the control falls. at_s None: by the control alone.
+    """
+
+    kind: Kind
+    number: float = 0.0
+    at_s: float | None = None
+    for_s: float = inf
+    switch: str | None = None
+
+
+class Switchboard:
+    """Which kinds are on at present. clock: seconds since the simulator's start. Safe for several threads."""
+
+    def __init__(self, known: Iterable[Misbehaviour], clock: Callable[[], float]) -> None:
+        self._known = tuple(known)
+        self._clock = clock
+        self._lock = threading.Lock()
+        self._risen: dict[str, float] = {}
+
+    @property
+    def kinds(self) -> frozenset[Kind]:
+        """All that may come on some time."""
+        return frozenset(each.kind for each in self._known)
+
+    def switches(self) -> frozenset[str]:
+        """The controls that switch."""
+        return frozenset(each.switch for each in self._known if each.switch is not None)
+
+    def switch(self, control: str, *, on: bool) -> None:
+        """A control has been operated."""
+        with self._lock:
+            if on:
+                self._risen.setdefault(control, self._clock())
+            else:
+                self._risen.pop(control, None)
+
+    def number(self, kind: Kind) -> float | None:
+        """The number of a kind that is on, None while it is not."""
+        for each in self._known:
+            if each.kind is kind and self._is_on(each):
+                return each.number
+        return None
+
+    def is_on(self, kind: Kind) -> bool:
+        return self.number(kind) is not None
+
+    def _is_on(self, each: Misbehaviour) -> bool:
+        with self._lock:
+            risen_s = None if each.switch is None else self._risen.get(each.switch)
+        begins = [begin for begin in (each.at_s, risen_s) if begin is not None]
+        now_s = self._clock()
+        return any(begin <= now_s < begin + each.for_s for begin in begins)

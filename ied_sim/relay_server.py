@@ -1,0 +1,133 @@
+"""The MMS side of a simulated relay: its model served, its values with quality and time, its files."""
+
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from ied_sim.profile import Profile
+from ied_sim.relay_clock import RelayClock
+from ied_sim.relay_points import RelayPoints
+from mms import (
+    GOOD,
+    AddCause,
+    ControlAction,
+    FileAnswer,
+    FileOperation,
+    FileRequest,
+    Quality,
+    Server,
+    Timestamp,
+    Value,
+)
+from scl import Address
+
+_ANY_NAME = "RELAY"
+
+Operated = Callable[[ControlAction], "bool | AddCause"]
+TextMaker = Callable[[], bytes]
+
+
+class RelayServer:
+    """Serves the model text of the IED `name` at one address.
+
+    It keeps the values, so that it can begin anew as after a restart.
+    root: the folder clients see.  staging: where files are made before they appear in it.  texts: files made
+    at each request, by path under the root.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        model: str,
+        points: RelayPoints,
+        profile: Profile,
+        clock: RelayClock,
+        *,
+        address: Address,
+        root: Path,
+        staging: Path,
+        operated: Operated,
+        texts: Mapping[str, TextMaker],
+    ) -> None:
+        # Under one name for all: relays of one kind then have one text, which is checked once.
+        self._model = sys.intern(model.replace(f"MODEL({name}){{", f"MODEL({_ANY_NAME}){{", 1))
+        self._name = name
+        self._points = points
+        self._profile = profile
+        self._clock = clock
+        self._address = address
+        self._root = root
+        self._staging = staging
+        self._operated = operated
+        self._texts = texts
+        self._values: dict[str, Value | Quality] = {}
+        self._stamps: dict[str, tuple[str | None, str | None]] = {}
+        self._lock = threading.Lock()
+        self._down = False
+        for folder in {Path(path).parent for path in texts}:
+            (root / folder).mkdir(parents=True, exist_ok=True)
+        self.server = self._build()
+
+    def publish(self, values: Mapping[str, Value], time_ns: int, quality: Quality = GOOD) -> None:
+        """Update attributes as one change, with quality and time of their data objects."""
+        changes: dict[str, Value | Quality] = dict(values)
+        stamp = Timestamp(self._clock.stamped(time_ns))
+        for reference in values:
+            if reference not in self._stamps:
+                self._stamps[reference] = self._points.stamps(reference)
+            of_quality, of_time = self._stamps[reference]
+            if of_quality is not None:
+                changes[of_quality] = quality
+            if of_time is not None:
+                changes[of_time] = stamp
+        self._values |= changes
+        if self._down:
+            return
+        try:
+            self.server.update_many(changes)
+        except RuntimeError:
+            # It went down in between; no lock could be held here that a handler may also want.
+            if not self._down:
+                raise
+
+    def go_down(self) -> None:
+        """End every connection; what clients had not yet been told is forgotten."""
+        self._down = True
+        self.server.stop()
+
+    def come_up(self) -> None:
+        """Serve again, with the values as they are, on a thread of its own. Raises ServerStartFailed."""
+        self.server = self._build()
+        self.server.start()
+        self._down = False
+
+    def _build(self) -> Server:
+        served = self._profile.files is not None
+        server = Server(
+            self._model,
+            ied_name=self._name if self._model.startswith(f"MODEL({_ANY_NAME})") else None,
+            address=self._address.host,
+            port=self._address.port,
+            max_connections=self._profile.sessions,
+            report_buffer_bytes=self._profile.report_buffer_bytes,
+            file_root=self._root if served else None,
+            on_file_request=self._make_texts if served else None,
+        )
+        for reference in self._points.controls:
+            server.on_operate(reference, self._operated)
+        if self._values:
+            server.update_many(self._values)
+        return server
+
+    def _make_texts(self, request: FileRequest) -> FileAnswer:
+        """Write the texts a client lists or opens, as they are now."""
+        asked = request.path.relative_to(self._root.resolve()).as_posix()
+        for path, make in self._texts.items():
+            listed = request.operation is FileOperation.LIST and asked in (".", Path(path).parent.as_posix())
+            if listed or asked == path:
+                with self._lock:
+                    made = self._staging / Path(path).name
+                    made.write_bytes(make())
+                    made.replace(self._root / path)
+        return FileAnswer.SERVE

@@ -1,0 +1,32 @@
+"""HISTORY.TXT and CHISTORY.TXT: the stored event reports, newest first."""
+
+from ied_sim.texts.story import DATE_LABELS, Story
+
+
+def history(story: Story) -> bytes:
+    lines = [" #     RECORD  DATE       TIME          EVENT          CURRENT(A)  FREQ(Hz)  TARGETS"]
+    lines += [
+        f"{place:>2}  {event.number:>9}  {story.stamp(event.time_ns)}  {event.kind:<13}  "
+        f"{event.seen.current_A:>10.2f}  {event.seen.frequency_Hz:>8.2f}  {event.targets}"
+        for place, event in enumerate(story.journal.events(), 1)
+    ]
+    if len(lines) == 1:
+        lines = ["History Buffer Empty"]
+    return story.report("EVENT HISTORY", lines)
+
+
+def compressed_history(story: Story) -> bytes:
+    labels = ("REC_NUM", "REF_NUM", *DATE_LABELS, "EVENT", "CURRENT", "FREQ", "TARGETS")
+    rows = (
+        [
+            str(place),
+            str(event.number),
+            *story.date_fields(event.time_ns),
+            f'"{event.kind}"',
+            f"{event.seen.current_A:.2f}",
+            f"{event.seen.frequency_Hz:.2f}",
+            f'"{event.targets}"',
+        ]
+        for place, event in enumerate(story.journal.events(), 1)
+    )
+    return story.compressed(labels, rows)

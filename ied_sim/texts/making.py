@@ -1,0 +1,37 @@
+"""Which report is in which file."""
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Final
+
+from ied_sim.profile import Text
+from ied_sim.texts import history, load_profile, motor_reports, sequence
+from ied_sim.texts.story import Story
+
+FOLDER: Final = "REPORTS"
+SETTINGS_FOLDER: Final = "SETTINGS"
+
+Maker = Callable[[Story], bytes]
+
+MAKERS: Final[Mapping[Text, Maker]] = {
+    "HISTORY": history.history,
+    "CHISTORY": history.compressed_history,
+    "SER": sequence.sequence,
+    "CSER": sequence.compressed_sequence,
+    "LDP": load_profile.load_profile,
+    "CLDP": load_profile.compressed_load_profile,
+    "MSR": motor_reports.motor_starts,
+    "MOT": motor_reports.motor_statistics,
+}
+
+
+def settings_text(story: Story) -> bytes:
+    """SET_ALL.TXT: the settings by name."""
+    return story.report("SETTINGS", [f'{name},"{value}"' for name, value in story.settings])
+
+
+def texts(offered: Iterable[Text], *, settings: bool) -> dict[str, Maker]:
+    """Makers of the text files a relay offers, by path under its root."""
+    made = {f"{FOLDER}/{name}.TXT": MAKERS[name] for name in offered}
+    if settings:
+        made[f"{SETTINGS_FOLDER}/SET_ALL.TXT"] = settings_text
+    return made

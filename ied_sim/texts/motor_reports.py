@@ -1,0 +1,56 @@
+"""MSR.TXT, the motor start report, and MOT.TXT, the motor operating statistics."""
+
+from collections.abc import Iterator
+
+from ied_sim.journal import NotedStart
+from ied_sim.texts.story import Story
+
+
+def motor_starts(story: Story) -> bytes:
+    """The last starts, newest first: a summary of each, then current and voltage as they went."""
+    starts = story.journal.starts()
+    lines = [line for noted in starts for line in _start_lines(story, noted)]
+    return story.report("MOTOR START REPORT", lines or ["No Motor Start Data Available"])
+
+
+def _start_lines(story: Story, noted: NotedStart) -> Iterator[str]:
+    start = noted.start
+    lasted = "did not end" if start.duration_s is None else f"{start.duration_s:.2f} s"
+    yield f"Date of start          {story.stamp(noted.time_ns)}"
+    yield f"Start time             {lasted}"
+    yield f"Maximum start current  {start.current_A.max():.2f} A"
+    yield f"Minimum start voltage  {start.voltage_V.min():.1f} V"
+    yield ""
+    yield "   TIME(s)     I(A)   I(%FLA)     V(V)"
+    for time_s, current_A, voltage_V in zip(start.time_s, start.current_A, start.voltage_V, strict=True):
+        share = 100 * current_A / story.rated_current_A
+        yield f"{time_s:>10.2f} {current_A:>8.2f} {share:>9.1f} {voltage_V:>8.1f}"
+    yield ""
+
+
+def motor_statistics(story: Story) -> bytes:
+    found = story.journal.statistics
+    total_s = found.running_s + found.stopped_s
+    share = 100 * found.running_s / total_s if total_s else 0.0
+    mean_A = found.current_time_As / found.running_s if found.running_s else 0.0
+    lines = [
+        f"Since                      {story.stamp(found.since_ns)}",
+        f"Running time               {_hours(found.running_s)}",
+        f"Stopped time               {_hours(found.stopped_s)}",
+        f"Time running               {share:.1f} %",
+        f"Number of starts           {found.starts}",
+        f"Average running current    {mean_A:.2f} A",
+        f"Peak running current       {found.highest_current_A:.2f} A",
+        f"Peak start current         {found.highest_start_current_A:.2f} A",
+        f"Longest start              {found.longest_start_s:.2f} s",
+        f"Trips, overcurrent         {found.trips['overcurrent']}",
+        f"Trips, current unbalance   {found.trips['unbalance']}",
+        f"Trips, thermal overload    {found.trips['thermal']}",
+    ]
+    return story.report("MOTOR OPERATING STATISTICS", lines)
+
+
+def _hours(duration_s: float) -> str:
+    minutes, seconds = divmod(int(duration_s), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{seconds:02d} (h:mm:ss)"

@@ -1,0 +1,326 @@
+"""What a relay does wrong on request, as its clients see it."""
+
+import io
+import queue
+import socket
+import time
+from pathlib import Path
+
+import pytest
+
+from core.recordings import read
+from ied_sim.errors import ScenarioError, SimulatorError
+from ied_sim.misbehaviour import PARAMETERS, Kind, Misbehaviour, Switchboard
+from ied_sim.scenario import read_scenario
+from mms import (
+    AddCause,
+    Client,
+    ConnectFailed,
+    ControlRefused,
+    FileSizeMismatch,
+    FunctionalConstraint,
+    MmsError,
+    Report,
+    ReportControlInUse,
+    Timestamp,
+)
+from tests.ied_sim.serving import wait_until
+from tests.ied_sim.simulating import IED, Simulated, fetch, names, scenario_of, simulated, text
+from tests.ied_sim.test_scenario import MINIMAL
+
+TRIGGER = f"{IED}CON/RBGGIO1.SPCSO01"
+SWITCH = "CON/RBGGIO1.SPCSO30"
+REPORTS = f"{IED}CFG/LLN0.BR.BRep01"
+
+
+def by_switch(kind: Kind, number: float | None = None, for_s: float = float("inf")) -> Misbehaviour:
+    """Of this kind while RB30 is set."""
+    default = PARAMETERS.get(kind, ("", 0.0))[1]
+    return Misbehaviour(kind, default if number is None else number, switch=SWITCH, for_s=for_s)
+
+
+def switch(client: Client, *, on: bool) -> None:
+    client.operate(f"{IED}{SWITCH}", value=on)
+
+
+def make_record(served: Simulated, client: Client) -> None:
+    before = served.relay._keeper.last_number
+    client.operate(TRIGGER, value=True)
+    client.operate(TRIGGER, value=False)
+    wait_until(lambda: served.relay._keeper.last_number != before, "a record")
+
+
+def test_replies_come_late_while_it_is_switched_on(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.SLOW_REPLIES, 0.4))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        switch(client, on=True)
+        begin_s = time.monotonic()
+        client.read(f"{TRIGGER}.stVal", FunctionalConstraint.ST)
+        assert time.monotonic() - begin_s >= 0.4
+        switch(client, on=False)
+
+
+def test_a_connection_is_cut_in_the_middle_of_a_file(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.CUT_MID_FILE, 100))
+    with simulated(tmp_path, scenario) as served:
+        with served.client() as client:
+            make_record(served, client)
+            name, size = next((e.name, e.size) for e in client.files("EVENTS") if e.name.endswith("DAT"))
+            switch(client, on=True)
+            with pytest.raises(MmsError):
+                client.download(name, io.BytesIO(), expected_size=size)
+            assert client.wait_closed(5)
+        with served.client() as client:
+            switch(client, on=False)
+            assert client.download(name, io.BytesIO(), expected_size=size) == size
+
+
+def test_a_file_grows_while_it_is_read(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", Misbehaviour(Kind.GROWING_FILE, 0.6, at_s=0.0))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        client.operate(TRIGGER, value=True)
+        sizes = set()
+
+        def data_size() -> int | None:
+            found = [entry.size for entry in client.files("EVENTS") if entry.name.endswith("DAT")]
+            sizes.update(found)
+            return found[0] if found else None
+
+        wait_until(lambda: data_size() is not None, "a record")
+        early = data_size()
+        wait_until(lambda: data_size() == 192 * (8 + 12 + 2), "the file to be whole")
+        assert len(sizes) > 2
+        with pytest.raises(FileSizeMismatch):
+            client.download("EVENTS/HR_10000.DAT", io.BytesIO(), expected_size=early)
+
+
+def test_listings_come_in_parts(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", Misbehaviour(Kind.PARTIAL_LISTING, 2, at_s=0.0))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        make_record(served, client)
+        make_record(served, client)
+        assert len(names(client, "EVENTS")) == 6
+        assert len(names(client, "REPORTS")) == 8
+        assert len(fetch(client, "EVENTS", tmp_path / "fetched")) == 6
+
+
+def test_a_listing_tells_wrong_sizes(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.WRONG_SIZE, -5))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        make_record(served, client)
+        true = {entry.name: entry.size for entry in client.files("EVENTS")}
+        switch(client, on=True)
+        assert {entry.name: entry.size + 5 for entry in client.files("EVENTS")} == true
+        with pytest.raises(FileSizeMismatch):
+            fetch(client, "EVENTS", tmp_path / "fetched")
+
+
+def test_names_come_without_their_path_or_with_it(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.NAMES_WITHOUT_PATH))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        make_record(served, client)
+        assert names(client, "EVENTS")[0] == "EVENTS/HR_10000.CFG"
+        switch(client, on=True)
+        assert names(client, "EVENTS") == [f"HR_10000.{suffix}" for suffix in ("CFG", "DAT", "HDR")]
+        configuration = fetch(client, "EVENTS", tmp_path / "fetched")[0]
+        assert read(configuration).samples.shape == (6, 192)
+
+
+def test_another_client_has_the_report_block(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.REPORT_TAKEN))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        switch(client, on=True)
+        misbehaviour = served.relay._misbehaviour
+        wait_until(lambda: misbehaviour._other_client is not None, "the other client")
+        reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
+        assert _refused(client, reports)
+        switch(client, on=False)
+        wait_until(lambda: misbehaviour._other_client is None, "the other client to leave")
+        client.subscribe(REPORTS, reports)
+
+
+def _refused(client: Client, reports: "queue.SimpleQueue[Report]") -> bool:
+    try:
+        client.subscribe(REPORTS, reports)
+    except ReportControlInUse:
+        return True
+    client.unsubscribe(REPORTS)
+    return False
+
+
+def test_the_report_buffer_overflows(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.BUFFER_OVERFLOW))
+    with simulated(tmp_path, scenario) as served:
+        reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
+        with served.client() as client:
+            client.subscribe(REPORTS, reports)
+            make_record(served, client)
+            switch(client, on=True)
+            entry = reports.get(timeout=10).entry_id
+        wait_until(lambda: Kind.BUFFER_OVERFLOW in served.relay._misbehaviour._on, "the flood")
+        with served.client() as client:
+            later: queue.SimpleQueue[Report] = queue.SimpleQueue()
+            overflowed = _overflowed(client, later, entry)
+        assert overflowed
+
+
+def _overflowed(client: Client, reports: "queue.SimpleQueue[Report]", entry: bytes | None) -> bool:
+    """Either the entry is gone, or a report says that some are."""
+    try:
+        client.subscribe(REPORTS, reports, entry_id=entry)
+    except MmsError:
+        return True
+    return any(reports.get(timeout=5).buffer_overflow for _ in range(3))
+
+
+def test_reports_come_without_an_identifier(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", Misbehaviour(Kind.EMPTY_RPTID, at_s=0.0))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
+        client.subscribe(REPORTS, reports)
+        client.operate(TRIGGER, value=True)
+        report = reports.get(timeout=10)
+        assert (report.report_id, len(report.members)) == ("", 1)
+
+
+def test_the_clock_is_wrong_and_records_are_in_local_time(tmp_path: Path) -> None:
+    wrong = Misbehaviour(Kind.CLOCK_OFFSET, -100.0, at_s=0.0)
+    local = Misbehaviour(Kind.LOCAL_TIME, 7200.0, at_s=0.0)
+    with simulated(tmp_path, scenario_of("sel-710-ed2", wrong, local)) as served, served.client() as client:
+        now_s = time.time()
+        make_record(served, client)
+        stamp = client.read(f"{TRIGGER}.t", FunctionalConstraint.ST)
+        assert isinstance(stamp, Timestamp)
+        assert stamp.ns * 1e-9 == pytest.approx(now_s - 100, abs=5)
+        recording = read(fetch(client, "EVENTS", tmp_path / "fetched")[0])
+        assert recording.trigger_time_ns * 1e-9 == pytest.approx(now_s - 100 + 7200, abs=5)
+        assert " local" in (tmp_path / "fetched" / "HR_10000.HDR").read_text()
+
+
+def test_a_restart_forgets_the_reports_and_keeps_the_records(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.RESTART, for_s=0.5))
+    with simulated(tmp_path, scenario) as served:
+        reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
+        with served.client() as client:
+            client.subscribe(REPORTS, reports)
+            make_record(served, client)
+            report = reports.get(timeout=10)
+            switch(client, on=True)
+            assert client.wait_closed(10)
+        wait_until(lambda: _answers(served), "the relay to be back")
+        with served.client() as client:
+            with pytest.raises(MmsError):
+                client.subscribe(REPORTS, reports, entry_id=report.entry_id)
+            assert names(client, "EVENTS") == [f"EVENTS/HR_10000.{each}" for each in ("CFG", "DAT", "HDR")]
+            assert client.read(f"{IED}PRO/FLTRDRE1.FltNum.stVal", FunctionalConstraint.ST) == 10000
+
+
+def _answers(served: Simulated) -> bool:
+    try:
+        with served.client() as client:
+            return bool(client.logical_devices())
+    except MmsError:
+        return False
+
+
+def test_a_control_is_refused_with_a_reason(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.REFUSED_CONTROL))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        switch(client, on=True)
+        with pytest.raises(ControlRefused) as refused:
+            client.operate(TRIGGER, value=True)
+        assert refused.value.add_cause == AddCause.BLOCKED_BY_INTERLOCKING.words
+        switch(client, on=False)
+        make_record(served, client)
+
+
+def test_sessions_are_few(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", Misbehaviour(Kind.FEW_SESSIONS, 1, at_s=0.0))
+    with simulated(tmp_path, scenario) as served, served.client(), pytest.raises(ConnectFailed):
+        Client.connect(served.address.host, served.address.port, connect_timeout_s=1.0)
+
+
+def test_a_profile_s_sessions_are_all_there_are(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2")
+    assert scenario.profile.sessions == 5
+    with simulated(tmp_path, scenario) as served:
+        clients = [served.client() for _ in range(5)]
+        with pytest.raises(ConnectFailed):
+            Client.connect(served.address.host, served.address.port, connect_timeout_s=1.0)
+        for client in clients:
+            client.close()
+
+
+def test_a_frozen_relay_stays_connected_and_answers_nothing(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.FROZEN, for_s=1.5))
+    with simulated(tmp_path, scenario) as served, served.client(request_timeout_s=0.3) as client:
+        with pytest.raises(MmsError):
+            switch(client, on=True)
+        with pytest.raises(MmsError):
+            client.read(f"{TRIGGER}.stVal", FunctionalConstraint.ST)
+        assert client.is_open
+        wait_until(lambda: not served.relay.switchboard.is_on(Kind.FROZEN), "the thaw")
+        wait_until(lambda: _answers(served), "an answer")
+
+
+def test_time_switches_too() -> None:
+    now = [0.0]
+    timed = Misbehaviour(Kind.FROZEN, at_s=10.0, for_s=5.0, switch=SWITCH)
+    board = Switchboard([timed, Misbehaviour(Kind.SLOW_REPLIES, 2.0, at_s=0.0)], lambda: now[0])
+    seen = []
+    for now[0] in (9.9, 10.0, 14.9, 15.0):
+        seen.append(board.is_on(Kind.FROZEN))
+    assert seen == [False, True, True, False]
+    board.switch(SWITCH, on=True)
+    assert board.is_on(Kind.FROZEN)
+    board.switch(SWITCH, on=False)
+    assert not board.is_on(Kind.FROZEN)
+    assert board.number(Kind.SLOW_REPLIES) == 2.0
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ('kind = "slow"', r"misbehaviour.0.kind: expected 'slow-replies', "),
+        ('kind = "frozen"\ndelay_s = 2', r"misbehaviour.0: expected frozen has no delay_s"),
+        ('kind = "slow-replies"\ndelay_s = 0', r"misbehaviour.0.delay_s: expected greater than 0"),
+        ('kind = "frozen"\nswitch = "RB30"', r"misbehaviour.0.switch"),
+    ],
+)
+def test_what_is_wrong_with_a_misbehaviour_is_named(tmp_path: Path, lines: str, message: str) -> None:
+    path = tmp_path / "scenario.toml"
+    path.write_text(f"{MINIMAL}[[motor.misbehaviour]]\n{lines}\n", encoding="utf-8")
+    with pytest.raises(ScenarioError, match=message):
+        read_scenario(path)
+
+
+def test_a_scenario_s_misbehaviour_has_its_number(tmp_path: Path) -> None:
+    path = tmp_path / "scenario.toml"
+    lines = '[[motor.misbehaviour]]\nkind = "slow-replies"\n[[motor.misbehaviour]]\nkind = "few-sessions"\n'
+    path.write_text(f"{MINIMAL}{lines}sessions = 3\nat_s = 4\n", encoding="utf-8")
+    slow, few = read_scenario(path)["R1"].misbehaviour
+    assert slow == Misbehaviour(Kind.SLOW_REPLIES, 2.0, at_s=0.0)
+    assert few == Misbehaviour(Kind.FEW_SESSIONS, 3.0, at_s=4.0)
+
+
+def test_a_switch_the_relay_lacks_is_refused(tmp_path: Path) -> None:
+    lost = Misbehaviour(Kind.FROZEN, switch="CON/RBGGIO1.SPCSO99")
+    with (
+        pytest.raises(SimulatorError, match=r"R1CON/RBGGIO1\.SPCSO99 is no control of this relay"),
+        simulated(tmp_path, scenario_of("sel-710-ed2", lost)),
+    ):
+        pass
+
+
+def test_nonsense_at_the_door_ends_that_connection_alone(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", by_switch(Kind.SLOW_REPLIES))
+    with simulated(tmp_path, scenario) as served:
+        for octets in (b"GET / HTTP/1.1\r\n\r\n", b"\x03\x00\x00\x04", b"\x03\x00\x00\x07\x02\xf0\x80", b""):
+            with socket.create_connection((served.address.host, served.address.port), timeout=5) as stranger:
+                stranger.sendall(octets)
+                stranger.shutdown(socket.SHUT_WR)
+                while stranger.recv(1000):
+                    pass
+        with served.client() as client:
+            assert client.logical_devices()
+            assert "EMPTY" in text(client, "REPORTS/HISTORY.TXT").upper()
