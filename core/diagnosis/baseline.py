@@ -13,19 +13,25 @@ import numpy as np
 from core.diagnosis.case import Case
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.hypotheses import Explanation
+from core.diagnosis.tolerance import backward_voltage
 
 FEWEST_RECORDINGS = 3
 REMAINING = 0.3
-"""Share of what sensors and parameters feign that changes with load and temperature all the same."""
+"""Share of what sensors feign that changes with load and temperature all the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class Baseline:
-    """Mean of the standing currents and their scatter (standard deviation) [A, peak], how many there were,
-    and the share of the tolerances that remains."""
+    """What healthy recordings show standing.
+
+    current, scatter: mean of the standing currents, their standard deviation [A, peak].
+    unbalance_V: mean of the backward-turning voltages they were recorded at [V, peak].
+    remaining: share of what sensors feign that is left.
+    """
 
     current: complex
     scatter: float
+    unbalance_V: complex
     recordings: int
     remaining: float = REMAINING
 
@@ -42,15 +48,17 @@ class Baseline:
         return replace(case, current_ab=case.current_ab - np.stack([backward.real, backward.imag]))
 
 
-def standing_current(explanation: Explanation) -> complex:
-    """Backward-turning winding current the healthy machine leaves, from the forward voltage [A, peak]."""
-    voltage = explanation.record.voltage.forward
-    return explanation.healthy.left * voltage / abs(voltage)
+def standing(explanation: Explanation) -> tuple[complex, complex]:
+    """Backward-turning winding current the healthy machine leaves [A, peak] and the backward-turning voltage
+    [V, peak], both seen from the forward voltage."""
+    voltage = explanation.record.voltage
+    direction = voltage.forward / abs(voltage.forward)
+    return explanation.healthy.left * direction, backward_voltage(voltage.forward, voltage.backward)
 
 
-def baseline_of(standing: Iterable[complex]) -> Baseline:
-    """Baseline from healthy recordings' standing currents; fewer than three say nothing of their scatter."""
-    currents = np.array(list(standing))
+def baseline_of(seen: Iterable[tuple[complex, complex]]) -> Baseline:
+    """Baseline from what `standing` tells of healthy recordings; fewer than three tell nothing of scatter."""
+    currents, voltages = np.array(list(seen)).reshape(-1, 2).T
     if currents.size < FEWEST_RECORDINGS:
         raise DiagnosisError(
             f"a baseline needs at least {FEWEST_RECORDINGS} healthy recordings, found {currents.size}"
@@ -58,6 +66,7 @@ def baseline_of(standing: Iterable[complex]) -> Baseline:
     return Baseline(
         current=complex(currents.mean()),
         scatter=float(np.std(currents, ddof=1)),
+        unbalance_V=complex(voltages.mean()),
         recordings=int(currents.size),
     )
 

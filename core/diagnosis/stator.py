@@ -7,7 +7,7 @@ from time import perf_counter
 import numpy as np
 
 from core.diagnosis.assumed_supply import SUPPLY_UNBALANCE
-from core.diagnosis.baseline import Baseline, baseline_of, standing_current
+from core.diagnosis.baseline import Baseline, baseline_of, standing
 from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.hypotheses import explain, is_explained
@@ -65,6 +65,7 @@ def diagnose(
         playback,
         explanation.fit,
         known_share=0.0 if baseline is None else 1.0 - baseline.remaining,
+        known_unbalance_V=0.0 if baseline is None else baseline.unbalance_V,
         standing_error_A=0.0 if baseline is None else baseline.error_A,
         supply_unbalance=SUPPLY_UNBALANCE if assumed else 0.0,
     )
@@ -107,14 +108,14 @@ def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_on
 
     Raises RecordingError like `diagnose`, DiagnosisError where one is undiagnosable or there are too few.
     """
-    seen: list[complex] = []
+    seen: list[tuple[complex, complex]] = []
     for recording in recordings:
         case, quality, _ = _accept(recording, motor, currents_only=currents_only)
         if case is None:
             failed = ", ".join(finding.name for finding in quality if not finding.passed)
             raise DiagnosisError(f"{recording.source or 'recording'}: not fit for a baseline: {failed}")
         model = SplitWinding()
-        seen.append(standing_current(explain(case, model, search(case, model, DEFAULT_METHOD))))
+        seen.append(standing(explain(case, model, search(case, model, DEFAULT_METHOD))))
     return baseline_of(seen)
 
 

@@ -58,14 +58,16 @@ def systematic(
     fit: Fit,
     *,
     known_share: float = 0.0,
+    known_unbalance_V: complex = 0.0,
     standing_error_A: float = 0.0,
     supply_unbalance: float = 0.0,
 ) -> Systematic:
     """Tolerances of one record, from its voltages, its currents and the fitted operating point.
 
-    known_share: share of them that a baseline has taken off.  standing_error_A: standard deviation of what it
-    took off.  supply_unbalance: standard deviation of
-    V2 / V1 where the voltages are assumed.
+    known_share: share of the sensors' that a baseline has taken off; of the parameters' it took what they
+    make of known_unbalance_V (see backward_voltage), since it is proportional to that.
+    standing_error_A: standard deviation of what was taken off.
+    supply_unbalance: standard deviation of V2 / V1 where the voltages are assumed.
     """
     candidate = fit.candidate
     probes = Candidates(
@@ -81,19 +83,25 @@ def systematic(
     per_level = abs(complex(backward_current[1] - backward_current[0])) / PROBE_LEVEL / forward
 
     V_alpha, V_beta = (complex(value) for value in case.supply.phasor)
-    V_forward, V_backward = abs(V_alpha + 1j * V_beta) / 2.0, abs(V_alpha - 1j * V_beta) / 2.0
+    V_forward = abs(V_alpha + 1j * V_beta) / 2.0
+    V_unknown = backward_voltage(V_alpha + 1j * V_beta, (V_alpha - 1j * V_beta).conjugate()) / 2.0
+    V_unknown -= known_unbalance_V
     impedance = _negative_sequence_impedance(case)
     per_volt = 1.0 / (impedance * forward)
-    lasting = (
-        CHANNEL_RATIO / sqrt(3.0),
-        CHANNEL_RATIO / sqrt(3.0) * V_forward * per_volt,
-        PARAMETERS * V_backward * per_volt,
+    sensors = hypot(CHANNEL_RATIO / sqrt(3.0), CHANNEL_RATIO / sqrt(3.0) * V_forward * per_volt)
+    backward = hypot(
+        (1.0 - known_share) * sensors,
+        PARAMETERS * abs(V_unknown) * per_volt,
+        supply_unbalance * V_forward * per_volt,
+        standing_error_A / forward,
     )
-    changing = supply_unbalance * V_forward * per_volt
-    remaining = (1.0 - known_share) * float(np.linalg.norm(lasting))
-    backward = hypot(remaining, changing, standing_error_A / forward)
     # Only the part of a complex error that lies along the fault's own current looks like a fault.
     return Systematic(backward=backward, level=backward / sqrt(2.0) / per_level)
+
+
+def backward_voltage(forward: complex, backward: complex) -> complex:
+    """Backward-turning voltage seen from the forward-turning one, wherever a record begins."""
+    return backward * forward / abs(forward)
 
 
 def _negative_sequence_impedance(case: Case) -> float:
