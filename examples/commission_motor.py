@@ -25,7 +25,7 @@ def main() -> None:
     for name, one in found.parameters.items():
         interval = "fixed" if one.ci95 is None else f"95 %: {one.ci95[0]:.5g} to {one.ci95[1]:.5g}"
         print(f"{name:26} {one.value:.5g}  ({interval})")
-    print(*found.reasons, sep="\n")
+    print(*found.warnings, *found.reasons, sep="\n")
 
     first = found.starts[0]
     start = start_of(recordings[0], plate.nameplate, plate.channels)

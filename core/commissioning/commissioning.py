@@ -12,11 +12,13 @@ import numpy as np
 
 from core.commissioning.fit import Fit, Mask, Records
 from core.commissioning.identifiability import Untold, condition_number, making_up, untold
+from core.commissioning.plausibility import contradictions, delay_warning
+from core.commissioning.prior import PARAMETERS, Prior, prior_of
 from core.commissioning.result import Commissioning, Estimate, StartFound
 from core.commissioning.search import search
 from core.commissioning.start import Start, start_of, thinned
 from core.commissioning.uncertainty import inherited_covariance, noise_covariance, preference, quantile
-from core.commissioning.unknowns import OF_A_START, PARAMETERS, Point, Prior, prior_of
+from core.commissioning.unknowns import OF_A_START, Point
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
 from core.machines.motor_file import Plate
@@ -50,7 +52,8 @@ def commission(
     load_law: how the load torque grows with speed; None chooses the one that fits.
     span_s: part of each record that is compared, in seconds after the motor is switched on.
     progress: called with the share that is done and what is being done.
-    Raises RecordingError where a recording lacks channels, CommissioningError where it is no start.
+    Raises RecordingError where a recording lacks channels, CommissioningError where it is no start, or none
+    that a motor of this nameplate can make.
     """
     begun = perf_counter()
     report = progress or _silent
@@ -192,16 +195,30 @@ def _result(
         _start_found(start, fit.residuals[k], point.starts[k], half, k, why)
         for k, start in enumerate(records.starts)
     )
+    motor = Motor(plate.name, plate.nameplate, point.machine, plate.channels, plate.limits)
     return Commissioning(
-        motor=Motor(plate.name, plate.nameplate, point.machine, plate.channels, plate.limits),
+        motor=motor,
         parameters=estimates,
         starts=found,
         load_law=records.load_law.name.lower(),
         condition_number=condition,
         reasons=tuple(_reasons(estimates, found, prior, law_told=law_told)),
+        warnings=tuple(_warnings(motor, estimates, found, records)),
         evaluations=evaluations,
         compute_seconds=seconds,
     )
+
+
+def _warnings(
+    motor: Motor, estimates: dict[str, Estimate], found: Sequence[StartFound], records: Records
+) -> list[str]:
+    delays = [
+        delay_warning(start, one.time_offset_s.value)
+        for start, one in zip(records.starts, found, strict=True)
+        if one.time_offset_s.fixed is None
+    ]
+    unusual = contradictions(motor, estimates, found, records.coordinates.prior)
+    return [*unusual, *(one for one in delays if one is not None)]
 
 
 def _start_found(

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.commissioning.prior import Prior
 from core.commissioning.start import Start
-from core.commissioning.unknowns import Coordinates, Prior
+from core.commissioning.unknowns import Coordinates
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
 

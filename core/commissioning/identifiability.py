@@ -11,13 +11,14 @@ from math import log
 import numpy as np
 
 from core.commissioning.fit import Fit, Records
+from core.commissioning.prior import PARAMETERS
 from core.commissioning.uncertainty import (
     coherent_covariance,
     information_inverse,
     inherited_covariance,
     noise_covariance,
 )
-from core.commissioning.unknowns import LOAD_LEVEL, PARAMETERS, TIME_OFFSET
+from core.commissioning.unknowns import LOAD_LEVEL, TIME_OFFSET
 from core.machines.base import Array
 
 UNTOLD_SHARE = 0.3

@@ -36,7 +36,8 @@ class Commissioning:
 
     motor: nameplate and parameters, ready to be written.  parameters: estimates by the names of
     MachineParameters.  condition_number: of the Jacobian of all unknowns, each of order one.
-    reasons: in words, what was fixed and what to mind.
+    reasons: in words, what was fixed and what to mind.  warnings: why the recording may not be what it is
+    taken for, with what to check.
     """
 
     motor: Motor
@@ -45,6 +46,7 @@ class Commissioning:
     load_law: str
     condition_number: float
     reasons: tuple[str, ...]
+    warnings: tuple[str, ...]
     evaluations: int
     compute_seconds: float
 
@@ -87,6 +89,7 @@ class Commissioning:
             ],
             "condition_number": self.condition_number if finite else None,
             "reasons": list(self.reasons),
+            "warnings": list(self.warnings),
             "evaluations": self.evaluations,
             "compute_seconds": self.compute_seconds,
         }

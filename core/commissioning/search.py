@@ -11,8 +11,8 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 
 from core.commissioning.fit import Records
+from core.commissioning.prior import PARAMETERS
 from core.commissioning.start import Start
-from core.commissioning.unknowns import PARAMETERS
 from core.machines.base import Array
 from core.optimisers import hcpa
 

@@ -14,6 +14,7 @@ from scipy.signal import decimate
 
 from core.commissioning.errors import CommissioningError
 from core.commissioning.onset import current_onset, quiet_offset, voltage_onset
+from core.commissioning.wiring import check_wiring
 from core.diagnosis.case import winding_frame
 from core.diagnosis.quality import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE, rated_current_A, sampled_well
 from core.machines.base import Array
@@ -32,6 +33,8 @@ from core.signals.terminals import Terminals, terminals
 HIGHEST_VOLTAGE = 1.3
 LOWEST_INRUSH = 1.5
 """Greatest current over the rated one (an order of magnitude, both as space vectors): less is no start."""
+HIGHEST_INRUSH = 25.0
+"""The same: the most that motors draw, 10 times, nearly doubled by the direct part."""
 FEWEST_CYCLES = 4.0
 """Of the start: below it nothing but the leakages and the resistances' sum could be told."""
 LONGEST_S = 10.0
@@ -175,13 +178,14 @@ def start_of(
     per_cycle = rate / nameplate.rated_frequency_Hz
     onset = _onset(clarke(measured.current_abc), nameplate, per_cycle, source)
     live = voltage_onset(measured.voltage_ab)
+    hint = (onset - live) / rate if live > 0 and onset < live + per_cycle * 1.5 else None
+    check_wiring(measured, nameplate, source, onset=onset, live=live, hint_s=hint)
     frequency, sequence = _supply_of(measured.voltage_ab[:, live:], rate, nameplate, source)
     current_abc = measured.current_abc - quiet_offset(measured.current_abc, onset, per_cycle)
     # No busbar has a constant part: what the channels show of one would magnetise the model.
     whole = int(_whole_cycles(measured.voltage_ab.shape[1] - live, rate / frequency))
     voltage_ab = measured.voltage_ab - measured.voltage_ab[:, -whole:].mean(axis=1, keepdims=True)
     current_ab, voltage_ab = winding_frame(clarke(current_abc), voltage_ab, sequence, nameplate.connection)
-    hint = (onset - live) / rate if live > 0 and onset < live + per_cycle * 1.5 else None
     return _framed(
         source, nameplate, current_ab, voltage_ab, rate, frequency, sequence, onset, live, hint, span_s
     )
@@ -244,7 +248,16 @@ def _onset(current_ab: Array, nameplate: Nameplate, per_cycle: float, source: st
             source,
             "start",
             expected=f"an inrush of at least {LOWEST_INRUSH:g} times the rated current",
-            found=f"{inrush:.2f} times: no start, a start through a drive, or currents scaled wrongly",
+            found=f"{inrush:.2f} times: no start, a start through a drive, or currents scaled wrongly: check "
+            "the current transformers' ratio and rated_power_W",
+        )
+    if inrush > HIGHEST_INRUSH:
+        raise CommissioningError(
+            source,
+            "start",
+            expected=f"an inrush of at most {HIGHEST_INRUSH:g} times the rated current",
+            found=f"{inrush:.0f} times: currents scaled wrongly, or another motor's nameplate: check the "
+            "current transformers' ratio, the units of the recording, rated_power_W and rated_voltage_V",
         )
     duration = (length.size - onset) / per_cycle
     if duration < FEWEST_CYCLES:

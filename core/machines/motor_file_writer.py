@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+from core.machines.motor_file import MotorFileError
 from core.machines.parameters import ChannelNames, Limits, Motor
 
 Interval = tuple[float, float]
@@ -22,13 +23,17 @@ def write_motor(
 
     intervals: [low, high] of parameters, by name, for the table [intervals].
     remarks: comments behind parameters, by name.  heading: lines of comment at the top.
-    Raises OSError from the file system.
+    Raises MotorFileError where the file cannot be written.
     """
+    text = motor_text(motor, intervals=intervals or {}, remarks=remarks or {}, heading=heading)
     partial = path.with_name(path.name + ".part")
-    partial.write_text(
-        motor_text(motor, intervals=intervals or {}, remarks=remarks or {}, heading=heading), encoding="utf-8"
-    )
-    return partial.replace(path)
+    try:
+        partial.write_text(text, encoding="utf-8")
+        return partial.replace(path)
+    except OSError as error:
+        raise MotorFileError(
+            path, "file", expected="a file that can be written", found=error.strerror or str(error)
+        ) from error
 
 
 def motor_text(

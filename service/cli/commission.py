@@ -1,5 +1,6 @@
 """`mcc commission`: recordings of a motor's starts in, the motor's file out; no service needed."""
 
+import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -15,7 +16,15 @@ from core.machines.candidates import LoadLaw
 from core.machines.motor_file import MotorFileError, read_plate
 from core.machines.motor_file_writer import write_motor
 from core.recordings import RecordingError, read
-from service.cli.output import CommandError, failing_clearly, print_document, progress, results
+from service.cli.output import (
+    WRONG_USE,
+    CommandError,
+    failing_clearly,
+    print_document,
+    print_warning,
+    progress,
+    results,
+)
 
 
 def commission_motor(
@@ -23,10 +32,12 @@ def commission_motor(
 ) -> None:
     """Read, estimate, write, print.
 
-    Raises CommandError where a recording is no start or cannot be read, where the motor's file cannot be used
-    or written, or where the recordings tell no parameter at all: then nothing is written.
+    Raises CommandError where a recording is no start or cannot be read, where the motor's file cannot be
+    used or written or is one of those that are read, or where the recordings tell no parameter at all: then
+    nothing is written. Warnings also go to stderr.
     """
     law = None if load == "auto" else LoadLaw[load.upper()]
+    _check_output(output, nameplate, records)
     with failing_clearly(RecordingError, MotorFileError, CommissioningError, OSError):
         plate = read_plate(nameplate)
         recordings = [read(record) for record in records]
@@ -47,6 +58,38 @@ def commission_motor(
         print_document({**found.as_dict(), "output": str(output)})
     else:
         results().print(_table(output, found))
+    for warning in found.warnings:
+        print_warning(warning)
+
+
+def _check_output(output: Path, nameplate: Path, records: Sequence[Path]) -> None:
+    """Before anything is computed: whether the file can be there, and is none of those that are read.
+
+    Raises CommandError (wrong use).
+    """
+    folder = output.parent
+    if output.is_dir():
+        found = "a folder; name the file in it"
+    elif not folder.is_dir():
+        found = f"no folder {folder}; make it first"
+    elif not os.access(folder, os.W_OK):
+        found = f"a folder {folder} that cannot be written to"
+    elif any(_is_same(output, other) for other in (nameplate, *records)):
+        found = "a file that is read; name another, so that what was known before is kept"
+    else:
+        return
+    raise CommandError(
+        f"--output {output}: expected a file to write the motor to, found {found}",
+        details={"type": "OutputUnusable", "path": str(output)},
+        exit_code=WRONG_USE,
+    )
+
+
+def _is_same(output: Path, read: Path) -> bool:
+    """However the two are spelled or linked; a recording may have parts beside it, named alike."""
+    one, other = output.resolve(), read.resolve()
+    part = one.suffix.lower() != ".toml" and one.with_suffix("") == other.with_suffix("")
+    return part or one == other or (one.exists() and other.exists() and one.samefile(other))
 
 
 def _heading(records: Sequence[Path], found: Commissioning) -> str:
@@ -56,6 +99,7 @@ def _heading(records: Sequence[Path], found: Commissioning) -> str:
         f"{start.residual_share:.1%} of the current unexplained"
         for start in found.starts
     ]
+    lines += [f"WARNING: {warning}" for warning in found.warnings]
     return "\n".join(lines)
 
 
@@ -82,6 +126,8 @@ def _table(output: Path, found: Commissioning) -> Table:
     table.add_section()
     table.add_row("effort", f"{found.evaluations} simulations", "", f"{found.compute_seconds:.1f} s")
     table.add_row("written", Text(str(output)))
+    for warning in found.warnings:
+        table.add_row("WARNING", "", "", Text(warning))
     for reason in found.reasons:
         if not reason.startswith(tuple(found.parameters)):
             table.add_row("mind", "", "", Text(reason))

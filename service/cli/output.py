@@ -78,6 +78,11 @@ def print_failure(error: CommandError, *, in_json: bool) -> None:
         print_document(failure_document(error))
 
 
+def print_warning(text: str) -> None:
+    """One line on stderr; the command goes on."""
+    sys.stderr.write(f"mcc: warning: {one_line(text)}\n")
+
+
 def failure_document(error: CommandError) -> dict[str, object]:
     """The shape of every failure in JSON."""
     return {"error": {"message": str(error), **error.details}}

@@ -6,8 +6,18 @@ those before it, and the gate stops at the first group that fails: what is named
 follows from it.
 """
 
-from core.diagnosis.quality.gate import Passed, examine, sampled_well
+from core.diagnosis.quality.gate import Passed, examine, sampled_well, wired_well
+from core.diagnosis.quality.machine import circle_diagram
 from core.diagnosis.quality.magnitude import rated_current_A
 from core.diagnosis.quality.supply import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE
 
-__all__ = ["FREQUENCY_TOLERANCE", "LOWEST_VOLTAGE", "Passed", "examine", "rated_current_A", "sampled_well"]
+__all__ = [
+    "FREQUENCY_TOLERANCE",
+    "LOWEST_VOLTAGE",
+    "Passed",
+    "circle_diagram",
+    "examine",
+    "rated_current_A",
+    "sampled_well",
+    "wired_well",
+]

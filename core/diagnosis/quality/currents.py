@@ -169,36 +169,52 @@ def _most_sum(feed: Feed) -> float:
     return CURRENT_SUM_UNPAIRED if feed.assumed else CURRENT_SUM
 
 
+def rotation(currents: Currents, feed: Feed) -> QualityFinding:
+    """Do the currents turn as the voltages do? However late they are, and however fast the motor runs."""
+    _, forward, backward = _in_the_sense_of(feed, currents)
+    share = abs(backward) / max(abs(forward), 1e-12)
+    return finding(
+        "phase order", share, BACKWARD, "backward over forward", passed=share <= BACKWARD,
+        message=f"the currents turn against the voltages: two phases are exchanged{_doubt(feed)}",
+    )  # fmt: skip
+
+
 def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[QualityFinding]:
     """Do the currents belong to these voltages: same order of phases, and behind them as a motor's are?"""
     if feed.assumed:
         return
-    positive = abs(feed.phasors.positive) >= abs(feed.phasors.negative)
-    ahead, back = currents.phasors.positive, currents.phasors.negative
-    voltage = feed.phasors.positive if positive else feed.phasors.negative
-    forward, backward = (ahead, back) if positive else (back, ahead)
-    share = abs(backward) / max(abs(forward), 1e-12)
+    turning = rotation(currents, feed)
+    if not turning.passed:
+        yield turning
+        return
+    voltage, forward, _ = _in_the_sense_of(feed, currents)
     lag = float(np.degrees(np.angle(voltage * forward.conjugate())))
     within = LEAST_LAG_DEG <= lag <= MOST_LAG_DEG
     off = lag - circle.lag_deg(abs(forward) / abs(voltage))
     # Turned by a third of a cycle either way the phases are exchanged in a ring, by half a cycle reversed.
-    swapped = share > BACKWARD
-    ring = not swapped and not within and abs((off + 180.0) % 360.0 - 180.0) < 150.0
+    ring = not within and abs((off + 180.0) % 360.0 - 180.0) < 150.0
     nearest = LEAST_LAG_DEG if lag < LEAST_LAG_DEG else MOST_LAG_DEG
-    yield finding(
-        "phase order", lag if ring else share, nearest if ring else BACKWARD,
-        "degrees behind" if ring else "backward over forward", passed=not swapped and not ring,
-        message=f"the currents turn against the voltages: two phases are exchanged{_doubt(feed)}"
-        if swapped else f"the currents lie {lag:.0f} degrees behind the voltages, a third of a cycle off: "
-        "the phases are exchanged in a ring",
-    )  # fmt: skip
-    if swapped or ring:
+    if ring:
+        yield finding(
+            "phase order", lag, nearest, "degrees behind", passed=False,
+            message=f"the currents lie {lag:.0f} degrees behind the voltages, a third of a cycle off: the "
+            "phases are exchanged in a ring",
+        )  # fmt: skip
         return
+    yield turning
     yield finding(
         "polarity", lag, nearest, "degrees behind", passed=within,
         message=f"the currents lie {lag:.0f} degrees behind the voltages, half a cycle off: all currents (or "
         "voltages) are reversed, or the machine generates",
     )  # fmt: skip
+
+
+def _in_the_sense_of(feed: Feed, currents: Currents) -> tuple[complex, complex, complex]:
+    """Voltage, and the currents that turn with and against it: rms phasors."""
+    voltage, current = feed.phasors, currents.phasors
+    if abs(voltage.positive) >= abs(voltage.negative):
+        return voltage.positive, current.positive, current.negative
+    return voltage.negative, current.negative, current.positive
 
 
 def _doubt(feed: Feed) -> str:

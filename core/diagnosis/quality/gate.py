@@ -52,6 +52,26 @@ def sampled_well(terminals: Terminals, nameplate: Nameplate) -> list[QualityFind
     return found
 
 
+def wired_well(terminals: Terminals, motor: Motor, *, timed: bool) -> list[QualityFinding]:
+    """Checks on how the channels are connected, of a stretch of any operation; up to the first group that
+    fails, and none where the voltages have no one frequency.
+
+    timed: whether currents and voltages are known to be of the same instants. Where they are not, only what
+    no delay can look like is checked.
+    """
+    feed = supply.feed_of(terminals, motor.nameplate)
+    if isinstance(feed, QualityFinding):
+        return []
+    found = list(supply.channels(feed, terminals))
+    if all_passed(found):
+        seen = currents.currents_of(terminals, feed.frequency_hz)
+        found += [*currents.phase_loss(seen, feed), *currents.adding_up(seen, feed)]
+        if all_passed(found):
+            circle = circle_diagram(motor, feed.frequency_hz)
+            found += currents.order(seen, feed, circle) if timed else [currents.rotation(seen, feed)]
+    return found
+
+
 def _electrical(terminals: Terminals, feed: supply.Feed, motor: Motor) -> Iterator[Iterable[QualityFinding]]:
     """Groups of findings, each computed only when asked for."""
     nameplate, per_cycle = motor.nameplate, terminals.sample_rate_hz / feed.frequency_hz

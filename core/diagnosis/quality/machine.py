@@ -21,10 +21,12 @@ class CircleDiagram:
     """Line current per volt of phase-to-neutral voltage over the slip: conductances of one sequence [S].
 
     admittance: from no load to standstill, shape (slips,).  rated_current_A: at rated torque and voltage.
+    pull_out_torque_Nm: the greatest of all slips, at rated voltage.
     """
 
     admittance: NDArray[np.complex128]
     rated_current_A: float
+    pull_out_torque_Nm: float
 
     @property
     def at_no_load(self) -> float:
@@ -62,4 +64,5 @@ def circle_diagram(motor: Motor, frequency_hz: float) -> CircleDiagram:
     return CircleDiagram(
         admittance=np.asarray(per_line / impedance, dtype=np.complex128),
         rated_current_A=float(current[point]) * (1.0 if per_line == 1.0 else sqrt(3.0)),
+        pull_out_torque_Nm=float(torque[pull_out]),
     )

@@ -8,11 +8,11 @@ from scipy.interpolate import CubicSpline
 
 from core.commissioning.commissioning import commission
 from core.commissioning.errors import CommissioningError
+from core.commissioning.prior import PARAMETERS
 from core.commissioning.result import Commissioning
-from core.commissioning.unknowns import PARAMETERS
 from core.machines.candidates import LoadLaw
-from core.machines.parameters import MachineParameters, Motor
-from core.recordings import RecordingError
+from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
+from core.recordings import Recording, RecordingError
 from core.signals.clarke import clarke, inverse_clarke
 from ied_sim.load import Load
 from ied_sim.plant import MotorPlant
@@ -180,6 +180,101 @@ def test_a_motor_fed_by_a_drive_or_without_currents_is_refused() -> None:
         )
     with pytest.raises(ValueError, match="at least one recording"):
         commission([], plate_of(REFERENCE))
+
+
+def scaled(record: Recording, factors: list[float], rows: list[int] | None = None) -> Recording:
+    """The recording with its channels scaled, or taken from other rows; with range to spare."""
+    channels = tuple(replace(one, full_scale=None) for one in record.channels)
+    samples = record.samples[rows or slice(None)] * np.array(factors)[:, np.newaxis]
+    return replace(record, samples=samples, channels=channels)
+
+
+@pytest.mark.parametrize("busbar", [False, True])
+@pytest.mark.parametrize(
+    ("rows", "factors", "expected"),
+    [
+        ([0, 2, 1, 3, 4, 5], [1.0] * 6, "phase order.*two phases are exchanged"),
+        ([0, 1, 2, 4, 3, 5], [1.0] * 6, "phase order.*two phases are exchanged"),
+        ([0, 1, 2, 3, 4, 5], [1.0, -1.0, 1.0, 1.0, 1.0, 1.0], "current polarity.*IB the other way round"),
+        ([0, 1, 2, 3, 4, 5], [1.0, 1.0, 1.0, -1.0, 1.0, 1.0], "voltage polarity.*VA the other way round"),
+        ([0, 1, 2, 3, 4, 5], [1.0, 1.0, 1.0, 1.0, 1.0, 0.0], "voltage loss.*VC"),
+        ([0, 1, 2, 3, 4, 5], [0.0, 1.0, 1.0, 1.0, 1.0, 1.0], "phase loss.*IA"),
+    ],
+)
+def test_channels_in_the_wrong_place_are_named(
+    rows: list[int], factors: list[float], expected: str, busbar: bool
+) -> None:
+    record = StartRecord(duration_s=0.3, busbar=busbar, snr_db=40.0, time_offset_s=3e-5)
+    with pytest.raises(CommissioningError, match=expected):
+        commission([scaled(record.of(REFERENCE), factors, rows)], plate_of(REFERENCE))
+
+
+@pytest.mark.parametrize(
+    ("rows", "sign", "delay_s", "expected"),
+    [
+        ([0, 1, 2, 3, 4, 5], -1.0, 0.01, "reversed"),
+        ([1, 2, 0, 3, 4, 5], 1.0, 1 / 150, "exchanged in a ring"),
+    ],
+)
+def test_all_currents_reversed_or_in_a_ring_are_refused_or_told_by_their_delay(
+    rows: list[int], sign: float, delay_s: float, expected: str
+) -> None:
+    """On a busbar, always live, they look like a delay: the motor is found all the same, and it is said."""
+    record = StartRecord(duration_s=0.5, snr_db=40.0, busbar=True)
+    wrong = scaled(record.of(REFERENCE), [sign] * 3 + [1.0] * 3, rows)
+    result = commission([wrong], plate_of(REFERENCE, MIDDLE), load_law=LoadLaw.CONSTANT)
+    assert np.abs(errors(result, REFERENCE)).max() < 0.01
+    assert abs(result.starts[0].time_offset_s.value) == pytest.approx(delay_s, abs=1e-4)
+    assert any("time offset" in warning and expected in warning for warning in result.warnings)
+    dead = scaled(replace(record, busbar=False).of(REFERENCE), [sign] * 3 + [1.0] * 3, rows)
+    with pytest.raises(CommissioningError, match=expected):
+        commission([dead], plate_of(REFERENCE, MIDDLE))
+
+
+def test_a_sound_start_warns_of_nothing() -> None:
+    for motor in (REFERENCE, MEDIUM, LARGE):
+        assert found(motor, StartRecord(snr_db=40.0, duration_s=0.5), told=motor.parameters).warnings == ()
+
+
+@pytest.mark.parametrize("ratio", [10.0, 5.0, 0.2])
+def test_currents_of_a_wrong_ratio_are_refused_with_what_to_check(ratio: float) -> None:
+    """The fit is as good as ever: of k times the current are 1 / k of the impedances, k times the load."""
+    record = scaled(StartRecord(snr_db=40.0, duration_s=0.5).of(REFERENCE), [ratio] * 3 + [1.0] * 3)
+    with pytest.raises(CommissioningError, match=r"current transformers' ratio.*rated_power_W"):
+        commission([record], plate_of(REFERENCE), load_law=LoadLaw.CONSTANT)
+
+
+@pytest.mark.parametrize("ratio", [2.0, 0.5])
+def test_currents_of_a_ratio_that_could_just_be_are_warned_of(ratio: float) -> None:
+    record = scaled(StartRecord(snr_db=40.0, duration_s=0.5).of(REFERENCE), [ratio] * 3 + [1.0] * 3)
+    without_file = commission([record], plate_of(REFERENCE), load_law=LoadLaw.CONSTANT)
+    (warning,) = without_file.warnings
+    assert "unusual for a motor of 800 W" in warning
+    assert "current transformers' ratio" in warning
+    beside_file = commission([record], plate_of(REFERENCE, REFERENCE.parameters), load_law=LoadLaw.CONSTANT)
+    assert any(f"currents are {ratio:g} times the true ones" in one for one in beside_file.warnings)
+    assert beside_file.as_dict()["warnings"] == list(beside_file.warnings)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "expected"),
+    [
+        (replace(REFERENCE.nameplate, rated_power_W=400.0), "rated_power_W"),
+        (replace(REFERENCE.nameplate, pole_pairs=3), "pole_pairs"),
+        (replace(REFERENCE.nameplate, connection=Connection.DELTA), "connection"),
+    ],
+)
+def test_a_nameplate_that_is_wrong_is_warned_of(wrong: Nameplate, expected: str) -> None:
+    record = StartRecord(snr_db=40.0, duration_s=0.5).of(REFERENCE)
+    told = replace(plate_of(REFERENCE, REFERENCE.parameters), nameplate=wrong)
+    result = commission([record], told, load_law=LoadLaw.CONSTANT)
+    assert any(expected in warning for warning in result.warnings)
+
+
+def test_the_nameplate_of_a_motor_ten_times_as_big_is_refused() -> None:
+    record = StartRecord(snr_db=40.0, duration_s=0.5).of(MEDIUM)
+    with pytest.raises(CommissioningError, match="rated_power_W"):
+        commission([record], plate_of(REFERENCE), load_law=LoadLaw.CONSTANT)
 
 
 def test_offsets_of_the_current_channels_are_seen_before_the_start() -> None:

@@ -90,6 +90,23 @@ def test_the_point_expanded_has_the_least_goodness_of_all(adaptiveness: float) -
         search._evaluate(*search._expand(chosen))
 
 
+@pytest.mark.parametrize(
+    ("dimensions", "fineness", "exclusion", "adaptiveness"),
+    [(2, 14, 0.02, 0.5), (3, 7, 0.05, 0.4), (4, 5, 0.08, 0.2), (5, 4, 0.15, 0.15), (6, 3, 0.3, 0.1)],
+)
+def test_what_is_not_said_is_taken_from_table_4_1(
+    dimensions: int, fineness: int, exclusion: float, adaptiveness: float
+) -> None:
+    def cost(points: Array) -> Array:
+        return np.asarray(((points - 0.21) ** 2).sum(axis=1) + 0.1 * np.cos(9.0 * points).sum(axis=1))
+
+    bounds = [(-1.0, 1.0)] * dimensions
+    said = hcpa.minimise(
+        cost, bounds, fineness=fineness, exclusion=exclusion, adaptiveness=adaptiveness, batch=True
+    )
+    assert np.array_equal(hcpa.minimise(cost, bounds, batch=True).points, said.points)
+
+
 def test_goldstein_price_is_found_exactly() -> None:
     def goldstein_price(x: Array) -> float:
         a, b = float(x[0]), float(x[1])
