@@ -72,6 +72,18 @@ class Client:
     def is_open(self) -> bool:
         return self._connection.is_open
 
+    @property
+    def round_trip_s(self) -> float | None:
+        """How long the latest answer took [s]; None before the first."""
+        return self._connection.round_trip_s
+
+    def abandon(self) -> None:
+        """From any thread, without waiting: the request under way is the last, a download ends early.
+
+        Further ones raise ConnectionLost. Whoever opened the client still closes it.
+        """
+        self._connection.abandon()
+
     def wait_closed(self, timeout_s: float | None = None) -> bool:
         """Wait until the association has ended; False if it still stands after `timeout_s`."""
         return self._connection.wait_closed(timeout_s)

@@ -83,6 +83,7 @@ class Connection:
         self.lib: Final = library()
         self._lock = threading.RLock()
         self._pointer = 0
+        self.round_trip_s: float | None = None
         self._handlers: list[object] = []  # C holds them until the connection is destroyed
         addresses = self._resolve(host, port)
         deadline = time.monotonic() + connect_timeout_s
@@ -195,7 +196,10 @@ class Connection:
         """
         with self.exclusive(operation) as pointer:
             error = ctypes.c_int(0)
+            sent_s = time.monotonic()
             result = function(pointer, ctypes.byref(error), *arguments)
+            if error.value not in (_CONNECTION_LOST, _TIMEOUT):
+                self.round_trip_s = time.monotonic() - sent_s
         if error.value:
             raise self.judged(errors.client_error(self.host, operation, error.value))
         return result if isinstance(result, int) else None
@@ -205,6 +209,11 @@ class Connection:
         if isinstance(error, errors.Timeout) and self._notice.event.wait(_LOSS_NOTICE_S):
             return errors.ConnectionLost(self.host, error.operation, error.code, "the connection was lost")
         return error
+
+    def abandon(self) -> None:
+        """Let no further request begin; waits for none. The connection is still to be closed."""
+        if self._state is _State.OPEN:
+            self._state = _State.CLOSING
 
     def close(self) -> None:
         """Release the association and free it; waits for a request under way, at most its time-out."""

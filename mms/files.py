@@ -16,6 +16,7 @@ log: Final = logging.getLogger("mms")
 
 _MILLISECOND_NS: Final = 1_000_000
 _LISTING_LIMIT: Final = 100_000
+_LONGEST_NAME: Final = 255
 
 
 class Sink(Protocol):
@@ -48,6 +49,9 @@ def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
             reason = f"the listing never ends ({len(entries)} names so far)"
             raise errors.ProtocolError(connection.host, operation, 0, reason)
         last = part[-1].name
+        if len(last) > _LONGEST_NAME:
+            reason = f"the listing cannot be continued after a name of {len(last)} characters"
+            raise errors.ProtocolError(connection.host, operation, 0, reason)
 
 
 def _listing(
@@ -78,7 +82,7 @@ def _listing(
 def file_name(name: str) -> bytes:
     """A file name for C: the bytes the relay gave, which listings read as Latin-1."""
     octets = name.encode("latin-1")
-    if b"\0" in octets or len(octets) > 255:
+    if b"\0" in octets or len(octets) > _LONGEST_NAME:
         raise ValueError(f"not a file name: {name!r}")
     return octets
 

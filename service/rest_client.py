@@ -68,17 +68,24 @@ class ServiceClient:
                 return
             cursor = {"cursor": following}
 
-    def request_event_report(self, motor: str) -> Document:
-        """Have the motor's relay record an event report. Raises ServiceError."""
-        return _document(self._request("POST", f"{API}/motors/{segment(motor)}/event-reports", {}))
+    def request_event_report(self, motor: str, *, idempotency_key: str | None = None) -> Document:
+        """Have the motor's relay record an event report; the same key again changes nothing.
+
+        Raises ServiceError.
+        """
+        headers = {} if idempotency_key is None else {b"Idempotency-Key": idempotency_key.encode()}
+        path = f"{API}/motors/{segment(motor)}/event-reports"
+        return _document(self._request("POST", path, {}, headers))
 
     def event_report(self, report_id: str) -> Document:
         """How an event report is doing. Raises ServiceError."""
         return self.get(f"/event-reports/{segment(report_id)}")
 
-    def _request(self, method: str, path: str, query: Mapping[str, str]) -> httpx.Response:
+    def _request(
+        self, method: str, path: str, query: Mapping[str, str], headers: Mapping[bytes, bytes] | None = None
+    ) -> httpx.Response:
         try:
-            response = self._http.request(method, path, params=query)
+            response = self._http.request(method, path, params=query, headers=headers)
         except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
             raise ServiceError(
                 f"no service answers at {self._url} ({error}); start it with mcc serve"

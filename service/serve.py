@@ -1,4 +1,4 @@
-"""The service as a whole: collector process, diagnosis workers, REST API, on one data directory."""
+"""The service as a whole: gateways, diagnosis workers, REST API, on one data directory; or gateways alone."""
 
 import os
 import signal
@@ -9,21 +9,23 @@ from contextlib import contextmanager
 from ipaddress import IPv6Address
 from pathlib import Path
 from tempfile import TemporaryFile
+from threading import Event
 from types import FrameType
 
 import structlog
 import uvicorn
-from sqlalchemy.exc import SQLAlchemyError
 
 from service.api.app import create_app
 from service.api.context import ApiContext
-from service.collector.supervisor import CollectorSupervisor
+from service.collector.gateways import running_gateways
 from service.exclusive import exclusive
+from service.housekeeping import Housekeeping
 from service.jobs import JobRunner
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.plant import Plant, read_plant
 from service.recordings import RecordingStore
+from service.scheduling import Scheduler
 from service.settings import Settings
 from service.storage import Repository, connect, migrate
 
@@ -53,20 +55,46 @@ def serve(settings: Settings) -> None:
         store = RecordingStore(settings.recordings_directory)
         store.discard_incoming()
         with (
-            _collecting(settings, repository) as collector,
+            running_gateways(settings, plant, repository) as collector,
             _diagnosing(settings, plant, repository, store) as jobs,
+            _scheduling(plant, repository) as schedules,
+            _tidying(settings, repository),
         ):
             context = ApiContext(
                 settings,
                 repository,
                 store,
-                readiness={"collector": collector.problem, "jobs": jobs.problem},
+                readiness={
+                    "collector": collector.problem,
+                    "jobs": jobs.problem,
+                    "schedules": schedules.problem,
+                },
                 on_new_job=jobs.wake,
             )
             host, port = listener.getsockname()[:2]
             log.info("serving", host=host, port=port, motors=len(plant.motors))
             _answer(context, listener)
     log.info("service ended")
+
+
+def collect(settings: Settings) -> None:
+    """Run gateways alone, which share the relays of a service elsewhere, until SIGTERM or SIGINT.
+
+    Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError,
+    sqlalchemy.exc.SQLAlchemyError (that service's database does not answer).
+    """
+    end = Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda _number, _frame: end.set())
+    plant = read_plant(settings)
+    _require_writable(settings.data_directory)
+    with exclusive(settings.data_directory / "service.lock", wait=False):
+        repository = Repository(connect(settings.database_url))
+        repository.check()
+        with running_gateways(settings, plant, repository):
+            log.info("collecting for a service elsewhere", relays=len(plant.relays))
+            end.wait()
+    log.info("collecting ended")
 
 
 def _answer(context: ApiContext, listener: socket.socket) -> None:
@@ -82,22 +110,6 @@ def _answer(context: ApiContext, listener: socket.socket) -> None:
         uvicorn.Server(configuration).run(sockets=[listener])
     except KeyboardInterrupt:
         log.info("interrupted")
-
-
-@contextmanager
-def _collecting(settings: Settings, repository: Repository) -> Iterator[CollectorSupervisor]:
-    def forget_links() -> None:
-        try:
-            repository.reset_links(now_ns=time.time_ns())
-        except SQLAlchemyError as error:
-            log.warning("the links keep their last state: the database does not answer", error=str(error))
-
-    collector = CollectorSupervisor(settings, on_end=forget_links)
-    collector.start()
-    try:
-        yield collector
-    finally:
-        collector.stop()
 
 
 @contextmanager
@@ -122,6 +134,26 @@ def _diagnosing(
         yield jobs
     finally:
         jobs.stop()
+
+
+@contextmanager
+def _scheduling(plant: Plant, repository: Repository) -> Iterator[Scheduler]:
+    schedules = Scheduler(plant.motors, repository)
+    schedules.start()
+    try:
+        yield schedules
+    finally:
+        schedules.stop()
+
+
+@contextmanager
+def _tidying(settings: Settings, repository: Repository) -> Iterator[None]:
+    housekeeping = Housekeeping(settings, repository)
+    housekeeping.start()
+    try:
+        yield
+    finally:
+        housekeeping.stop()
 
 
 def _require_writable(directory: Path) -> None:

@@ -14,7 +14,7 @@ from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDic
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
 AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
-PATHS = ("data_directory", "scd", "motors")
+PATHS = ("data_directory", "recordings_directory", "scd", "motors")
 
 
 class SettingsError(ValueError):
@@ -48,6 +48,9 @@ class Settings(BaseSettings):
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "::1")
     max_upload_bytes: int = Field(default=64 * 1024**2, gt=0)
 
+    recordings_directory: AbsolutePath = Field(
+        default_factory=lambda known: known["data_directory"] / "recordings"
+    )
     database_url: str = Field(default_factory=lambda known: sqlite_url(known["data_directory"]), repr=False)
 
     workers: int = Field(default=2, ge=1, le=256)
@@ -55,16 +58,19 @@ class Settings(BaseSettings):
     job_attempts: int = Field(default=3, ge=1, le=20)
     job_retry_delay_s: float = Field(default=2.0, ge=0)
 
+    relays_per_gateway: int = Field(default=100, ge=1, le=1000)
+    lease_s: float = Field(default=30.0, ge=1, le=600)
     events_directory: str = "EVENTS"
     connect_timeout_s: float = Field(default=5.0, gt=0)
     request_timeout_s: float = Field(default=5.0, gt=0)
     record_timeout_s: float = Field(default=30.0, gt=0)
     poll_period_s: float = Field(default=5.0, gt=0)
+    metering_period_s: float = Field(default=10.0, ge=0)
+    metering_sample_days: float = Field(default=1.0, gt=0)
+    metering_minute_days: float = Field(default=31.0, gt=0)
+    metering_quarter_hour_days: float = Field(default=3650.0, gt=0)
     max_file_bytes: int = Field(default=64 * 1024**2, gt=0)
-
-    @property
-    def recordings_directory(self) -> Path:
-        return self.data_directory / "recordings"
+    max_relay_bytes_per_day: int = Field(default=1024**3, gt=0)
 
     @classmethod
     def load(cls, config: Path | None = None, options: Mapping[str, object] | None = None) -> Self:

@@ -5,7 +5,17 @@ from importlib.metadata import version
 from fastapi import APIRouter, FastAPI
 from fastapi.openapi.utils import get_openapi
 
-from service.api import baselines, diagnoses, event_reports, motors, probes, problems, recordings
+from service.api import (
+    baselines,
+    diagnoses,
+    event_reports,
+    measurements,
+    motors,
+    probes,
+    problems,
+    recordings,
+    relays,
+)
 from service.api.context import ApiContext
 from service.api.guard import Guard
 
@@ -28,7 +38,7 @@ def create_app(context: ApiContext) -> FastAPI:
     )
     app.state.context = context
     api = APIRouter(prefix=PREFIX)
-    for part in (motors, baselines, event_reports, recordings, diagnoses):
+    for part in (motors, baselines, measurements, relays, event_reports, recordings, diagnoses):
         api.include_router(part.router)
     app.include_router(api)
     app.include_router(probes.router)

@@ -1,4 +1,4 @@
-"""Sites, relays, motors; their condition."""
+"""Sites and motors; their condition."""
 
 from typing import Annotated
 
@@ -7,7 +7,7 @@ from fastapi import APIRouter, Query
 from service.api.context import Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Diagnosis, Health, Ied, Motor, Name, Recording, Site, TrendPoint
+from service.api.schemas import Diagnosis, Health, Motor, Name, Recording, Site, TrendPoint
 from service.api.times import TimeParameter, rfc3339
 from service.storage.records import MotorHealth, Quantity
 
@@ -18,18 +18,6 @@ router = APIRouter()
 def list_sites(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Site]:
     """Sites (substations of the plant's SCD), by name."""
     return page(context.repository.sites(limit=limit, after=decode(cursor, str)), Site.model_validate)
-
-
-@router.get("/ieds", responses=problems(), tags=["plant"])
-def list_ieds(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Ied]:
-    """Relays and the state of their links, by name."""
-    return page(context.repository.ieds(limit=limit, after=decode(cursor, str)), Ied.model_validate)
-
-
-@router.get("/ieds/{name}", responses=problems(404), tags=["plant"])
-def get_ied(context: Context, name: Name) -> Ied:
-    """One relay."""
-    return Ied.model_validate(context.repository.ied(name))
 
 
 @router.get("/motors", responses=problems(), tags=["plant"])

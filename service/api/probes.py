@@ -12,9 +12,11 @@ from prometheus_client.registry import Collector
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.api.context import ApiContext, Context
+from service.api.link_metrics import LinkMetrics
 from service.api.problems import problem_response, problems
 from service.api.schemas import Status
 from service.storage.repository import Repository
+from service.storage.states import AlarmKind
 
 router = APIRouter(tags=["operation"])
 
@@ -42,9 +44,13 @@ def get_readiness(context: Context, request: Request) -> Status | JSONResponse:
 
 @router.get("/metrics", response_class=PlainTextResponse)
 def get_metrics(context: Context) -> Response:
-    """How many links, event reports, recordings and jobs are in each state; Prometheus text format."""
+    """How many links, event reports, recordings, jobs and alarms there are, and what each relay's link does.
+
+    Prometheus text format.
+    """
     registry = CollectorRegistry()
     registry.register(_StateCollector(context.repository))
+    registry.register(LinkMetrics(context.repository))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
 
 
@@ -78,3 +84,7 @@ class _StateCollector(Collector):
             for state, count in sorted(by_state.items()):
                 family.add_metric([state], count)
             yield family
+        alarms = GaugeMetricFamily("mcc_alarms", "Number of standing alarms by kind", labels=["kind"])
+        for kind in AlarmKind:
+            alarms.add_metric([kind], counts.alarms.get(kind, 0))
+        yield alarms

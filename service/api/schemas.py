@@ -4,14 +4,23 @@ from collections.abc import Iterable
 from typing import Annotated, Literal
 from uuid import UUID
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
 
 from core.diagnosis.search import DEFAULT_METHOD, METHODS
 from core.diagnosis.stator import MODELS
 from core.diagnosis.verdict import Verdict
 from core.recordings import Quantity
 from service.api.times import Time
-from service.storage.states import EventReportState, JobState, LinkState, RecordingSource, RecordingState
+from service.storage.states import (
+    AlarmKind,
+    ClockQuality,
+    EventReportOrigin,
+    EventReportState,
+    JobState,
+    LinkState,
+    RecordingSource,
+    RecordingState,
+)
 
 Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00/]+$")]
 """Name of a site, IED or motor in a path."""
@@ -42,8 +51,24 @@ class Site(Document):
     description: str
 
 
-class Ied(Document):
-    """A relay; `last_success_time` is when it last answered."""
+Seconds = Annotated[float, BeforeValidator(lambda value: value / 1e9 if isinstance(value, int) else value)]
+"""Kept as nanoseconds inside."""
+
+
+class RelayClock(Document):
+    """A relay's clock less the service's, and what the relay says of it; null before the first trigger.
+
+    It is read off the relay's stamp of a trigger, within `clock_uncertainty_s`, at `clock_measured_time`.
+    """
+
+    clock_offset_s: Seconds | None = Field(validation_alias="clock_offset_ns")
+    clock_uncertainty_s: Seconds | None = Field(validation_alias="clock_uncertainty_ns")
+    clock_quality: ClockQuality | None
+    clock_measured_time: Time | None = Field(validation_alias="clock_measured_ns")
+
+
+class Ied(RelayClock):
+    """A relay; `last_success_time` is when it last answered. `clock_...`: its clock less the service's."""
 
     name: str
     site: str
@@ -57,11 +82,73 @@ class Ied(Document):
     last_success_time: Time | None = Field(validation_alias="last_success_ns")
 
 
+class LinkFigures(Document):
+    """What went over a relay's link since the relay is known.
+
+    round_trip_s: duration of its latest answer. received_bytes: of files. report_gaps: how often reports were
+    lost, which costs time and no recording: the relay's directory is what counts.
+    """
+
+    round_trip_s: float | None
+    connections: int
+    received_bytes: int
+    reports: int
+    report_gaps: int
+
+
+class LinkChange(Document):
+    """The state a link changed to, and why."""
+
+    time: Time = Field(validation_alias="changed_ns")
+    state: LinkState
+    reason: str | None
+
+
+class Alarm(Document):
+    """What somebody has to look after at a relay; it stands while `cleared_time` is null.
+
+    subject: the record or file it is about, as printable text, empty where it is about the relay.
+    """
+
+    id: str
+    ied: str
+    kind: AlarmKind
+    subject: str
+    reason: str
+    raised_time: Time = Field(validation_alias="raised_ns")
+    cleared_time: Time | None = Field(validation_alias="cleared_ns")
+
+
+class Gateway(Document):
+    """A process that visits relays: `relays` is how many it holds at present."""
+
+    id: str
+    host: str
+    process_id: int
+    started_time: Time = Field(validation_alias="started_ns")
+    relays: int
+
+
+class IedDetails(Ied):
+    """A relay with the figures of its link, its latest link changes and the alarms that stand.
+
+    gateway: id of the one that visits it, null while none does.
+    """
+
+    gateway: str | None
+    figures: LinkFigures
+    changes: list[LinkChange]
+    alarms: list[Alarm]
+
+
 class Motor(Document):
+    """A motor; `schedule`, a cron expression in UTC, says when it is recorded without anybody asking."""
+
     name: str
     description: str
     site: str
     ied: str
+    schedule: str | None
 
 
 class QualityFinding(Document):
@@ -117,11 +204,15 @@ class Diagnosis(Document):
 
 
 class EventReport(Document):
-    """An event recording somebody asked a relay for, with the time of each state it went through."""
+    """An event recording somebody, or the motor's schedule, asked a relay for.
+
+    It has the time of each state it went through.
+    """
 
     id: str
     motor: str
     ied: str
+    origin: EventReportOrigin
     state: EventReportState
     reason: str | None
     recording_id: str | None
@@ -133,8 +224,11 @@ class EventReport(Document):
     failed_time: Time | None = Field(validation_alias="failed_ns")
 
 
-class Recording(Document):
-    """A recording. `recorded_time` is the trigger time written in the record, known once it was read."""
+class Recording(RelayClock):
+    """A recording. `recorded_time` is the trigger time written in the record, known once it was read.
+
+    That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored.
+    """
 
     id: str
     motor: str
@@ -230,6 +324,26 @@ class TrendPoint(Document):
     ci95: tuple[float, float] | None
     verdict: Verdict
     recording_id: str
+
+
+class Measurement(Document):
+    """What the relay measured: at `time`, or means of `samples` values from then on."""
+
+    time: Time = Field(validation_alias="time_ns")
+    samples: int
+    ia_A: float | None
+    ib_A: float | None
+    ic_A: float | None
+    vab_V: float | None
+    vbc_V: float | None
+    vca_V: float | None
+    va_V: float | None
+    vb_V: float | None
+    vc_V: float | None
+    power_W: float | None
+    reactive_power_var: float | None
+    power_factor: float | None
+    frequency_Hz: float | None
 
 
 class WaveformChannel(Document):

@@ -118,6 +118,18 @@ def serve(
 
 
 @app.command()
+def collect(
+    config: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Settings file (TOML); see docs/settings.md.")
+    ] = None,
+) -> None:
+    """Run gateways alone, which share the relays of a service on another host. Ends on SIGTERM or Ctrl-C."""
+    from service.cli.run_service import run_gateways
+
+    run_gateways(config)
+
+
+@app.command()
 def diagnose(
     record: Annotated[
         Path,
@@ -208,12 +220,16 @@ def trigger(
         ),
     ] = 0.0,
     *,
+    key: Annotated[
+        str | None,
+        typer.Option(metavar="TEXT", help="A word of your own: the same one again triggers nothing new."),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Have a motor's relay record an event report."""
     from service.cli.remote import trigger_motor
 
-    trigger_motor(url, motor, wait_s=wait, as_json=as_json)
+    trigger_motor(url, motor, key=key, wait_s=wait, as_json=as_json)
 
 
 @app.command()

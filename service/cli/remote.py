@@ -18,10 +18,13 @@ LINK_COLOURS = {"up": "green", "down": "red"}
 NO_RECORDING = "no recording yet"
 
 
-def trigger_motor(url: str, motor: str, *, wait_s: float, as_json: bool) -> None:
-    """Ask for an event report; with `wait_s`, follow it to its verdict. Raises CommandError."""
+def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_json: bool) -> None:
+    """Ask for an event report; with `wait_s`, follow it to its verdict. Raises CommandError.
+
+    The same `key` again asks for nothing new and follows the first one's report.
+    """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        report = service.request_event_report(motor)
+        report = service.request_event_report(motor, idempotency_key=key)
         _warn_of_a_link_that_is_down(service, motor)
         deadline_s = time.monotonic() + wait_s
         state = report["state"]
@@ -111,7 +114,7 @@ def _overview(health: Document) -> tuple[RenderableType, ...]:
         Text(str(health["motor"])),
         Text(str(health["site"])),
         Text(str(health["ied"])),
-        _link(health),
+        _link_with_reason(health),
         Text("-") if health["verdict"] is None else verdict_text(str(health["verdict"])),
         f"{100 * mu_f:.2f}" if isinstance(mu_f, int | float) else "-",
         str(health["phase"] or "-"),
@@ -138,10 +141,7 @@ def _condition(health: Document) -> list[tuple[str, RenderableType]]:
             rows.append(("diagnosed recording", diagnosed))
     rows.append(("last recording", Text(NO_RECORDING if last is None else last)))
     rows.append(("site, relay", Text(f"{health['site']}, {health['ied']}")))
-    link = _link(health)
-    if health["link_reason"] is not None:
-        link.append(f": {one_line(str(health['link_reason']))}")
-    rows.append(("link", link))
+    rows.append(("link", _link_with_reason(health)))
     return rows
 
 
@@ -160,6 +160,13 @@ def _last_recording(health: Document) -> str | None:
 def _link(health: Document) -> Text:
     state = str(health["link_state"])
     return Text(state, style=LINK_COLOURS.get(state, ""))
+
+
+def _link_with_reason(health: Document) -> Text:
+    link = _link(health)
+    if health["link_reason"] is not None:
+        link.append(f": {one_line(str(health['link_reason']))}")
+    return link
 
 
 def _phase(diagnosis: Document) -> str:

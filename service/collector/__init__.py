@@ -1,1 +1,1 @@
-"""The collector: one process that talks MMS to the relays and fills the recording store."""
+"""The collector: gateway processes that talk MMS to the relays and fill the recording store."""

@@ -1,5 +1,8 @@
 """One record from a relay to the recording store: every file, every byte, or nothing."""
 
+from collections.abc import Callable
+from typing import BinaryIO
+
 from mms import Client
 from service.collector.listing import ListedRecord
 from service.recordings import RecordingStore, StoredRecording
@@ -9,10 +12,27 @@ class RecordTooLargeError(ValueError):
     """The relay lists a file that is larger than a setting allows."""
 
 
+class _Counted:
+    """A file that tells how much was written to it."""
+
+    def __init__(self, sink: BinaryIO, on_bytes: Callable[[int], None]) -> None:
+        self._sink = sink
+        self._on_bytes = on_bytes
+
+    def write(self, chunk: bytes, /) -> None:
+        self._sink.write(chunk)
+        self._on_bytes(len(chunk))
+
+
 def pull(
-    client: Client, record: ListedRecord, store: RecordingStore, *, max_file_bytes: int
+    client: Client,
+    record: ListedRecord,
+    store: RecordingStore,
+    *,
+    max_file_bytes: int,
+    on_bytes: Callable[[int], None],
 ) -> StoredRecording:
-    """Stream the files of one record into the store.
+    """Stream the files of one record into the store; `on_bytes` is told of every part that came.
 
     The store keeps the record only when all files are there. Raises RecordTooLargeError, MmsError
     (FileSizeMismatch when a file is not as long as listed), RecordingStoreError for a name the store refuses,
@@ -27,5 +47,5 @@ def pull(
     with store.incoming() as incoming:
         for file in record.files:
             with incoming.create(file.local_name) as sink:
-                client.download(file.remote_name, sink, expected_size=file.size)
+                client.download(file.remote_name, _Counted(sink, on_bytes), expected_size=file.size)
         return incoming.keep()

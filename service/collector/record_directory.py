@@ -1,28 +1,43 @@
-"""A relay's event directory, brought into the recording store. The directory is the truth; reports hurry."""
+"""A relay's event directory, brought into the recording store. The directory is the truth; reports hurry.
+
+In the end every record the relay lists is in the store, or its refusal is written down: as a rejected
+recording where it is a record, as an alarm where a file's name already says that it cannot be trusted.
+"""
 
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import structlog
 
 from mms import AccessDenied, Client, FileSizeMismatch, NotFound, TemporarilyUnavailable
-from service.collector.listing import ListedRecord, understand
+from service.collector.alarms import RelayAlarms
+from service.collector.allowance import DAY_NS, DailyAllowance
+from service.collector.link import Link
+from service.collector.listing import ListedRecord, Listing, understand
 from service.collector.pulling import RecordTooLargeError, pull
-from service.collector.settling import Settling
+from service.collector.settling import Settled, Settling
 from service.plant import Relay
-from service.recordings import RecordingStore, RecordingStoreError
+from service.recordings import RecordingStore, RecordingStoreError, StoredRecording
 from service.settings import Settings
 from service.storage import Repository
 from service.storage.records import RemoteRecord
+from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
 
 SETTLE_S = 0.2
 """How long a record's sizes and times must stand still before it is pulled."""
 
+UNSTEADY_S = 600.0
+"""How long a record may go on changing before it is an alarm."""
+
 PULL_ATTEMPTS = 3
 """A file can vanish or change between listing and pulling, when the relay makes room; hardly three times."""
+
+ATTEMPTS_OF_A_NAME = 10
+"""In all: a file that is of another size each time it is listed must not be asked for without end."""
 
 REFUSALS = (AccessDenied, NotFound, FileSizeMismatch)
 """What one record can do wrong while the link is fine."""
@@ -36,19 +51,29 @@ class Scan:
     """What one scan of the directory came to, by names of records.
 
     listed: all there are.  taken: newly stored or refused for good.  waiting: new ones that are not ready, or
-    are to be tried again.
+    are to be tried again soon.  held_back: ready ones that wait for another day.
     """
 
     listed: frozenset[str]
     taken: tuple[str, ...]
     waiting: tuple[str, ...]
+    held_back: tuple[str, ...]
 
 
 class RecordDirectory:
     """Scans one relay's directory and stores what is new. Used by that relay's session alone."""
 
     def __init__(
-        self, relay: Relay, motor: str, repository: Repository, store: RecordingStore, settings: Settings
+        self,
+        relay: Relay,
+        motor: str,
+        repository: Repository,
+        store: RecordingStore,
+        settings: Settings,
+        *,
+        link: Link,
+        alarms: RelayAlarms,
+        allowance: DailyAllowance,
     ) -> None:
         self._relay = relay.name
         self._motor = motor
@@ -56,57 +81,136 @@ class RecordDirectory:
         self._store = store
         self._directory = settings.events_directory
         self._max_file_bytes = settings.max_file_bytes
-        self._settling = Settling(settle_s=SETTLE_S, patience_s=settings.record_timeout_s)
-        # This session alone writes the relay's records, so that it knows without asking the database again.
-        self._known = set(repository.known_remote_records(relay.name))
-        self._refused_names: set[str] = set()
+        self._link = link
+        self._alarms = alarms
+        self._allowance = allowance
+        self._settling = Settling(
+            settle_s=SETTLE_S, patience_s=settings.record_timeout_s, unsteady_s=UNSTEADY_S
+        )
+        # This session alone writes the relay's records: having asked once, it knows them.
+        self._asked = False
+        self._known: set[RemoteRecord] = set()
+        self._announced: set[RemoteRecord] = set()
+        self._attempts: Counter[str] = Counter()
+        self._attempts_day = 0
 
     def scan(self, client: Client, owner: Owner) -> Scan:
         """List the directory; pull and store what is new and ready, oldest first.
 
         Raises MmsError when the link fails, OSError when the disk does; what was stored until then stays.
         """
+        self._recall()
         listing = understand(client.files(self._directory), self._directory)
-        for refused in listing.refused:
-            if refused.name not in self._refused_names:
-                self._refused_names.add(refused.name)
-                log.warning("file refused", relay=self._relay, file=refused.name, reason=refused.reason)
+        self._note_refused_files(listing)
+        self._give_up_what_is_gone(listing)
         new = [record for record in listing.records if _remote(record) not in self._known]
         new.sort(key=lambda record: (record.modified_ns, record.name))
         settled = self._settling.look(new, time.monotonic())
+        ready, unsteady = self._without_shape_shifters(settled)
+        self._note_unsteady(unsteady)
         for record in settled.incomplete:
             suffix = record.missing[0]
             self._refuse(
                 record, f"{record.name}: expected a {suffix} file in {self._directory}, found none", owner
             )
-        for record in settled.ready:
-            self._take(client, record, owner)
+        held_back = self._take_all(client, ready, owner)
+        patient = {record.name for record in unsteady}.union(held_back)
         return Scan(
             listed=frozenset(record.name for record in listing.records),
             taken=tuple(record.name for record in new if _remote(record) in self._known),
-            waiting=tuple(record.name for record in new if _remote(record) not in self._known),
+            waiting=tuple(
+                record.name
+                for record in new
+                if _remote(record) not in self._known and record.name not in patient
+            ),
+            held_back=held_back,
         )
+
+    def _recall(self) -> None:
+        """What became of the relay's records before; years of them, so not in the thread that starts all."""
+        if self._asked:
+            return
+        self._known.update(self._repository.known_remote_records(self._relay))
+        self._announced.update(self._repository.announced_remote_records(self._relay))
+        self._asked = True
+
+    def _take_all(self, client: Client, ready: tuple[ListedRecord, ...], owner: Owner) -> tuple[str, ...]:
+        """Pull what is ready as far as the day's limit allows; the names of those that must wait."""
+        for number, record in enumerate(ready):
+            sizes = tuple(file.size for file in record.files)
+            too_large = max(sizes) > self._max_file_bytes
+            if not too_large and not self._allowance.allows(sizes, time.time_ns()):
+                self._alarms.raise_alarm(
+                    AlarmKind.DAILY_LIMIT,
+                    "",
+                    f"expected at most {self._allowance.limit_bytes} bytes a day (setting "
+                    f"max_relay_bytes_per_day), found more; new records wait in the relay until midnight UTC",
+                )
+                return tuple(late.name for late in ready[number:])
+            self._take(client, record, owner)
+        self._alarms.keep(AlarmKind.DAILY_LIMIT, ())
+        return ()
+
+    def _note_refused_files(self, listing: Listing) -> None:
+        for refused in listing.refused:
+            self._alarms.raise_alarm(AlarmKind.FILE_REFUSED, refused.name, refused.reason)
+        self._alarms.keep(AlarmKind.FILE_REFUSED, {refused.name for refused in listing.refused})
+        self._alarms.keep(AlarmKind.FILE_TOO_LARGE, {record.name for record in listing.records})
+
+    def _without_shape_shifters(
+        self, settled: Settled
+    ) -> tuple[tuple[ListedRecord, ...], tuple[ListedRecord, ...]]:
+        """Ready and unsteady ones; those whose listing proved wrong too often today are not asked for."""
+        today = time.time_ns() // DAY_NS
+        if self._attempts_day != today:
+            self._attempts_day = today
+            self._attempts.clear()
+        trusted: list[ListedRecord] = []
+        others = list(settled.unsteady)
+        for record in settled.ready:
+            (trusted if self._attempts[record.name] < ATTEMPTS_OF_A_NAME else others).append(record)
+        return tuple(trusted), tuple(others)
+
+    def _note_unsteady(self, unsteady: tuple[ListedRecord, ...]) -> None:
+        for record in unsteady:
+            self._alarms.raise_alarm(
+                AlarmKind.FILE_UNSTEADY,
+                record.name,
+                f"{record.name}: expected files that stand still and are as long as listed, found others for "
+                f"{UNSTEADY_S:g} s or {ATTEMPTS_OF_A_NAME} attempts",
+            )
+        self._alarms.keep(AlarmKind.FILE_UNSTEADY, {record.name for record in unsteady})
+
+    def _give_up_what_is_gone(self, listing: Listing) -> None:
+        """A record that was seen, and that the relay replaced or discarded before it could be pulled."""
+        if not self._announced:
+            return
+        for remote in self._announced - {_remote(record) for record in listing.records}:
+            reason = f"{remote.name}: the relay discarded or changed it before it could be pulled"
+            self._repository.give_up_remote_record(self._relay, remote, reason)
+            self._announced.discard(remote)
+            log.warning("record gone", relay=self._relay, record=remote.name, reason=reason)
 
     def _take(self, client: Client, record: ListedRecord, owner: Owner) -> None:
         """Pull and store one record. Where that fails, refuse it or leave it for the next scan."""
         remote = _remote(record)
-        self._repository.announce_recording(self._relay, self._motor, remote, now_ns=time.time_ns())
+        if remote not in self._announced:
+            self._repository.announce_recording(self._relay, self._motor, remote, now_ns=time.time_ns())
+            self._announced.add(remote)
         try:
-            stored = pull(client, record, self._store, max_file_bytes=self._max_file_bytes)
-        except (RecordTooLargeError, RecordingStoreError) as error:
+            stored = self._pull(client, record)
+        except RecordTooLargeError as error:
+            self._alarms.raise_alarm(AlarmKind.FILE_TOO_LARGE, record.name, str(error))
+            self._refuse(record, str(error), owner)
+            return
+        except RecordingStoreError as error:
             self._refuse(record, str(error), owner)
             return
         except TemporarilyUnavailable as error:
             log.info("record busy", relay=self._relay, record=record.name, reason=str(error))
             return
         except REFUSALS as error:
-            reason = f"{record.name}: {error}"
-            log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
-            attempts = self._repository.note_failed_pull(
-                self._relay, self._motor, remote, reason, now_ns=time.time_ns()
-            )
-            if attempts >= PULL_ATTEMPTS:
-                self._refuse(record, reason, owner)
+            self._note_failed_pull(record, f"{record.name}: {error}", owner)
             return
         added = self._repository.add_recording(
             stored,
@@ -116,7 +220,7 @@ class RecordDirectory:
             remote=remote,
             event_report_id=owner(record.name),
         )
-        self._known.add(remote)
+        self._settle(record)
         log.info(
             "record stored" if added.created else "record known already",
             relay=self._relay,
@@ -124,6 +228,28 @@ class RecordDirectory:
             size_bytes=stored.size_bytes,
             recording=added.recording.id,
         )
+
+    def _pull(self, client: Client, record: ListedRecord) -> StoredRecording:
+        sizes = [file.size for file in record.files]
+        if max(sizes) <= self._max_file_bytes:
+            for size in sizes:
+                self._allowance.charge(size, time.time_ns())
+        return pull(
+            client,
+            record,
+            self._store,
+            max_file_bytes=self._max_file_bytes,
+            on_bytes=self._link.received,
+        )
+
+    def _note_failed_pull(self, record: ListedRecord, reason: str, owner: Owner) -> None:
+        log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
+        self._attempts[record.name] += 1
+        attempts = self._repository.note_failed_pull(
+            self._relay, self._motor, _remote(record), reason, now_ns=time.time_ns()
+        )
+        if attempts >= PULL_ATTEMPTS:
+            self._refuse(record, reason, owner)
 
     def _refuse(self, record: ListedRecord, reason: str, owner: Owner) -> None:
         self._repository.reject_remote_record(
@@ -134,8 +260,13 @@ class RecordDirectory:
             now_ns=time.time_ns(),
             event_report_id=owner(record.name),
         )
-        self._known.add(_remote(record))
+        self._settle(record)
         log.warning("record refused", relay=self._relay, record=record.name, reason=reason)
+
+    def _settle(self, record: ListedRecord) -> None:
+        """This record's fate is written down."""
+        self._known.add(_remote(record))
+        self._announced.discard(_remote(record))
 
 
 def _remote(record: ListedRecord) -> RemoteRecord:

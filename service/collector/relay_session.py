@@ -3,7 +3,9 @@
 What a relay does wrong ends at its own session: the link is down with its reason, and tried again.
 """
 
+import math
 import time
+from collections.abc import Callable
 from queue import Empty, SimpleQueue
 from threading import Event
 
@@ -21,13 +23,18 @@ from mms import (
     ReportControlInUse,
     ReportMember,
 )
+from service.collector.alarms import RelayAlarms
+from service.collector.allowance import DailyAllowance
+from service.collector.continuity import Continuity, is_of, status_of
+from service.collector.link import Link
+from service.collector.metering import Metering
 from service.collector.record_directory import RecordDirectory
 from service.collector.triggering import Triggering
 from service.plant import Relay
 from service.recordings import RecordingStore
 from service.settings import Settings
-from service.storage import Repository
-from service.storage.states import LinkState
+from service.storage import LeaseLostError, Repository
+from service.storage.records import Sample
 
 log = structlog.get_logger(__name__)
 
@@ -38,9 +45,6 @@ ENTRY_ID_OCTETS = 8
 """IEC 61850-8-1; anything else a relay sends could not be given back to it."""
 
 FIRST_RETRY_S, LONGEST_RETRY_S = 0.5, 10.0
-
-REMIND_AFTER_S = 600.0
-"""A link that stays down for the same reason is logged this often."""
 
 
 class Inbox(SimpleQueue[Report]):
@@ -68,28 +72,69 @@ class RelaySession:
     """Everything between the service and one relay. `run` is the body of the session's own thread."""
 
     def __init__(
-        self, relay: Relay, motor: str, repository: Repository, store: RecordingStore, settings: Settings
+        self,
+        relay: Relay,
+        motor: str,
+        repository: Repository,
+        store: RecordingStore,
+        settings: Settings,
+        *,
+        gateway: str | None = None,
+        on_sample: Callable[[Sample], None] | None = None,
     ) -> None:
+        """`gateway`: who holds the relay's lease; None where relays are not shared.
+
+        on_sample: takes what the relay measures; None where nobody wants it.
+        """
         self._relay = relay
         self._repository = repository
         self._settings = settings
-        self._directory = RecordDirectory(relay, motor, repository, store, settings)
-        self._triggering = Triggering(relay, repository, record_timeout_s=settings.record_timeout_s)
+        figures = repository.link_figures(relay.name)
+        allowance = DailyAllowance(
+            settings.max_relay_bytes_per_day, day=figures.day, used_bytes=figures.day_bytes
+        )
+        self._link = Link(relay.name, repository, allowance, period_s=settings.poll_period_s)
+        self._directory = RecordDirectory(
+            relay,
+            motor,
+            repository,
+            store,
+            settings,
+            link=self._link,
+            alarms=RelayAlarms(relay.name, repository),
+            allowance=allowance,
+        )
+        self._triggering = Triggering(
+            relay, repository, record_timeout_s=settings.record_timeout_s, gateway=gateway
+        )
+        self._metering = (
+            None
+            if on_sample is None
+            else Metering(relay, motor, period_s=settings.metering_period_s, on_sample=on_sample)
+        )
+        self._client: Client | None = None
         self._stopping = Event()
         self._something_to_do = Event()
         self._unsaved_entry_id: bytes | None = None
         self._expecting_until_s = 0.0
-        self._link_noted_s = 0.0
-        self._failure_logged: tuple[str, float] | None = None
         self._overflow_means_loss = False
+        self._continuity = Continuity(relay.fault_number)
 
     def wake(self) -> None:
         """Somebody asked for an event report."""
         self._something_to_do.set()
 
     def stop(self) -> None:
+        """End after what is under way."""
         self._stopping.set()
         self._something_to_do.set()
+
+    def abandon(self) -> None:
+        """End with the request under way: somebody else may visit the relay soon."""
+        self.stop()
+        client = self._client
+        if client is not None:
+            client.abandon()
 
     def run(self) -> None:
         """Visit the relay until stopped, waiting longer each time it does not answer."""
@@ -101,10 +146,13 @@ class RelaySession:
                 self._visit()
             except MmsError as error:
                 reason = str(error)
+            except LeaseLostError as error:
+                log.warning("visit ended", relay=self._relay.name, reason=str(error))
+                return
             except Exception as error:  # a full disk or a bug here must not silence the relay for ever
                 log.exception("session failed", relay=self._relay.name)
                 reason = f"{type(error).__name__}: {error}"
-            if reason is not None:
+            if reason is not None and not self._stopping.is_set():
                 self._note_failure(reason)
             if time.monotonic() - visited_s > LONGEST_RETRY_S:
                 retry_s = FIRST_RETRY_S
@@ -119,16 +167,29 @@ class RelaySession:
             connect_timeout_s=self._settings.connect_timeout_s,
             request_timeout_s=self._settings.request_timeout_s,
         ) as client:
+            self._client = client
             inbox = Inbox(self._something_to_do)
+            self._continuity.begin()
             self._subscribe(client, inbox)
             log.info("connected", relay=self._relay.name, host=self._relay.host, port=self._relay.port)
-            self._link_noted_s = 0.0
-            self._failure_logged = None
+            self._link.connected()
+            if self._metering is not None:
+                self._metering.begin()
             while not self._stopping.is_set():
                 self._something_to_do.clear()
                 waiting = self._work(client, inbox)
-                self._note_success()
-                self._something_to_do.wait(HURRIED_PERIOD_S if waiting else self._settings.poll_period_s)
+                self._link.answered(client.round_trip_s)
+                self._wait(client, HURRIED_PERIOD_S if waiting else self._settings.poll_period_s)
+
+    def _wait(self, client: Client, longest_s: float) -> None:
+        """Until there is something to do, or for so long; what is to be sampled meanwhile is."""
+        until_s = time.monotonic() + longest_s
+        while not self._something_to_do.is_set() and time.monotonic() < until_s:
+            due_in_s = math.inf if self._metering is None else self._metering.due_in_s()
+            if self._metering is not None and due_in_s <= 0:
+                self._metering.sample(client)
+                continue
+            self._something_to_do.wait(min(due_in_s, until_s - time.monotonic()))
 
     def _subscribe(self, client: Client, inbox: Inbox) -> None:
         """Have reports from where the last saved one left off; without reports, the directory is polled."""
@@ -145,6 +206,7 @@ class RelaySession:
                 client.subscribe(control, inbox, entry_id=entry_id)
             except EntryNotFound:
                 self._overflow_means_loss = False
+                self._link.lost_reports()
                 log.warning(
                     "reports lost: the relay no longer holds the last one seen", relay=self._relay.name
                 )
@@ -159,6 +221,10 @@ class RelaySession:
         if overflowed:
             # No loss: whatever the lost reports announced is in the directory, which is scanned anyway.
             log.info("the relay's report buffer had overflowed", relay=self._relay.name)
+        missed = self._continuity.missed_before(report)
+        if missed is not None:
+            log.info("reports missed", relay=self._relay.name, reason=missed)
+        self._link.reported(gap=overflowed or missed is not None)
         if report.entry_id is not None and len(report.entry_id) == ENTRY_ID_OCTETS:
             self._unsaved_entry_id = report.entry_id
         if any(self._tells_of_a_record(member) for member in report.members):
@@ -170,40 +236,16 @@ class RelaySession:
             return False
         if member.reference is None:
             return True
-        # A relay names its members as MMS does: LD/LN$FC$DO, with $attribute where one is reported alone.
-        node, _, names = member.reference.partition("$")
-        reference = f"{node}.{names.partition('$')[2]}".replace("$", ".")
-        status = member.value[0] if isinstance(member.value, tuple) and member.value else member.value
-        if self._relay.record_made is not None and f"{reference}.".startswith(f"{self._relay.record_made}."):
-            return status is True
-        return self._relay.fault_number is not None and f"{reference}.".startswith(
-            f"{self._relay.fault_number}."
-        )
-
-    def _note_success(self) -> None:
-        """The relay answered. Written once a poll period: a healthy relay is no reason to wear the disk."""
-        now_s = time.monotonic()
-        if now_s - self._link_noted_s >= self._settings.poll_period_s:
-            self._repository.set_link_state(self._relay.name, LinkState.UP, None, now_ns=time.time_ns())
-            self._link_noted_s = now_s
+        if self._relay.record_made is not None and is_of(member.reference, self._relay.record_made):
+            return status_of(member) is True
+        return self._relay.fault_number is not None and is_of(member.reference, self._relay.fault_number)
 
     def _note_failure(self, reason: str) -> None:
-        self._log_failure(reason)
+        self._link.failed(reason)
         try:
-            self._repository.set_link_state(self._relay.name, LinkState.DOWN, reason, now_ns=time.time_ns())
             self._triggering.link_failed(reason)
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
-
-    def _log_failure(self, reason: str) -> None:
-        """A relay that is off for a month is one line at first and one now and then, not one each retry."""
-        now_s = time.monotonic()
-        if self._failure_logged is not None:
-            logged, logged_s = self._failure_logged
-            if reason == logged and now_s - logged_s < REMIND_AFTER_S:
-                return
-        self._failure_logged = (reason, now_s)
-        log.warning("link down", relay=self._relay.name, reason=reason)
 
     def _work(self, client: Client, inbox: Inbox) -> bool:
         """One round: reports, directory, event reports. Returns whether a record is on its way."""

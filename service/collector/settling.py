@@ -11,11 +11,13 @@ class Settled:
     """What one look at the directory says.
 
     ready: whole and unchanged since an earlier look.  incomplete: unchanged for so long that the missing
-    files are not coming.  waiting: neither yet; look again soon.
+    files are not coming.  unsteady: has been changing for so long that nobody waits for it any more; ready
+    as soon as it does stand still.  waiting: none of these yet; look again soon.
     """
 
     ready: tuple[ListedRecord, ...]
     incomplete: tuple[ListedRecord, ...]
+    unsteady: tuple[ListedRecord, ...]
     waiting: tuple[ListedRecord, ...]
 
 
@@ -23,23 +25,29 @@ class Settling:
     """Compares successive looks at one relay's directory.
 
     settle_s: how long sizes and times must stand still.  patience_s: how long a record may lack a file.
+    unsteady_s: how long a record may go on changing.
     """
 
-    def __init__(self, *, settle_s: float, patience_s: float) -> None:
+    def __init__(self, *, settle_s: float, patience_s: float, unsteady_s: float) -> None:
         self._settle_s = settle_s
         self._patience_s = patience_s
+        self._unsteady_s = unsteady_s
         self._since: dict[ListedRecord, float] = {}
+        self._first: dict[str, float] = {}
 
     def look(self, records: Iterable[ListedRecord], now_s: float) -> Settled:
         """Judge the records that are new to the service. `now_s` is monotonic [s]."""
         self._since = {record: self._since.get(record, now_s) for record in records}
-        ready, incomplete, waiting = [], [], []
+        self._first = {record.name: self._first.get(record.name, now_s) for record in self._since}
+        ready, incomplete, unsteady, waiting = [], [], [], []
         for record, since_s in self._since.items():
             unchanged_s = now_s - since_s
             if record.missing and unchanged_s >= self._patience_s:
                 incomplete.append(record)
             elif not record.missing and unchanged_s >= self._settle_s:
                 ready.append(record)
+            elif since_s - self._first[record.name] >= self._unsteady_s:
+                unsteady.append(record)
             else:
                 waiting.append(record)
-        return Settled(ready=tuple(ready), incomplete=tuple(incomplete), waiting=tuple(waiting))
+        return Settled(tuple(ready), tuple(incomplete), tuple(unsteady), tuple(waiting))

@@ -31,10 +31,16 @@ class CollectorSupervisor:
     """
 
     def __init__(
-        self, settings: Settings, command: tuple[str, ...] = COMMAND, *, on_end: Callable[[], None] = _nothing
+        self,
+        settings: Settings,
+        command: tuple[str, ...] = COMMAND,
+        *,
+        number: int = 0,
+        on_end: Callable[[], None] = _nothing,
     ) -> None:
+        """`number`: its own among the collectors of one service.  on_end: called after each of its ends."""
         self._settings = settings
-        self._command = command
+        self._command = (*command, str(number))
         self._on_end = on_end
         self._lock = Lock()
         self._stopping = Event()
@@ -54,14 +60,19 @@ class CollectorSupervisor:
     def start(self) -> None:
         self._thread.start()
 
-    def stop(self) -> None:
-        """Ask the collector to end, wait for it, kill it if it does not go. Safe to call twice."""
+    def ask_to_end(self) -> None:
+        """Ask the collector to end, and wait for nothing. Safe to call twice."""
         with self._lock:
             self._stopping.set()
-            child = self._child
-            if child is None:
-                return
-            _close_input(child)
+            if self._child is not None:
+                _close_input(self._child)
+
+    def stop(self) -> None:
+        """Ask the collector to end, wait for it, kill it if it does not go. Safe to call twice."""
+        self.ask_to_end()
+        child = self._child
+        if child is None:
+            return
         try:
             child.wait(STOP_PATIENCE_S)
         except subprocess.TimeoutExpired:
@@ -77,12 +88,12 @@ class CollectorSupervisor:
                 ended = f"exit code {self._run_once()}"
             except OSError as error:  # no process or memory left at the moment
                 ended = f"it does not start: {error}"
+            self._on_end()
             if self._stopping.is_set():
                 return
             if time.monotonic() - started_s > STABLE_AFTER_S:
                 delay_s = SHORTEST_DELAY_S
             log.error("the collector ended and is started again", reason=ended, delay_s=delay_s)
-            self._on_end()
             self._stopping.wait(delay_s)
             delay_s = min(2 * delay_s, LONGEST_DELAY_S)
 

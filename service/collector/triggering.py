@@ -5,7 +5,8 @@ crash included, the relay is operated at most once for it: its room for records 
 drives out an older one. The price is paid in one unlucky case, a crash after the mark and before the
 operation: no record comes, the report fails at its time limit, and the person asks again. A crash after the
 operation costs nothing: the record is in the relay's directory, and the restarted collector gives it to the
-report.
+report. The mark is refused to a gateway that does not hold the relay's lease any more: a gateway that was
+frozen, and wakes up after another took its relays over, operates nothing.
 """
 
 import time
@@ -13,6 +14,7 @@ import time
 import structlog
 
 from mms import AccessDenied, Client, ControlRefused, FunctionalConstraint, NotFound
+from service.collector.clock import reading, stamp_of
 from service.collector.record_directory import Scan
 from service.plant import Relay
 from service.storage import Repository
@@ -36,9 +38,12 @@ class Triggering:
     A new record belongs to the oldest report that was triggered, unless it was listed before the trigger.
     """
 
-    def __init__(self, relay: Relay, repository: Repository, *, record_timeout_s: float) -> None:
+    def __init__(
+        self, relay: Relay, repository: Repository, *, record_timeout_s: float, gateway: str | None = None
+    ) -> None:
         self._relay = relay
         self._repository = repository
+        self._gateway = gateway
         self._timeout_ns = round(record_timeout_s * 1e9)
         # After a restart every report gets its time limit again: its record may wait in the relay.
         self._started_ns = time.time_ns()
@@ -68,6 +73,14 @@ class Triggering:
         if report is None:
             pending = self._repository.pending_event_report(self._relay.name)
             return pending is not None and self._trigger(client, pending, scan.listed)
+        held_back = [name for name in scan.held_back if name not in self._listed_before]
+        if held_back:
+            self._fail(
+                report,
+                f"{self._relay.name}: its record waits in the relay for another day, because the relay sent "
+                "as much today as the setting max_relay_bytes_per_day allows",
+            )
+            return False
         appeared = [name for name in scan.waiting if name not in self._listed_before]
         if appeared and report.state is EventReportState.TRIGGERED:
             self._repository.mark_recorded(report.id, now_ns=time.time_ns())
@@ -91,14 +104,21 @@ class Triggering:
         try:
             if client.read(f"{control}.stVal", FunctionalConstraint.ST) is True:
                 client.operate(control, False)  # noqa: FBT003 - the value of a control
-            self._repository.mark_triggered(report.id, now_ns=time.time_ns())
+            stamp_before = stamp_of(client, control)
+            self._repository.mark_triggered(report.id, now_ns=time.time_ns(), gateway=self._gateway)
             self._listed_before = listed
+            asked_ns = time.time_ns()
             client.operate(control, True)  # noqa: FBT003
+            answered_ns = time.time_ns()
         except REFUSALS as error:
             self._fail(report, f"{self._relay.name} refuses the trigger: {error}")
             return False
         log.info("triggered", relay=self._relay.name, motor=report.motor, event_report=report.id)
         time.sleep(HOLD_S)
+        stamp = stamp_of(client, control)
+        if stamp is not None and stamp != stamp_before:
+            clock = reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
+            self._repository.note_clock(self._relay.name, clock)
         try:
             client.operate(control, False)  # noqa: FBT003
         except REFUSALS as error:

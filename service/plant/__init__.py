@@ -2,6 +2,18 @@
 
 from service.plant.errors import PlantError
 from service.plant.files import read_plant
+from service.plant.metering import Measurand, MeteredQuantity
 from service.plant.model import Plant, PlantMotor, Relay, Site
+from service.plant.schedule import Schedule
 
-__all__ = ["Plant", "PlantError", "PlantMotor", "Relay", "Site", "read_plant"]
+__all__ = [
+    "Measurand",
+    "MeteredQuantity",
+    "Plant",
+    "PlantError",
+    "PlantMotor",
+    "Relay",
+    "Schedule",
+    "Site",
+    "read_plant",
+]

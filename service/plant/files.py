@@ -12,8 +12,10 @@ import scl
 from core.machines.motor_file import MotorFileError, motor_from_table
 from core.machines.parameters import Motor
 from service.plant.errors import PlantError
+from service.plant.metering import measurands
 from service.plant.model import Plant, PlantMotor, Relay, Site
 from service.plant.recognition import REMOTE_BIT, recognise
+from service.plant.schedule import Schedule
 from service.settings import Settings, SettingsError
 
 
@@ -35,7 +37,7 @@ def plant_of_files(scd_path: Path, motors_path: Path, subnetwork: str | None = N
         configuration = scl.read(scd_path)
         if subnetwork is not None:
             configuration = configuration.seen_from(subnetwork)
-        return _plant(configuration, _motors(motors_path), motors_path)
+        return _plant(configuration, *_motors(motors_path), motors_path)
     except scl.SclError as error:
         line = "" if error.line is None else f"line {error.line}: "
         raise PlantError(
@@ -49,7 +51,8 @@ def _given(path: Path | None, name: str, expected: str) -> Path:
     return path
 
 
-def _motors(path: Path) -> dict[str, Motor]:
+def _motors(path: Path) -> tuple[dict[str, Motor], dict[str, Schedule]]:
+    """The motors of the motors file and the schedules of those that have one, by name."""
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
@@ -65,22 +68,37 @@ def _motors(path: Path) -> dict[str, Motor]:
         found = ", ".join(document) or "none"
         raise PlantError(path, "top level", expected="[[motor]] tables and nothing else", found=found)
     motors: dict[str, Motor] = {}
+    schedules: dict[str, Schedule] = {}
     for number, table in enumerate(tables, start=1):
         name = table.pop("name", None)
         if not isinstance(name, str) or not name:
             raise PlantError(path, f"motor {number}: name", expected="the motor's name", found=repr(name))
         if name in motors:
             raise PlantError(path, f"motor {number}: name", expected="each motor once", found=f"{name} again")
+        expression = table.pop("schedule", None)
+        if expression is not None:
+            schedules[name] = _schedule(expression, path, name)
         try:
             motors[name] = motor_from_table(table, name=name, source=str(path))
         except MotorFileError as error:
             raise PlantError(
                 path, f"motor {name}: {error.field}", expected=error.expected, found=error.found
             ) from error
-    return motors
+    return motors, schedules
 
 
-def _plant(configuration: scl.Scl, motors: dict[str, Motor], motors_path: Path) -> Plant:
+def _schedule(expression: object, path: Path, motor: str) -> Schedule:
+    try:
+        return Schedule.parse(expression if isinstance(expression, str) else "")
+    except ValueError as error:
+        raise PlantError(
+            path, f"motor {motor}: schedule", expected=str(error), found=repr(expression)
+        ) from error
+
+
+def _plant(
+    configuration: scl.Scl, motors: dict[str, Motor], schedules: dict[str, Schedule], motors_path: Path
+) -> Plant:
     path = configuration.path
     feeders = configuration.feeders()
     if not feeders:
@@ -114,7 +132,13 @@ def _plant(configuration: scl.Scl, motors: dict[str, Motor], motors_path: Path) 
         sites=tuple(sites.values()),
         relays=tuple(_relay(configuration, feeder) for feeder in feeders),
         motors=tuple(
-            PlantMotor(motors[feeder.motor], feeder.motor_description, feeder.site, feeder.ied)
+            PlantMotor(
+                motors[feeder.motor],
+                feeder.motor_description,
+                feeder.site,
+                feeder.ied,
+                schedules.get(feeder.motor),
+            )
             for feeder in feeders
         ),
     )
@@ -164,4 +188,5 @@ def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
         fault_number=points.record_number,
         report_control=points.report_control,
         metering_data_set=points.metering_data_set,
+        measurands=measurands(ied),
     )

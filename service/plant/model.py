@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 
 from core.machines.parameters import Motor
+from service.plant.metering import Measurand
+from service.plant.schedule import Schedule
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +22,7 @@ class Relay:
     report_control: buffered report "A1_SEL710CFG/LLN0.BR.BRep01" whose data set holds record_made, None
     where there is none: then the directory alone tells of records.
     metering_data_set: data set with the measured currents, None where the relay offers none.
+    measurands: what it measures all the time.
     """
 
     name: str
@@ -33,16 +36,21 @@ class Relay:
     fault_number: str | None
     report_control: str | None
     metering_data_set: str | None
+    measurands: tuple[Measurand, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class PlantMotor:
-    """A motor where it stands: `motor` is what the diagnosis needs, `relay` the name of its relay."""
+    """A motor where it stands: `motor` is what the diagnosis needs, `relay` the name of its relay.
+
+    schedule: when it is recorded without anybody asking.
+    """
 
     motor: Motor
     description: str
     site: str
     relay: str
+    schedule: Schedule | None = None
 
     @property
     def name(self) -> str:

@@ -1,8 +1,16 @@
 """What the service remembers: tables, their migrations and the only code that touches them."""
 
 from service.storage.engine import connect
-from service.storage.errors import NotFoundError, StateConflictError, StorageError
+from service.storage.errors import LeaseLostError, NotFoundError, StateConflictError, StorageError
 from service.storage.migrations import migrate
 from service.storage.repository import Repository
 
-__all__ = ["NotFoundError", "Repository", "StateConflictError", "StorageError", "connect", "migrate"]
+__all__ = [
+    "LeaseLostError",
+    "NotFoundError",
+    "Repository",
+    "StateConflictError",
+    "StorageError",
+    "connect",
+    "migrate",
+]

@@ -21,6 +21,16 @@ class UnusableBaselineError(StorageError):
         super().__init__(f"recording {recording_id} cannot be part of a baseline: {reason}")
 
 
+class LeaseLostError(StorageError):
+    """A gateway does not hold the lease, of all its relays or of one, that it needs for what it wants."""
+
+    def __init__(self, gateway: str, ied: str | None = None) -> None:
+        self.gateway = gateway
+        self.ied = ied
+        what = "any lease" if ied is None else f"the lease of {ied}"
+        super().__init__(f"gateway {gateway} does not hold {what} any more")
+
+
 class StateConflictError(StorageError):
     """A step that does not follow from the present state, e.g. a failed event report cannot be triggered."""
 

@@ -7,7 +7,16 @@ from sqlalchemy import JSON, BigInteger, Enum, ForeignKey, Index, LargeBinary, M
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 from core.diagnosis.verdict import Verdict
-from service.storage.states import EventReportState, JobState, LinkState, RecordingSource, RecordingState
+from service.storage.states import (
+    AlarmKind,
+    ClockQuality,
+    EventReportOrigin,
+    EventReportState,
+    JobState,
+    LinkState,
+    RecordingSource,
+    RecordingState,
+)
 
 
 def _words(enum: type[StrEnum]) -> Enum:
@@ -34,6 +43,9 @@ class Base(DeclarativeBase):
     type_annotation_map = {  # noqa: RUF012  # SQLAlchemy's own declaration style
         int: BigInteger,
         LinkState: _words(LinkState),
+        AlarmKind: _words(AlarmKind),
+        ClockQuality: _words(ClockQuality),
+        EventReportOrigin: _words(EventReportOrigin),
         EventReportState: _words(EventReportState),
         RecordingState: _words(RecordingState),
         RecordingSource: _words(RecordingSource),
@@ -66,6 +78,79 @@ class IedRow(Base):
     link_changed_ns: Mapped[int | None]
     last_success_ns: Mapped[int | None]
     entry_id: Mapped[bytes | None] = mapped_column(LargeBinary)
+    clock_offset_ns: Mapped[int | None]
+    clock_uncertainty_ns: Mapped[int | None]
+    clock_quality: Mapped[ClockQuality | None]
+    clock_measured_ns: Mapped[int | None]
+
+
+class GatewayRow(Base):
+    """A process that visits relays. `beats` goes on as long as it lives."""
+
+    __tablename__ = "gateways"
+
+    id: Mapped[str] = mapped_column(primary_key=True)
+    host: Mapped[str]
+    process_id: Mapped[int]
+    beats: Mapped[int]
+    started_ns: Mapped[int]
+
+
+class LeaseRow(Base):
+    """The gateway that visits a relay: no other does."""
+
+    __tablename__ = "leases"
+
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), primary_key=True)
+    gateway: Mapped[str] = mapped_column(ForeignKey("gateways.id"), index=True)
+
+
+class LinkChangeRow(Base):
+    """One change of a link's state, or of the reason why it is down."""
+
+    __tablename__ = "link_changes"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"))
+    changed_ns: Mapped[int]
+    state: Mapped[LinkState]
+    reason: Mapped[str | None]
+
+    __table_args__ = (Index("ix_link_changes_ied_changed_ns_id", "ied", "changed_ns", "id"),)
+
+
+class LinkFiguresRow(Base):
+    """What went over a link since the relay is known; `day_bytes` in the UTC day `day` (days since 1970)."""
+
+    __tablename__ = "link_figures"
+
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), primary_key=True)
+    round_trip_s: Mapped[float | None]
+    connections: Mapped[int]
+    received_bytes: Mapped[int]
+    reports: Mapped[int]
+    report_gaps: Mapped[int]
+    day: Mapped[int]
+    day_bytes: Mapped[int]
+
+
+class AlarmRow(Base):
+    """What somebody has to look after at a relay; it stands until it is cleared. `subject`: a file's name."""
+
+    __tablename__ = "alarms"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"))
+    kind: Mapped[AlarmKind]
+    subject: Mapped[str]
+    reason: Mapped[str]
+    raised_ns: Mapped[int]
+    cleared_ns: Mapped[int | None]
+
+    __table_args__ = (
+        Index("ix_alarms_ied_cleared_ns", "ied", "cleared_ns"),
+        Index("ix_alarms_raised_ns_id", "raised_ns", "id"),
+    )
 
 
 class MotorRow(Base):
@@ -76,6 +161,7 @@ class MotorRow(Base):
     site: Mapped[str] = mapped_column(ForeignKey("sites.name"))
     ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), index=True)
     in_service: Mapped[bool]
+    schedule: Mapped[str | None]
 
 
 class RecordingRow(Base):
@@ -95,6 +181,10 @@ class RecordingRow(Base):
     announced_ns: Mapped[int]
     fetched_ns: Mapped[int | None]
     recorded_ns: Mapped[int | None]
+    clock_offset_ns: Mapped[int | None]
+    clock_uncertainty_ns: Mapped[int | None]
+    clock_quality: Mapped[ClockQuality | None]
+    clock_measured_ns: Mapped[int | None]
 
     __table_args__ = (
         Index("ux_recordings_relay", "ied", "name", "digest", unique=True),
@@ -144,12 +234,39 @@ class BaselineRecordingRow(Base):
     chosen_ns: Mapped[int]
 
 
+class MeasurementRow(Base):
+    """Values a relay measured: of one time (step_s = 0), or means of `step_s` seconds from `time_ns` on."""
+
+    __tablename__ = "measurements"
+
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
+    step_s: Mapped[int] = mapped_column(primary_key=True)
+    time_ns: Mapped[int] = mapped_column(primary_key=True)
+    samples: Mapped[int]
+    ia_A: Mapped[float | None]
+    ib_A: Mapped[float | None]
+    ic_A: Mapped[float | None]
+    vab_V: Mapped[float | None]
+    vbc_V: Mapped[float | None]
+    vca_V: Mapped[float | None]
+    va_V: Mapped[float | None]
+    vb_V: Mapped[float | None]
+    vc_V: Mapped[float | None]
+    power_W: Mapped[float | None]
+    reactive_power_var: Mapped[float | None]
+    power_factor: Mapped[float | None]
+    frequency_Hz: Mapped[float | None]
+
+    __table_args__ = (Index("ix_measurements_step_s_time_ns", "step_s", "time_ns"),)
+
+
 class EventReportRow(Base):
     __tablename__ = "event_reports"
 
     id: Mapped[str] = mapped_column(String(36), primary_key=True)
     motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
     ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"))
+    origin: Mapped[EventReportOrigin] = mapped_column(server_default=EventReportOrigin.REQUEST)
     state: Mapped[EventReportState]
     reason: Mapped[str | None]
     idempotency_key: Mapped[str | None]

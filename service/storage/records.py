@@ -5,7 +5,16 @@ from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
 
 from core.diagnosis.verdict import Verdict
-from service.storage.states import EventReportState, JobState, LinkState, RecordingSource, RecordingState
+from service.storage.states import (
+    AlarmKind,
+    ClockQuality,
+    EventReportOrigin,
+    EventReportState,
+    JobState,
+    LinkState,
+    RecordingSource,
+    RecordingState,
+)
 
 T = TypeVar("T")
 
@@ -30,8 +39,21 @@ class SiteEntry:
 
 
 @dataclass(frozen=True, slots=True)
+class ClockReading:
+    """A relay's clock less ours, and what the relay says of its clock."""
+
+    offset_ns: int
+    uncertainty_ns: int
+    quality: ClockQuality
+    measured_ns: int
+
+
+@dataclass(frozen=True, slots=True)
 class IedEntry:
-    """A relay and the state of its link; `last_success_ns` is the last request it answered."""
+    """A relay and the state of its link; `last_success_ns` is the last request it answered.
+
+    clock_...: the latest ClockReading, None before the first.
+    """
 
     name: str
     site: str
@@ -43,14 +65,82 @@ class IedEntry:
     link_reason: str | None
     link_changed_ns: int | None
     last_success_ns: int | None
+    clock_offset_ns: int | None
+    clock_uncertainty_ns: int | None
+    clock_quality: ClockQuality | None
+    clock_measured_ns: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class GatewayEntry:
+    """A process that visits relays, and how many it holds leases of."""
+
+    id: str
+    host: str
+    process_id: int
+    started_ns: int
+    relays: int
+
+
+@dataclass(frozen=True, slots=True)
+class LinkChange:
+    """A link's new state, since when and why."""
+
+    changed_ns: int
+    state: LinkState
+    reason: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class LinkTraffic:
+    """What went over a link since it was last told."""
+
+    connections: int = 0
+    received_bytes: int = 0
+    reports: int = 0
+    report_gaps: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LinkFigures:
+    """What went over a relay's link in all, and how long its latest answer took [s].
+
+    report_gaps: how often reports were lost.  day_bytes: counted against the limit of the UTC day `day`
+    (days since 1970).
+    """
+
+    ied: str
+    round_trip_s: float | None = None
+    connections: int = 0
+    received_bytes: int = 0
+    reports: int = 0
+    report_gaps: int = 0
+    day: int = 0
+    day_bytes: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Alarm:
+    """What somebody has to look after at a relay; standing until `cleared_ns` is set."""
+
+    id: str
+    ied: str
+    kind: AlarmKind
+    subject: str
+    reason: str
+    raised_ns: int
+    cleared_ns: int | None
 
 
 @dataclass(frozen=True, slots=True)
 class MotorEntry:
+    """A motor; `schedule` is a cron expression in UTC."""
+
     name: str
     description: str
     site: str
     ied: str
+    schedule: str | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +150,7 @@ class EventReport:
     id: str
     motor: str
     ied: str
+    origin: EventReportOrigin
     state: EventReportState
     reason: str | None
     recording_id: str | None
@@ -84,7 +175,8 @@ class RemoteRecord:
 class RecordingEntry:
     """A recording; `digest` is its place in the recording store, None until it is fetched.
 
-    recorded_ns: the trigger time written in the record, known once it was read.
+    recorded_ns: the trigger time written in the record, known once it was read, by the relay's clock.
+    clock_...: the latest ClockReading of that relay when the recording was stored, None without one.
     """
 
     id: str
@@ -101,6 +193,10 @@ class RecordingEntry:
     announced_ns: int
     fetched_ns: int | None
     recorded_ns: int | None
+    clock_offset_ns: int | None
+    clock_uncertainty_ns: int | None
+    clock_quality: ClockQuality | None
+    clock_measured_ns: int | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,6 +261,36 @@ class TrendPoint:
 
 
 @dataclass(frozen=True, slots=True)
+class Sample:
+    """What a relay measured at a time: values by the names of Measurement's fields, those it has."""
+
+    motor: str
+    time_ns: int
+    values: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """Measured values, or means of `samples` of them from `time_ns` on; None where the relay has none."""
+
+    time_ns: int
+    samples: int
+    ia_A: float | None
+    ib_A: float | None
+    ic_A: float | None
+    vab_V: float | None
+    vbc_V: float | None
+    vca_V: float | None
+    va_V: float | None
+    vb_V: float | None
+    vc_V: float | None
+    power_W: float | None
+    reactive_power_var: float | None
+    power_factor: float | None
+    frequency_Hz: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class MotorHealth:
     """What is known of a motor now: the latest recording's diagnosis, its relay, its latest recording."""
 
@@ -176,9 +302,10 @@ class MotorHealth:
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """How many of each there are, by state; for the metrics."""
+    """How many of each there are, by state; of alarms, those that stand, by kind. For the metrics."""
 
     links: Mapping[LinkState, int]
+    alarms: Mapping[AlarmKind, int]
     event_reports: Mapping[EventReportState, int]
     recordings: Mapping[RecordingState, int]
     jobs: Mapping[JobState, int]

@@ -11,6 +11,30 @@ class LinkState(StrEnum):
     DOWN = "down"
 
 
+class AlarmKind(StrEnum):
+    """What somebody has to look after at a relay."""
+
+    FILE_REFUSED = "file-refused"
+    FILE_TOO_LARGE = "file-too-large"
+    FILE_UNSTEADY = "file-unsteady"
+    DAILY_LIMIT = "daily-limit"
+
+
+class ClockQuality(StrEnum):
+    """What a relay says of its own clock."""
+
+    SYNCHRONISED = "synchronised"
+    NOT_SYNCHRONISED = "not-synchronised"
+    FAILED = "failed"
+
+
+class EventReportOrigin(StrEnum):
+    """Who asked for an event report."""
+
+    REQUEST = "request"
+    SCHEDULE = "schedule"
+
+
 class EventReportState(StrEnum):
     """An event report somebody asked for, from the wish to the diagnosis."""
 

@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 import scl
-from service.plant import PlantError, read_plant
+from service.plant import PlantError, Schedule, read_plant
 from service.settings import Settings, SettingsError
 
 DEMO_MOTORS = Path(__file__).parents[2] / "service" / "demo" / "motors.toml"
@@ -130,3 +130,14 @@ def test_a_relay_that_tells_of_no_record_is_taken_and_polled(motors: Path, tmp_p
     relay = read_plant(settings(motors, tmp_path / "old.scd")).relay("A1_SEL710")
     assert (relay.record_made, relay.report_control) == (None, None)
     assert relay.trigger_control == "A1_SEL710CON/RBGGIO1.SPCSO01"
+
+
+def test_a_motor_may_have_a_schedule(motors: Path) -> None:
+    text = motors.read_text(encoding="utf-8")
+    motors.write_text(text.replace('name = "FAN-A2"', 'name = "FAN-A2"\nschedule = "30 6 * * MON"'))
+    plant = read_plant(settings(motors))
+    assert plant.motor("FAN-A2").schedule == Schedule("30 6 * * MON")
+    assert plant.motor("PUMP-A1").schedule is None
+    motors.write_text(text.replace('name = "FAN-A2"', 'name = "FAN-A2"\nschedule = "at dawn"'))
+    with pytest.raises(PlantError, match=r"motor FAN-A2: schedule: expected 5 fields.*found 'at dawn'"):
+        read_plant(settings(motors))

@@ -1,14 +1,29 @@
 """The only code that touches the tables, one module a subject."""
 
+from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
 from service.storage.repository.condition import ConditionRows
 from service.storage.repository.event_reports import EventReportRows
 from service.storage.repository.jobs import JobRows
+from service.storage.repository.leases import LeaseRows
+from service.storage.repository.links import LinkRows
+from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.recordings import RecordingRows
 
 
-class Repository(PlantRows, EventReportRows, RecordingRows, JobRows, ConditionRows, BaselineRows):
+class Repository(
+    PlantRows,
+    LinkRows,
+    LeaseRows,
+    AlarmRows,
+    EventReportRows,
+    RecordingRows,
+    JobRows,
+    ConditionRows,
+    MeasurementRows,
+    BaselineRows,
+):
     """All there is to ask of and tell the database; every method is one transaction.
 
     Safe to share between threads: each call takes its own connection. Two processes may each have one.

@@ -3,10 +3,18 @@
 from enum import StrEnum
 from typing import TypeVar
 
-from sqlalchemy import func, select
+from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from service.storage.models import DiagnosisRow, EventReportRow, IedRow, JobRow, MotorRow, RecordingRow
+from service.storage.models import (
+    AlarmRow,
+    DiagnosisRow,
+    EventReportRow,
+    IedRow,
+    JobRow,
+    MotorRow,
+    RecordingRow,
+)
 from service.storage.records import (
     Counts,
     Cursor,
@@ -76,6 +84,7 @@ class ConditionRows(Sessions):
         with self._read() as session:
             return Counts(
                 links=_count(session, IedRow.link_state),
+                alarms=_count(session, AlarmRow.kind, AlarmRow.cleared_ns.is_(None)),
                 event_reports=_count(session, EventReportRow.state),
                 recordings=_count(session, RecordingRow.state),
                 jobs=_count(session, JobRow.state),
@@ -90,6 +99,8 @@ def _trend_point(row: DiagnosisRow, quantity: Quantity) -> TrendPoint:
     return TrendPoint(row.recorded_ns, value, ci95, row.verdict, row.recording_id)
 
 
-def _count(session: Session, state: InstrumentedAttribute[State]) -> dict[State, int]:
-    rows = session.execute(select(state, func.count()).group_by(state))
+def _count(
+    session: Session, state: InstrumentedAttribute[State], *only_those: ColumnElement[bool]
+) -> dict[State, int]:
+    rows = session.execute(select(state, func.count()).where(*only_those).group_by(state))
     return {row[0]: row[1] for row in rows}

@@ -9,8 +9,9 @@ from sqlalchemy.orm import Session
 from service.storage.errors import StateConflictError
 from service.storage.models import EventReportRow, MotorRow
 from service.storage.records import Cursor, EventReport, Page
+from service.storage.repository.leases import require_lease
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
-from service.storage.states import EventReportState
+from service.storage.states import EventReportOrigin, EventReportState
 
 OPEN = (EventReportState.REQUESTED, EventReportState.TRIGGERED, EventReportState.RECORDED)
 ENDED = (EventReportState.DIAGNOSED, EventReportState.FAILED)
@@ -33,17 +34,24 @@ class EventReportRows(Sessions):
                 earlier = only(session, same)
                 if earlier is not None:
                     return event_report(earlier)
-            row = EventReportRow(
-                id=str(uuid.uuid4()),
-                motor=motor,
-                ied=where.ied,
-                state=EventReportState.REQUESTED,
-                idempotency_key=idempotency_key,
-                requested_ns=now_ns,
-            )
-            session.add(row)
-            session.flush()
-            return event_report(row)
+            return _request(session, where, EventReportOrigin.REQUEST, idempotency_key, now_ns)
+
+    def schedule_event_report(self, motor: str, *, due_ns: int, now_ns: int) -> EventReport | None:
+        """The report a motor's schedule asks for at `due_ns`, however often that is told.
+
+        None, and no report, while an earlier one waits for its record: triggers must not pile up at a relay
+        that makes none. Raises NotFoundError.
+        """
+        key = f"schedule {due_ns}"
+        of_motor = select(EventReportRow).where(EventReportRow.motor == motor)
+        with self._write() as session:
+            where = found(session, MotorRow, motor, "motor")
+            earlier = only(session, of_motor.where(EventReportRow.idempotency_key == key))
+            if earlier is not None:
+                return event_report(earlier)
+            if only(session, of_motor.where(EventReportRow.state.in_(OPEN))) is not None:
+                return None
+            return _request(session, where, EventReportOrigin.SCHEDULE, key, now_ns)
 
     def event_report(self, report_id: str) -> EventReport:
         """Raises NotFoundError."""
@@ -86,10 +94,15 @@ class EventReportRows(Sessions):
         with self._read() as session:
             return tuple(event_report(row) for row in session.scalars(query))
 
-    def mark_triggered(self, report_id: str, *, now_ns: int) -> EventReport:
-        """The relay accepted the trigger. Raises NotFoundError, StateConflictError."""
+    def mark_triggered(self, report_id: str, *, now_ns: int, gateway: str | None = None) -> EventReport:
+        """The relay is about to be triggered, by the gateway that holds its lease.
+
+        Raises NotFoundError, StateConflictError, LeaseLostError where that gateway does not hold it.
+        """
         with self._write() as session:
             row = found(session, EventReportRow, report_id, "event report")
+            if gateway is not None:
+                require_lease(session, row.ied, gateway)
             if _advances(row, {EventReportState.REQUESTED}, EventReportState.TRIGGERED):
                 row.triggered_ns = now_ns
             return event_report(row)
@@ -109,6 +122,23 @@ class EventReportRows(Sessions):
             row = found(session, EventReportRow, report_id, "event report")
             fail_row(row, reason, now_ns)
             return event_report(row)
+
+
+def _request(
+    session: Session, motor: MotorRow, origin: EventReportOrigin, key: str | None, now_ns: int
+) -> EventReport:
+    row = EventReportRow(
+        id=str(uuid.uuid4()),
+        motor=motor.name,
+        ied=motor.ied,
+        origin=origin,
+        state=EventReportState.REQUESTED,
+        idempotency_key=key,
+        requested_ns=now_ns,
+    )
+    session.add(row)
+    session.flush()
+    return event_report(row)
 
 
 def _advances(row: EventReportRow, before: set[EventReportState], wanted: EventReportState) -> bool:

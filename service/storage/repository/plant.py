@@ -1,10 +1,10 @@
-"""Sites, relays and motors, and how the relays' links are doing."""
+"""Sites, relays and motors."""
 
 from sqlalchemy import select, update
 
 from service.plant import Plant
 from service.storage.models import IedRow, MotorRow, SiteRow
-from service.storage.records import Cursor, IedEntry, MotorEntry, Page, SiteEntry
+from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
 from service.storage.repository.sessions import Sessions, found, page_of, record_of
 from service.storage.states import LinkState
 
@@ -37,28 +37,16 @@ class PlantRows(Sessions):
                         site=motor.site,
                         ied=motor.relay,
                         in_service=True,
+                        schedule=None if motor.schedule is None else motor.schedule.expression,
                     )
                 )
 
-    def set_link_state(self, ied: str, state: LinkState, reason: str | None, *, now_ns: int) -> None:
-        """Notes whether a relay answers, and why not. Raises NotFoundError."""
+    def note_clock(self, ied: str, reading: ClockReading) -> None:
+        """Remembers how far a relay's clock is from ours. Raises NotFoundError."""
         with self._write() as session:
             row = found(session, IedRow, ied, "IED")
-            if row.link_state is not state:
-                row.link_changed_ns = now_ns
-            row.link_state = state
-            row.link_reason = reason
-            if state is LinkState.UP:
-                row.last_success_ns = now_ns
-
-    def reset_links(self, *, now_ns: int) -> None:
-        """Sets every link to unknown: for the start, and when the collector is gone."""
-        with self._write() as session:
-            session.execute(
-                update(IedRow)
-                .where(IedRow.link_state != LinkState.UNKNOWN)
-                .values(link_state=LinkState.UNKNOWN, link_reason=None, link_changed_ns=now_ns)
-            )
+            row.clock_offset_ns, row.clock_uncertainty_ns = reading.offset_ns, reading.uncertainty_ns
+            row.clock_quality, row.clock_measured_ns = reading.quality, reading.measured_ns
 
     def entry_id(self, ied: str) -> bytes | None:
         """EntryID of the last buffered report whose records are safe here. Raises NotFoundError."""

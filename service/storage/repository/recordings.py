@@ -44,6 +44,28 @@ class RecordingRows(Sessions):
         with self._read() as session:
             return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
 
+    def announced_remote_records(self, ied: str) -> frozenset[RemoteRecord]:
+        """Records of a relay that were seen and are neither stored nor refused."""
+        query = (
+            select(RemoteRecordRow)
+            .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
+            .where(RemoteRecordRow.ied == ied, RecordingRow.state == RecordingState.ANNOUNCED)
+        )
+        with self._read() as session:
+            return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
+
+    def give_up_remote_record(self, ied: str, remote: RemoteRecord, reason: str) -> None:
+        """Rejects an announced record that the relay does not list any more; it is new if it does again."""
+        with self._write() as session:
+            link = _link(session, ied, remote)
+            if link is None:
+                return
+            row = found(session, RecordingRow, link.recording_id, "recording")
+            if row.state is RecordingState.ANNOUNCED:
+                row.state = RecordingState.REJECTED
+                row.reason = reason
+                session.delete(link)
+
     def announce_recording(
         self, ied: str, motor: str, remote: RemoteRecord, *, now_ns: int
     ) -> RecordingEntry:
@@ -276,6 +298,10 @@ def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: 
     row.state = RecordingState.FETCHED
     row.reason = None
     row.fetched_ns = now_ns
+    if row.ied is not None:
+        relay = found(session, IedRow, row.ied, "IED")
+        row.clock_offset_ns, row.clock_uncertainty_ns = relay.clock_offset_ns, relay.clock_uncertainty_ns
+        row.clock_quality, row.clock_measured_ns = relay.clock_quality, relay.clock_measured_ns
     session.flush()
     for file in stored.files:
         session.add(

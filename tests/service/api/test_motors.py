@@ -3,7 +3,6 @@ import pytest
 
 from service.recordings import RecordingStore
 from service.storage import Repository
-from service.storage.states import LinkState
 from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 FIRST = "2025-10-09T08:53:20.000000000Z"
@@ -30,17 +29,9 @@ def test_the_plant_is_listed(client: httpx.Client) -> None:
         "items": [{"name": "FACTORY_A", "description": "Factory A"}],
         "next_cursor": None,
     }
-    assert [ied["name"] for ied in client.get("/api/v1/ieds").json()["items"]] == ["A1_SEL710", "A2_SEL710"]
     motors = client.get("/api/v1/motors").json()["items"]
     assert [motor["name"] for motor in motors] == ["FAN-A2", "PUMP-A1"]
     assert client.get("/api/v1/motors/FAN-A2").json() == motors[0]
-
-
-def test_a_relay_tells_its_link(client: httpx.Client, repository: Repository) -> None:
-    repository.set_link_state("A1_SEL710", LinkState.DOWN, "connection refused", now_ns=NOW_NS)
-    ied = client.get("/api/v1/ieds/A1_SEL710").json()
-    assert (ied["link_state"], ied["link_reason"]) == ("down", "connection refused")
-    assert (ied["link_changed_time"], ied["last_success_time"]) == (FIRST, None)
 
 
 def test_pages_lead_through_the_list(client: httpx.Client) -> None:

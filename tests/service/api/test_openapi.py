@@ -15,6 +15,8 @@ from service.api import ApiContext, create_app
 from service.recordings import RecordingStore
 from service.settings import Settings, sqlite_url
 from service.storage import Repository, connect, migrate
+from service.storage.records import Sample
+from service.storage.states import AlarmKind, LinkState
 from tests.service.api.comtrade_files import CFG, DAT
 from tests.service.api.serving import serving
 from tests.service.plants import NOW_NS, fault, two_motor_plant
@@ -23,6 +25,7 @@ NO_WRONG_REQUESTS = {
     "GET /healthz",
     "GET /readyz",
     "GET /metrics",
+    "GET /api/v1/gateways",
     "GET /api/v1/ieds/{name}",
     "GET /api/v1/motors/{name}",
     "GET /api/v1/motors/{name}/health",
@@ -45,6 +48,11 @@ def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BaseSch
     claimed = repository.claim_job(now_ns=NOW_NS)
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.set_link_state("A1_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
+    repository.register_gateway("here/0", host="here", process_id=1, now_ns=NOW_NS)
+    repository.share_relays("here/0", ["A1_SEL710"], most=1)
+    repository.add_samples([Sample("PUMP-A1", NOW_NS, {"ia_A": 1.0})])
+    repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "X.CFG", "outside", now_ns=NOW_NS)
     context = ApiContext(Settings(data_directory=data), repository, store)
     with serving(create_app(context)) as client:
         yield schemathesis.openapi.from_url(f"{client.base_url}/api/v1/openapi.json")

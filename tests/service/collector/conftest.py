@@ -17,7 +17,7 @@ from service.recordings import RecordingStore
 from service.settings import Settings
 from service.storage import Repository, connect, migrate
 from service.storage.records import EventReport, RecordingEntry
-from service.storage.states import EventReportState, LinkState
+from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
 from tests.service.collector.scripted_relay import (
     CONTROL,
     FAULT_NUMBER,
@@ -84,6 +84,25 @@ class Bench:
 
     def recordings(self) -> list[RecordingEntry]:
         return list(self.repository.recordings(limit=100).items)
+
+    def recording(self, name: str) -> RecordingEntry | None:
+        """The latest recording of this name."""
+        return next((recording for recording in self.recordings() if recording.name == name), None)
+
+    def is_stored(self, name: str) -> bool:
+        recording = self.recording(name)
+        return recording is not None and recording.state is RecordingState.FETCHED
+
+    def alarms(self) -> dict[AlarmKind, list[str]]:
+        """Subjects of the alarms that stand, by kind."""
+        standing: dict[AlarmKind, list[str]] = {}
+        for alarm in self.repository.standing_alarms(NAME):
+            standing.setdefault(alarm.kind, []).append(alarm.subject)
+        return standing
+
+    def with_settings(self, **changes: object) -> "Bench":
+        self.settings = self.settings.model_copy(update=changes)
+        return self
 
     def link(self) -> LinkState:
         return self.repository.ied(NAME).link_state

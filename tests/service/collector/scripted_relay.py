@@ -1,10 +1,11 @@
 """A relay for the collector's tests: the real model over real MMS, doing exactly what the test says."""
 
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import scl
-from mms import AddCause, ControlAction, FileAnswer, FileOperation, FileRequest, Server
+from mms import AddCause, ControlAction, FileAnswer, FileOperation, FileRequest, Server, Timestamp, Value
 from scl.model_text import model_text
 
 NAME = "A1_SEL710"
@@ -16,13 +17,20 @@ REPORT_CONTROL = f"{NAME}CFG/LLN0.BR.BRep01"
 
 @dataclass
 class ScriptedRelay:
-    """Writes a record at each rising edge of RB01, unless told to refuse or to stay silent."""
+    """Writes a record at each rising edge of RB01, unless told to refuse or to stay silent.
+
+    shifts: a file of SHIFTY is a byte longer whenever it is opened than it was when it was listed.
+    clock_offset_s: it stamps changes of RB01 with a clock so far ahead; None: it stamps nothing.
+    """
 
     root: Path
     port: int
     refuses: bool = False
     silent: bool = False
     busy: bool = False
+    shifts: bool = False
+    clock_offset_s: float | None = None
+    clock_quality: int = 0x0A
     edges: int = 0
     records: int = 0
     server: Server = field(init=False)
@@ -59,6 +67,9 @@ class ScriptedRelay:
         self.server.update_many({f"{RECORD_MADE}.stVal": True, f"{FAULT_NUMBER}.stVal": self.records})
 
     def _answer(self, request: FileRequest) -> FileAnswer:
+        if self.shifts and request.operation is FileOperation.OPEN and "SHIFTY" in request.path.name:
+            with request.path.open("ab") as file:
+                file.write(b"+")
         busy = self.busy and request.operation is FileOperation.OPEN
         return FileAnswer.BUSY if busy else FileAnswer.SERVE
 
@@ -67,7 +78,11 @@ class ScriptedRelay:
             return AddCause.BLOCKED_BY_SWITCHING_HIERARCHY
         rising = action.value is True and not self._bit
         self._bit = action.value is True
-        self.server.update(f"{CONTROL}.stVal", self._bit)
+        changes: dict[str, Value] = {f"{CONTROL}.stVal": self._bit}
+        if self.clock_offset_s is not None:
+            now_ns = time.time_ns() + round(self.clock_offset_s * 1e9)
+            changes[f"{CONTROL}.t"] = Timestamp(now_ns, self.clock_quality)
+        self.server.update_many(changes)
         if rising:
             self.edges += 1
             if not self.silent:

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from service.collector.listing import ListedRecord, understand
 from service.collector.settling import Settling
@@ -92,7 +94,7 @@ def whole(size: int = 100) -> ListedRecord:
 
 
 def test_a_record_is_ready_once_it_stands_still() -> None:
-    settling = Settling(settle_s=0.25, patience_s=30)
+    settling = Settling(settle_s=0.25, patience_s=30, unsteady_s=60)
     assert settling.look([whole(10)], 0.0).waiting == (whole(10),)
     assert settling.look([whole(20)], 0.3).waiting == (whole(20),), "it grew: wait again"
     assert settling.look([whole(20)], 0.4).waiting == (whole(20),)
@@ -101,7 +103,34 @@ def test_a_record_is_ready_once_it_stands_still() -> None:
 
 def test_a_record_without_its_data_is_given_up_in_the_end() -> None:
     (half,) = understand(listed("X.CFG"), "EVENTS").records
-    settling = Settling(settle_s=0.25, patience_s=30)
+    settling = Settling(settle_s=0.25, patience_s=30, unsteady_s=60)
     assert settling.look([half], 0.0).waiting == (half,)
     assert settling.look([half], 29.0).waiting == (half,)
     assert settling.look([half], 30.0).incomplete == (half,)
+
+
+def test_a_record_that_goes_on_changing_is_waited_for_no_longer() -> None:
+    settling = Settling(settle_s=0.25, patience_s=30, unsteady_s=60)
+    for tenth in range(599):
+        assert settling.look([whole(100 + tenth)], tenth / 10).waiting
+    assert settling.look([whole(1000)], 60.0).unsteady == (whole(1000),)
+    assert settling.look([whole(1001)], 60.1).unsteady == (whole(1001),)
+    assert settling.look([whole(1001)], 60.4).ready == (whole(1001),), "it stands still at last"
+    assert settling.look([], 60.5).waiting == ()
+    assert settling.look([whole(1)], 60.6).waiting == (whole(1),), "another record of the same name"
+
+
+names = st.text(max_size=120) | st.lists(
+    st.sampled_from(["..", ".", "EVENTS", "X.CFG", "/", "\\", "\0", "C:", "x.dat", " ", ".CFG"]), max_size=8
+).map("".join)
+
+
+@given(st.lists(names, max_size=6))
+def test_no_name_leads_out_of_the_directory(listed_names: list[str]) -> None:
+    listing = understand(listed(*listed_names), "EVENTS")
+    for record in listing.records:
+        for file in record.files:
+            assert file.remote_name.replace("\\", "/").strip("/").split("/")[:-1] in (["EVENTS"], [""])
+            assert not {"/", "\\", "\0"} & set(file.local_name)
+            assert file.local_name not in (".", "..")
+    assert all(refused.name.isprintable() for refused in listing.refused)

@@ -287,7 +287,7 @@ def test_a_relay_that_stays_down_is_mentioned_now_and_then(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("service.collector.relay_session.FIRST_RETRY_S", 0.05)
-    monkeypatch.setattr("service.collector.relay_session.REMIND_AFTER_S", 0.0)
+    monkeypatch.setattr("service.collector.link.REMIND_AFTER_S", 0.0)
     with capture_logs() as logs, bench.session():
         assert eventually(lambda: [entry["event"] for entry in logs].count("link down") >= 2)
 

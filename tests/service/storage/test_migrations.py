@@ -62,3 +62,42 @@ def test_a_url_that_cannot_be_shared_is_refused(url: str) -> None:
 def test_a_path_with_a_percent_sign(tmp_path: Path) -> None:
     migrate(f"sqlite:///{tmp_path / '100%.sqlite'}")
     assert (tmp_path / "100%.sqlite").is_file()
+
+
+def test_a_database_of_the_first_version_keeps_what_it_holds(tmp_path: Path) -> None:
+    url = f"sqlite:///{tmp_path / 'old.sqlite'}"
+    engine = connect(url)
+    with engine.begin() as connection:
+        command.upgrade(config(connection), "0001")
+        for statement in (
+            "INSERT INTO sites VALUES ('FACTORY_A', 'Factory A', 1)",
+            "INSERT INTO ieds (name, site, host, port, manufacturer, type, in_service, link_state)"
+            " VALUES ('A1', 'FACTORY_A', '10.0.0.7', 102, 'SEL', 'SEL-710', 1, 'up')",
+            "INSERT INTO motors VALUES ('PUMP-A1', 'pump', 'FACTORY_A', 'A1', 1)",
+            "INSERT INTO event_reports (id, motor, ied, state, requested_ns)"
+            " VALUES ('r', 'PUMP-A1', 'A1', 'diagnosed', 5)",
+            "INSERT INTO recordings (id, motor, ied, source, name, size_bytes, state, attempts, announced_ns)"
+            " VALUES ('x', 'PUMP-A1', 'A1', 'relay', 'HR_1', 7, 'announced', 0, 5)",
+        ):
+            connection.execute(text(statement))
+    migrate(url)
+    repository = Repository(engine)
+    assert repository.motor("PUMP-A1").schedule is None
+    assert repository.event_report("r").origin == "request"
+    assert repository.recording("x").clock_quality is None
+    assert repository.ied("A1").link_state == "up"
+    assert repository.link_changes("A1", limit=10).items == ()
+    engine.dispose()
+
+
+def test_every_step_leads_back(database_url: str) -> None:
+    engine = connect(database_url)
+    with engine.begin() as connection:
+        command.downgrade(config(connection), "0001")
+    assert "alarms" not in inspect(engine).get_table_names()
+    assert "origin" not in {column["name"] for column in inspect(engine).get_columns("event_reports")}
+    migrate(database_url)
+    with engine.connect() as connection:
+        context = MigrationContext.configure(connection)
+        assert compare_metadata(context, Base.metadata) == []
+    engine.dispose()

@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 
 from service.storage import NotFoundError, Repository
-from service.storage.states import LinkState
+from service.storage.states import AlarmKind, LinkState
 from tests.service.plants import NOW_NS, two_motor_plant
 
 
@@ -24,6 +24,22 @@ def test_the_tables_follow_the_plant(repository: Repository) -> None:
 
     repository.sync_plant(plant)
     assert len(repository.motors(limit=10).items) == 2
+
+
+def test_only_so_much_history_is_kept(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.storage.repository.links.MOST_CHANGES", 5)
+    monkeypatch.setattr("service.storage.repository.alarms.MOST_CLEARED", 2)
+    for number in range(9):
+        repository.set_link_state("A1_SEL710", LinkState.DOWN, f"reason {number}", now_ns=NOW_NS + number)
+        alarm = repository.raise_alarm(
+            "A1_SEL710", AlarmKind.FILE_REFUSED, f"{number}", "bad", now_ns=NOW_NS + number
+        )
+        repository.clear_alarms("A1_SEL710", [alarm.id], now_ns=NOW_NS + number)
+    repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "stands", "bad", now_ns=NOW_NS)
+    changes = repository.link_changes("A1_SEL710", limit=100).items
+    assert [change.reason for change in changes] == [f"reason {number}" for number in (8, 7, 6, 5, 4)]
+    alarms = repository.alarms(limit=100).items
+    assert [alarm.subject for alarm in alarms] == ["8", "7", "stands"]
 
 
 def test_links_change_state_with_a_reason(repository: Repository) -> None:

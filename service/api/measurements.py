@@ -1,0 +1,41 @@
+"""What the relays measure all the time, over time."""
+
+from enum import IntEnum
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from service.api.context import Context
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
+from service.api.problems import problems
+from service.api.schemas import Measurement, Name
+from service.api.times import TimeParameter
+
+router = APIRouter(tags=["condition"])
+
+
+class Step(IntEnum):
+    """Seconds that one item stands for; 0: as sampled."""
+
+    AS_SAMPLED = 0
+    MINUTE = 60
+    QUARTER_HOUR = 900
+
+
+@router.get("/motors/{name}/measurements", responses=problems(404))
+def list_measurements(
+    context: Context,
+    name: Name,
+    step: Annotated[
+        Step, Query(description="0: as sampled; 60, 900: means of so many seconds, kept for longer.")
+    ] = Step.AS_SAMPLED,
+    from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
+    to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
+) -> Page[Measurement]:
+    """Currents, voltages, power and frequency of a motor as its relay measures them, oldest first."""
+    measurements = context.repository.measurements(
+        name, int(step), from_ns=from_, to_ns=to, limit=limit, after=decode(cursor, int)
+    )
+    return page(measurements, Measurement.model_validate)

@@ -1,0 +1,69 @@
+"""Relays, their links and what is wrong with them."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from service.api.context import Context
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
+from service.api.problems import problems
+from service.api.schemas import Alarm, Gateway, Ied, IedDetails, LinkChange, LinkFigures, Name
+
+router = APIRouter(tags=["relays"])
+
+LATEST_CHANGES = 20
+"""Shown with the relay itself; the others have a route of their own."""
+
+
+@router.get("/ieds", responses=problems())
+def list_ieds(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Ied]:
+    """Relays and the state of their links, by name."""
+    return page(context.repository.ieds(limit=limit, after=decode(cursor, str)), Ied.model_validate)
+
+
+@router.get("/ieds/{name}", responses=problems(404))
+def get_ied(context: Context, name: Name) -> IedDetails:
+    """One relay, with figures and history of its link and the alarms that stand."""
+    repository = context.repository
+    ied = Ied.model_validate(repository.ied(name))
+    changes = repository.link_changes(name, limit=LATEST_CHANGES)
+    return IedDetails(
+        **dict(ied),
+        gateway=repository.gateway_of(name),
+        figures=LinkFigures.model_validate(repository.link_figures(name)),
+        changes=[LinkChange.model_validate(change) for change in changes.items],
+        alarms=[Alarm.model_validate(alarm) for alarm in repository.standing_alarms(name)],
+    )
+
+
+@router.get("/ieds/{name}/link-changes", responses=problems(404))
+def list_link_changes(
+    context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
+) -> Page[LinkChange]:
+    """Every change of a relay's link with its reason, latest first; the latest thousand are kept."""
+    changes = context.repository.link_changes(name, limit=limit, after=decode(cursor, int, str))
+    return page(changes, LinkChange.model_validate)
+
+
+@router.get("/gateways", responses=problems())
+def list_gateways(context: Context) -> Page[Gateway]:
+    """The processes that visit the relays, on all hosts, by id; always one page."""
+    gateways = context.repository.gateways()
+    return Page(items=[Gateway.model_validate(gateway) for gateway in gateways], next_cursor=None)
+
+
+@router.get("/alarms", responses=problems())
+def list_alarms(
+    context: Context,
+    ied: Annotated[str | None, Query(max_length=200, description="Of this relay only.")] = None,
+    standing: Annotated[
+        bool | None, Query(description="true: those not cleared; false: those cleared; without: both.")
+    ] = None,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
+) -> Page[Alarm]:
+    """Alarms of the relays, latest first."""
+    alarms = context.repository.alarms(
+        ied=ied, standing=standing, limit=limit, after=decode(cursor, int, str)
+    )
+    return page(alarms, Alarm.model_validate)

@@ -1,0 +1,58 @@
+"""The alarms of one relay: raised once, however often their cause is seen, cleared when it is gone."""
+
+import time
+from collections.abc import Collection
+
+import structlog
+
+from service.storage import Repository
+from service.storage.states import AlarmKind
+
+log = structlog.get_logger(__name__)
+
+MOST_OF_A_KIND = 1000
+"""A relay that lists a million bad names gets one more alarm that says so, and no more."""
+
+AND_MORE = "(and more)"
+
+
+class RelayAlarms:
+    """Used by that relay's session alone, which alone raises its alarms: it knows them without asking."""
+
+    def __init__(self, relay: str, repository: Repository) -> None:
+        self._relay = relay
+        self._repository = repository
+        self._standing = {
+            (alarm.kind, alarm.subject): alarm.id for alarm in repository.standing_alarms(relay)
+        }
+
+    def standing(self, kind: AlarmKind) -> frozenset[str]:
+        """Subjects of the alarms of this kind."""
+        return frozenset(subject for of_kind, subject in self._standing if of_kind is kind)
+
+    def raise_alarm(self, kind: AlarmKind, subject: str, reason: str) -> None:
+        """Raise an alarm unless it stands already."""
+        if (kind, subject) in self._standing:
+            return
+        if len(self.standing(kind)) >= MOST_OF_A_KIND:
+            subject, reason = AND_MORE, f"more than {MOST_OF_A_KIND} of this kind; the others are not listed"
+            if (kind, subject) in self._standing:
+                return
+        alarm = self._repository.raise_alarm(self._relay, kind, subject, reason, now_ns=time.time_ns())
+        self._standing[kind, subject] = alarm.id
+        log.warning("alarm", relay=self._relay, kind=str(kind), subject=subject, reason=reason)
+
+    def keep(self, kind: AlarmKind, subjects: Collection[str]) -> None:
+        """Clear the alarms of this kind whose subject is not among these."""
+        over = [
+            key
+            for key in self._standing
+            if key[0] is kind and key[1] not in subjects and not (key[1] == AND_MORE and subjects)
+        ]
+        if not over:
+            return
+        ids = [self._standing[key] for key in over]
+        self._repository.clear_alarms(self._relay, ids, now_ns=time.time_ns())
+        for key in over:
+            del self._standing[key]
+            log.info("alarm over", relay=self._relay, kind=str(key[0]), subject=key[1])

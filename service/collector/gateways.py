@@ -1,0 +1,66 @@
+"""The gateway processes of this installation: as many as its relays need, each kept running."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.collector.process import gateway_id
+from service.collector.supervisor import CollectorSupervisor
+from service.plant import Plant
+from service.settings import Settings
+from service.storage import Repository
+
+log = structlog.get_logger(__name__)
+
+
+class Gateways:
+    """Started and stopped together; one that ends frees its relays and is started again."""
+
+    def __init__(self, settings: Settings, plant: Plant, repository: Repository) -> None:
+        self._settings = settings
+        self._repository = repository
+        number = -(-len(plant.relays) // settings.relays_per_gateway)
+        self._supervisors = [self._supervisor(of) for of in range(number)]
+
+    def start(self) -> None:
+        for supervisor in self._supervisors:
+            supervisor.start()
+
+    def stop(self) -> None:
+        """Ask all to end, then wait for each."""
+        for supervisor in self._supervisors:
+            supervisor.ask_to_end()
+        for supervisor in self._supervisors:
+            supervisor.stop()
+
+    def problem(self) -> str | None:
+        """How many do not run at present; None while all do."""
+        failing = [found for found in (each.problem() for each in self._supervisors) if found is not None]
+        if not failing:
+            return None
+        return f"{len(failing)} of {len(self._supervisors)}: {failing[0]}"
+
+    def _supervisor(self, number: int) -> CollectorSupervisor:
+        def free_relays() -> None:
+            """The process is dead for sure: nobody needs to wait for its leases to run out."""
+            try:
+                gateway = gateway_id(self._settings, number)
+                self._repository.end_gateway(gateway, now_ns=time.time_ns())
+            except SQLAlchemyError as error:
+                log.warning("the leases run out by themselves", error=str(error))
+
+        return CollectorSupervisor(self._settings, number=number, on_end=free_relays)
+
+
+@contextmanager
+def running_gateways(settings: Settings, plant: Plant, repository: Repository) -> Iterator[Gateways]:
+    """Gateways for as long as the block lasts."""
+    gateways = Gateways(settings, plant, repository)
+    gateways.start()
+    try:
+        yield gateways
+    finally:
+        gateways.stop()

@@ -1,0 +1,93 @@
+"""What one relay's link does, told to the database and the log without wearing either."""
+
+import time
+from dataclasses import replace
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.collector.allowance import DailyAllowance
+from service.storage import Repository
+from service.storage.records import LinkTraffic
+from service.storage.states import LinkState
+
+log = structlog.get_logger(__name__)
+
+REMIND_AFTER_S = 600.0
+"""A link that stays down for the same reason is logged this often."""
+
+
+class Link:
+    """State, figures and history of one link. Used by that relay's session alone.
+
+    period_s: a relay that goes on answering is written down this often.
+    """
+
+    def __init__(
+        self, relay: str, repository: Repository, allowance: DailyAllowance, *, period_s: float
+    ) -> None:
+        self._relay = relay
+        self._repository = repository
+        self._allowance = allowance
+        self._period_s = period_s
+        self._untold = LinkTraffic()
+        self._told_s: float | None = None
+        self._failure_logged: tuple[str, float] | None = None
+
+    def connected(self) -> None:
+        """A new connection: the next answer is written down at once."""
+        self._untold = replace(self._untold, connections=self._untold.connections + 1)
+        self._told_s = None
+        self._failure_logged = None
+
+    def reported(self, *, gap: bool) -> None:
+        """A report came; with a gap, others before it were lost."""
+        self._untold = replace(
+            self._untold, reports=self._untold.reports + 1, report_gaps=self._untold.report_gaps + gap
+        )
+
+    def lost_reports(self) -> None:
+        """Reports were lost, and none came to tell it."""
+        self._untold = replace(self._untold, report_gaps=self._untold.report_gaps + 1)
+
+    def received(self, number_of_bytes: int) -> None:
+        """Bytes of a file came."""
+        self._untold = replace(self._untold, received_bytes=self._untold.received_bytes + number_of_bytes)
+
+    def answered(self, round_trip_s: float | None) -> None:
+        """The relay answered; its latest answer took that long."""
+        now_s = time.monotonic()
+        if self._told_s is not None and now_s - self._told_s < self._period_s:
+            return
+        self._tell(LinkState.UP, None, round_trip_s)
+        self._told_s = now_s
+
+    def failed(self, reason: str) -> None:
+        """The link is down; tried again later."""
+        self._log_failure(reason)
+        try:
+            self._tell(LinkState.DOWN, reason, None)
+        except SQLAlchemyError:
+            log.exception("database does not answer, trying again")
+
+    def _tell(self, state: LinkState, reason: str | None, round_trip_s: float | None) -> None:
+        self._repository.set_link_state(
+            self._relay,
+            state,
+            reason,
+            now_ns=time.time_ns(),
+            traffic=self._untold,
+            round_trip_s=round_trip_s,
+            day_bytes=(self._allowance.day, self._allowance.used_bytes),
+        )
+        self._untold = LinkTraffic()
+
+    def _log_failure(self, reason: str) -> None:
+        """A relay that is off for a month is one line at first and one now and then, not one each retry."""
+        now_s = time.monotonic()
+        if self._failure_logged is not None:
+            logged, logged_s = self._failure_logged
+            if reason == logged and now_s - logged_s < REMIND_AFTER_S:
+                return
+        self._failure_logged = (reason, now_s)
+        log.warning("link down", relay=self._relay, reason=reason)

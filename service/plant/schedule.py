@@ -1,0 +1,37 @@
+"""When a motor is to be recorded without anybody asking: a cron expression, in UTC."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from typing import Self
+
+from cronsim import CronSim, CronSimError
+
+FIELDS = 5
+SECOND_NS = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """`expression`: minute, hour, day of the month, month, day of the week, as in cron; times are UTC."""
+
+    expression: str
+
+    @classmethod
+    def parse(cls, expression: str) -> Self:
+        """Raises ValueError: what was expected."""
+        words = expression.split()
+        if len(words) != FIELDS:
+            raise ValueError(f"{FIELDS} fields (minute, hour, day of the month, month, day of the week)")
+        schedule = cls(" ".join(words))
+        try:
+            schedule.next_after(0)
+        except CronSimError as error:
+            raise ValueError(f"a cron expression such as '30 6 * * MON' ({error})") from error
+        except StopIteration as error:
+            raise ValueError("a cron expression that some day comes true") from error
+        return schedule
+
+    def next_after(self, time_ns: int) -> int:
+        """The first time later than `time_ns` [ns UTC]."""
+        after = datetime.fromtimestamp(time_ns // SECOND_NS, UTC)
+        return int(next(CronSim(self.expression, after)).timestamp()) * SECOND_NS

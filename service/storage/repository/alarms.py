@@ -1,0 +1,83 @@
+"""What somebody has to look after at a relay: raised once, standing until cleared, kept afterwards."""
+
+import uuid
+from collections.abc import Collection
+
+from sqlalchemy import delete, select, update
+
+from service.storage.models import AlarmRow, IedRow
+from service.storage.records import Alarm, Cursor, Page
+from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
+from service.storage.states import AlarmKind
+
+MOST_CLEARED = 1000
+"""Kept of each relay's past alarms; the oldest go."""
+
+
+class AlarmRows(Sessions):
+    def raise_alarm(self, ied: str, kind: AlarmKind, subject: str, reason: str, *, now_ns: int) -> Alarm:
+        """An alarm that stands from now on; the one that stands already, with the new reason.
+
+        Raises NotFoundError.
+        """
+        standing = select(AlarmRow).where(
+            AlarmRow.ied == ied,
+            AlarmRow.kind == kind,
+            AlarmRow.subject == subject,
+            AlarmRow.cleared_ns.is_(None),
+        )
+        with self._write() as session:
+            found(session, IedRow, ied, "IED")
+            row = only(session, standing)
+            if row is None:
+                row = AlarmRow(id=str(uuid.uuid4()), ied=ied, kind=kind, subject=subject, raised_ns=now_ns)
+                session.add(row)
+            row.reason = reason
+            session.flush()
+            return alarm(row)
+
+    def clear_alarms(self, ied: str, alarm_ids: Collection[str], *, now_ns: int) -> None:
+        """Ends alarms; those that ended before stay as they are."""
+        with self._write() as session:
+            session.execute(
+                update(AlarmRow)
+                .where(AlarmRow.id.in_(alarm_ids), AlarmRow.cleared_ns.is_(None))
+                .values(cleared_ns=now_ns)
+            )
+            cleared = select(AlarmRow.id).where(AlarmRow.ied == ied, AlarmRow.cleared_ns.is_not(None))
+            too_old = cleared.order_by(AlarmRow.cleared_ns.desc(), AlarmRow.id.desc()).offset(MOST_CLEARED)
+            session.execute(delete(AlarmRow).where(AlarmRow.id.in_(session.scalars(too_old).all())))
+
+    def standing_alarms(self, ied: str) -> tuple[Alarm, ...]:
+        """Alarms of a relay that are not cleared, oldest first."""
+        query = (
+            select(AlarmRow)
+            .where(AlarmRow.ied == ied, AlarmRow.cleared_ns.is_(None))
+            .order_by(AlarmRow.raised_ns, AlarmRow.id)
+        )
+        with self._read() as session:
+            return tuple(alarm(row) for row in session.scalars(query))
+
+    def alarms(
+        self,
+        *,
+        limit: int,
+        after: Cursor | None = None,
+        ied: str | None = None,
+        standing: bool | None = None,
+    ) -> Page[Alarm]:
+        """Latest first; of one relay or of all; only those that stand, only those cleared, or both."""
+        query = select(AlarmRow)
+        if ied is not None:
+            query = query.where(AlarmRow.ied == ied)
+        if standing is not None:
+            query = query.where(
+                AlarmRow.cleared_ns.is_(None) if standing else AlarmRow.cleared_ns.is_not(None)
+            )
+        order: Order = [AlarmRow.raised_ns, AlarmRow.id]
+        with self._read() as session:
+            return page_of(session, query, order, alarm, limit=limit, after=after, descending=True)
+
+
+def alarm(row: AlarmRow) -> Alarm:
+    return record_of(Alarm, row)

@@ -1,0 +1,125 @@
+"""Which gateway visits which relay: one lease a relay, for as long as its gateway's counter goes on.
+
+No clock is compared with another. A gateway bumps its counter; whoever has seen a counter stand still for the
+time of a lease, by a clock of its own that only goes forward, may declare that gateway dead. A gateway that
+cannot bump its counter for less than that ends its visits by itself (service/collector/fence.py).
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from sqlalchemy import delete, func, select
+from sqlalchemy.exc import IntegrityError
+from sqlalchemy.orm import Session
+
+from service.storage.errors import LeaseLostError
+from service.storage.models import GatewayRow, IedRow, LeaseRow
+from service.storage.records import GatewayEntry
+from service.storage.repository.links import change_link
+from service.storage.repository.sessions import Sessions
+from service.storage.states import LinkState
+
+GATEWAY_GONE = "the gateway that visited this relay ended; another takes over"
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """What a gateway holds now, what of it others should have instead, and every gateway's counter."""
+
+    held: frozenset[str]
+    surplus: frozenset[str]
+    beats: dict[str, int]
+
+
+class LeaseRows(Sessions):
+    def register_gateway(self, gateway: str, *, host: str, process_id: int, now_ns: int) -> None:
+        """A gateway that starts, holding nothing. Whatever had its id before must be known to be dead."""
+        with self._write() as session:
+            _end(session, gateway, now_ns)
+            session.add(GatewayRow(id=gateway, host=host, process_id=process_id, beats=0, started_ns=now_ns))
+
+    def share_relays(self, gateway: str, relays: Collection[str], *, most: int) -> Share:
+        """Bumps the gateway's counter and takes what is free of these relays, up to its fair share.
+
+        Raises LeaseLostError where the gateway was declared dead: it holds nothing any more.
+        """
+        with self._write() as session:
+            own = session.get(GatewayRow, gateway)
+            if own is None:
+                raise LeaseLostError(gateway)
+            own.beats += 1
+            rows = session.scalars(select(GatewayRow)).all()
+            in_service = set(session.scalars(select(IedRow.name).where(IedRow.in_service)))
+            wanted = sorted(in_service.intersection(relays))
+            leases = {row.ied: row.gateway for row in session.scalars(select(LeaseRow))}
+            held = {ied for ied, holder in leases.items() if holder == gateway}
+            fair = min(most, -(-len(wanted) // len(rows)))
+            free = [ied for ied in wanted if ied not in leases]
+            for ied in free[: max(0, fair - len(held))]:
+                if _take(session, ied, gateway):
+                    held.add(ied)
+            staying = sorted(held.intersection(wanted))[:fair]
+            return Share(frozenset(held), frozenset(held.difference(staying)), {r.id: r.beats for r in rows})
+
+    def give_back_relays(self, gateway: str, relays: Collection[str]) -> None:
+        """Ends leases of relays that are not visited any more."""
+        with self._write() as session:
+            session.execute(delete(LeaseRow).where(LeaseRow.gateway == gateway, LeaseRow.ied.in_(relays)))
+
+    def end_gateway(self, gateway: str, *, now_ns: int, beats: int | None = None) -> bool:
+        """Frees the relays of a gateway that is dead; with `beats`, only if that is still its counter.
+
+        False when there was nothing to end.
+        """
+        with self._write() as session:
+            row = session.get(GatewayRow, gateway)
+            if row is None or beats not in (None, row.beats):
+                return False
+            _end(session, gateway, now_ns)
+            return True
+
+    def gateways(self) -> tuple[GatewayEntry, ...]:
+        """All there are, by id, with the number of relays each holds."""
+        query = (
+            select(GatewayRow, func.count(LeaseRow.ied))
+            .outerjoin(LeaseRow, LeaseRow.gateway == GatewayRow.id)
+            .group_by(GatewayRow.id)
+            .order_by(GatewayRow.id)
+        )
+        with self._read() as session:
+            return tuple(
+                GatewayEntry(row.id, row.host, row.process_id, row.started_ns, relays)
+                for row, relays in session.execute(query)
+            )
+
+    def gateway_of(self, ied: str) -> str | None:
+        """The gateway that holds a relay; None while none does."""
+        with self._read() as session:
+            row = session.get(LeaseRow, ied)
+            return None if row is None else row.gateway
+
+
+def require_lease(session: Session, ied: str, gateway: str) -> None:
+    """Raises LeaseLostError unless the gateway holds the relay."""
+    row = session.get(LeaseRow, ied)
+    if row is None or row.gateway != gateway:
+        raise LeaseLostError(gateway, ied)
+
+
+def _take(session: Session, ied: str, gateway: str) -> bool:
+    """False where another gateway was faster, which a database with several writers allows."""
+    try:
+        with session.begin_nested():
+            session.add(LeaseRow(ied=ied, gateway=gateway))
+    except IntegrityError:
+        return False
+    return True
+
+
+def _end(session: Session, gateway: str, now_ns: int) -> None:
+    held = select(IedRow).join(LeaseRow, LeaseRow.ied == IedRow.name).where(LeaseRow.gateway == gateway)
+    for row in session.scalars(held).all():
+        if row.link_state is not LinkState.UNKNOWN:
+            change_link(session, row, LinkState.UNKNOWN, GATEWAY_GONE, now_ns)
+    session.execute(delete(LeaseRow).where(LeaseRow.gateway == gateway))
+    session.execute(delete(GatewayRow).where(GatewayRow.id == gateway))

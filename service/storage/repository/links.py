@@ -1,0 +1,121 @@
+"""The relays' links: how they are, every change with its reason, and what went over them."""
+
+import uuid
+
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
+
+from service.storage.models import IedRow, LeaseRow, LinkChangeRow, LinkFiguresRow
+from service.storage.records import Cursor, LinkChange, LinkFigures, LinkTraffic, Page
+from service.storage.repository.sessions import Order, Sessions, found, page_of, record_of
+from service.storage.states import LinkState
+
+MOST_CHANGES = 1000
+"""Kept of each link; the oldest go. A link that changes all day must not fill the disk."""
+
+
+class LinkRows(Sessions):
+    def set_link_state(
+        self,
+        ied: str,
+        state: LinkState,
+        reason: str | None,
+        *,
+        now_ns: int,
+        traffic: LinkTraffic | None = None,
+        round_trip_s: float | None = None,
+        day_bytes: tuple[int, int] | None = None,
+    ) -> None:
+        """Notes whether a relay answers, and why not; what went over the link since this was last called.
+
+        day_bytes: a UTC day (days since 1970) and all that counts against its limit. Raises NotFoundError.
+        """
+        with self._write() as session:
+            row = found(session, IedRow, ied, "IED")
+            change_link(session, row, state, reason, now_ns)
+            if state is LinkState.UP:
+                row.last_success_ns = now_ns
+            if traffic is not None:
+                _add(session, ied, traffic, round_trip_s, day_bytes)
+
+    def reset_links(self, *, now_ns: int, reason: str | None = None) -> None:
+        """Sets the link of every relay that nobody visits to unknown: for the start."""
+        with self._write() as session:
+            known = select(IedRow).where(
+                IedRow.link_state != LinkState.UNKNOWN, IedRow.name.not_in(select(LeaseRow.ied))
+            )
+            for row in session.scalars(known).all():
+                change_link(session, row, LinkState.UNKNOWN, reason, now_ns)
+
+    def link_changes(self, ied: str, *, limit: int, after: Cursor | None = None) -> Page[LinkChange]:
+        """Changes of a relay's link, latest first. Raises NotFoundError."""
+        query = select(LinkChangeRow).where(LinkChangeRow.ied == ied)
+        order: Order = [LinkChangeRow.changed_ns, LinkChangeRow.id]
+        with self._read() as session:
+            found(session, IedRow, ied, "IED")
+            return page_of(session, query, order, _link_change, limit=limit, after=after, descending=True)
+
+    def link_figures(self, ied: str) -> LinkFigures:
+        """What went over a relay's link; zeros before anything did. Raises NotFoundError."""
+        with self._read() as session:
+            found(session, IedRow, ied, "IED")
+            row = session.get(LinkFiguresRow, ied)
+            return LinkFigures(ied) if row is None else record_of(LinkFigures, row)
+
+    def all_link_figures(self) -> tuple[LinkFigures, ...]:
+        """Of every relay in service that was ever spoken to, by name."""
+        query = (
+            select(LinkFiguresRow)
+            .join(IedRow, IedRow.name == LinkFiguresRow.ied)
+            .where(IedRow.in_service)
+            .order_by(LinkFiguresRow.ied)
+        )
+        with self._read() as session:
+            return tuple(record_of(LinkFigures, row) for row in session.scalars(query))
+
+
+def change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
+    """Notes a link's state, and the change in its history if it is one."""
+    if row.link_state is state and row.link_reason == reason:
+        return
+    if row.link_state is not state:
+        row.link_changed_ns = now_ns
+    row.link_state, row.link_reason = state, reason
+    session.add(
+        LinkChangeRow(id=str(uuid.uuid4()), ied=row.name, changed_ns=now_ns, state=state, reason=reason)
+    )
+    session.flush()
+    too_old = (
+        select(LinkChangeRow.id)
+        .where(LinkChangeRow.ied == row.name)
+        .order_by(LinkChangeRow.changed_ns.desc(), LinkChangeRow.id.desc())
+        .offset(MOST_CHANGES)
+    )
+    session.execute(delete(LinkChangeRow).where(LinkChangeRow.id.in_(session.scalars(too_old).all())))
+
+
+def _add(
+    session: Session,
+    ied: str,
+    traffic: LinkTraffic,
+    round_trip_s: float | None,
+    day_bytes: tuple[int, int] | None,
+) -> None:
+    row = session.get(LinkFiguresRow, ied)
+    if row is None:
+        row = LinkFiguresRow(
+            ied=ied, connections=0, received_bytes=0, reports=0, report_gaps=0, day=0, day_bytes=0
+        )
+        session.add(row)
+    row.connections += traffic.connections
+    row.received_bytes += traffic.received_bytes
+    row.reports += traffic.reports
+    row.report_gaps += traffic.report_gaps
+    if round_trip_s is not None:
+        row.round_trip_s = round_trip_s
+    if day_bytes is not None:
+        row.day, row.day_bytes = day_bytes
+
+
+def _link_change(row: LinkChangeRow) -> LinkChange:
+    return record_of(LinkChange, row)

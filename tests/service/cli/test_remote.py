@@ -1,0 +1,46 @@
+"""The commands that ask a running service, against the API on a real port."""
+
+from pathlib import Path
+
+import pytest
+
+from service.api import ApiContext, create_app
+from service.cli.app import main
+from service.recordings import RecordingStore
+from service.settings import Settings
+from service.storage import Repository
+from service.storage.states import LinkState
+from tests.service.api.serving import serving
+from tests.service.fixtures import database_url, engine, repository
+from tests.service.plants import NOW_NS
+
+__all__ = ["database_url", "engine", "repository"]
+
+
+def test_the_motors_whose_relay_is_down_say_why(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    repository.set_link_state("A1_SEL710", LinkState.DOWN, "10.0.0.7:102: connection refused", now_ns=NOW_NS)
+    repository.set_link_state("A2_SEL710", LinkState.UP, None, now_ns=NOW_NS)
+    app = create_app(
+        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+    )
+    with serving(app) as client:
+        assert main(["motors", "--url", str(client.base_url)]) == 0
+    shown = capsys.readouterr().out
+    column = shown.splitlines()[1].index("link")
+    words = " ".join(line[column:].split("  ")[0].strip() for line in shown.splitlines()[3:])
+    assert "down: 10.0.0.7:102: connection refused" in " ".join(words.split())
+    assert "up" in words
+
+
+def test_a_key_triggers_once(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    app = create_app(
+        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+    )
+    with serving(app) as client:
+        for key in ("a", "a", "\N{GREEK SMALL LETTER BETA}"):
+            assert main(["trigger", "PUMP-A1", "--key", key, "--url", str(client.base_url)]) == 0
+    assert len(repository.event_reports(limit=10).items) == 2

@@ -1,0 +1,272 @@
+"""Relays shared out between gateways by leases: over real MMS, with a real database, and real processes."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from threading import Event, Thread
+
+import pytest
+
+import scl
+from mms import Server
+from scl import Address
+from scl.model_text import model_text
+from service.collector.gateway import Gateway, Identity
+from service.collector.neighbours import Neighbours
+from service.collector.supervisor import CollectorSupervisor
+from service.demo import MOTORS
+from service.demo.addresses import free_ports
+from service.plant import Plant, read_plant
+from service.recordings import RecordingStore
+from service.settings import Settings
+from service.storage import LeaseLostError, Repository, connect, migrate
+from service.storage.states import LinkState
+from tests.service.collector.conftest import eventually
+from tests.service.plants import NOW_NS
+
+LEASE_S = 1.5
+
+
+@dataclass
+class Hall:
+    """Six relays that count their visitors, and the database of whoever visits them."""
+
+    plant: Plant
+    repository: Repository
+    settings: Settings
+    servers: dict[str, Server]
+    most_visitors: int = 0
+    _closed: Event = field(default_factory=Event)
+
+    @contextmanager
+    def watched(self) -> Iterator[None]:
+        """Looks all the time how many visit one relay at once."""
+
+        def look() -> None:
+            while not self._closed.wait(0.005):
+                self.most_visitors = max(self.most_visitors, *map(visitors, self.servers.values()))
+
+        thread = Thread(target=look)
+        thread.start()
+        try:
+            yield
+        finally:
+            self._closed.set()
+            thread.join()
+
+    def settings_of(self, host: str) -> Settings:
+        directory = self.settings.data_directory / host
+        directory.mkdir(exist_ok=True)
+        return self.settings.model_copy(update={"data_directory": directory})
+
+    def shares(self) -> dict[str, int]:
+        return {gateway.id: gateway.relays for gateway in self.repository.gateways()}
+
+    def all_visited(self) -> bool:
+        return all(visitors(server) == 1 for server in self.servers.values())
+
+    def links(self) -> set[LinkState]:
+        return {ied.link_state for ied in self.repository.ieds(limit=100).items}
+
+
+def visitors(server: Server) -> int:
+    return server.connections
+
+
+@pytest.fixture
+def hall(tmp_path: Path) -> Iterator[Hall]:
+    names = [ied.name for ied in scl.read(scl.DEMO_PLANT_SCD).ieds]
+    scd = tmp_path / "plant.scd"
+    addresses = {n: Address("127.0.0.1", p) for n, p in zip(names, free_ports(len(names)), strict=True)}
+    scl.with_addresses(scl.DEMO_PLANT_SCD, scd, addresses)
+    settings = Settings(
+        data_directory=tmp_path / "data",
+        recordings_directory=tmp_path / "recordings",
+        database_url=f"sqlite:///{tmp_path / 'shared.sqlite'}",
+        scd=scd,
+        motors=MOTORS,
+        lease_s=LEASE_S,
+        poll_period_s=0.5,
+        connect_timeout_s=1.0,
+        request_timeout_s=1.0,
+    )
+    settings.data_directory.mkdir()
+    migrate(settings.database_url)
+    plant = read_plant(settings)
+    repository = Repository(connect(settings.database_url))
+    repository.sync_plant(plant)
+    with ExitStack() as stack:
+        servers = {}
+        for name in names:
+            root = tmp_path / name
+            (root / "EVENTS").mkdir(parents=True)
+            server = Server(model_text(scl.read(scd), name), port=addresses[name].port, file_root=root)
+            server.start()
+            stack.callback(server.stop)
+            servers[name] = server
+        yield Hall(plant, repository, settings, servers)
+
+
+@contextmanager
+def gateway(
+    hall: Hall, name: str, *, most: int = 100, on_end: Callable[[], None] = lambda: None
+) -> Iterator[Gateway]:
+    """A gateway on a thread; the block's end is its ordinary end."""
+    settings = hall.settings.model_copy(update={"relays_per_gateway": most})
+    made = Gateway(
+        Identity(name, "here", os.getpid()),
+        hall.plant,
+        Repository(connect(settings.database_url)),
+        RecordingStore(settings.recordings_directory),
+        settings,
+        on_end=on_end,
+    )
+    stop = Event()
+    thread = Thread(target=made.run, args=(stop,))
+    thread.start()
+    try:
+        yield made
+    finally:
+        stop.set()
+        thread.join(15)
+        assert not thread.is_alive()
+
+
+def test_relays_are_shared_out_and_given_back_and_never_visited_by_two(hall: Hall) -> None:
+    with hall.watched():
+        with gateway(hall, "a"):
+            assert eventually(lambda: hall.shares() == {"a": 6} and hall.all_visited())
+            with gateway(hall, "b"), gateway(hall, "c"):
+                assert eventually(lambda: hall.shares() == {"a": 2, "b": 2, "c": 2}, within_s=20)
+                assert eventually(hall.all_visited)
+            assert eventually(lambda: hall.shares() == {"a": 6} and hall.all_visited(), within_s=20)
+        assert hall.shares() == {}
+        assert hall.links() == {LinkState.UNKNOWN}
+    assert hall.most_visitors == 1
+
+
+def test_a_gateway_writes_down_what_its_relays_measure(hall: Hall) -> None:
+    hall.settings = hall.settings.model_copy(update={"metering_period_s": 0.2})
+    server = hall.servers["A1_SEL710"]
+    server.update("A1_SEL710MET/METMMXU1.Hz.mag.f", 50.5)
+    with gateway(hall, "a"):
+        assert eventually(lambda: len(hall.repository.measurements("PUMP-A1", 0, limit=5).items) == 5)
+        assert eventually(
+            lambda: all(hall.repository.measurements(m.name, 0, limit=1).items for m in hall.plant.motors)
+        )
+    (*_, latest) = hall.repository.measurements("PUMP-A1", 0, limit=5).items
+    assert latest.frequency_Hz == pytest.approx(50.5)
+
+
+def test_a_gateway_takes_no_more_than_it_may(hall: Hall) -> None:
+    with gateway(hall, "a", most=4):
+        assert eventually(lambda: hall.shares() == {"a": 4})
+        with gateway(hall, "b", most=4):
+            assert eventually(lambda: hall.shares() == {"a": 3, "b": 3}, within_s=20)
+            assert eventually(hall.all_visited)
+
+
+@contextmanager
+def supervised(hall: Hall, host: str) -> Iterator[CollectorSupervisor]:
+    """A gateway process, kept running as the service does it, of a host of its own."""
+    supervisor = CollectorSupervisor(hall.settings_of(host))
+    supervisor.start()
+    try:
+        yield supervisor
+    finally:
+        supervisor.stop()
+
+
+def process_of(supervisor: CollectorSupervisor) -> int:
+    found = supervisor.process_id
+    assert found is not None
+    return found
+
+
+def test_relays_of_a_frozen_host_are_taken_over_until_it_wakes(hall: Hall) -> None:
+    hall.settings = hall.settings.model_copy(update={"lease_s": 2 * LEASE_S})
+    with supervised(hall, "one") as one, supervised(hall, "two"):
+        assert eventually(lambda: sorted(hall.shares().values()) == [3, 3] and hall.all_visited(), 60)
+        frozen = process_of(one)
+        os.kill(frozen, signal.SIGSTOP)
+        frozen_s = time.monotonic()
+        try:
+            assert eventually(lambda: list(hall.shares().values()) == [6], 60)
+            assert time.monotonic() - frozen_s >= LEASE_S, "nobody is declared dead in a hurry"
+        finally:
+            os.kill(frozen, signal.SIGCONT)
+        assert eventually(lambda: one.process_id not in (None, frozen), 30), "it ends when it wakes"
+        assert eventually(
+            lambda: sorted(hall.shares().values()) == [3, 3] and hall.links() == {LinkState.UP}, 60
+        )
+
+
+def test_gateways_alone_share_the_relays_of_a_service_elsewhere(hall: Hall) -> None:
+    settings = hall.settings_of("other").model_copy(update={"lease_s": 10.0, "relays_per_gateway": 3})
+    chosen = settings.model_dump(mode="json", exclude_defaults=True)
+    environment = {
+        **{name: value for name, value in os.environ.items() if not name.startswith("MCC_")},
+        **{f"MCC_{name.upper()}": str(value) for name, value in chosen.items()},
+    }
+    with subprocess.Popen([sys.executable, "-m", "service.cli", "collect"], env=environment) as host:
+        try:
+            assert eventually(lambda: sorted(hall.shares().values()) == [3, 3] and hall.all_visited(), 60)
+            with gateway(hall, "of the service"):
+                assert eventually(lambda: sorted(hall.shares().values()) == [2, 2, 2], 60)
+            host.terminate()
+            assert host.wait(30) == 0
+            assert hall.shares() == {}
+        finally:
+            host.kill()
+
+
+def test_a_gateway_that_cannot_renew_its_leases_leaves_its_relays_and_ends(
+    hall: Hall, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended = Event()
+    with gateway(hall, "a", on_end=ended.set) as made:
+        assert eventually(hall.all_visited)
+        monkeypatch.setattr(made, "_beat", lambda: None)
+        silent_s = time.monotonic()
+        assert eventually(lambda: all(visitors(server) == 0 for server in hall.servers.values()))
+        assert ended.wait(10)
+        assert time.monotonic() - silent_s < LEASE_S, "before anybody else can think it dead"
+
+
+def test_a_gateway_declared_dead_by_mistake_starts_again(hall: Hall) -> None:
+    with gateway(hall, "a"):
+        assert eventually(lambda: hall.shares() == {"a": 6})
+        assert hall.repository.end_gateway("a", now_ns=NOW_NS)
+        assert eventually(lambda: hall.shares() == {"a": 6} and hall.all_visited())
+
+
+def test_a_trigger_needs_the_lease(hall: Hall) -> None:
+    repository = hall.repository
+    motor = hall.plant.motors[0]
+    report = repository.request_event_report(motor.name, now_ns=NOW_NS)
+    repository.register_gateway("a", host="here", process_id=1, now_ns=NOW_NS)
+    repository.share_relays("a", [motor.relay], most=10)
+    repository.register_gateway("b", host="here", process_id=2, now_ns=NOW_NS)
+    with pytest.raises(LeaseLostError, match=f"gateway b does not hold the lease of {motor.relay}"):
+        repository.mark_triggered(report.id, now_ns=NOW_NS, gateway="b")
+    assert repository.event_report(report.id).triggered_ns is None
+    assert repository.mark_triggered(report.id, now_ns=NOW_NS, gateway="a").triggered_ns == NOW_NS
+    assert not repository.end_gateway("a", now_ns=NOW_NS, beats=7), "it has gone on since"
+    assert repository.end_gateway("a", now_ns=NOW_NS, beats=1)
+    with pytest.raises(LeaseLostError):
+        repository.share_relays("a", [motor.relay], most=10)
+
+
+def test_who_stands_still_for_a_lease_is_dead() -> None:
+    neighbours = Neighbours(10.0)
+    assert neighbours.dead({"a": 5, "b": 5}, now_s=100.0) == {}
+    assert neighbours.dead({"a": 5, "b": 6}, now_s=109.9) == {}
+    assert neighbours.dead({"a": 5, "b": 6}, now_s=110.0) == {"a": 5}
+    assert neighbours.dead({"a": 6, "b": 6}, now_s=119.9) == {"b": 6}
+    assert neighbours.dead({"a": 6}, now_s=125.0) == {}

@@ -1,0 +1,98 @@
+"""What a relay measures all the time, sampled over real MMS."""
+
+import time
+from dataclasses import replace
+from itertools import pairwise
+from threading import Thread
+
+import pytest
+
+import scl
+from mms import Client
+from service.collector.metering import Metering
+from service.collector.relay_session import RelaySession
+from service.plant import Measurand, MeteredQuantity, Relay
+from service.plant.metering import measurands
+from service.storage.records import Sample
+from tests.service.collector.conftest import MOTOR, Bench, eventually
+from tests.service.collector.scripted_relay import NAME, ScriptedRelay
+
+MMXU = f"{NAME}MET/METMMXU1"
+CURRENT_A = 7.25
+FREQUENCY_HZ = 49.98
+
+
+@pytest.fixture
+def metered(bench: Bench, relay: ScriptedRelay) -> Relay:
+    """The relay as its SCL describes it, with two values set."""
+    relay.server.update_many(
+        {f"{MMXU}.A.phsA.cVal.mag.f": CURRENT_A, f"{MMXU}.Hz.mag.f": FREQUENCY_HZ},
+    )
+    return replace(bench.relay, measurands=measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))
+
+
+def test_the_model_says_what_a_relay_measures() -> None:
+    found = {each.quantity: each.reference for each in measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME))}
+    assert found[MeteredQuantity.IA] == f"{MMXU}.A.phsA.cVal.mag.f"
+    assert found[MeteredQuantity.FREQUENCY] == f"{MMXU}.Hz.mag.f"
+    assert {quantity.value for quantity in found} >= {
+        *("ia_A", "ib_A", "ic_A", "vab_V", "vbc_V", "vca_V"),
+        *("power_W", "reactive_power_var", "power_factor", "frequency_Hz"),
+    }
+
+
+def test_values_are_sampled_at_their_period(bench: Bench, metered: Relay) -> None:
+    samples: list[Sample] = []
+    metering = Metering(metered, MOTOR, period_s=0.2, on_sample=samples.append)
+    assert metering.due_in_s() == 0
+    with Client.connect("127.0.0.1", metered.port) as client:
+        metering.begin()
+        metering.sample(client)
+        assert 0 < metering.due_in_s() <= 0.2
+    (sample,) = samples
+    assert sample.motor == MOTOR
+    assert abs(time.time_ns() - sample.time_ns) < 10e9
+    assert sample.values["ia_A"] == pytest.approx(CURRENT_A)
+    assert sample.values["frequency_Hz"] == pytest.approx(FREQUENCY_HZ)
+
+
+def test_what_the_relay_lacks_is_left_out(bench: Bench, metered: Relay) -> None:
+    missing = Measurand(MeteredQuantity.VA, f"{MMXU}.PhV.phsX.cVal.mag.f", None)
+    bogus = Measurand(MeteredQuantity.VB, f"{NAME}XXX/METMMXU9.Hz.mag.f", None)
+    samples: list[Sample] = []
+    some = replace(metered, measurands=(missing, bogus, metered.measurands[0]))
+    metering = Metering(some, MOTOR, period_s=60, on_sample=samples.append)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        metering.sample(client)
+    assert dict(samples[0].values) == {"ia_A": pytest.approx(CURRENT_A)}
+
+
+def test_a_relay_that_measures_nothing_is_not_asked_again(bench: Bench, metered: Relay) -> None:
+    bogus = Measurand(MeteredQuantity.VB, f"{NAME}XXX/METMMXU9.Hz.mag.f", None)
+    samples: list[Sample] = []
+    metering = Metering(replace(metered, measurands=(bogus,)), MOTOR, period_s=0.1, on_sample=samples.append)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        metering.sample(client)
+    assert samples == []
+    assert metering.due_in_s() > 1e9
+    metering.begin()
+    assert metering.due_in_s() == 0, "another connection, another chance"
+    switched_off = Metering(metered, MOTOR, period_s=0, on_sample=samples.append)
+    assert switched_off.due_in_s() > 1e9
+
+
+def test_a_session_samples_while_it_waits(bench: Bench, relay: ScriptedRelay, metered: Relay) -> None:
+    samples: list[Sample] = []
+    settings = bench.settings.model_copy(update={"metering_period_s": 0.1, "poll_period_s": 60.0})
+    session = RelaySession(metered, MOTOR, bench.repository, bench.store, settings, on_sample=samples.append)
+    thread = Thread(target=session.run)
+    thread.start()
+    try:
+        assert eventually(lambda: len(samples) >= 5)
+        relay.write_record("HR_1")
+        assert eventually(lambda: bench.is_stored("HR_1")), "sampling delays no record"
+    finally:
+        session.stop()
+        thread.join(15)
+    spans_s = [(late.time_ns - early.time_ns) / 1e9 for early, late in pairwise(samples)]
+    assert min(spans_s) > 0.02, "a period that was missed is not made up for"

@@ -1,0 +1,99 @@
+"""Measured values: kept as sampled for a while, averaged, and forgotten."""
+
+import random
+from pathlib import Path
+from statistics import fmean
+
+import pytest
+
+from service.housekeeping import Housekeeping
+from service.plant import MeteredQuantity
+from service.settings import Settings
+from service.storage import NotFoundError, Repository
+from service.storage.models import MeasurementRow
+from service.storage.records import Measurement, Sample
+from service.storage.repository.measurements import FIGURES
+from tests.service.plants import SECOND_NS
+
+QUARTER_NS = 900 * SECOND_NS
+BEGIN_NS = 1_760_000_000 * SECOND_NS // QUARTER_NS * QUARTER_NS
+DAY_NS = 86_400 * SECOND_NS
+
+
+def measured(repository: Repository, step_s: int, motor: str = "PUMP-A1") -> list[Measurement]:
+    return list(repository.measurements(motor, step_s, limit=1000).items)
+
+
+def test_every_quantity_has_its_column() -> None:
+    assert [figure.key for figure in FIGURES] == [quantity.value for quantity in MeteredQuantity]
+    others = {"motor", "step_s", "time_ns", "samples"}
+    assert set(MeasurementRow.__table__.columns.keys()) - others == set(MeteredQuantity)
+
+
+def test_means_are_those_of_the_samples(repository: Repository) -> None:
+    """Against Python's own mean of every sample, though the longer means are made of the shorter ones."""
+    chance = random.Random(4)
+    samples = []
+    for motor in ("PUMP-A1", "FAN-A2"):
+        at_ns = BEGIN_NS
+        while at_ns < BEGIN_NS + 2 * QUARTER_NS:
+            values = {"ia_A": chance.uniform(5, 9), "frequency_Hz": chance.gauss(50, 0.1)}
+            if chance.random() < 0.2:
+                del values["frequency_Hz"]
+            samples.append(Sample(motor, at_ns, values))
+            at_ns += round(chance.uniform(5, 20) * SECOND_NS)
+    for first in range(0, len(samples), 50):
+        repository.add_samples(samples[first : first + 50])
+    for later_s in (400, 700, 1500, 2100):  # the means are made bit by bit, as in service
+        repository.average_measurements(now_ns=BEGIN_NS + later_s * SECOND_NS)
+    quarters = measured(repository, 900)
+    assert [quarter.time_ns for quarter in quarters] == [BEGIN_NS, BEGIN_NS + QUARTER_NS]
+    for quarter in quarters:
+        own = [
+            sample
+            for sample in samples
+            if sample.motor == "PUMP-A1" and 0 <= sample.time_ns - quarter.time_ns < QUARTER_NS
+        ]
+        assert quarter.samples == len(own)
+        assert quarter.ia_A == pytest.approx(fmean(sample.values["ia_A"] for sample in own))
+        assert quarter.frequency_Hz == pytest.approx(50, abs=0.05)
+        assert quarter.vab_V is None
+    minutes = measured(repository, 60)
+    assert len(minutes) == 30
+    of_first = [s for s in samples if s.motor == "PUMP-A1" and s.time_ns < BEGIN_NS + 60 * SECOND_NS]
+    known = [s.values["frequency_Hz"] for s in of_first if "frequency_Hz" in s.values]
+    assert minutes[0].frequency_Hz == pytest.approx(fmean(known))
+    assert sum(minute.samples for minute in minutes) == sum(s.motor == "PUMP-A1" for s in samples)
+
+
+def test_an_interval_that_is_not_over_has_no_mean(repository: Repository) -> None:
+    repository.add_samples([Sample("PUMP-A1", BEGIN_NS, {"ia_A": 1.0})])
+    repository.average_measurements(now_ns=BEGIN_NS + 179 * SECOND_NS)
+    assert measured(repository, 60) == []
+    repository.add_samples([Sample("PUMP-A1", BEGIN_NS + 59 * SECOND_NS, {"ia_A": 3.0})])
+    for _ in range(2):
+        repository.average_measurements(now_ns=BEGIN_NS + 180 * SECOND_NS)
+    assert [(minute.ia_A, minute.samples) for minute in measured(repository, 60)] == [(2.0, 2)]
+
+
+def test_old_values_are_forgotten_and_their_means_kept(repository: Repository, tmp_path: Path) -> None:
+    settings = Settings(data_directory=tmp_path, metering_sample_days=1, metering_minute_days=2)
+    housekeeping = Housekeeping(settings, repository)
+    repository.add_samples([Sample("PUMP-A1", BEGIN_NS, {"ia_A": 1.0})])
+    counts = []
+    for days in (0.5, 1.5, 2.5):
+        housekeeping.tidy(BEGIN_NS + round(days * DAY_NS))
+        counts.append([len(measured(repository, step_s)) for step_s in (0, 60, 900)])
+    assert counts == [[1, 1, 1], [0, 1, 1], [0, 0, 1]]
+    housekeeping.start()
+    housekeeping.stop()
+    assert [len(measured(repository, step_s)) for step_s in (0, 60, 900)] in ([0, 0, 1], [0, 0, 0])
+
+
+def test_the_same_sample_twice_is_one(repository: Repository) -> None:
+    for _ in range(2):
+        repository.add_samples([Sample("PUMP-A1", BEGIN_NS, {"ia_A": 1.0})])
+    assert len(measured(repository, 0)) == 1
+    assert measured(repository, 0, "FAN-A2") == []
+    with pytest.raises(NotFoundError):
+        measured(repository, 0, "NOPE")

@@ -1,0 +1,135 @@
+"""Motors are recorded when their schedule says so: once, in time, and never in heaps."""
+
+import time
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from service.plant import Schedule
+from service.scheduling import LATEST_NS, Scheduler
+from service.storage import Repository
+from service.storage.records import EventReport
+from tests.service.collector.conftest import eventually
+from tests.service.fixtures import database_url, engine, repository
+from tests.service.plants import NOW_NS, SECOND_NS, two_motor_plant
+
+__all__ = ["database_url", "engine", "repository"]
+
+MINUTE_NS = 60 * SECOND_NS
+DUE_NS = NOW_NS - NOW_NS % MINUTE_NS + MINUTE_NS
+"""The next full minute."""
+
+
+def scheduler(repository: Repository, expression: str = "* * * * *", looked_ns: int = NOW_NS) -> Scheduler:
+    pump, fan = two_motor_plant().motors
+    scheduled = Scheduler([replace(pump, schedule=Schedule.parse(expression)), fan], repository)
+    scheduled._looked_ns = looked_ns
+    return scheduled
+
+
+def reports(repository: Repository) -> list[EventReport]:
+    return list(repository.event_reports(limit=100).items)
+
+
+def end(repository: Repository) -> None:
+    """The relay made no record."""
+    for report in reports(repository):
+        if report.failed_ns is None:
+            repository.fail_event_report(report.id, "no record", now_ns=NOW_NS)
+
+
+def test_a_schedule_asks_once_when_it_is_due(repository: Repository) -> None:
+    scheduled = scheduler(repository)
+    scheduled.look(DUE_NS - 1)
+    assert reports(repository) == []
+    scheduled.look(DUE_NS)
+    scheduled.look(DUE_NS + 1)
+    (report,) = reports(repository)
+    assert (report.motor, report.origin, report.requested_ns) == ("PUMP-A1", "schedule", DUE_NS)
+    end(repository)
+    scheduled.look(DUE_NS + MINUTE_NS - 1)
+    assert len(reports(repository)) == 1
+    scheduled.look(DUE_NS + MINUTE_NS + 5)
+    assert len(reports(repository)) == 2
+
+
+def test_two_services_ask_once(repository: Repository) -> None:
+    for scheduled in (scheduler(repository), scheduler(repository)):
+        scheduled.look(DUE_NS + 1)
+        end(repository)
+    assert len(reports(repository)) == 1
+
+
+def test_triggers_do_not_pile_up_at_a_relay_that_makes_no_records(repository: Repository) -> None:
+    scheduled = scheduler(repository)
+    by_hand = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    for minute in range(3):
+        scheduled.look(DUE_NS + minute * MINUTE_NS)
+    assert reports(repository) == [by_hand]
+    end(repository)
+    scheduled.look(DUE_NS + 3 * MINUTE_NS)
+    assert len(reports(repository)) == 2
+
+
+def test_what_was_slept_through_is_not_made_up_for(repository: Repository) -> None:
+    scheduled = scheduler(repository, "0 * * * *")
+    hour_ns = NOW_NS - NOW_NS % (60 * MINUTE_NS) + 60 * MINUTE_NS
+    scheduled.look(hour_ns + LATEST_NS + SECOND_NS)
+    assert reports(repository) == []
+    scheduled.look(hour_ns + 60 * MINUTE_NS - SECOND_NS)
+    scheduled.look(hour_ns + 60 * MINUTE_NS + SECOND_NS)
+    assert len(reports(repository)) == 1
+
+
+def test_a_clock_that_jumps_back_repeats_nothing(repository: Repository) -> None:
+    scheduled = scheduler(repository)
+    scheduled.look(DUE_NS)
+    end(repository)
+    scheduled.look(DUE_NS - 10 * SECOND_NS)
+    scheduled.look(DUE_NS + SECOND_NS)
+    assert len(reports(repository)) == 1
+    scheduled.look(DUE_NS - 86_400 * SECOND_NS)
+    scheduled.look(DUE_NS - 86_400 * SECOND_NS + SECOND_NS)
+    assert len(reports(repository)) == 1
+    scheduled.look(DUE_NS - 86_400 * SECOND_NS + MINUTE_NS)
+    assert len(reports(repository)) == 2, "it goes on by the new time, not in a day"
+
+
+def test_the_thread_looks_by_itself(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.scheduling.PERIOD_S", 0.01)
+    scheduled = scheduler(repository)
+    assert scheduled.problem() == "the scheduler is not running"
+    scheduled._looked_ns = time.time_ns() - MINUTE_NS
+    scheduled.start()
+    try:
+        assert eventually(lambda: len(reports(repository)) == 1)
+        assert scheduled.problem() is None
+    finally:
+        scheduled.stop()
+
+
+def test_a_plant_without_schedules_needs_no_thread(repository: Repository) -> None:
+    idle = Scheduler(two_motor_plant().motors, repository)
+    idle.start()
+    assert idle.problem() is None
+    idle.stop()
+
+
+@pytest.mark.parametrize("words", ["", "* * * *", "* * * * * *", "61 * * * *", "x * * * *", "0 0 30 2 *"])
+def test_what_is_no_schedule_is_refused(words: str) -> None:
+    with pytest.raises(ValueError, match=r"fields|cron expression"):
+        Schedule.parse(words)
+
+
+@given(
+    minute=st.integers(0, 59),
+    hour=st.integers(0, 23),
+    after_s=st.integers(min_value=0, max_value=7_000_000_000),
+)
+def test_a_daily_time_is_the_next_of_its_kind(minute: int, hour: int, after_s: int) -> None:
+    of_day_s = 60 * (60 * hour + minute)
+    days, passed_s = divmod(after_s, 86_400)
+    expected_s = 86_400 * (days + (passed_s >= of_day_s)) + of_day_s
+    assert Schedule.parse(f"{minute} {hour} * * *").next_after(after_s * SECOND_NS) == expected_s * SECOND_NS
