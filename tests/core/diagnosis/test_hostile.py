@@ -85,7 +85,7 @@ def test_sines_and_noise_of_any_size(
     angle = 2 * np.pi * frequency_hz * np.arange(round(0.15 * rate)) / rate
     phases = random.choice([0.0, 2.0, 4.0], 6)[:, None] * np.pi / 3
     sines = np.array(sizes)[:, None] * np.sin(angle - phases)
-    samples = sines + np.clip(random.standard_normal(sines.shape) / 4, -1, 1) * min(noise, 1e307)
+    samples = sines + np.clip(random.standard_normal(sines.shape) / 4, -1, 1) * min(noise, 9e306)
     outcome(Recording(np.clip(samples, -1.7e308, 1.7e308), rate, 0, CHANNELS))
 
 

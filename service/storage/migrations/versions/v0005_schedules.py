@@ -17,7 +17,6 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    with op.batch_alter_table("event_reports") as table:
-        table.drop_column("origin")
-    with op.batch_alter_table("motors") as table:
-        table.drop_column("schedule")
+    # Not in batch mode: that drops the table, to which rows of others refer.
+    op.drop_column("event_reports", "origin")
+    op.drop_column("motors", "schedule")

@@ -21,6 +21,5 @@ def upgrade() -> None:
 
 def downgrade() -> None:
     for table in TABLES:
-        with op.batch_alter_table(table) as batch:
-            for column in (*TIMES, "clock_quality"):
-                batch.drop_column(column)
+        for column in (*TIMES, "clock_quality"):
+            op.drop_column(table, column)
