@@ -52,7 +52,7 @@ def take_reports(served: Simulated, client: Client) -> queue.SimpleQueue[Report]
 def reported(reports: queue.SimpleQueue[Report], name: str) -> object:
     """Value of the next report that tells of the data object `name`."""
     while True:
-        for member in reports.get(timeout=20).members:
+        for member in reports.get(timeout=60).members:
             if (member.reference or "").endswith(name) and isinstance(member.value, tuple):
                 return member.value[0]
 
