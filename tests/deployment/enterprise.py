@@ -236,7 +236,7 @@ def a_volume_that_cannot_be_written_to_is_named(enterprise: Enterprise) -> None:
     assert "mcc: /plant: expected a directory that user 10001 may write to" in refused.stdout, refused.stdout
     relay = ("ied-sim", "--scd", "/plant/plant.scd", "--files", "/plant", "--ied", "A1_SEL710")
     refused = enterprise.compose.attempt("run", "--rm", "-T", "--no-deps", "relay-a1", *relay)
-    assert "ied-sim: [Errno 30] Read-only file system: '/plant/A1_SEL710'" in refused.stdout, refused.stdout
+    assert "ied-sim: [Errno 30] Read-only file system: '/plant/" in refused.stdout, refused.stdout
     assert enterprise.service.is_ready(), "the service that runs is disturbed"
 
 
