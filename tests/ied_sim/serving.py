@@ -19,7 +19,7 @@ from scl import Address
 IED = "A1_SEL710"
 TRIGGER_BIT = f"{IED}CON/RBGGIO1.SPCSO01"
 EVENT_REPORTS = f"{IED}CFG/LLN0.BR.BRep01"
-PATIENCE_S = 20.0
+PATIENCE_S = 60.0
 SHORT_RECORD = RecorderSettings(sample_rate_hz=5_000.0, pre_trigger_s=0.02, post_trigger_s=0.06, capacity=3)
 
 

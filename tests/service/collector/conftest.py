@@ -30,7 +30,7 @@ from tests.service.collector.scripted_relay import (
 MOTOR = "PUMP-A1"
 
 
-def eventually(condition: Callable[[], bool], within_s: float = 10.0) -> bool:
+def eventually(condition: Callable[[], bool], within_s: float = 30.0) -> bool:
     """Whether the condition comes true in time."""
     deadline_s = time.monotonic() + within_s
     while time.monotonic() < deadline_s:
