@@ -156,7 +156,7 @@ def test_the_report_buffer_overflows(tmp_path: Path) -> None:
             client.subscribe(REPORTS, reports)
             make_record(served, client)
             switch(client, on=True)
-            entry = reports.get(timeout=10).entry_id
+            entry = reports.get(timeout=60).entry_id
         wait_until(lambda: Kind.BUFFER_OVERFLOW in served.relay._misbehaviour._on, "the flood")
         with served.client() as client:
             later: queue.SimpleQueue[Report] = queue.SimpleQueue()
@@ -170,7 +170,7 @@ def _overflowed(client: Client, reports: "queue.SimpleQueue[Report]", entry: byt
         client.subscribe(REPORTS, reports, entry_id=entry)
     except MmsError:
         return True
-    return any(reports.get(timeout=5).buffer_overflow for _ in range(3))
+    return any(reports.get(timeout=60).buffer_overflow for _ in range(3))
 
 
 def test_reports_come_without_an_identifier(tmp_path: Path) -> None:
@@ -206,7 +206,7 @@ def test_a_restart_forgets_the_reports_and_keeps_the_records(tmp_path: Path) -> 
         with served.client() as client:
             client.subscribe(REPORTS, reports)
             make_record(served, client)
-            report = reports.get(timeout=10)
+            report = reports.get(timeout=60)
             switch(client, on=True)
             assert client.wait_closed(10)
         wait_until(lambda: _answers(served), "the relay to be back")
