@@ -59,12 +59,20 @@ class EventRecorder:
         self._capturing = False
         self._capture = threading.Thread()
 
-    def trigger(self, time_ns: int, kind: str) -> bool:
-        """Start a capture at UTC `time_ns`; False if one is under way or the recorder has stopped."""
+    def trigger(self, time_ns: int, kind: str, *, tell: Callable[[], None]) -> bool:
+        """Start a capture at UTC `time_ns`; False if one is under way or the recorder has stopped.
+
+        tell: called when the capture is sure to begin, and back before its record can be complete.
+        """
         with self._lock:
             if self._capturing or self._stopping.is_set():
                 return False
             self._capturing = True
+        # Without the lock: who is told may wait for a thread that wants to trigger.
+        tell()
+        with self._lock:
+            if self._stopping.is_set():
+                return False
             self._capture = threading.Thread(
                 target=self._run, args=(time_ns, kind), name=f"{self._relay_name} capture", daemon=True
             )

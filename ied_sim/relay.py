@@ -266,9 +266,11 @@ class Relay:
             self._word.set("RUNNING", True, end_ns)  # noqa: FBT003
 
     def _trigger(self, now_ns: int, kind: str) -> None:
-        if self._recorder.trigger(now_ns, kind):
+        def tell() -> None:
             self._word.pulse("ER", now_ns, 5_000_000)
             self._values.status({"record_made": False, "record_started": True}, now_ns)
+
+        self._recorder.trigger(now_ns, kind, tell=tell)
 
     def _keep(self, capture: Capture) -> None:
         """Store a record and tell the clients of it; runs in the capture's thread."""

@@ -1,6 +1,7 @@
 """Every relay profile as a client sees it, over MMS on the loopback interface."""
 
 import queue
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,9 +9,9 @@ import numpy as np
 import pytest
 
 from ied_sim.errors import ProfileError, SimulatorError
-from ied_sim.profile import Profile, RecordFormat, read_profile, shipped
+from ied_sim.profile import Profile, RecordFormat, Triggers, read_profile, shipped
 from ied_sim.scenario import RelayScenario
-from mms import Client, FunctionalConstraint, MmsError, NotFound, Report
+from mms import Client, FunctionalConstraint, MmsError, NotFound, Report, Value
 from scl import Scl
 from tests.ied_sim.serving import wait_until
 from tests.ied_sim.simulating import (
@@ -41,20 +42,24 @@ def in_file(document: Scl) -> dict[str, set[str]]:
     return {node.reference: {each.name for each in node.data_objects} for node in nodes}
 
 
-def take_reports(served: Simulated, client: Client) -> queue.SimpleQueue[Report]:
-    reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
-    block = read_profile(served.relay._scenario.profile.name).points.reports
-    assert block is not None
-    client.subscribe(served.reference(block), reports)
-    return reports
+class Told:
+    """What a relay's reports tell of each data object; one report may tell of several."""
 
+    def __init__(self, served: Simulated, client: Client) -> None:
+        self._reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
+        self._values: dict[str, list[Value]] = {}
+        block = read_profile(served.relay._scenario.profile.name).points.reports
+        assert block is not None
+        client.subscribe(served.reference(block), self._reports)
 
-def reported(reports: queue.SimpleQueue[Report], name: str) -> object:
-    """Value of the next report that tells of the data object `name`."""
-    while True:
-        for member in reports.get(timeout=60).members:
-            if (member.reference or "").endswith(name) and isinstance(member.value, tuple):
-                return member.value[0]
+    def next(self, name: str) -> Value:
+        """The value told next of the data object `name`."""
+        while not self._values.get(name):
+            for member in self._reports.get(timeout=20).members:
+                told_of = (member.reference or "").rpartition("$")[2]
+                if isinstance(member.value, tuple):
+                    self._values.setdefault(told_of, []).append(member.value[0])
+        return self._values[name].pop(0)
 
 
 @pytest.mark.parametrize("profile", shipped())
@@ -67,7 +72,7 @@ def test_a_client_browses_reads_operates_and_takes_reports(profile: str, tmp_pat
         wait_until(lambda: client.read(current, FunctionalConstraint.MX) != 0, "the first metering")
         assert client.read(current, FunctionalConstraint.MX) == pytest.approx(1.203, rel=0.02)
         assert len(client.read_data_set(client_data_set(served))) >= 1
-        reports = take_reports(served, client)
+        told = Told(served, client)
         assert points.start is not None
         assert points.stop is not None
         client.operate(served.reference(points.stop), value=True)
@@ -75,7 +80,7 @@ def test_a_client_browses_reads_operates_and_takes_reports(profile: str, tmp_pat
         client.operate(served.reference(points.start), value=True)
         assert served.relay._word["STARTING"]
         served.relay._trip(["overcurrent"], served.relay._clock.now_ns())
-        assert reported(reports, "Tr") is True
+        assert told.next("Tr") is True
 
 
 def client_data_set(served: Simulated) -> str:
@@ -116,32 +121,54 @@ def test_edition_1_tells_of_a_record_by_files_alone(tmp_path: Path) -> None:
 
 def test_a_pulse_bit_falls_by_itself_and_triggers(tmp_path: Path) -> None:
     with simulated(tmp_path, scenario_of("sel-710-ed2")) as served, served.client() as client:
-        reports = take_reports(served, client)
+        told = Told(served, client)
         bit = served.reference("CON/PRBGGIO1.SPCSO01")
         client.operate(bit, value=True)
-        assert reported(reports, "RcdMade") is True
+        assert told.next("RcdMade") is True
         assert client.read(f"{bit}.stVal", FunctionalConstraint.ST) is False
 
 
 def test_rcd_trg_announces_lists_with_backslashes_and_clears(tmp_path: Path) -> None:
     with simulated(tmp_path, scenario_of("rdre")) as served, served.client() as client:
-        reports = take_reports(served, client)
+        told = Told(served, client)
         client.operate(served.reference("Rec_FaultRecorder/DEF_RDRE1.RcdTrg"), value=True)
-        assert reported(reports, "RcdStr") is True
-        expected = [f"COMTRADE\\FRA10000.{suffix}" for suffix in ("CFG", "DAT", "HDR")]
-        wait_until(lambda: names(client, "COMTRADE") == expected, "the record in its folder")
+        assert told.next("RcdStr") is True
+        assert told.next("RcdMade") is True
+        assert names(client, "COMTRADE") == [
+            f"COMTRADE\\FRA10000.{suffix}" for suffix in ("CFG", "DAT", "HDR")
+        ]
         assert names(client, "\\COMTRADE\\")
         client.operate(served.reference("Rec_FaultRecorder/DEF_RDRE1.MemClr"), value=True)
         assert names(client, "COMTRADE") == []
 
 
+def test_a_record_ends_after_it_was_told_to_begin(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However late the values of its begin are published: else RcdMade would fall again."""
+    scenario = scenario_of("rdre")
+    scenario = replace(scenario, triggers=Triggers(load_above=0.1))
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        publish = served.relay._values.status
+
+        def slowly(values: dict[str, Value], time_ns: int) -> None:
+            if values.get("record_started"):
+                time.sleep(SHORT.post_trigger_s + 1.0)
+            publish(values, time_ns)
+
+        monkeypatch.setattr(served.relay._values, "status", slowly)
+        told = Told(served, client)
+        assert [told.next("RcdStr"), told.next("RcdStr")] == [True, False]
+        assert told.next("RcdMade") is True
+        made = served.reference("Rec_FaultRecorder/DEF_RDRE1.RcdMade.stVal")
+        assert client.read(made, FunctionalConstraint.ST) is True
+
+
 def test_a_recorder_without_rcd_trg_records_a_motor_start(tmp_path: Path) -> None:
     with simulated(tmp_path, scenario_of("rdre-readonly")) as served, served.client() as client:
         assert served.document.ied(IED).find("DR/DRRDRE1.RcdTrg") is None
-        reports = take_reports(served, client)
+        told = Told(served, client)
         client.operate(served.reference("DR/MOTGGIO1.SPCSO02"), value=True)
         client.operate(served.reference("DR/MOTGGIO1.SPCSO01"), value=True)
-        assert reported(reports, "RcdMade") is True
+        assert told.next("RcdMade") is True
         (recording,) = recordings(fetch(client, "COMTRADE", tmp_path / "fetched"))
     before = np.abs(recording.samples[:3, : recording.trigger_index]).max()
     assert np.abs(recording.samples[:3, recording.trigger_index :]).max() > 5 * 1.203

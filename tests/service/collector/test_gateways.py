@@ -2,11 +2,12 @@
 
 import os
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Event, Thread
@@ -189,12 +190,30 @@ def process_of(supervisor: CollectorSupervisor) -> int:
     return found
 
 
+def freeze(process_id: int, database_url: str) -> None:
+    """Stop a process between two of its transactions: within one it would hold SQLite's lock for all."""
+    database = sqlite3.connect(database_url.removeprefix("sqlite:///"), timeout=0.5)
+
+    def frozen() -> bool:
+        os.kill(process_id, signal.SIGSTOP)
+        try:
+            database.execute("BEGIN IMMEDIATE")
+        except sqlite3.OperationalError:
+            os.kill(process_id, signal.SIGCONT)
+            return False
+        database.rollback()
+        return True
+
+    with closing(database):
+        assert eventually(frozen)
+
+
 def test_relays_of_a_frozen_host_are_taken_over_until_it_wakes(hall: Hall) -> None:
     hall.settings = hall.settings.model_copy(update={"lease_s": 2 * LEASE_S})
     with supervised(hall, "one") as one, supervised(hall, "two"):
         assert eventually(lambda: sorted(hall.shares().values()) == [3, 3] and hall.all_visited(), 60)
         frozen = process_of(one)
-        os.kill(frozen, signal.SIGSTOP)
+        freeze(frozen, hall.settings.database_url)
         frozen_s = time.monotonic()
         try:
             assert eventually(lambda: list(hall.shares().values()) == [6], 60)
@@ -229,6 +248,8 @@ def test_gateways_alone_share_the_relays_of_a_service_elsewhere(hall: Hall) -> N
 def test_a_gateway_that_cannot_renew_its_leases_leaves_its_relays_and_ends(
     hall: Hall, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    lease_s = 3 * LEASE_S
+    hall.settings = hall.settings.model_copy(update={"lease_s": lease_s})
     ended = Event()
     with gateway(hall, "a", on_end=ended.set) as made:
         assert eventually(hall.all_visited)
@@ -236,7 +257,7 @@ def test_a_gateway_that_cannot_renew_its_leases_leaves_its_relays_and_ends(
         silent_s = time.monotonic()
         assert eventually(lambda: all(visitors(server) == 0 for server in hall.servers.values()))
         assert ended.wait(10)
-        assert time.monotonic() - silent_s < LEASE_S, "before anybody else can think it dead"
+        assert time.monotonic() - silent_s < lease_s, "before anybody else can think it dead"
 
 
 def test_a_gateway_declared_dead_by_mistake_starts_again(hall: Hall) -> None:
