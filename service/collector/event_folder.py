@@ -1,0 +1,140 @@
+"""Where a relay keeps its event recordings: found by looking, unless somebody has said.
+
+Relays name the folder EVENTS or COMTRADE, in capitals or not, with a slash or backslash before or behind,
+and some do not list it at the root. A folder that was once seen to hold recordings is the one; until then all
+that exist are looked into.
+"""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import structlog
+
+from mms import AccessDenied, Client, FileEntry, NotFound, ProtocolError
+from service.collector.listing import is_of_a_record, last_component
+
+log = structlog.get_logger(__name__)
+
+USUAL = ("EVENTS", "COMTRADE")
+SPELLINGS = ("/{}", "{}/", "{}\\", "\\{}")
+"""Tried where neither the plain name nor the root's listing leads anywhere."""
+
+ROOT = ""
+SEARCH_PERIOD_S = 10.0
+"""Between searches for a folder that was not there."""
+
+NO_SERVICE_CODES = (4, 98, 99)
+"""Of the library's: service not supported, not implemented, and what it makes of a reject."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What a folder lists. `directory` None: there is none at present."""
+
+    directory: str | None
+    entries: tuple[FileEntry, ...]
+
+
+class EventFolder:
+    """Of one relay. default: the folder to be tried first.  override: the only one to be tried.
+
+    `missing` says in words why there is no folder; `no_files`, that the relay has no file service at all.
+    """
+
+    def __init__(self, relay: str, default: str, override: str | None = None) -> None:
+        self._relay = relay
+        self._default = default
+        self._override = override
+        self._candidates: list[str] = []
+        self._is_sure = False
+        self._next_search_s = 0.0
+        self.missing: str | None = None
+        self.no_files = False
+
+    @property
+    def directory(self) -> str | None:
+        """The folder in use, None while there is none."""
+        return self._candidates[0] if self._candidates else None
+
+    def begin(self) -> None:
+        """A new connection: what was not there may be there now."""
+        self._next_search_s = 0.0
+
+    def contents(self, client: Client) -> Contents:
+        """The contents of the folder. Raises MmsError (the link, or a listing that cannot be right)."""
+        found = [] if not self._candidates else self._look_into(client, self._candidates)
+        if not found:
+            self._is_sure = False
+            if time.monotonic() < self._next_search_s:
+                return Contents(None, ())
+            found = self._search(client)
+        if not found:
+            self._candidates = []
+            self._next_search_s = time.monotonic() + SEARCH_PERIOD_S
+            return Contents(None, ())
+        self.missing, self.no_files = None, False
+        chosen = next(filter(_holds_records, found), found[0])
+        if _holds_records(chosen) or self._override is not None:
+            self._is_sure = True
+        if chosen.directory != self.directory:
+            log.info("events directory", relay=self._relay, directory=chosen.directory)
+        others = [] if self._is_sure else [each.directory for each in found if each is not chosen]
+        self._candidates = [each for each in (chosen.directory, *others) if each is not None]
+        return chosen
+
+    def _look_into(self, client: Client, directories: list[str]) -> list[Contents]:
+        """Those that are there; no further than the first that holds recordings."""
+        found: list[Contents] = []
+        for directory in directories:
+            try:
+                contents = Contents(directory, client.files(directory))
+            except (NotFound, AccessDenied):
+                continue
+            found.append(contents)
+            if _holds_records(contents):
+                break
+        return found
+
+    def _search(self, client: Client) -> list[Contents]:
+        if self._override is not None:
+            names: list[str] = [self._override]
+        else:
+            names = list(dict.fromkeys((self._default, *USUAL)))
+        try:
+            found = self._look_into(client, names)
+            if self._override is None and not any(map(_holds_records, found)):
+                known = {contents.directory for contents in found}
+                at_root = [name for name in self._at_root(client) if name not in known]
+                found += self._look_into(client, at_root)
+            if not found and self._override is None:
+                found = self._look_into(client, [form.format(name) for name in names for form in SPELLINGS])
+        except ProtocolError as error:
+            if error.code not in NO_SERVICE_CODES:
+                raise
+            self.no_files = True
+            self.missing = f"the relay offers no files ({error.message}): no recording can be fetched"
+            return []
+        self.missing = f"no directory of event recordings: looked for {', '.join(names)}"
+        return found
+
+    def _at_root(self, client: Client) -> Iterator[str]:
+        """Folders that hold recordings as the root lists them, or are called as usual; the root itself."""
+        try:
+            entries = client.files(ROOT)
+        except (NotFound, AccessDenied):
+            return
+        usual = {name.casefold() for name in (self._default, *USUAL)}
+        folders: dict[str, None] = {}
+        for entry in entries:
+            parent = entry.name[: len(entry.name) - len(last_component(entry.name))].rstrip("/\\")
+            plain = entry.name.strip("/\\")
+            if is_of_a_record(entry.name):
+                folders[parent] = None
+            elif plain.casefold() in usual:
+                folders[plain] = None
+        yield from folders
+
+
+def _holds_records(contents: Contents) -> bool:
+    return any(is_of_a_record(entry.name) for entry in contents.entries)
