@@ -154,10 +154,16 @@ def test_the_motors_file_may_decide_about_the_relay(motors: Path) -> None:
     [
         ("trigger = 1", "relay.trigger: expected a control such as"),
         ('trigger = "RBGGIO1.SPCSO01"', "relay.trigger: expected a control such as"),
-        ('report_control = "A1/LLN0.BRep01"', "relay.report_control: expected a report control block such as"),
+        (
+            'report_control = "A1/LLN0.BRep01"',
+            "relay.report_control: expected a report control block such as",
+        ),
         ('trigger_action = "push"', "relay.trigger_action: expected 'set-reset' or 'pulse', found 'push'"),
         ('events_directory = ""', "relay.events_directory: expected a folder of the relay"),
-        ('folder = "EVENTS"', "relay.folder: expected one of trigger, report_control, trigger_action, events_"),
+        (
+            'folder = "EVENTS"',
+            "relay.folder: expected one of trigger, report_control, trigger_action, events_",
+        ),
     ],
 )
 def test_what_is_wrong_in_what_it_decides_is_named(motors: Path, line: str, message: str) -> None:
