@@ -33,3 +33,8 @@ def at(bench: Bench, served: Simulated) -> Bench:
     relay = replace(bench.relay, host=served.address.host, port=served.address.port)
     settings = bench.settings.model_copy(update={"record_timeout_s": 15.0, "request_timeout_s": 5.0})
     return replace(bench, relay=relay, settings=settings)
+
+
+def overriding(bench: Bench, overrides: Overrides) -> Bench:
+    """The bench with what the motors file decides about its relay."""
+    return replace(bench, relay=replace(bench.relay, overrides=overrides))

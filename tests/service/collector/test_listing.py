@@ -82,7 +82,7 @@ def test_two_files_that_claim_one_name_do_not_overwrite_each_other() -> None:
 
 def test_other_files_are_ignored_and_said_to_be() -> None:
     listing = understand(listed("HISTORY.TXT", "SUBFOLDER/", "a\x1b[2J.txt"), "EVENTS")
-    assert listing.records == listing.refused == ()
+    assert (listing.records, listing.refused) == ((), ())
     assert {file.name: file.reason.partition(":")[0].partition(" (")[0] for file in listing.ignored} == {
         "HISTORY.TXT": "no file of a recording",
         "SUBFOLDER/": "a folder",
