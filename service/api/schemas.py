@@ -155,7 +155,7 @@ class Acquisition(Document):
 
 
 class Difference(Document):
-    """A difference between relay and SCL; `expected` null where nobody expected it, `found` where it lacks."""
+    """Relay and SCL differ; `expected` is null where nobody expected it, `found` where the relay lacks it."""
 
     kind: DifferenceKind
     expected: str | None

@@ -37,9 +37,11 @@ def browse(client: Client, expected: Offer | None) -> Offer | None:
     """
     try:
         devices = client.logical_devices()[:MOST_DEVICES]
-        nodes = dict(islice(_nodes(client, devices), MOST_NODES))
     except REFUSALS as error:
-        log.warning("the relay cannot be browsed, its SCL is trusted", host=client.host, reason=str(error))
+        log.warning("the relay cannot be browsed", host=client.host, reason=str(error))
+        return None
+    nodes = dict(islice(_nodes(client, devices), MOST_NODES))
+    if not nodes:
         return None
     promised = () if expected is None else expected.data_sets
     with_data_sets = {reference.rpartition(".")[0] for reference in promised}
@@ -71,7 +73,12 @@ def control_model(client: Client, reference: str) -> ControlModel | None:
 
 def _nodes(client: Client, devices: list[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
     for device in devices:
-        for name in client.logical_nodes(device):
+        try:
+            names = client.logical_nodes(device)
+        except REFUSALS as error:
+            log.warning("a logical device is passed over", host=client.host, reason=str(error)[:200])
+            continue
+        for name in names:
             node = f"{device}/{name}"
             try:
                 yield node, tuple(client.data_objects(node))

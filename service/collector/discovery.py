@@ -4,7 +4,7 @@ What differs is written down and, where the service uses it, an alarm. Nothing o
 """
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 
 import structlog
@@ -20,6 +20,8 @@ from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
 
+NOT_ASKED = "the relay does not tell what it offers: its SCL is taken at its word"
+
 
 class Discovery:
     """Of one relay. Used by that relay's session alone."""
@@ -30,7 +32,7 @@ class Discovery:
         self._alarms = alarms
         self._acquisition = promised(relay)
         self._control_model: str | None = None
-        self._differences: tuple[Difference, ...] = ()
+        self._differences: list[dict[str, object]] = []
         self._asked_ns = 0
         self._written: RelayFindings | None = None
 
@@ -38,14 +40,15 @@ class Discovery:
         """Browse the relay: what is to be used of it. Raises MmsError (the link)."""
         offer = browse(client, self._relay.expected)
         self._asked_ns = time.time_ns()
+        self._differences = []
         if offer is None:
-            self._acquisition, self._differences = promised(self._relay), ()
+            self._acquisition = promised(self._relay)
         else:
             self._acquisition = offered(
                 self._relay, offer, lambda control: bool(control_model(client, control))
             )
             if self._relay.expected is not None:
-                self._differences = differences(self._relay.expected, offer)
+                self._differences = [_document(each) for each in differences(self._relay.expected, offer)]
         trigger = self._acquisition.trigger
         model = None if trigger is None else control_model(client, trigger)
         self._control_model = None if model is None else model.words
@@ -68,8 +71,8 @@ class Discovery:
         findings = RelayFindings(
             ied=self._relay.name,
             found_ns=self._asked_ns,
-            acquisition=self._document(report_control, directory, remarks),
-            differences=[_plain(asdict(each)) for each in self._differences],
+            acquisition=self._used(report_control, directory, remarks),
+            differences=self._differences,
             ignored_files=[asdict(each) for each in ignored],
             ignored_in_all=ignored_in_all,
         )
@@ -77,7 +80,7 @@ class Discovery:
             self._repository.note_findings(findings)
             self._written = findings
 
-    def _document(
+    def _used(
         self, report_control: str | None, directory: str | None, remarks: Sequence[str]
     ) -> dict[str, object]:
         found = self._acquisition
@@ -93,7 +96,11 @@ class Discovery:
             "report_control": report_control,
             "events_directory": directory,
             "overridden": [name for name, value in asdict(overrides).items() if value is not None],
-            "remarks": [*remarks, *(each.reason for each in found.deviations)],
+            "remarks": [
+                *([] if found.asked else [NOT_ASKED]),
+                *remarks,
+                *(each.reason for each in found.deviations),
+            ],
         }
 
     def _raise_alarms(self) -> None:
@@ -111,5 +118,5 @@ def _told_by(report_control: str | None) -> str:
     return "buffered-report" if ".BR." in report_control else "unbuffered-report"
 
 
-def _plain(difference: Mapping[str, object]) -> dict[str, object]:
-    return {name: None if value is None else str(value) for name, value in difference.items()}
+def _document(difference: Difference) -> dict[str, object]:
+    return {"kind": str(difference.kind), "expected": difference.expected, "found": difference.found}

@@ -3,6 +3,7 @@
 What somebody overrode comes first, then what the relay offers, then (where it could not be asked) its SCL.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -10,7 +11,9 @@ from service.plant.metering import Measurand, measurands_offered
 from service.plant.model import Relay
 from service.plant.offer import Offer
 from service.plant.overrides import NONE, TriggerAction
-from service.plant.recognition import NO_TRIGGER, REMOTE_BIT, recognise_offer
+from service.plant.recognition import NO_TRIGGER, recognise_offer
+
+_REMOTE_BITS = re.compile(r"/RBGGIO\d+\.SPCSO\d+$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,17 +75,16 @@ def offered(relay: Relay, offer: Offer, is_control: Callable[[str], bool]) -> Ac
     points = recognise_offer(offer, is_control, [promise for promise in promises if promise is not None])
     trigger = _chosen(overrides.trigger, points.trigger)
     measurands = measurands_offered(offer, relay.measurands)
-    deviations = [
-        _deviation("trigger", relay.trigger_control, points.trigger, "it cannot be asked for a record"),
+    deviations = (
+        _deviation("trigger", relay.trigger_control, points.trigger, "it cannot be asked for a record")
+        if overrides.trigger is None
+        else _overridden_trigger(trigger, offer),
         _deviation("record-made", relay.record_made, points.record_made, "its directory is polled"),
-        _deviation("reports", relay.report_control, points.report_control, "others are tried, or polling"),
-        _overridden_trigger(trigger, offer) if overrides.trigger is not None else None,
+        _deviation("reports", relay.report_control, points.report_control, "others are tried, or polling")
+        if overrides.report_control is None
+        else None,
         _metering(relay.measurands, measurands),
-    ]
-    if overrides.trigger is not None:
-        deviations[0] = None
-    if overrides.report_control is not None:
-        deviations[2] = None
+    )
     return Acquisition(
         trigger=trigger,
         trigger_action=overrides.trigger_action or _action(trigger),
@@ -118,7 +120,7 @@ def _reports(override: str | None, recognised: tuple[str, ...]) -> tuple[str, ..
 
 
 def _action(trigger: str | None) -> TriggerAction:
-    is_bit = trigger is not None and trigger.endswith(f"/{REMOTE_BIT}")
+    is_bit = trigger is not None and _REMOTE_BITS.search(trigger) is not None
     return TriggerAction.SET_RESET if is_bit else TriggerAction.PULSE
 
 
