@@ -63,7 +63,7 @@ def serve(relays: int, directory: Path) -> None:
     plant_of(relays, scd)
     begin_s = time.monotonic()
     command = [sys.executable, "-m", "ied_sim", "--scd", str(scd)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         try:
             while process.stdout.readline().strip() != "ready":

@@ -7,9 +7,15 @@ from scl import Address
 HOST = "127.0.0.1"
 
 
-def free_address() -> Address:
-    """Where nobody listens. Another program may be faster to take it; the server then says so."""
-    with socket.socket() as probe:
-        probe.bind((HOST, 0))
-        port: int = probe.getsockname()[1]
-        return Address(HOST, port)
+class ReservedAddress:
+    """A port nobody else is given while it is reserved; a server that reuses addresses can listen there."""
+
+    def __init__(self) -> None:
+        self._socket = socket.socket()
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self._socket.bind((HOST, 0))
+        port: int = self._socket.getsockname()[1]
+        self.address = Address(HOST, port)
+
+    def release(self) -> None:
+        self._socket.close()

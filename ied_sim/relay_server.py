@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from ied_sim.loopback import free_address
+from ied_sim.loopback import ReservedAddress
 from ied_sim.profile import Profile
 from ied_sim.relay_clock import RelayClock
 from ied_sim.relay_points import RelayPoints
@@ -71,6 +71,7 @@ class RelayServer:
         self._down = False
         self._changes = 0
         self._annex: Server | None = None
+        self._annex_address: ReservedAddress | None = None
         for folder in {Path(path).parent for path in texts}:
             (root / folder).mkdir(parents=True, exist_ok=True)
         self.server = self._build(address, min(profile.sessions, MOST_CONNECTIONS))
@@ -120,8 +121,8 @@ class RelayServer:
         if self._down:
             return None
         if self._annex is None:
-            address = free_address()
-            annex = self._build(address, self._profile.sessions - MOST_CONNECTIONS)
+            self._annex_address = self._annex_address or ReservedAddress()
+            annex = self._build(self._annex_address.address, self._profile.sessions - MOST_CONNECTIONS)
             self._annex = annex
             known = -1
             while known != self._changes:  # what was published meanwhile may have been overtaken
@@ -134,6 +135,9 @@ class RelayServer:
         annex, self._annex = self._annex, None
         if annex is not None:
             annex.stop()
+        address, self._annex_address = self._annex_address, None
+        if address is not None:
+            address.release()
 
     def _build(self, address: Address, sessions: int) -> Server:
         served = self._profile.files is not None

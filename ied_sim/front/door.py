@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 
 from ied_sim.front.rewriting import Rewriter
 from ied_sim.front.transport import CONNECT_CONFIRM, DATA, Message, read_message, unit_size, units_of
-from ied_sim.loopback import free_address
+from ied_sim.loopback import ReservedAddress
 from ied_sim.misbehaviour import Kind, Switchboard
 from ied_sim.profile import Files
 from mms import MOST_CONNECTIONS
@@ -180,6 +180,7 @@ class FrontDoors:
 
     def __init__(self) -> None:
         self._doors: list[FrontDoor] = []
+        self._reserved: list[ReservedAddress] = []
         self._running: tuple[asyncio.AbstractEventLoop, threading.Thread] | None = None
 
     def add(
@@ -193,11 +194,12 @@ class FrontDoors:
         annex: Annex,
     ) -> Address:
         """A door at `outside`; returns where the server behind it is to listen."""
-        inside = free_address()
+        inside = ReservedAddress()
+        self._reserved.append(inside)
         self._doors.append(
-            FrontDoor(outside, inside, files, switchboard, report_ids, sessions=sessions, annex=annex)
+            FrontDoor(outside, inside.address, files, switchboard, report_ids, sessions=sessions, annex=annex)
         )
-        return inside
+        return inside.address
 
     def start(self) -> Address | None:
         """Open all doors; None, or the address of the first that cannot be had."""
@@ -216,6 +218,8 @@ class FrontDoors:
 
     def stop(self) -> None:
         """Close all doors; harmless where none was opened."""
+        for inside in self._reserved:
+            inside.release()
         if self._running is None:
             return
         loop, thread = self._running
