@@ -4,7 +4,8 @@ import socket
 
 from scl import Address
 
-HOST = "127.0.0.1"
+HOST = "127.0.0.2"
+"""Not 127.0.0.1: a port that is free there may be one that another relay is about to listen at."""
 
 
 class ReservedAddress:
