@@ -1,8 +1,8 @@
 """Side-by-side measurements, ratios in one run: python -m benchmarks.run (make bench)."""
 
-from benchmarks import diagnosis, machine_models, many_points, recordings, simulated_plant, transfer
+from benchmarks import diagnosis, machine_models, many_points, pull_speed, recordings, simulated_plant
 
-SUBJECTS = (machine_models, diagnosis, many_points, recordings, simulated_plant, transfer)
+SUBJECTS = (machine_models, diagnosis, many_points, recordings, simulated_plant, pull_speed)
 
 
 def main() -> None:
