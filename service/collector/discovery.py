@@ -12,6 +12,7 @@ import structlog
 from mms import Client
 from service.collector.alarms import RelayAlarms
 from service.collector.browsing import browse, control_model
+from service.collector.event_folder import ROOT
 from service.collector.listing import RefusedFile
 from service.plant import Acquisition, Difference, Relay, differences, offered, promised
 from service.storage import Repository
@@ -94,7 +95,7 @@ class Discovery:
             "record_number": found.record_number,
             "records_told_by": _told_by(report_control),
             "report_control": report_control,
-            "events_directory": directory,
+            "events_directory": "/" if directory == ROOT else directory,
             "overridden": [name for name, value in asdict(overrides).items() if value is not None],
             "remarks": [
                 *([] if found.asked else [NOT_ASKED]),

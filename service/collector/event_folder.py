@@ -8,11 +8,12 @@ that exist are looked into.
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 import structlog
 
 from mms import AccessDenied, Client, FileEntry, NotFound, ProtocolError
-from service.collector.listing import is_of_a_record, last_component
+from service.collector.listing import is_of_a_record, last_component, printable
 
 log = structlog.get_logger(__name__)
 
@@ -21,8 +22,11 @@ SPELLINGS = ("/{}", "{}/", "{}\\", "\\{}")
 """Tried where neither the plain name nor the root's listing leads anywhere."""
 
 ROOT = ""
-SEARCH_PERIOD_S = 10.0
-"""Between searches for a folder that was not there."""
+SEARCH_PERIOD_S, NO_FILES_PERIOD_S = 10.0, 60.0
+"""Between searches for a folder that was not there, and at a relay that seems to have no file service."""
+
+MOST_FOLDERS = 16
+"""Looked into, of those the root lists."""
 
 NO_SERVICE_CODES = (4, 98, 99)
 """Of the library's: service not supported, not implemented, and what it makes of a reject."""
@@ -70,8 +74,8 @@ class EventFolder:
                 return Contents(None, ())
             found = self._search(client)
         if not found:
-            self._candidates = []
-            self._next_search_s = time.monotonic() + SEARCH_PERIOD_S
+            period_s = NO_FILES_PERIOD_S if self.no_files else SEARCH_PERIOD_S
+            self._next_search_s = time.monotonic() + period_s
             return Contents(None, ())
         self.missing, self.no_files = None, False
         chosen = next(filter(_holds_records, found), found[0])
@@ -91,31 +95,33 @@ class EventFolder:
                 contents = Contents(directory, client.files(directory))
             except (NotFound, AccessDenied):
                 continue
+            except ProtocolError as error:
+                # A folder that was listed before fails for another reason, which ends the visit.
+                if directory in self._candidates or error.code not in NO_SERVICE_CODES:
+                    raise
+                self.no_files = True
+                continue
             found.append(contents)
             if _holds_records(contents):
                 break
         return found
 
     def _search(self, client: Client) -> list[Contents]:
-        if self._override is not None:
-            names: list[str] = [self._override]
-        else:
-            names = list(dict.fromkeys((self._default, *USUAL)))
-        try:
-            found = self._look_into(client, names)
-            if self._override is None and not any(map(_holds_records, found)):
-                known = {contents.directory for contents in found}
-                at_root = [name for name in self._at_root(client) if name not in known]
-                found += self._look_into(client, at_root)
-            if not found and self._override is None:
-                found = self._look_into(client, [form.format(name) for name in names for form in SPELLINGS])
-        except ProtocolError as error:
-            if error.code not in NO_SERVICE_CODES:
-                raise
-            self.no_files = True
-            self.missing = f"the relay offers no files ({error.message}): no recording can be fetched"
-            return []
-        self.missing = f"no directory of event recordings: looked for {', '.join(names)}"
+        self._candidates = []
+        self.no_files = False
+        names = [self._override] if self._override is not None else [*dict.fromkeys((self._default, *USUAL))]
+        found = self._look_into(client, names)
+        if self._override is None and not self.no_files and not any(map(_holds_records, found)):
+            known = {contents.directory for contents in found}
+            found += self._look_into(client, [name for name in self._at_root(client) if name not in known])
+        if self._override is None and not self.no_files and not found:
+            found = self._look_into(client, [form.format(name) for name in names for form in SPELLINGS])
+        looked_for = f"looked for {', '.join(names)}"
+        self.missing = (
+            f"the relay offers no files: no recording can be fetched ({looked_for})"
+            if self.no_files
+            else f"no directory of event recordings: {looked_for}"
+        )
         return found
 
     def _at_root(self, client: Client) -> Iterator[str]:
@@ -127,13 +133,15 @@ class EventFolder:
         usual = {name.casefold() for name in (self._default, *USUAL)}
         folders: dict[str, None] = {}
         for entry in entries:
+            if printable(entry.name) != entry.name:
+                continue
             parent = entry.name[: len(entry.name) - len(last_component(entry.name))].rstrip("/\\")
             plain = entry.name.strip("/\\")
             if is_of_a_record(entry.name):
                 folders[parent] = None
             elif plain.casefold() in usual:
                 folders[plain] = None
-        yield from folders
+        yield from islice(folders, MOST_FOLDERS)
 
 
 def _holds_records(contents: Contents) -> bool:

@@ -45,6 +45,8 @@ def found(client: Client, folder: EventFolder) -> Contents:
         (["X.CFG", "X.DAT"], ""),
         (["EVENTS/HISTORY.TXT", "COMTRADE/X.CFG"], "COMTRADE"),
         (["EVENTS/X.CEV", "COMTRADE/X.CFG"], "EVENTS"),
+        (["FAULTS\x1b[2J/X.CFG", "GOOD/X.CFG"], "GOOD"),
+        (["F" * 150 + "/X.CFG", "GOOD/X.CFG"], "GOOD"),
     ],
 )
 def test_the_folder_is_found(client: Client, relay: ScriptedRelay, names: list[str], directory: str) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from core.recordings import read
 from service.collector.formats import one_format_an_event, remote_of
 from service.collector.listing import ListedRecord, understand
 from service.storage.states import EventReportState, RecordingState
@@ -62,8 +63,9 @@ def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
             assert eventually(lambda: here.report(wish).state is EventReportState.FETCHED, 20)
     (recording,) = here.recordings()
     assert recording.digest is not None
-    (file,) = here.store.find(recording.digest).files
-    assert file.name == f"{recording.name}.CEV"
+    stored = here.store.find(recording.digest)
+    assert [file.name for file in stored.files] == [f"{recording.name}.CEV"]
+    assert {channel.phase for channel in read(stored.entry).channels} >= set("abc")
 
 
 def test_an_event_report_waits_for_its_comtrade(bench: Bench, relay: ScriptedRelay) -> None:
