@@ -50,6 +50,8 @@ class EventFolder:
         self._relay = relay
         self._default = default
         self._override = override
+        # Whoever has set another folder than the usual one means it, empty or not, where the relay has it.
+        self._meant = override or (None if default == USUAL[0] else default)
         self._candidates: list[str] = []
         self._is_sure = False
         self._next_search_s = 0.0
@@ -78,8 +80,9 @@ class EventFolder:
             self._next_search_s = time.monotonic() + period_s
             return Contents(None, ())
         self.missing, self.no_files = None, False
-        chosen = next(filter(_holds_records, found), found[0])
-        if _holds_records(chosen) or self._override is not None:
+        meant = [each for each in found if each.directory == self._meant]
+        chosen = next(filter(_holds_records, meant or found), (meant or found)[0])
+        if _holds_records(chosen) or meant:
             self._is_sure = True
         if chosen.directory != self.directory:
             log.info("events directory", relay=self._relay, directory=chosen.directory)
@@ -102,7 +105,7 @@ class EventFolder:
                 self.no_files = True
                 continue
             found.append(contents)
-            if _holds_records(contents):
+            if directory == self._meant or _holds_records(contents):
                 break
         return found
 
@@ -111,7 +114,8 @@ class EventFolder:
         self.no_files = False
         names = [self._override] if self._override is not None else [*dict.fromkeys((self._default, *USUAL))]
         found = self._look_into(client, names)
-        if self._override is None and not self.no_files and not any(map(_holds_records, found)):
+        is_settled = any(each.directory == self._meant or _holds_records(each) for each in found)
+        if self._override is None and not self.no_files and not is_settled:
             known = {contents.directory for contents in found}
             found += self._look_into(client, [name for name in self._at_root(client) if name not in known])
         if self._override is None and not self.no_files and not found:

@@ -58,8 +58,9 @@ def test_the_folder_is_found(client: Client, relay: ScriptedRelay, names: list[s
 
 
 def test_the_setting_comes_first_and_an_override_alone(client: Client, relay: ScriptedRelay) -> None:
-    write(relay, "EVENTS/X.CFG", "OTHER/X.CFG", "THIRD/HISTORY.TXT")
-    assert found(client, EventFolder(NAME, "OTHER")).directory == "OTHER"
+    write(relay, "EVENTS/X.CFG", "OTHER/HISTORY.TXT", "THIRD/HISTORY.TXT")
+    assert found(client, EventFolder(NAME, "OTHER")).directory == "OTHER", "empty as it is"
+    assert found(client, EventFolder(NAME, "NOWHERE")).directory == "EVENTS"
     assert found(client, EventFolder(NAME, "OTHER", "THIRD")).directory == "THIRD"
     nowhere = EventFolder(NAME, "OTHER", "FOURTH")
     assert found(client, nowhere).directory is None
