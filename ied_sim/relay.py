@@ -105,6 +105,7 @@ class Relay:
             staging=staging,
             operated=self._operate,
             texts={path: self._text(maker) for path, maker in self._offered.items()},
+            access=scenario.access,
         )
         self._values = RelayValues(
             self._relay_server, self._points, profile.points.metering, profile.points.sequence
@@ -120,8 +121,11 @@ class Relay:
 
     @property
     def serves_itself(self) -> bool:
-        """Whether its server has a thread of its own: one that restarts cannot share a pump."""
-        return Kind.RESTART in self.switchboard.kinds
+        """Whether its server has a thread of its own.
+
+        One that restarts cannot share a pump, and one that shakes hands over TLS would hold the others up.
+        """
+        return Kind.RESTART in self.switchboard.kinds or self._scenario.access.tls is not None
 
     def stop(self) -> None:
         """Abandon a capture under way; the server itself belongs to its pump."""
@@ -320,6 +324,11 @@ class Relay:
         )
         if not unusual and not self.switchboard.kinds & ON_THE_WIRE:
             return address
+        if self._scenario.access.tls is not None:
+            raise SimulatorError(
+                f"{self.name}: its profile or scenario needs a front between relay and clients, which could "
+                "not read TLS; take another profile (sel-710-ed2, say), or leave out tls or the misbehaviour"
+            )
         if doors is None:
             raise SimulatorError(
                 f"{self.name}: its profile or scenario needs a front, and it has no place for one"
