@@ -1,4 +1,4 @@
-"""docs/security.md: its commands make certificates, its settings use them, the exchange it describes works."""
+"""docs/security.md: its commands make certificates, its settings use them, its exchange works."""
 
 import re
 import shutil
