@@ -34,7 +34,8 @@ _DENY: Final = 1  # AccessPolicy
 _FAILED, _OK = 0, 1  # ControlHandlerResult
 _PATIENCE_AFTER_REQUEST_S: Final = 0.01  # only enabling a block or an interrogation makes reports
 _LONGEST_HANDSHAKE_S: Final = 5.0
-_MOST_CONNECTIONS: Final = 5  # compiled into the wheel's library
+MOST_CONNECTIONS: Final = 5
+"""Clients of one server; compiled into the wheel's library."""
 
 
 class _State(Enum):
@@ -68,7 +69,7 @@ class Server:
 
     def __init__(
         self, model_text: str, *, port: int, ied_name: str | None = None, address: str = "127.0.0.1",
-        file_root: Path | None = None, max_connections: int = _MOST_CONNECTIONS,
+        file_root: Path | None = None, max_connections: int = MOST_CONNECTIONS,
         report_buffer_bytes: int = 65_536, on_file_request: FileHook | None = None,
         tls: TlsConfiguration | None = None, passwords: Iterable[str] = (),
     ) -> None:  # fmt: skip
@@ -85,8 +86,8 @@ class Server:
         """
         if not 0 < port < 65536:
             raise ValueError(f"not a TCP port: {port} (the library cannot choose one)")
-        if not 0 < max_connections <= _MOST_CONNECTIONS:
-            raise ValueError(f"max_connections is {max_connections}: expected 1 to {_MOST_CONNECTIONS}")
+        if not 0 < max_connections <= MOST_CONNECTIONS:
+            raise ValueError(f"max_connections is {max_connections}: expected 1 to {MOST_CONNECTIONS}")
         self.address: Final = address
         self.port: Final = port
         self._lib: Final = library()
