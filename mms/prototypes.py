@@ -107,6 +107,7 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "TLSConfiguration_setOwnCertificate": (c_bool, [c_void_p, c_char_p, c_int]),
     "TLSConfiguration_addAllowedCertificate": (c_bool, [c_void_p, c_char_p, c_int]),
     "TLSConfiguration_addCACertificate": (c_bool, [c_void_p, c_char_p, c_int]),
+    "TLSConnection_getTLSVersion": (c_int, [c_void_p]),
     # passwords
     "AcseAuthenticationParameter_create": (c_void_p, []),
     "AcseAuthenticationParameter_destroy": (None, [c_void_p]),

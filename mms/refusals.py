@@ -1,8 +1,8 @@
 """Why a relay did not let us in, in words: the library tells only that.
 
 After a failure, and only then, a connection of our own or two look at what answers there. They send what any
-client begins with: a transport connect request (ISO 8073, in TPKT) or a TLS ClientHello. No certificate and
-no password.
+client begins with: a transport connect request (ISO 8073, in TPKT) or a TLS ClientHello. They send no
+password, and our certificate only to a relay that the library trusts and that has not said what it thinks of it.
 """
 
 import socket
@@ -12,7 +12,7 @@ from enum import Enum
 from typing import Final
 
 from mms import errors
-from mms.tls import TLS_PORT, TlsContext
+from mms.tls import TLS_PORT, TlsContext, TlsVersion
 
 _CONNECT_REQUEST: Final = bytes.fromhex("0300001611e00000000100c0010dc2020001c1020000")
 _TPKT, _TLS_ALERT, _TLS_HANDSHAKE = 3, 21, 22
@@ -51,7 +51,8 @@ def refused(
         return _no_relay(host, _Answer.NONE)
     if tls is None:
         return _without_tls(host, look, password=password)
-    if tls.undisturbed:
+    version = tls.undisturbed
+    if version is TlsVersion.TLS_1_2 or (version is TlsVersion.TLS_1_3 and look.is_let_in(tls)):
         return errors.AssociationRejected(host, "connect", 0, _rejected(password=password))
     return _with_tls(host, look)
 
@@ -116,9 +117,30 @@ class _Look:
     def is_late(self) -> bool:
         return time.monotonic() >= self._deadline
 
+    @property
+    def _patience_s(self) -> float:
+        return min(_LONGEST_LOOK_S, self._deadline - time.monotonic())
+
+    def is_let_in(self, tls: TlsContext) -> bool:
+        """Whether a relay with a pinned certificate answers to ours."""
+        patience_s = self._patience_s
+        if patience_s <= 0:
+            return False
+        try:
+            with (
+                socket.create_connection(self._address, patience_s) as connection,
+                tls.again().wrap_socket(connection) as secured,
+            ):
+                if not tls.is_pinned(secured.getpeercert(binary_form=True)):
+                    return False
+                secured.sendall(_CONNECT_REQUEST)
+                return secured.recv(1)[:1] == bytes([_TPKT])
+        except OSError:
+            return False
+
     def at(self, message: bytes) -> _Answer:
         """The kind of the answer; NONE too where no time is left to ask."""
-        patience_s = min(_LONGEST_LOOK_S, self._deadline - time.monotonic())
+        patience_s = self._patience_s
         if patience_s <= 0:
             return _Answer.NONE
         try:

@@ -5,6 +5,8 @@ owner of the C object made of it.
 """
 
 import ctypes
+import os
+import ssl
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -100,8 +102,8 @@ class TlsContext:
         self._lib = lib
         self._configuration = configuration
         self._incidents: list[int] = []
-        self._established = False
-        material = _Material.read(configuration)
+        self._established: TlsVersion | None = None
+        self._material = material = _Material.read(configuration)
         self.trusted: Final = tuple(described(certificate) for certificate in material.pinned)
         self._handler = TlsEventHandler(guarded(self._note, None))
         with _counting:
@@ -149,26 +151,51 @@ class TlsContext:
         return CredentialFileError(path, expected, "an algorithm the MMS library does not know")
 
     def _note(
-        self, _parameter: int | None, level: int, code: int, _message: bytes | None, _connection: int | None
+        self, _parameter: int | None, level: int, code: int, _message: bytes | None, connection: int | None
     ) -> None:
         if level == _INCIDENT:
             self._incidents.append(code)
         elif code == _ESTABLISHED:
-            self._established = True
+            self._established = TlsVersion(self._lib.TLSConnection_getTLSVersion(connection))
 
     def distrust(self) -> str | None:
         """What is wrong with the certificate the peer showed; None where nothing was found wrong with it."""
         return next((_UNTRUSTED[code] for code in self._incidents if code in _UNTRUSTED), None)
 
     @property
-    def undisturbed(self) -> bool:
-        """Whether a handshake has succeeded and nothing has gone wrong since."""
-        return self._established and not self._incidents
+    def undisturbed(self) -> TlsVersion | None:
+        """The version of a handshake that succeeded, where nothing has gone wrong since that was noticed.
+
+        With TLS 1.2 the peer has taken our certificate then; with 1.3 it says so, or not, only afterwards.
+        """
+        return None if self._incidents else self._established
+
+    def again(self) -> ssl.SSLContext:
+        """For a handshake of our own with the same certificate; compare the peer's by `is_pinned`."""
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+        context.check_hostname = False
+        context.verify_mode = ssl.CERT_NONE
+        identity = b"".join(each.public_bytes(serialization.Encoding.PEM) for each in self._material.chain)
+        identity += self._material.key.private_bytes(
+            serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+        )
+        memory = os.memfd_create("identity")  # the ssl module takes files only, and none is to hold the key
+        try:
+            os.write(memory, identity)
+            context.load_cert_chain(f"/proc/self/fd/{memory}")
+        finally:
+            os.close(memory)
+        return context
+
+    def is_pinned(self, certificate: bytes | None) -> bool:
+        """Whether it, in DER, is one of those we trust."""
+        pinned = (each.public_bytes(serialization.Encoding.DER) for each in self._material.pinned)
+        return certificate is not None and certificate in pinned
 
     def forget(self) -> None:
         """Begin another attempt."""
         self._incidents.clear()
-        self._established = False
+        self._established = None
 
     def destroy(self) -> None:
         """Free it, once its connection or server has been destroyed; harmless twice."""

@@ -19,7 +19,7 @@ from mms.values import BitString, Quality, Timestamp, Validity, decode
 SOURCES = sorted(Path(mms.__file__).parent.glob("*.py"))
 C_PREFIXES = (
     "Acse", "Client", "Config", "Control", "DataAttribute_", "File", "Ied", "Iso", "LinkedList_", "Mms",
-    "ModelNode_", "TLSConfiguration_",
+    "ModelNode_", "TLSConfiguration_", "TLSConnection_",
 )  # fmt: skip
 
 

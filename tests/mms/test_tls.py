@@ -112,6 +112,24 @@ def test_an_unknown_client_is_refused(pki: Pki, relay: Server, version: TlsVersi
         assert reads(client), "it goes on serving the others"
 
 
+def test_a_refusal_that_comes_late_is_no_wrong_password(
+    pki: Pki, relay: Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With TLS 1.3 the library may not hear why the relay hung up: it fails to write, and says nothing."""
+    note = TlsContext._note
+
+    def deaf(
+        self: TlsContext, parameter: None, level: int, code: int, message: bytes, connection: int
+    ) -> None:
+        if level == 0:
+            note(self, parameter, level, code, message, connection)
+
+    monkeypatch.setattr(TlsContext, "_note", deaf)
+    tls = replace(pki.of(pki.alien), minimum_version=TlsVersion.TLS_1_3)
+    with pytest.raises(CertificateRefused):
+        Client.connect(LOOPBACK, relay.port, tls=tls, password="OTTER")  # noqa: S106
+
+
 @pytest.mark.parametrize("version", [ssl.TLSVersion.TLSv1_2, ssl.TLSVersion.TLSv1_3])
 def test_a_client_without_certificate_gets_no_answer(relay: Server, version: ssl.TLSVersion) -> None:
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
