@@ -2,7 +2,8 @@
 
 After a failure, and only then, a connection of our own or two look at what answers there. They send what any
 client begins with: a transport connect request (ISO 8073, in TPKT) or a TLS ClientHello. They send no
-password, and our certificate only to a relay that the library trusts and that has not said what it thinks of it.
+password, and our certificate only to a relay that the library trusts and that has not said what it thinks of
+it.
 """
 
 import socket
