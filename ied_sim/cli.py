@@ -120,7 +120,7 @@ def _serve(
     # Waited for instead of handled, and blocked before any thread starts: all threads inherit it.
     signals = (signal.SIGTERM, signal.SIGINT)
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)
-    if any(scenarios[name].access.tls is not None for name in names):
+    if any(scenario.access.tls is not None for scenario in scenarios.values()):
         keep_tls_notes_off_stderr()
     warm_up()
     with (
