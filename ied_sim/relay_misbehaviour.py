@@ -27,13 +27,14 @@ class RelayMisbehaviour:
         self._buffer_bytes = buffer_bytes
         self._other_client: Client | None = None
         self._on: set[Kind] = set()
+        self._waits = False
 
     def look(self) -> None:
         """Begin and end what has come on or gone off since the last look."""
-        known = self._switchboard.kinds & {Kind.REPORT_TAKEN, Kind.BUFFER_OVERFLOW, Kind.RESTART}
-        for kind in sorted(known):
+        for kind in sorted(self._switchboard.kinds):
             on = self._switchboard.is_on(kind)
             if on != (kind in self._on):
+                log.info("%s: %s", "misbehaves" if on else "behaves again", kind)
                 (self._begin if on else self._end)(kind)
                 self._on ^= {kind}
         if Kind.REPORT_TAKEN in self._on and self._other_client is None:
@@ -44,14 +45,12 @@ class RelayMisbehaviour:
             self._other_client.close()
 
     def _begin(self, kind: Kind) -> None:
-        log.info("misbehaves: %s", kind)
         if kind is Kind.RESTART:
             self._server.go_down()
         elif kind is Kind.BUFFER_OVERFLOW:
             self._flood()
 
     def _end(self, kind: Kind) -> None:
-        log.info("behaves again: %s", kind)
         if kind is Kind.RESTART:
             self._server.come_up()
         elif kind is Kind.REPORT_TAKEN:
@@ -69,10 +68,14 @@ class RelayMisbehaviour:
             return
         try:
             client.subscribe(reports, SimpleQueue[Report]())
-        except MmsError:  # somebody has the block; it is tried again at the next look
+        except MmsError as error:
+            if not self._waits:
+                log.warning("another client waits for %s: %s", reports, error)
+            self._waits = True
             client.close()
         else:
-            self._other_client = client
+            log.info("another client has %s", reports)
+            self._other_client, self._waits = client, False
 
     def _flood(self) -> None:
         """Let the quality of the trip flicker: a report for each change, and nothing has happened."""

@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from core.machines.parameters import Motor, Nameplate
+from ied_sim.access import AccessTable
 from ied_sim.fault import FaultCourse
 from ied_sim.load import Load, LoadCycle
 from ied_sim.misbehaviour import PARAMETERS, Kind, Misbehaviour
@@ -249,8 +250,8 @@ class MotorTable(Table):
     seed: Annotated[int, Field(ge=0)] = 0
     stopped: bool = False
     broken_bars: Annotated[float, Field(ge=0, le=0.3)] = 0.0
-    nameplate: dict[str, object]
-    parameters: dict[str, object]
+    nameplate: dict[str, object] | None = None
+    parameters: dict[str, object] | None = None
     supply: SupplyTable = SupplyTable()
     load: LoadTable = LoadTable()
     fault: FaultTable | None = None
@@ -260,6 +261,7 @@ class MotorTable(Table):
     triggers: TriggersTable = TriggersTable()
     protection: ProtectionTable = ProtectionTable()
     misbehaviour: tuple[MisbehaviourTable, ...] = ()
+    access: AccessTable = AccessTable()
 
 
 class FileTable(Table):
