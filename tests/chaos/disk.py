@@ -37,7 +37,7 @@ class SmallDisk:
 
     def fill(self) -> None:
         with self._ballast.open("ab", buffering=0) as ballast, suppress(OSError):
-            while ballast.write(BLOCK) == len(BLOCK):
+            while ballast.write(BLOCK):
                 pass
 
     def free(self) -> None:
@@ -56,12 +56,13 @@ class WritingLimit:
     def fill(self) -> None:
         for process_id in self._processes():
             with suppress(ProcessLookupError):
-                _, hard = before = resource.prlimit(process_id, resource.RLIMIT_FSIZE)
-                resource.prlimit(process_id, resource.RLIMIT_FSIZE, (0, hard))
-                self._limited[process_id] = before
+                soft, hard = resource.prlimit(process_id, resource.RLIMIT_FSIZE)
+                if soft != 0:
+                    self._limited[process_id] = (soft, hard)
+                    resource.prlimit(process_id, resource.RLIMIT_FSIZE, (0, hard))
 
     def free(self) -> None:
-        for process_id, before in {**self._limited, **self._inheritors()}.items():
+        for process_id, before in (self._inheritors() | self._limited).items():
             with suppress(ProcessLookupError):
                 resource.prlimit(process_id, resource.RLIMIT_FSIZE, before)
         self._limited.clear()

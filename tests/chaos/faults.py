@@ -22,6 +22,7 @@ CLOCK_JUMPS_S = (3600, -3600, 90, -90, 86_400, -86_400)
 FILE_TIMES_JUMPS_S = (3600, -3600)
 CUT_AFTER_BYTES = (500, 4_000, 12_000)
 REQUEST_LIMIT_S = 3.0
+KEEP_FULL_PERIOD_S = 0.05
 
 
 class Faults:
@@ -98,16 +99,22 @@ class Faults:
 
     def _fill_disk(self, action: Action) -> None:
         with self._disk_in_use:
-            self._disk.fill()
             try:
-                time.sleep(action.length_s / 2)
+                self._keep_full(action.length_s / 2)
                 if action.kind.endswith("kill-gateway"):
                     self._kill_one_of(self._service.gateways(), action)
                 elif action.kind.endswith("kill-service"):
                     self._service.kill()
-                time.sleep(action.length_s / 2)
+                self._keep_full(action.length_s / 2)
             finally:
                 self._disk.free()
+
+    def _keep_full(self, length_s: float) -> None:
+        """What the service frees meanwhile is taken at once."""
+        until_s = time.monotonic() + length_s
+        while time.monotonic() < until_s:
+            self._disk.fill()
+            time.sleep(KEEP_FULL_PERIOD_S)
 
     def _lock_database(self, action: Action) -> None:
         database = sqlite3.connect(

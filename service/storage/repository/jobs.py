@@ -2,7 +2,7 @@
 
 import uuid
 
-from sqlalchemy import select, update
+from sqlalchemy import func, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.diagnosis.verdict import Diagnosis
@@ -36,10 +36,16 @@ class JobRows(Sessions):
             return job(row)
 
     def claim_job(self, *, now_ns: int) -> ClaimedJob | None:
-        """Takes the next job that is due: it is running from now on, one attempt more."""
+        """Takes the next job that is due: it is running from now on, one attempt more.
+
+        One that was queued or last tried later than now is of a time before the clock was set back: it is due.
+        """
+        is_due = or_(
+            JobRow.not_before_ns <= now_ns, func.coalesce(JobRow.started_ns, JobRow.created_ns) > now_ns
+        )
         query = (
             select(JobRow)
-            .where(JobRow.state == JobState.QUEUED, JobRow.not_before_ns <= now_ns)
+            .where(JobRow.state == JobState.QUEUED, is_due)
             .order_by(JobRow.not_before_ns, JobRow.id)
             .with_for_update(skip_locked=True)
         )
