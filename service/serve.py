@@ -22,6 +22,7 @@ from service.api.context import ApiContext
 from service.collector.gateways import running_gateways
 from service.exclusive import exclusive
 from service.housekeeping import Housekeeping
+from service.installation import installation_id
 from service.jobs import JobRunner
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
@@ -51,7 +52,7 @@ def serve(settings: Settings) -> None:
     _require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False), _listener(settings) as listener:
         repository = _prepared(settings, plant)
-        store = RecordingStore(settings.recordings_directory)
+        store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
         store.discard_incoming()
         with (
             running_gateways(settings, plant, repository) as collector,

@@ -1,7 +1,8 @@
 """What the service says it has: over REST, and in its store and database once it has ended."""
 
 import sqlite3
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
@@ -10,6 +11,7 @@ from service.rest_client import ServiceClient
 from tests.chaos.ledger import File
 
 ENDED = ("diagnosed", "failed")
+ASKED_AT_ONCE = 8
 SETTLED = ("diagnosed", "rejected", "failed")
 
 
@@ -83,6 +85,13 @@ def files_of(client: ServiceClient, recording: str) -> dict[str, File]:
     return {str(file["name"]): File(int(file["size_bytes"]), str(file["sha256"])) for file in files}
 
 
+def files_of_all(client: ServiceClient, recordings: Sequence[str]) -> dict[str, dict[str, File]]:
+    """The same of many. Raises ServiceError."""
+    with ThreadPoolExecutor(ASKED_AT_ONCE) as asking:
+        found = asking.map(lambda recording: files_of(client, recording), recordings)
+        return dict(zip(recordings, found, strict=True))
+
+
 def links(client: ServiceClient) -> dict[str, tuple[str, str]]:
     """State and reason of each relay's link. Raises ServiceError."""
     return {
@@ -102,9 +111,9 @@ def folders(store: Path) -> list[Folder]:
 
 
 def left_arriving(store: Path) -> list[str]:
-    """What lies in the place for what is arriving."""
+    """What lies in the place for what is arriving: files, and where."""
     incoming = store / "incoming"
-    return sorted(path.name for path in incoming.iterdir()) if incoming.is_dir() else []
+    return sorted(str(path.relative_to(incoming)) for path in incoming.rglob("*") if path.is_file())
 
 
 def integrity(database: Path) -> str:

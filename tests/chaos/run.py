@@ -121,7 +121,7 @@ def _evidence(
         settled_s = time.monotonic()
         triggers.ask_again(MOST_ASKED_AGAIN)
         rows, reports = account.rows(client), account.reports(client)
-        told = {row.id: account.files_of(client, row.id) for row in rows if row.is_fetched}
+        told = account.files_of_all(client, [row.id for row in rows if row.is_fetched])
         at_last = _handles(service)
         exit_code = service.stop()
         tell("the service has ended, comparing")

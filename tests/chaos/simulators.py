@@ -4,6 +4,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from threading import Lock
@@ -11,7 +12,6 @@ from threading import Lock
 from tests.chaos.plant import ChaosPlant
 
 RELAYS_A_PROCESS = 10
-START_LIMIT_S = 120.0
 
 
 class SimulatorProcess:
@@ -58,12 +58,14 @@ class SimulatorProcess:
 def running_simulators(plant: ChaosPlant, directory: Path, files: Path) -> Iterator[list[SimulatorProcess]]:
     """All relays of the plant, served for as long as the block lasts."""
     names = [relay.name for relay in plant.relays]
-    with ExitStack() as running:
-        simulators = []
-        for first in range(0, len(names), RELAYS_A_PROCESS):
-            group = names[first : first + RELAYS_A_PROCESS]
-            simulator = SimulatorProcess(plant, group, files, directory / f"ied-sim-{first}.log")
-            simulator.start()
+    simulators = [
+        SimulatorProcess(
+            plant, names[first : first + RELAYS_A_PROCESS], files, directory / f"ied-sim-{first}.log"
+        )
+        for first in range(0, len(names), RELAYS_A_PROCESS)
+    ]
+    with ExitStack() as running, ThreadPoolExecutor(len(simulators)) as starting:
+        for simulator in simulators:
             running.callback(simulator.stop)
-            simulators.append(simulator)
+        list(starting.map(SimulatorProcess.start, simulators))
         yield simulators

@@ -2,6 +2,7 @@
 
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from http import HTTPStatus
 from threading import Event, Lock, Timer
@@ -17,6 +18,7 @@ from tests.chaos.schedule import Action
 ANSWER_LIMIT_S = 5.0
 RETRY_AFTER_S = 0.5
 HOLD_S = 0.05
+ASKED_AT_ONCE = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +41,7 @@ class Triggers:
             base_url=url,
             timeout=ANSWER_LIMIT_S,
             trust_env=False,
-            limits=httpx.Limits(max_keepalive_connections=4),
+            limits=httpx.Limits(max_keepalive_connections=ASKED_AT_ONCE),
         )
         self._history = history
         self._lock = Lock()
@@ -86,10 +88,12 @@ class Triggers:
 
     def ask_again(self, most: int) -> None:
         """Keys that were answered before must give the same reports again."""
-        for asked in list(self.asked.values())[:most]:
-            report = self.post(asked.motor, asked.key)
-            if report != asked.report:
-                self.contradictions.append(f"{asked.key}: was {asked.report}, asked again: {report}")
+        asked = list(self.asked.values())[:most]
+        with ThreadPoolExecutor(ASKED_AT_ONCE) as asking:
+            answers = asking.map(lambda each: self.post(each.motor, each.key), asked)
+            for each, report in zip(asked, answers, strict=True):
+                if report != each.report:
+                    self.contradictions.append(f"{each.key}: was {each.report}, asked again: {report}")
 
     def make(self, action: Action) -> None:
         """A record made at the relay, by a client that is not the service."""

@@ -38,7 +38,7 @@ class JobRows(Sessions):
     def claim_job(self, *, now_ns: int) -> ClaimedJob | None:
         """Takes the next job that is due: it is running from now on, one attempt more.
 
-        One that was queued or last tried later than now is of a time before the clock was set back: it is due.
+        One queued or last tried later than now is of a time before the clock was set back: it is due.
         """
         is_due = or_(
             JobRow.not_before_ns <= now_ns, func.coalesce(JobRow.started_ns, JobRow.created_ns) > now_ns
