@@ -1,4 +1,4 @@
-# make install | demo | test | lint | bench | fuzz SECONDS=60      (PYTHON=python3.11 make install: another interpreter)
+# make install | demo | test | lint | bench | fuzz SECONDS=60 | interop LIBIEC61850=TREE      (PYTHON=python3.11 make install: another interpreter)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
 PYTHON ?= python3
 BIN := .venv/bin
@@ -8,7 +8,7 @@ WARM := .venv/.compiled
 export OPENBLAS_NUM_THREADS ?= 1
 COMPOSE ?= docker compose
 
-.PHONY: install demo test compose-test lint bench fuzz lock clean
+.PHONY: install demo test compose-test lint bench interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -46,6 +46,10 @@ lint: install
 
 bench: install
 	$(BIN)/python -m benchmarks.run
+
+# LIBIEC61850: a source tree of that library, built with its examples (docs/interoperability.md).
+interop: install
+	$(BIN)/python -m benchmarks.interoperability $(LIBIEC61850)
 
 # What it finds is kept in fuzz-findings/.
 fuzz: install

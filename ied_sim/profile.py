@@ -15,6 +15,7 @@ from pydantic import Field, ValidationError, model_validator
 from core.recordings.comtrade_writer import DataFormat, Revision
 from ied_sim.errors import ProfileError
 from ied_sim.toml_errors import Table, first_error, read_table
+from mms import MOST_CONNECTIONS
 
 SHIPPED = Path(__file__).parent / "profiles"
 DEFAULT = "sel-710-ed2"
@@ -135,7 +136,7 @@ class Profile(Table):
     description: str
     icd: str
     firmware: Annotated[str, Field(pattern=r"^[\x21-\x7e]+$")]
-    sessions: Annotated[int, Field(ge=1, le=5)] = 5
+    sessions: Annotated[int, Field(ge=1, le=2 * MOST_CONNECTIONS)] = MOST_CONNECTIONS
     report_buffer_bytes: Annotated[int, Field(ge=500, le=1_000_000)] = 8_192
     points: Points
     record: Record

@@ -26,7 +26,7 @@ from ied_sim.relay_values import RelayValues
 from ied_sim.relay_word import RelayWord
 from ied_sim.scenario import RelayScenario
 from ied_sim.texts import Maker, Story, texts
-from mms import AddCause, ControlAction, Server
+from mms import MOST_CONNECTIONS, AddCause, ControlAction, Server
 from scl import Address, Scl
 from scl.model_text import model_text
 
@@ -132,6 +132,7 @@ class Relay:
             self._event_files.stop()
         self._recorder.stop()
         self._misbehaviour.stop()
+        self._relay_server.close_annex()
 
     def look(self, time_ns: int) -> float:
         """Look at the motor at UTC `time_ns`: meter, protect, keep the journal. Used by one thread.
@@ -318,13 +319,22 @@ class Relay:
         unusual = files is not None and (
             files.separator != "/" or files.listed != "path" or files.entries_per_listing is not None
         )
+        sessions = self._scenario.profile.sessions
+        unusual = unusual or sessions > MOST_CONNECTIONS
         if not unusual and not self.switchboard.kinds & ON_THE_WIRE:
             return address
         if doors is None:
             raise SimulatorError(
                 f"{self.name}: its profile or scenario needs a front, and it has no place for one"
             )
-        return doors.add(address, files, self.switchboard, self._points.report_ids())
+        return doors.add(
+            address,
+            files,
+            self.switchboard,
+            self._points.report_ids(),
+            sessions=sessions,
+            annex=lambda: self._relay_server.open_annex(),
+        )
 
     def _text(self, maker: Maker) -> Callable[[], bytes]:
         return lambda: maker(self._story(RelayClock.now_ns()))

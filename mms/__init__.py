@@ -28,11 +28,12 @@ from mms.files import FileEntry
 from mms.pump import ServerPump
 from mms.references import FunctionalConstraint
 from mms.reports import Reason, Report, ReportMember
-from mms.server import ControlAction, Server
+from mms.server import MOST_CONNECTIONS, ControlAction, Server
 from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Validity, Value
 
 __all__ = [
     "GOOD",
+    "MOST_CONNECTIONS",
     "AccessDenied",
     "AddCause",
     "BitString",

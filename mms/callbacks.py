@@ -9,7 +9,8 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 log: Final = logging.getLogger("mms")
-_thread = threading.local()
+_inside: Final[set[int]] = set()
+"""Threads inside a callback. Thread-local data would be made anew at every call of a C thread."""
 
 
 def guarded(function: Callable[P, R], failure: R) -> Callable[P, R]:
@@ -19,14 +20,17 @@ def guarded(function: Callable[P, R], failure: R) -> Callable[P, R]:
     """
 
     def called_from_c(*args: P.args, **kwargs: P.kwargs) -> R:
-        _thread.depth = getattr(_thread, "depth", 0) + 1
+        thread = threading.get_ident()
+        outermost = thread not in _inside
+        _inside.add(thread)
         try:
             return function(*args, **kwargs)
         except Exception:  # whatever it is, C cannot carry it
             log.exception("exception in a callback from the MMS library")
             return failure
         finally:
-            _thread.depth -= 1
+            if outermost:
+                _inside.discard(thread)
 
     return called_from_c
 
@@ -36,4 +40,4 @@ def inside_callback() -> bool:
 
     A synchronous request there would wait for an answer only this same thread can receive.
     """
-    return getattr(_thread, "depth", 0) > 0
+    return threading.get_ident() in _inside

@@ -96,10 +96,11 @@ def download(connection: Connection, name: str, sink: Sink, expected_size: int |
     operation = f"download {name!r}"
     with _open_file(connection, operation, name) as (handle, announced):
         expected = announced if expected_size is None else expected_size
+        reader = _Reader(connection, operation, handle)
         received = 0
         more = True
         while more:
-            chunk, more = _read(connection, operation, handle)
+            chunk, more = reader.read()
             received += len(chunk)
             if received > expected:
                 break
@@ -149,19 +150,29 @@ def _close_file(connection: Connection, operation: str, handle: int) -> None:
         log.warning("%s", errors.file_error(connection.host, f"{operation}: close the file", error.value))
 
 
-def _read(connection: Connection, operation: str, handle: int) -> tuple[bytes, bool]:
-    """One FileRead: the bytes and whether more follow."""
-    lib = connection.lib
-    chunks: list[bytes] = []
+class _Reader:
+    """Reads one open file, part by part, through one callback for all of them."""
 
-    def receive(_parameter: int | None, _handle: int, buffer: object, size: int) -> None:
-        chunks.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+    def __init__(self, connection: Connection, operation: str, handle: int) -> None:
+        self._connection = connection
+        self._operation = operation
+        self._file = handle
+        self._parts: list[bytes] = []
+        self._handler = FileReadHandler(guarded(self._receive, None))
 
-    error = ctypes.c_int(0)
-    handler = FileReadHandler(guarded(receive, None))
-    with connection.exclusive(operation) as pointer:
-        mms = lib.IedConnection_getMmsConnection(pointer)
-        more = bool(lib.MmsConnection_fileRead(mms, ctypes.byref(error), handle, handler, None))
-    if error.value:
-        raise connection.judged(errors.file_error(connection.host, operation, error.value))
-    return b"".join(chunks), more
+    def _receive(self, _parameter: int | None, _handle: int, buffer: object, size: int) -> None:
+        self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+
+    def read(self) -> tuple[bytes, bool]:
+        """One FileRead: the bytes and whether more follow."""
+        lib = self._connection.lib
+        error = ctypes.c_int(0)
+        self._parts.clear()
+        with self._connection.exclusive(self._operation) as pointer:
+            mms = lib.IedConnection_getMmsConnection(pointer)
+            more = lib.MmsConnection_fileRead(mms, ctypes.byref(error), self._file, self._handler, None)
+        if error.value:
+            raise self._connection.judged(
+                errors.file_error(self._connection.host, self._operation, error.value)
+            )
+        return b"".join(self._parts), bool(more)

@@ -14,7 +14,8 @@ from mms.prototypes import PROTOTYPES
 _WHEEL = "pyiec61850-ng"
 
 
-def _shared_library() -> Path:
+def shared_library() -> Path:
+    """Where the wheel keeps it. Raises ImportError."""
     spec = importlib.util.find_spec("pyiec61850")
     if spec is None or not spec.submodule_search_locations:
         raise ImportError(f"the package {_WHEEL} is not installed: it carries the MMS library")
@@ -28,7 +29,7 @@ def _shared_library() -> Path:
 @functools.cache
 def library() -> ctypes.CDLL:
     """The loaded library, every function of ours with its result and argument types declared."""
-    loaded = ctypes.CDLL(str(_shared_library()))
+    loaded = ctypes.CDLL(str(shared_library()))
     for name, (result, arguments) in PROTOTYPES.items():
         try:
             function = getattr(loaded, name)

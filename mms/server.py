@@ -29,7 +29,8 @@ if TYPE_CHECKING:
 _DENY: Final = 1  # AccessPolicy
 _FAILED, _OK = 0, 1  # ControlHandlerResult
 _PATIENCE_AFTER_REQUEST_S: Final = 0.01  # only enabling a block or an interrogation makes reports
-_MOST_CONNECTIONS: Final = 5  # compiled into the wheel's library
+MOST_CONNECTIONS: Final = 5
+"""Clients of one server; compiled into the wheel's library."""
 
 
 class _State(Enum):
@@ -63,7 +64,7 @@ class Server:
 
     def __init__(
         self, model_text: str, *, port: int, ied_name: str | None = None, address: str = "127.0.0.1",
-        file_root: Path | None = None, max_connections: int = _MOST_CONNECTIONS,
+        file_root: Path | None = None, max_connections: int = MOST_CONNECTIONS,
         report_buffer_bytes: int = 65_536, on_file_request: FileHook | None = None,
     ) -> None:  # fmt: skip
         """Build the model and the server; `start` or a ServerPump makes it listen.
@@ -77,8 +78,8 @@ class Server:
         """
         if not 0 < port < 65536:
             raise ValueError(f"not a TCP port: {port} (the library cannot choose one)")
-        if not 0 < max_connections <= _MOST_CONNECTIONS:
-            raise ValueError(f"max_connections is {max_connections}: expected 1 to {_MOST_CONNECTIONS}")
+        if not 0 < max_connections <= MOST_CONNECTIONS:
+            raise ValueError(f"max_connections is {max_connections}: expected 1 to {MOST_CONNECTIONS}")
         self.address: Final = address
         self.port: Final = port
         self._lib: Final = library()

@@ -9,6 +9,7 @@ from scl.data_model import DataSet, DataSetMember, FunctionalConstraint, Ied
 from scl.document import NAME, Document, decimal
 
 LONGEST_REFERENCE = 129
+_CONSTRAINTS = dict(FunctionalConstraint.__members__)
 ARRAY_INDEX = re.compile(r"\(([0-9]{1,6})\)")
 
 
@@ -54,7 +55,8 @@ class DataSetReader:
         if inst not in self._domains:
             document.note(element, f"no LDevice {inst!r} in this IED: member left out")
             return None
-        if constraint not in FunctionalConstraint.__members__ or not element.get("doName"):
+        fc = _CONSTRAINTS.get(constraint)
+        if fc is None or not element.get("doName"):
             document.note(element, "names no data without doName and a known fc: member left out")
             return None
         logical_node = _logical_node(
@@ -66,7 +68,7 @@ class DataSetReader:
         if not element.get("lnClass"):
             document.required(element, "lnClass")
         path, index_text = _path(element.get("doName", ""), element.get("daName", ""), element.get("ix", ""))
-        index = decimal(index_text)
+        index = decimal(index_text) if index_text else None
         if index is None and index_text:
             document.note(element, f"ix={index_text!r} is no number: left out")
         reference = f"{self._domains[inst]}/{logical_node}.{path}"
@@ -75,7 +77,7 @@ class DataSetReader:
             return None
         member = DataSetMember(
             reference=reference,
-            fc=FunctionalConstraint[constraint],
+            fc=fc,
             logical_device=inst,
             logical_node=logical_node,
             path=path,

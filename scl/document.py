@@ -6,6 +6,7 @@ The file is hostile until proven otherwise: no document type, no entities, no ne
 import re
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import lru_cache
 from pathlib import Path
 
 from lxml import etree
@@ -17,6 +18,7 @@ LARGEST_FILE_BYTES = 256 * 1024 * 1024
 NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 IED_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 IDENTITY = ("name", "id", "inst", "iedName", "apName", "prefix", "lnClass", "lnType", "type", "doName")
+_BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 EXCERPT = 60
 MOST_FINDINGS = 1000
 
@@ -182,7 +184,9 @@ class Document:
         text = None if element is None else element.get(attribute)
         if element is None or text is None:
             return default
-        value = {"true": True, "1": True, "false": False, "0": False}.get(text.strip().lower())
+        value = _BOOLEANS.get(text)
+        if value is None:
+            value = _BOOLEANS.get(text.strip().lower())
         if value is None:
             self.note(
                 element, f"{attribute}={text!r} is neither true nor false: taken as {str(default).lower()}"
@@ -201,6 +205,7 @@ def node_name(document: Document, element: etree._Element, inst: str) -> tuple[s
     )
 
 
+@lru_cache(maxsize=8192)
 def decimal(text: str) -> int | None:
     """A decimal number of at most 19 digits; None for anything else."""
     stripped = text.strip()

@@ -2,22 +2,26 @@
 
 import asyncio
 import logging
-import socket
 import threading
 from asyncio import StreamReader, StreamWriter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 
 from ied_sim.front.rewriting import Rewriter
 from ied_sim.front.transport import CONNECT_CONFIRM, DATA, Message, read_message, unit_size, units_of
+from ied_sim.loopback import ReservedAddress
 from ied_sim.misbehaviour import Kind, Switchboard
 from ied_sim.profile import Files
+from mms import MOST_CONNECTIONS
 from scl import Address
 
 log = logging.getLogger(__name__)
 
 _THAW_LOOK_S = 0.02
+
+Annex = Callable[[], Address | None]
+"""Opens a second server beside the first where there is none yet; None while the relay is down."""
 
 
 @dataclass(slots=True)
@@ -41,13 +45,20 @@ class FrontDoor:
         files: Files | None,
         switchboard: Switchboard,
         report_ids: Mapping[str, str],
+        *,
+        sessions: int,
+        annex: Annex,
     ) -> None:
+        """sessions: clients at once, those beyond the server's own MOST_CONNECTIONS served by the annex."""
         self.outside = outside
         self._inside = inside
+        self._most = sessions
+        self._annex = annex
+        self._opening = asyncio.Lock()
         self._files = files
         self._switchboard = switchboard
         self._report_ids = report_ids
-        self._sessions = 0
+        self._sessions = self._in_annex = 0
         self._tasks: set[asyncio.Task[None]] = set()
         self._listening: asyncio.Server | None = None
 
@@ -67,9 +78,9 @@ class FrontDoor:
         task = asyncio.current_task()
         assert task is not None  # noqa: S101 - asyncio calls this in one
         self._tasks.add(task)
-        most = self._switchboard.number(Kind.FEW_SESSIONS)
+        few = self._switchboard.number(Kind.FEW_SESSIONS)
         try:
-            if most is None or self._sessions < most:
+            if self._sessions < (self._most if few is None else min(few, self._most)):
                 self._sessions += 1
                 try:
                     await self._serve(reader, writer)
@@ -82,8 +93,22 @@ class FrontDoor:
             self._tasks.discard(task)
 
     async def _serve(self, reader: StreamReader, writer: StreamWriter) -> None:
+        """In the server while that has a session left, else in its annex."""
+        if self._sessions - self._in_annex <= MOST_CONNECTIONS:
+            await self._serve_at(self._inside, reader, writer)
+            return
+        self._in_annex += 1
         try:
-            from_server, to_server = await asyncio.open_connection(self._inside.host, self._inside.port)
+            async with self._opening:
+                address = await asyncio.to_thread(self._annex)
+            if address is not None:
+                await self._serve_at(address, reader, writer)
+        finally:
+            self._in_annex -= 1
+
+    async def _serve_at(self, address: Address, reader: StreamReader, writer: StreamWriter) -> None:
+        try:
+            from_server, to_server = await asyncio.open_connection(address.host, address.port)
         except OSError:
             return
         session = _Session(writer, to_server, Rewriter(self._files, self._switchboard, self._report_ids))
@@ -155,6 +180,7 @@ class FrontDoors:
 
     def __init__(self) -> None:
         self._doors: list[FrontDoor] = []
+        self._reserved: list[ReservedAddress] = []
         self._running: tuple[asyncio.AbstractEventLoop, threading.Thread] | None = None
 
     def add(
@@ -163,11 +189,17 @@ class FrontDoors:
         files: Files | None,
         switchboard: Switchboard,
         report_ids: Mapping[str, str],
+        *,
+        sessions: int,
+        annex: Annex,
     ) -> Address:
         """A door at `outside`; returns where the server behind it is to listen."""
-        inside = Address("127.0.0.1", _free_port())
-        self._doors.append(FrontDoor(outside, inside, files, switchboard, report_ids))
-        return inside
+        inside = ReservedAddress()
+        self._reserved.append(inside)
+        self._doors.append(
+            FrontDoor(outside, inside.address, files, switchboard, report_ids, sessions=sessions, annex=annex)
+        )
+        return inside.address
 
     def start(self) -> Address | None:
         """Open all doors; None, or the address of the first that cannot be had."""
@@ -186,6 +218,8 @@ class FrontDoors:
 
     def stop(self) -> None:
         """Close all doors; harmless where none was opened."""
+        for inside in self._reserved:
+            inside.release()
         if self._running is None:
             return
         loop, thread = self._running
@@ -195,11 +229,3 @@ class FrontDoors:
         loop.call_soon_threadsafe(loop.stop)
         thread.join()
         loop.close()
-
-
-def _free_port() -> int:
-    """A port nobody listens at. Another program may be faster to take it; the server then says so."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port

@@ -13,7 +13,7 @@ import scl
 from ied_sim.event_recorder import RecorderSettings
 from ied_sim.relay import Relay
 from ied_sim.scenario import healthy_reference
-from mms import Client, Report, ServerPump, ServerStartFailed, Value
+from mms import MOST_CONNECTIONS, Client, Report, ServerPump, ServerStartFailed, Value
 from scl import Address
 
 IED = "A1_SEL710"
@@ -97,7 +97,9 @@ def served_relay(files: Path, settings: RecorderSettings = SHORT_RECORD) -> Iter
 def _start(files: Path, settings: RecorderSettings) -> tuple[Relay, ServerPump]:
     """On a free port; another one where somebody was faster."""
     document = scl.read(scl.DEMO_PLANT_SCD)
-    scenario = replace(healthy_reference(IED), recorder=settings)
+    scenario = healthy_reference(IED)
+    without_front = scenario.profile.model_copy(update={"sessions": MOST_CONNECTIONS})
+    scenario = replace(scenario, profile=without_front, recorder=settings)
     for _ in range(5):
         relay = Relay(
             document,

@@ -23,12 +23,14 @@ from mms import (
     Report,
     ReportControlInUse,
     Timestamp,
+    Value,
 )
 from tests.ied_sim.serving import wait_until
 from tests.ied_sim.simulating import IED, Simulated, fetch, names, scenario_of, simulated, text
 from tests.ied_sim.test_scenario import MINIMAL
 
 TRIGGER = f"{IED}CON/RBGGIO1.SPCSO01"
+NUMBER = f"{IED}PRO/FLTRDRE1.FltNum.stVal"
 SWITCH = "CON/RBGGIO1.SPCSO30"
 REPORTS = f"{IED}CFG/LLN0.BR.BRep01"
 
@@ -37,6 +39,10 @@ def by_switch(kind: Kind, number: float | None = None, for_s: float = float("inf
     """Of this kind while RB30 is set."""
     default = PARAMETERS.get(kind, ("", 0.0))[1]
     return Misbehaviour(kind, default if number is None else number, switch=SWITCH, for_s=for_s)
+
+
+def value(client: Client, reference: str) -> Value:
+    return client.read(reference, FunctionalConstraint.ST)
 
 
 def switch(client: Client, *, on: bool) -> None:
@@ -242,12 +248,37 @@ def test_sessions_are_few(tmp_path: Path) -> None:
 
 
 def test_a_profile_s_sessions_are_all_there_are(tmp_path: Path) -> None:
-    scenario = scenario_of("sel-710-ed2")
-    assert scenario.profile.sessions == 5
-    with simulated(tmp_path, scenario) as served:
-        clients = [served.client() for _ in range(5)]
+    """A SEL relay has 7, two more than one server of the MMS library: all see the same relay."""
+    with simulated(tmp_path, scenario_of("sel-710-ed2")) as served:
+        clients = [served.client() for _ in range(7)]
         with pytest.raises(ConnectFailed):
             Client.connect(served.address.host, served.address.port, connect_timeout_s=1.0)
+        first, *_, last = clients
+        told: queue.SimpleQueue[Report] = queue.SimpleQueue()
+        last.subscribe(REPORTS, told)
+        make_record(served, first)
+        assert told.get(timeout=20).members
+        wait_until(lambda: {value(client, NUMBER) for client in clients} == {10_000}, "the record's number")
+        make_record(served, last)
+        wait_until(lambda: value(first, NUMBER) == 10_001, "the number of the last client's record")
+        for client in (first, last):
+            client.close()
+        with served.client() as another:
+            wait_until(lambda: value(another, NUMBER) == 10_001, "a session after others have ended")
+        for client in clients[1:-1]:
+            client.close()
+
+
+def test_sessions_beyond_those_of_the_library_survive_a_restart_of_the_relay(tmp_path: Path) -> None:
+    with simulated(tmp_path, scenario_of("sel-710-ed2", by_switch(Kind.RESTART, for_s=0.5))) as served:
+        clients = [served.client() for _ in range(7)]
+        switch(clients[6], on=True)
+        wait_until(lambda: not any(client.is_open for client in clients), "the end of all sessions")
+        for client in clients:
+            client.close()
+        wait_until(lambda: not served.relay._relay_server._down, "the relay's return")
+        clients = [served.client() for _ in range(7)]
+        assert {value(client, NUMBER) for client in clients} == {0}
         for client in clients:
             client.close()
 

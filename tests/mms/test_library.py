@@ -43,7 +43,7 @@ def test_the_swig_module_is_never_imported() -> None:
 def test_a_missing_wheel_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: None)
     with pytest.raises(ImportError, match="pyiec61850-ng is not installed"):
-        library._shared_library()
+        library.shared_library()
 
 
 def test_a_wheel_without_the_library_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -52,7 +52,7 @@ def test_a_wheel_without_the_library_is_named(monkeypatch: pytest.MonkeyPatch, t
 
     monkeypatch.setattr(importlib.util, "find_spec", lambda _name: Spec)
     with pytest.raises(ImportError, match="found 0"):
-        library._shared_library()
+        library.shared_library()
 
 
 def test_a_wheel_of_another_version_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

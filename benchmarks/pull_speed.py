@@ -1,0 +1,117 @@
+"""Pull speed: 20 MB of one server by libiec61850's own client in C, by ours, and into the store, in turns."""
+
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+
+from benchmarks.interoperability.peers import PeerError, linked
+from mms import Client
+from mms.library import shared_library
+from service.collector.listing import understand
+from service.collector.pulling import pull
+from service.recordings import RecordingStore
+from tests.mms.relays import LOOPBACK, RelayProcess
+from tests.service.api.comtrade_files import CFG
+
+FILE_BYTES = 20_000_000
+ROUNDS = 15
+FOLDER, STEM = "EVENTS", "HR_10001"
+DATA_FILE = f"{FOLDER}/{STEM}.DAT"
+IN_C, OURS, STORED = "libiec61850's client in C", "mms.Client", "collector into the store (fsync, SHA-256)"
+
+
+class _Counted:
+    """Takes bytes and keeps their number, as the client in C does."""
+
+    def __init__(self) -> None:
+        self.received = 0
+
+    def write(self, chunk: bytes, /) -> None:
+        self.received += len(chunk)
+
+
+def measure() -> Iterator[str]:
+    """Median of the rounds by each way, and each one's share of the speed in C."""
+    with tempfile.TemporaryDirectory(prefix="statorwatch-pull-") as name:
+        seconds = _rounds(Path(name))
+    medians = {way: statistics.median(times) for way, times in seconds.items()}
+    megabytes = FILE_BYTES / 1e6
+    if IN_C not in medians:
+        yield "no C compiler, so nothing to compare with"
+    for way, median in medians.items():
+        line = f"clear, {way}: {megabytes / median:.0f} MB/s, {median:.3f} s (median of {ROUNDS})"
+        if way != IN_C and IN_C in medians:
+            line += f", {medians[IN_C] / median:.0%} of C's"
+        yield line
+
+
+def _rounds(directory: Path) -> dict[str, list[float]]:
+    """Seconds of each way, which take turns; the first round is not counted."""
+    events = directory / "relay" / FOLDER
+    events.mkdir(parents=True)
+    (events / f"{STEM}.CFG").write_bytes(CFG)
+    (events / f"{STEM}.DAT").write_bytes(bytes(range(250)) * (FILE_BYTES // 250))
+    relay = RelayProcess(directory / "relay")
+    try:
+        ways = _ways(directory, relay.port)
+        seconds: dict[str, list[float]] = {way: [] for way in ways}
+        for turn in range(ROUNDS + 1):
+            for way, fetch in ways.items():
+                taken_s = fetch()
+                if turn:
+                    seconds[way].append(taken_s)
+    finally:
+        relay.end()
+    return seconds
+
+
+def _ways(directory: Path, port: int) -> Mapping[str, Callable[[], float]]:
+    """Each connects anew, fetches once and tells how long the fetching took [s]."""
+    ways: dict[str, Callable[[], float]] = {}
+    try:
+        program = linked(shared_library(), directory / "c_client")
+        ways[IN_C] = lambda: _in_c(program, port)
+    except PeerError as error:
+        print(error, file=sys.stderr)
+    ways[OURS] = lambda: _ours(port)
+    ways[STORED] = lambda: _stored(directory, port)
+    return ways
+
+
+def _in_c(program: Path, port: int) -> float:
+    command = [str(program), "pull", LOOPBACK, str(port), DATA_FILE, "1"]
+    answer = subprocess.run(command, capture_output=True, text=True, check=True)
+    received, taken_s = answer.stdout.split()
+    assert int(received) == FILE_BYTES
+    return float(taken_s)
+
+
+def _ours(port: int) -> float:
+    with Client.connect(LOOPBACK, port) as client:
+        sink = _Counted()
+        begun_s = time.perf_counter()
+        client.download(DATA_FILE, sink, expected_size=FILE_BYTES)
+        taken_s = time.perf_counter() - begun_s
+    assert sink.received == FILE_BYTES
+    return taken_s
+
+
+def _stored(directory: Path, port: int) -> float:
+    """Both files of the record, as the collector pulls them."""
+    with Client.connect(LOOPBACK, port) as client, tempfile.TemporaryDirectory(dir=directory) as root:
+        store = RecordingStore(Path(root))
+        (record,) = understand(client.files(FOLDER), FOLDER).records
+        begun_s = time.perf_counter()
+        stored = pull(client, record, store, max_file_bytes=FILE_BYTES, on_bytes=lambda _: None)
+        taken_s = time.perf_counter() - begun_s
+    assert stored.size_bytes == FILE_BYTES + len(CFG)
+    return taken_s
+
+
+if __name__ == "__main__":
+    for line in measure():
+        print(line)
