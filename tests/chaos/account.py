@@ -92,6 +92,12 @@ def files_of_all(client: ServiceClient, recordings: Sequence[str]) -> dict[str, 
         return dict(zip(recordings, found, strict=True))
 
 
+def ask_at_once(client: ServiceClient) -> None:
+    """As many requests as there will be at once. Raises ServiceError."""
+    with ThreadPoolExecutor(ASKED_AT_ONCE) as asking:
+        list(asking.map(lambda _: links(client), range(4 * ASKED_AT_ONCE)))
+
+
 def links(client: ServiceClient) -> dict[str, tuple[str, str]]:
     """State and reason of each relay's link. Raises ServiceError."""
     return {

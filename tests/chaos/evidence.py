@@ -57,12 +57,19 @@ class Evidence:
         ]
 
     def _of_processes(self) -> list[Breach]:
-        found = []
-        for role, (files, threads) in self.at_last.items():
-            files_before, threads_before = self.at_first[role]
-            if files > files_before + FILES_SLACK or threads > threads_before + THREADS_SLACK:
-                what = f"{files_before} open files became {files}, {threads_before} threads {threads}"
-                found.append(Breach("growth", "", role, what))
+        found = [
+            Breach("growth", "", role, what) for role, what in growth(self.at_first, self.at_last).items()
+        ]
         if self.exit_code != 0:
             found.append(Breach("process", "", "service", f"SIGTERM ended it with {self.exit_code}, not 0"))
         return found
+
+
+def growth(before: Handles, after: Handles) -> dict[str, str]:
+    """Roles whose processes have markedly more open files or threads than before, and how many."""
+    grown = {}
+    for role, (files, threads) in after.items():
+        files_before, threads_before = before[role]
+        if files > files_before + FILES_SLACK or threads > threads_before + THREADS_SLACK:
+            grown[role] = f"{files_before} open files became {files}, {threads_before} threads {threads}"
+    return grown

@@ -12,7 +12,7 @@ from service.demo.addresses import free_ports
 from service.rest_client import ServiceClient
 from tests.chaos import account
 from tests.chaos.disk import Disk, SmallDisk, WritingLimit
-from tests.chaos.evidence import Evidence
+from tests.chaos.evidence import Evidence, growth
 from tests.chaos.faults import Faults
 from tests.chaos.history import History
 from tests.chaos.ledger import Ledger
@@ -28,6 +28,9 @@ from tests.chaos.triggers import Triggers
 from tests.integration.processes import eventually
 
 LINKS_UP_LIMIT_S = 90.0
+REST_LIMIT_S = 20.0
+"""Until threads and connections of the last requests are gone."""
+
 HANDS = 64
 """Threads that carry actions out; a trigger waits in one until the service accepts it."""
 
@@ -110,6 +113,7 @@ def _evidence(
         ledger = stack.enter_context(Ledger(plant, files))
         if not eventually(lambda: not links_not_up(client, plant), LINKS_UP_LIMIT_S):
             raise RuntimeError(f"links are not up: {links_not_up(client, plant)}; see {service.log}")
+        account.ask_at_once(client)  # so that the service has opened what it opens for many requests
         at_first = _handles(service)
         faults = Faults(plant, files, service, simulators, proxy, disk, history)
         tell(f"everything is up after {time.monotonic() - began_s:.0f} s")
@@ -122,6 +126,7 @@ def _evidence(
         triggers.ask_again(MOST_ASKED_AGAIN)
         rows, reports = account.rows(client), account.reports(client)
         told = account.files_of_all(client, [row.id for row in rows if row.is_fetched])
+        eventually(lambda: not growth(at_first, _handles(service)), REST_LIMIT_S)
         at_last = _handles(service)
         exit_code = service.stop()
         tell("the service has ended, comparing")
