@@ -1,4 +1,4 @@
-"""python -m tests.chaos.track_record RESULT.json ...: writes the table of runs in docs/track-record.md anew."""
+"""python -m tests.chaos.track_record RESULT.json ...: writes the table of docs/track-record.md anew."""
 
 import json
 import sys
@@ -51,7 +51,7 @@ def faults_in_all(results: list[Mapping[str, object]]) -> str:
 
 
 def rewrite(page: str, results: list[Mapping[str, object]]) -> str:
-    """The page with the table of these runs in place of the one it has. Raises ValueError without its place."""
+    """The page with the table of these runs in place of the one it has. Raises ValueError without a place."""
     before, _, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)
     if not end:
