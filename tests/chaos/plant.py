@@ -19,8 +19,9 @@ from scl.instantiation import rename_ied, set_address, write
 from service.demo import MOTORS, SCENARIO
 from service.demo.addresses import LOOPBACK, free_ports
 
-MIX = ("sel-710-ed2", "sel-710-ed1")
-"""Kinds of relays, one after the other."""
+_ED2, _ED1 = "sel-710-ed2", "sel-710-ed1"
+MIX = (_ED2, _ED1, "rdre", _ED2, _ED1, "rdre-readonly", _ED2, "files-none")
+"""Kinds of relays, one after the other: all there are."""
 
 RECORDER = """
 [motor.recorder]
@@ -41,7 +42,7 @@ SWITCHED = {
 """Faults a relay makes itself: its misbehaviour, with its number, and the remote bit that switches it."""
 
 SWITCHABLE_EVERY = 4
-"""One relay of so many can misbehave by itself: such relays cost more to simulate."""
+"""One relay of so many, where it has remote bits, can misbehave by itself: it costs more to simulate."""
 
 _TYPED = ("LN", "LN0", "DO", "SDO", "DA", "BDA")
 
@@ -115,7 +116,7 @@ def _relay(number: int, own_port: int, seen_port: int) -> ChaosRelay:
         profile=profile,
         own=Address(LOOPBACK, own_port),
         seen=Address(LOOPBACK, seen_port),
-        switchable=remote_bits and profile.files is not None and number // len(MIX) % SWITCHABLE_EVERY == 0,
+        switchable=remote_bits and profile.files is not None and number % SWITCHABLE_EVERY == 0,
     )
 
 

@@ -11,7 +11,8 @@ TRIGGER, OWN_TRIGGER = "trigger", "own-trigger"
 """Asked of the service; made at the relay by another client."""
 
 OWN_SHARE = 0.15
-"""Of the records, made at the relay; on every third one, so that elsewhere each belongs to a trigger."""
+"""Of the records, made at the relay: at those that no client can trigger, and at every third of all, so that
+at others each record belongs to a trigger."""
 
 OWN_EVERY = 3
 
@@ -52,7 +53,7 @@ OF_A_RELAY = (
 """Those of links come oftener, in proportion, where there are more relays than RELAYS_OF_A_RATE."""
 
 RELAYS_OF_A_RATE = 10
-MOST_OFTEN = 1.0
+PAUSE_S = 1.0
 """A fault of a kind ends so long before the next of its kind begins [s]."""
 
 
@@ -91,7 +92,11 @@ def faults_by_kind(schedule: Sequence[Action]) -> dict[str, int]:
 def _triggers(plant: ChaosPlant, random: Random, length_s: float, recordings: int) -> Iterator[Action]:
     recording = [relay for relay in plant.relays if relay.profile.files is not None]
     by_clients = [relay for relay in recording if relay.profile.points.trigger]
-    shared = recording[::OWN_EVERY]
+    shared = [
+        relay
+        for number, relay in enumerate(recording)
+        if number % OWN_EVERY == 0 or not relay.profile.points.trigger
+    ]
     for number in range(recordings):
         own = random.random() < OWN_SHARE
         relay = _choice(random, shared if own else by_clients)
@@ -116,12 +121,11 @@ def _faults(
 ) -> Iterator[Action]:
     """At least one of each kind; two of a kind never at once with the same victim."""
     busy_until_s = dict.fromkeys(victims, 0.0)
-    for number in range(max(1, round(kind.per_minute * growth * length_s / 60.0))):
+    times = max(1, round(kind.per_minute * growth * length_s / 60.0))
+    for number, drawn_s in enumerate(sorted(random.uniform(0.05, 0.95) * length_s for _ in range(times))):
         victim = victims[random.randrange(len(victims))]
         lasts_s = random.uniform(kind.shortest_s, kind.longest_s)
-        at_s = random.uniform(0.05 * length_s, 0.95 * length_s)
-        if at_s < busy_until_s[victim]:
-            at_s = busy_until_s[victim]
-        busy_until_s[victim] = at_s + lasts_s + MOST_OFTEN
+        at_s = max(drawn_s, busy_until_s[victim])
+        busy_until_s[victim] = at_s + lasts_s + PAUSE_S
         if at_s < length_s:
             yield Action(at_s, kind.name, victim, lasts_s, number)

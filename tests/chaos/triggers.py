@@ -100,9 +100,9 @@ class Triggers:
         relay = self._plant.relay(action.relay)
         try:
             with Client.connect(relay.own.host, relay.own.port, request_timeout_s=ANSWER_LIMIT_S) as client:
+                with self._lock:
+                    self.made[relay.name] += 1
                 for control in relay.triggers:
-                    with self._lock:
-                        self.made[relay.name] += 1
                     client.operate(control, True)  # noqa: FBT003 - the value of a control
                     time.sleep(HOLD_S)
                     client.operate(control, False)  # noqa: FBT003
