@@ -8,7 +8,8 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from threading import Event, Lock, Thread
+from threading import Event, Thread
+from typing import IO
 
 from service.rest_client import ServiceClient
 from tests.chaos.history import History
@@ -37,7 +38,6 @@ class ServedService:
             "CHAOS_CLOCK_OFFSET": str(self.clock_offset),
         }
         self._process: subprocess.Popen[bytes] | None = None
-        self._lock = Lock()
         self._was_ready = False
         self._excused = False
         self._stopping = Event()
@@ -106,13 +106,13 @@ class ServedService:
 
     def _keep(self) -> None:
         while not self._stopping.is_set():
-            with self.log.open("ab") as log:
-                process = subprocess.Popen(
-                    [sys.executable, "-m", "service.cli", "serve"],
-                    env=self._environment,
-                    stdout=log,
-                    stderr=log,
-                )
+            process = subprocess.Popen(
+                [sys.executable, "-m", "service.cli", "serve"],
+                env=self._environment,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+            )
+            Thread(target=self._write_log, args=(process.stdout,), daemon=True).start()
             self._was_ready, self._excused, self._process = False, False, process
             while process.poll() is None:
                 self._note_ready()
@@ -123,6 +123,13 @@ class ServedService:
             if self._was_ready and not self._excused:
                 self.unwanted_ends.append(f"exit code {process.returncode}: {self.last_words()[-500:]}")
             self._stopping.wait(RESTART_AFTER_S)
+
+    def _write_log(self, lines: IO[bytes]) -> None:
+        """For the service, as a journal would: it may be kept from writing files."""
+        with lines, self.log.open("ab") as log:
+            for line in lines:
+                log.write(line)
+                log.flush()
 
     def _note_ready(self) -> None:
         """Ready once is enough: from then on it must not end by itself."""
