@@ -27,7 +27,7 @@ from tests.chaos.simulators import running_simulators
 from tests.chaos.triggers import Triggers
 from tests.integration.processes import eventually
 
-LINKS_UP_LIMIT_S = 90.0
+LINKS_UP_LIMIT_S = 300.0
 REST_LIMIT_S = 20.0
 """Until threads and connections of the last requests are gone."""
 

@@ -16,7 +16,7 @@ from tests.chaos.history import History
 from tests.integration.processes import descendants, eventually, is_alive, service_environment
 
 RESTART_AFTER_S = 0.5
-START_LIMIT_S = 120.0
+START_LIMIT_S = 300.0
 STOP_LIMIT_S = 30.0
 
 

@@ -38,11 +38,10 @@ class JobRows(Sessions):
     def claim_job(self, *, now_ns: int) -> ClaimedJob | None:
         """Takes the next job that is due: it is running from now on, one attempt more.
 
-        One queued or last tried later than now is of a time before the clock was set back: it is due.
+        One that was queued later than now is of a time before the clock was set back: it is due.
         """
-        is_due = or_(
-            JobRow.not_before_ns <= now_ns, func.coalesce(JobRow.started_ns, JobRow.created_ns) > now_ns
-        )
+        queued_ns = func.coalesce(JobRow.finished_ns, JobRow.created_ns)
+        is_due = or_(JobRow.not_before_ns <= now_ns, queued_ns > now_ns)
         query = (
             select(JobRow)
             .where(JobRow.state == JobState.QUEUED, is_due)
@@ -55,7 +54,7 @@ class JobRows(Sessions):
                 return None
             row.state = JobState.RUNNING
             row.attempts += 1
-            row.started_ns = now_ns
+            row.started_ns, row.finished_ns = now_ns, None
             recording = found(session, RecordingRow, row.recording_id, "recording")
             if recording.digest is None:
                 raise StateConflictError(
@@ -188,6 +187,7 @@ def _retry_or_give_up(
         return
     row.state = JobState.QUEUED
     row.error = error
+    row.finished_ns = now_ns
     row.not_before_ns = now_ns + retry_delay_ns * 2 ** (row.attempts - 1)
 
 
