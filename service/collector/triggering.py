@@ -101,10 +101,10 @@ class Triggering:
         return True
 
     def link_failed(self, reason: str) -> None:
-        """The relay does not answer: reports that waited for it long enough fail, with the reason."""
+        """The relay cannot be asked, `reason` says why: reports that waited for it long enough fail."""
         for report in self._repository.open_event_reports(self._relay.name):
             if self._is_overdue(report):
-                self._fail(report, f"{self._relay.name} does not answer: {reason}")
+                self._fail(report, f"{self._relay.name} {reason}")
 
     def _trigger(self, client: Client, report: EventReport, listed: frozenset[str]) -> bool:
         control = self._relay.trigger_control

@@ -109,5 +109,5 @@ def _delays_s(truth: Iterable[RelayRecord], store: Iterable[Folder]) -> dict[str
 
 def _by_kind(reasons: Iterable[str]) -> dict[str, int]:
     """How often each reason, without names and figures."""
-    words = ("expected a record", "does not answer", "refuses the trigger", "expected a .")
+    words = ("expected a record", "does not answer", "is not visited", "refuses the trigger", "expected a .")
     return dict(Counter(next((w for w in words if w in reason), reason) for reason in reasons))

@@ -10,7 +10,9 @@ from tests.chaos.ledger import File, Ledger, RecordKey, RelayRecord
 from tests.chaos.triggers import Triggers
 
 NO_RECORD = re.compile(r"expected a record within .* found none")
-NO_ANSWER = re.compile(r" does not answer: ")
+NO_ANSWER = re.compile(r" does not answer: (?!\w*Error)| is not visited: (OSError|OperationalError)")
+"""Of the relay, or of what the service needs to visit it: the disk, the database."""
+
 REFUSED = re.compile(r" refuses the trigger: ")
 INCOMPLETE = re.compile(r"expected a \.\w+ file in .*, found none")
 GONE = re.compile(r"the relay discarded or changed it before it could be pulled")

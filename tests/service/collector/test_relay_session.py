@@ -264,6 +264,19 @@ def test_the_entry_id_is_saved_only_when_its_record_is_safe(
         assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
 
 
+def test_a_full_disk_is_not_blamed_on_the_relay(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def disk_full(incoming: Incoming) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Incoming, "keep", disk_full)
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FAILED)
+    assert "is not visited: OSError: [Errno 28] No space left" in (bench.report(report_id).reason or "")
+
+
 def test_without_the_report_control_block_the_directory_is_polled(bench: Bench, relay: ScriptedRelay) -> None:
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.UP)
@@ -318,9 +331,9 @@ def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytes
     failures: list[str] = []
     note_failure = RelaySession._note_failure
 
-    def counted(session: RelaySession, reason: str) -> None:
+    def counted(session: RelaySession, trouble: str, reason: str) -> None:
         failures.append(reason)
-        note_failure(session, reason)
+        note_failure(session, trouble, reason)
 
     monkeypatch.setattr(RelaySession, "_note_failure", counted)
     with capture_logs() as logs, bench.session():
