@@ -15,6 +15,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from mms import (
     AccessDenied,
     Client,
+    CredentialFileError,
     EntryNotFound,
     MmsError,
     NotFound,
@@ -32,6 +33,7 @@ from service.collector.record_directory import RecordDirectory
 from service.collector.triggering import Triggering
 from service.plant import Relay
 from service.recordings import RecordingStore
+from service.relay_access import AccessError, credentials
 from service.settings import Settings
 from service.storage import LeaseLostError, Repository
 from service.storage.records import Sample
@@ -145,7 +147,7 @@ class RelaySession:
             trouble = "does not answer"
             try:
                 self._visit()
-            except MmsError as error:
+            except (MmsError, CredentialFileError, AccessError) as error:
                 reason = str(error)
             except LeaseLostError as error:
                 log.warning("visit ended", relay=self._relay.name, reason=str(error))
@@ -162,12 +164,18 @@ class RelaySession:
             retry_s = min(2 * retry_s, LONGEST_RETRY_S)
 
     def _visit(self) -> None:
-        """One connection, until it breaks or the session is stopped. Raises MmsError."""
+        """One connection, until it breaks or the session is stopped.
+
+        Raises MmsError; CredentialFileError, AccessError for what is to be shown the relay.
+        """
+        shown = credentials(self._settings.relays, self._relay.name)
         with Client.connect(
             self._relay.host,
             self._relay.port,
             connect_timeout_s=self._settings.connect_timeout_s,
             request_timeout_s=self._settings.request_timeout_s,
+            tls=shown.tls,
+            password=shown.spoken_password,
         ) as client:
             self._client = client
             inbox = Inbox(self._something_to_do)

@@ -5,7 +5,8 @@ nameplate and equivalent circuit of each motor. Both must name the same motors.
 """
 
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import scl
@@ -16,16 +17,30 @@ from service.plant.metering import measurands
 from service.plant.model import Plant, PlantMotor, Relay, Site
 from service.plant.recognition import REMOTE_BIT, recognise
 from service.plant.schedule import Schedule
+from service.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
 from service.settings import Settings, SettingsError
 
 
 def read_plant(settings: Settings) -> Plant:
     """The plant of the settings' two files. Raises PlantError, or SettingsError where one is not set."""
-    return plant_of_files(
+    plant = plant_of_files(
         _given(settings.scd, "scd", "the path of the plant's SCD file"),
         _given(settings.motors, "motors", "the path of the plant's motors file (TOML)"),
         settings.subnetwork,
     )
+    names = {relay.name for relay in plant.relays}
+    for source, named in (("settings", settings.relays), ("environment", named_in_environment())):
+        for unknown in sorted(set(named) - names):
+            field = f"relays.{unknown}" if source == "settings" else f"{PASSWORD_VARIABLE}{unknown}"
+            expected = f"a relay of {settings.scd} ({', '.join(sorted(names))})"
+            raise SettingsError(source, field, expected=expected, found="another name")
+    return replace(plant, relays=tuple(_at_its_port(relay, settings.relays) for relay in plant.relays))
+
+
+def _at_its_port(relay: Relay, access: Mapping[str, RelayAccess]) -> Relay:
+    """The relay at its port for TLS, where the settings name one."""
+    tls = access.get(relay.name, RelayAccess()).tls
+    return relay if tls is None or tls.port is None else replace(relay, port=tls.port)
 
 
 def plant_of_files(scd_path: Path, motors_path: Path, subnetwork: str | None = None) -> Plant:
