@@ -1,4 +1,5 @@
 # make install | demo | test | lint | bench | fuzz SECONDS=60 | interop LIBIEC61850=TREE      (PYTHON=python3.11 make install: another interpreter)
+# make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/track-record.md)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
 PYTHON ?= python3
 BIN := .venv/bin
@@ -8,7 +9,7 @@ WARM := .venv/.compiled
 export OPENBLAS_NUM_THREADS ?= 1
 COMPOSE ?= docker compose
 
-.PHONY: install demo test compose-test lint bench interop fuzz lock clean
+.PHONY: install demo test chaos compose-test lint bench interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -33,6 +34,12 @@ demo: install
 
 test: install
 	$(BIN)/python -m pytest --cov --cov-report=term
+
+# Needs both cores to itself: it holds a service, its relays and all their faults.
+chaos: install
+	$(BIN)/python -m tests.chaos --seed $(or $(SEED),1) --minutes $(or $(MINUTES),2) \
+		--recordings $(or $(RECORDINGS),300) --relays $(or $(RELAYS),12) \
+		$(if $(JSON),--json $(JSON)) $(if $(DATA),--data $(DATA))
 
 compose-test: install
 	$(BIN)/python -m tests.deployment.enterprise $(COMPOSE)

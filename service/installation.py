@@ -8,13 +8,14 @@ FILE = "installation"
 
 
 def installation_id(data_directory: Path) -> str:
-    """Read, or chosen the first time. Raises OSError where nothing can be kept."""
+    """Read, or chosen the first time. Raises OSError where nothing can be kept then."""
     path = data_directory / FILE
-    with suppress(FileExistsError):
+    if not path.exists():
         chosen = path.with_name(f"{FILE}.{uuid.uuid4().hex}")
-        chosen.write_text(f"{uuid.uuid4()}\n", encoding="ascii")
         try:
-            path.hardlink_to(chosen)  # appears whole, and only for the first who tries
+            chosen.write_text(f"{uuid.uuid4()}\n", encoding="ascii")
+            with suppress(FileExistsError):
+                path.hardlink_to(chosen)  # appears whole, and only for the first who tries
         finally:
-            chosen.unlink()
+            chosen.unlink(missing_ok=True)
     return path.read_text(encoding="ascii").strip()

@@ -1,7 +1,7 @@
 """The files of event recordings, in folders named by their content.
 
     <root>/<digest[:2]>/<digest>/C_0001.CFG, C_0001.DAT, C_0001.HDR
-    <root>/incoming/<random>/...      while they arrive
+    <root>/incoming/<writer>/<random>/...      while they arrive
 
 The digest is the SHA-256 of the list of (name, SHA-256 of the content), so the same record is stored once
 however often it is pulled. A folder appears under its digest complete and on disk (fsync) or not at all: rows
@@ -107,11 +107,14 @@ class Incoming:
 
 
 class RecordingStore:
-    """Content-addressed folders below `root`; several processes may store at once."""
+    """Content-addressed folders below `root`; several processes may store at once.
 
-    def __init__(self, root: Path) -> None:
+    writer: a name that no other process has at the same time, and that this one has again after a restart.
+    """
+
+    def __init__(self, root: Path, writer: str = "service") -> None:
         self.root = root
-        self._incoming = root / "incoming"
+        self._incoming = root / "incoming" / writer
         self._incoming.mkdir(parents=True, exist_ok=True)
 
     @contextmanager
@@ -150,7 +153,7 @@ class RecordingStore:
         return _entry(directory, (path.name for path in directory.iterdir()))
 
     def discard_incoming(self) -> int:
-        """Removes what an earlier run left half arrived; for the start, before anything is pulled."""
+        """Removes what an earlier run of this writer left half arrived; for its start, before it stores."""
         left_over = list(self._incoming.iterdir())
         for directory in left_over:
             shutil.rmtree(directory)

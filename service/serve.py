@@ -14,12 +14,15 @@ from types import FrameType
 
 import structlog
 import uvicorn
+from sqlalchemy import make_url
+from sqlalchemy.exc import OperationalError
 
 from service.api.app import create_app
 from service.api.context import ApiContext
 from service.collector.gateways import running_gateways
 from service.exclusive import exclusive
 from service.housekeeping import Housekeeping
+from service.installation import installation_id
 from service.jobs import JobRunner
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
@@ -49,11 +52,8 @@ def serve(settings: Settings) -> None:
     plant = _plant(settings)
     _require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False), _listener(settings) as listener:
-        migrate(settings.database_url)
-        repository = Repository(connect(settings.database_url))
-        repository.sync_plant(plant)
-        repository.reset_links(now_ns=time.time_ns())
-        store = RecordingStore(settings.recordings_directory)
+        repository = _prepared(settings, plant)
+        store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
         store.discard_incoming()
         with (
             running_gateways(settings, plant, repository) as collector,
@@ -76,6 +76,22 @@ def serve(settings: Settings) -> None:
             log.info("serving", host=host, port=port, motors=len(plant.motors))
             _answer(context, listener)
     log.info("service ended")
+
+
+def _prepared(settings: Settings, plant: Plant) -> Repository:
+    """The database, brought up to date. Raises StorageError, ServeError."""
+    try:
+        migrate(settings.database_url)
+        repository = Repository(connect(settings.database_url))
+        repository.sync_plant(plant)
+        repository.reset_links(now_ns=time.time_ns())
+    except OperationalError as error:
+        url = make_url(settings.database_url).render_as_string(hide_password=True)
+        raise ServeError(
+            f"{url}: expected a database that can be read and written (setting database_url), found: "
+            f"{error.orig}; is its disk full, or its server down?"
+        ) from error
+    return repository
 
 
 def collect(settings: Settings) -> None:

@@ -314,7 +314,10 @@ class RecordingDetails(Recording):
 
 
 class DiagnosisRun(Document):
-    """A diagnosis asked for: queued, running, done with its `result`, or failed with its `error`."""
+    """A diagnosis asked for: queued, running, done with its `result`, or failed with its `error`.
+
+    started_time, finished_time: of the latest attempt.
+    """
 
     id: str
     recording_id: str

@@ -18,7 +18,7 @@ TROUBLES = (SettingsError, PlantError, StorageError, AlreadyRunningError, ServeE
 def run_service(config: Path | None) -> None:
     """Run until SIGTERM or Ctrl-C. Raises CommandError where the service cannot start."""
     configure_logging("service")
-    with failing_clearly(*TROUBLES):
+    with failing_clearly(*TROUBLES, SQLAlchemyError):
         serve(Settings.load(config))
 
 

@@ -17,7 +17,10 @@ log = structlog.get_logger(__name__)
 
 
 class Gateways:
-    """Started and stopped together; one that ends frees its relays and is started again."""
+    """Started and stopped together; one that ends frees its relays and is started again.
+
+    Raises OSError where the installation's name cannot be kept.
+    """
 
     def __init__(self, settings: Settings, plant: Plant, repository: Repository) -> None:
         self._settings = settings
@@ -44,10 +47,11 @@ class Gateways:
         return f"{len(failing)} of {len(self._supervisors)}: {failing[0]}"
 
     def _supervisor(self, number: int) -> CollectorSupervisor:
+        gateway = gateway_id(self._settings, number)
+
         def free_relays() -> None:
             """The process is dead for sure: nobody needs to wait for its leases to run out."""
             try:
-                gateway = gateway_id(self._settings, number)
                 self._repository.end_gateway(gateway, now_ns=time.time_ns())
             except SQLAlchemyError as error:
                 log.warning("the leases run out by themselves", error=str(error))

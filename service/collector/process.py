@@ -55,11 +55,14 @@ def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
 
 
 def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
+    name = gateway_id(settings, number)
+    store = RecordingStore(settings.recordings_directory, name.replace("/", "-"))
+    store.discard_incoming()
     gateway = Gateway(
-        Identity(gateway_id(settings, number), socket.gethostname(), os.getpid()),
+        Identity(name, socket.gethostname(), os.getpid()),
         read_plant(settings),
         Repository(connect(settings.database_url)),
-        RecordingStore(settings.recordings_directory),
+        store,
         settings,
         on_end=_fenced_off,
     )

@@ -112,6 +112,7 @@ class RelaySession:
         while not self._stopping.is_set():
             visited_s = time.monotonic()
             reason = None
+            trouble = "does not answer"
             try:
                 self._visit()
             except (MmsError, CredentialFileError, AccessError) as error:
@@ -122,8 +123,9 @@ class RelaySession:
             except Exception as error:  # a full disk or a bug here must not silence the relay for ever
                 log.exception("session failed", relay=self._relay.name)
                 reason = f"{type(error).__name__}: {error}"
+                trouble = "is not visited"
             if reason is not None and not self._stopping.is_set():
-                self._note_failure(reason)
+                self._note_failure(trouble, reason)
             if time.monotonic() - visited_s > LONGEST_RETRY_S:
                 retry_s = FIRST_RETRY_S
             self._stopping.wait(retry_s)
@@ -176,10 +178,10 @@ class RelaySession:
                 continue
             self._something_to_do.wait(min(due_in_s, until_s - time.monotonic()))
 
-    def _note_failure(self, reason: str) -> None:
+    def _note_failure(self, trouble: str, reason: str) -> None:
         self._link.failed(reason)
         try:
-            self._triggering.link_failed(reason)
+            self._triggering.link_failed(f"{trouble}: {reason}")
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
 

@@ -54,9 +54,10 @@ class Triggering:
         self._acquisition = promised(relay)
         self._repository = repository
         self._gateway = gateway
-        self._timeout_ns = round(record_timeout_s * 1e9)
-        # After a restart every report gets its time limit again: its record may wait in the relay.
-        self._started_ns = time.time_ns()
+        self._timeout_s = record_timeout_s
+        # By a clock that only goes forward: one that is set must end no report's time. After a restart every
+        # report gets its time limit again: its record may wait in the relay.
+        self._since_s: dict[tuple[str, EventReportState], float] = {}
         self._outstanding: EventReport | None = None
         self._listed_before: frozenset[str] = frozenset()
 
@@ -70,11 +71,11 @@ class Triggering:
         self._outstanding = waiting[0] if waiting else None
 
     def claim(self, record_name: str) -> str | None:
-        """The report a new record belongs to, asked once for each record that is stored or refused."""
+        """The report a new record belongs to; it is that record's once both are written down together."""
+        self.recall()
         report = self._outstanding
         if report is None or record_name in self._listed_before:
             return None
-        self._outstanding = None
         return report.id
 
     def follow(self, client: Client, scan: Scan) -> bool:
@@ -84,6 +85,12 @@ class Triggering:
         """
         self.recall()
         report = self._outstanding
+        # The others wait for their turn, not for the relay: their time does not run while the link is fine.
+        self._since_s = {
+            key: since_s
+            for key, since_s in self._since_s.items()
+            if report is not None and key[0] == report.id
+        }
         if report is None:
             pending = self._repository.pending_event_report(self._relay.name)
             return pending is not None and self._grant(client, pending, scan)
@@ -101,17 +108,17 @@ class Triggering:
         elif self._is_overdue(report):
             self._fail(
                 report,
-                f"{self._relay.name}: expected a record within {self._timeout_ns / 1e9:g} s of the trigger, "
+                f"{self._relay.name}: expected a record within {self._timeout_s:g} s of the trigger, "
                 "found none; check the relay's event report settings (ER)",
             )
             return False
         return True
 
     def link_failed(self, reason: str) -> None:
-        """The relay does not answer: reports that waited for it long enough fail, with the reason."""
+        """The relay cannot be asked, `reason` says why: reports that waited for it long enough fail."""
         for report in self._repository.open_event_reports(self._relay.name):
             if self._is_overdue(report):
-                self._fail(report, f"{self._relay.name} does not answer: {reason}")
+                self._fail(report, f"{self._relay.name} {reason}")
 
     def _grant(self, client: Client, report: EventReport, scan: Scan) -> bool:
         """Trigger, unless there is nothing to trigger by or no way to have the record."""
@@ -156,8 +163,9 @@ class Triggering:
         log.warning("event report failed", relay=self._relay.name, event_report=report.id, reason=reason)
 
     def _is_overdue(self, report: EventReport) -> bool:
-        since_ns = report.recorded_ns or report.triggered_ns or report.requested_ns
-        return time.time_ns() > max(since_ns, self._started_ns) + self._timeout_ns
+        """Whether it has been in its state for too long, since this was first asked."""
+        now_s = time.monotonic()
+        return now_s > self._since_s.setdefault((report.id, report.state), now_s) + self._timeout_s
 
 
 def _is_set(client: Client, control: str) -> bool:

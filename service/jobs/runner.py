@@ -1,7 +1,5 @@
 """Takes jobs from the database, has them done in worker processes, writes the results back."""
 
-import multiprocessing
-import os
 import threading
 import time
 from collections import deque
@@ -9,23 +7,21 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass
 from functools import partial
-from multiprocessing.synchronize import Semaphore
 
 import structlog
-from pebble import ProcessExpired, ProcessPool
+from pebble import ProcessExpired
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError, StatementError
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
+from service.jobs.worker_pool import WorkerPool, WorkersEndedError
 from service.jobs.worker_process import follow_service
 from service.recordings import RecordingStore, RecordingStoreError
 from service.storage.records import ClaimedJob
 from service.storage.repository import Repository
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
-
-STOP_TIMEOUT_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,26 +58,19 @@ class JobRunner:
         self._task = task
         self._limits = limits
         self._poll_period_s = poll_period_s
-        context = multiprocessing.get_context("spawn")
-        self._prepared = context.Semaphore(0)
-        self._unprepared = limits.workers
-        self._pool = ProcessPool(
-            max_workers=limits.workers,
-            initializer=_prepare,
-            initargs=(prepare_worker, self._prepared),
-            context=context,
-        )
+        self._pool = WorkerPool(limits.workers, prepare_worker)
         self._in_flight: dict[str, Future[Outcome]] = {}
         self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()
         self._wake_up = threading.Event()
         self._stopping = threading.Event()
         self._problem: str | None = "the job runner has not started"
+        self._loading = limits.workers
         self._thread = threading.Thread(target=self._run, name="job-runner")
 
     def start(self) -> None:
         """Queues interrupted jobs again and starts the thread and the workers."""
         self._repository.requeue_interrupted_jobs(now_ns=time.time_ns(), max_attempts=self._limits.attempts)
-        self._pool.schedule(os.getpid)  # the pool starts its workers with its first task: let them load now
+        self._pool.start()
         self._problem = None
         self._thread.start()
 
@@ -98,8 +87,8 @@ class JobRunner:
 
     def problem(self) -> str | None:
         """Why jobs are not done, or not at full speed, at present; None when all is well."""
-        if self._problem is None and self._unprepared:
-            return f"{self._unprepared} of {self._limits.workers} workers are still loading"
+        if self._problem is None and self._loading:
+            return f"{self._loading} of {self._limits.workers} workers are still loading"
         return self._problem
 
     def _run(self) -> None:
@@ -115,12 +104,16 @@ class JobRunner:
             self._shut_down()
 
     def _step(self) -> None:
-        while self._unprepared and self._prepared.acquire(block=False):
-            self._unprepared -= 1
         try:
             while self._results:
                 self._settle(*self._results[0])
                 self._results.popleft()
+            if self._pool.has_ended():
+                self._problem = "the worker processes ended and are started again"
+                self._give_back()
+                self._pool.renew()
+                return
+            self._loading = self._pool.loading()
             while len(self._in_flight) < self._limits.workers and self._claim():
                 pass
         except SQLAlchemyError as error:
@@ -128,6 +121,12 @@ class JobRunner:
             log.warning("database does not answer, trying again", error=str(error))
         else:
             self._problem = None
+
+    def _give_back(self) -> None:
+        """Jobs nobody does any more: as if they had not been claimed."""
+        for job_id in list(self._in_flight):
+            self._repository.release_job(job_id)
+            del self._in_flight[job_id]
 
     def _claim(self) -> bool:
         claimed = self._repository.claim_job(now_ns=time.time_ns())
@@ -146,7 +145,11 @@ class JobRunner:
             self._repository.reject_recording(job.id, str(error), now_ns=time.time_ns())
             return True
         task = DiagnosisTask(entry, motor, job.method, job.model, baseline)
-        future = self._pool.schedule(self._task, args=(task,), timeout=self._limits.job_timeout_s)
+        try:
+            future = self._pool.schedule(self._task, task, self._limits.job_timeout_s)
+        except WorkersEndedError:
+            self._repository.release_job(job.id)
+            return False
         self._in_flight[job.id] = future
         future.add_done_callback(partial(self._done, claimed))
         return True
@@ -159,6 +162,8 @@ class JobRunner:
     def _settle(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
         """Writes a result back. Raises SQLAlchemyError (the database does not answer): to be tried again."""
         job_id = claimed.job.id
+        if self._in_flight.get(job_id) is not future:  # late word of workers whose jobs were given back
+            return
         error = None if future.cancelled() else future.exception()
         if future.cancelled() or isinstance(error, BrokenExecutor):  # the pool's end, not the job's fault
             self._repository.release_job(job_id)
@@ -206,8 +211,7 @@ class JobRunner:
         log.warning("diagnosis failed", recording=claimed.job.recording_id, error=error, job=str(state))
 
     def _shut_down(self) -> None:
-        self._pool.stop()  # type: ignore[no-untyped-call]  # pebble annotates the rest of its pool
-        self._pool.join(timeout=STOP_TIMEOUT_S)
+        self._pool.stop()
         try:
             while self._results:
                 self._settle(*self._results.popleft())
@@ -215,9 +219,3 @@ class JobRunner:
                 self._repository.release_job(job_id)
         except SQLAlchemyError:
             log.exception("jobs were not put back; the next start queues them again")
-
-
-def _prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
-    """Runs first in every worker, and tells the runner when it is done."""
-    prepare_worker()
-    prepared.release()

@@ -71,3 +71,10 @@ def test_a_data_directory_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     shutil.copy(MOTORS, tmp_path / "file")
     line = serve_in_vain(tmp_path / "file" / "data", MCC_SCD=str(scl.DEMO_PLANT_SCD))
     assert str(tmp_path / "file") in line
+
+
+def test_a_database_that_cannot_be_opened_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "statorwatch.sqlite").mkdir()
+    line = serve_in_vain(tmp_path / "data", MCC_SCD=str(scl.DEMO_PLANT_SCD))
+    assert "statorwatch.sqlite: expected a database that can be read and written" in line

@@ -21,7 +21,7 @@ def test_files_are_kept_in_a_folder_of_their_content(store: RecordingStore) -> N
     assert stored.entry.read_bytes() == b"config"
     assert store.find(stored.digest) == stored
     assert store.entry(stored.digest) == stored.entry
-    assert list((store.root / "incoming").iterdir()) == []
+    assert list((store.root / "incoming" / "service").iterdir()) == []
 
 
 def test_the_same_files_are_stored_once(store: RecordingStore, tmp_path: Path) -> None:
@@ -50,11 +50,17 @@ def test_what_is_not_kept_leaves_nothing(store: RecordingStore) -> None:
     assert [path for path in store.root.rglob("*") if path.is_file()] == []
 
 
-def test_left_overs_of_a_killed_run_are_removed(store: RecordingStore) -> None:
-    (store.root / "incoming" / "killed").mkdir()
-    (store.root / "incoming" / "killed" / "A.CFG").write_bytes(b"half")
-    assert store.discard_incoming() == 1
-    assert store.discard_incoming() == 0
+def test_left_overs_of_a_killed_run_are_removed_and_nobody_elses(store: RecordingStore) -> None:
+    killed = store.root / "incoming" / "service" / "killed"
+    killed.mkdir()
+    (killed / "A.CFG").write_bytes(b"half")
+    gateway = RecordingStore(store.root, "gateway")
+    with gateway.incoming() as incoming:
+        with incoming.create("B.CFG") as sink:
+            sink.write(b"config")
+        assert store.discard_incoming() == 1
+        assert store.discard_incoming() == 0
+        assert incoming.keep().name == "B"
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import uuid
 
-from sqlalchemy import select, update
+from sqlalchemy import func, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.diagnosis.verdict import Diagnosis
@@ -36,10 +36,15 @@ class JobRows(Sessions):
             return job(row)
 
     def claim_job(self, *, now_ns: int) -> ClaimedJob | None:
-        """Takes the next job that is due: it is running from now on, one attempt more."""
+        """Takes the next job that is due: it is running from now on, one attempt more.
+
+        One that was queued later than now is of a time before the clock was set back: it is due.
+        """
+        queued_ns = func.coalesce(JobRow.finished_ns, JobRow.created_ns)
+        is_due = or_(JobRow.not_before_ns <= now_ns, queued_ns > now_ns)
         query = (
             select(JobRow)
-            .where(JobRow.state == JobState.QUEUED, JobRow.not_before_ns <= now_ns)
+            .where(JobRow.state == JobState.QUEUED, is_due)
             .order_by(JobRow.not_before_ns, JobRow.id)
             .with_for_update(skip_locked=True)
         )
@@ -49,7 +54,7 @@ class JobRows(Sessions):
                 return None
             row.state = JobState.RUNNING
             row.attempts += 1
-            row.started_ns = now_ns
+            row.started_ns, row.finished_ns = now_ns, None
             recording = found(session, RecordingRow, row.recording_id, "recording")
             if recording.digest is None:
                 raise StateConflictError(
@@ -182,6 +187,7 @@ def _retry_or_give_up(
         return
     row.state = JobState.QUEUED
     row.error = error
+    row.finished_ns = now_ns
     row.not_before_ns = now_ns + retry_delay_ns * 2 ** (row.attempts - 1)
 
 

@@ -123,7 +123,8 @@ class RecordingRows(Sessions):
 
         From a relay: `ied` and `remote`; uploaded: neither. Two of a relay are the same by name and digest;
         of two of a motor one of which was uploaded, it is enough that the waveform's files hold the same.
-        The same record again changes nothing but the event report. Raises NotFoundError, StateConflictError.
+        The event report gets what its relay had not sent before: a record that is listed again, under another
+        time, is none that a trigger made. Raises NotFoundError, StateConflictError.
         """
         if (ied is None) != (remote is None):
             raise ValueError("a recording comes from a relay (ied and remote) or is uploaded (neither)")
@@ -131,6 +132,7 @@ class RecordingRows(Sessions):
             found(session, MotorRow, motor, "motor")
             row = _stored_before(session, motor, ied, remote.name if remote else stored.name, stored)
             created = row is None
+            sent_before = row is not None and row.ied is not None
             if row is None:
                 if ied is None or remote is None:
                     row = _uploaded(session, motor, stored.name, now_ns)
@@ -140,7 +142,7 @@ class RecordingRows(Sessions):
                 session.add(new_job(row.id, method, model, now_ns))
             elif ied is not None and remote is not None:
                 _link_remote(session, ied, remote, row)
-            if event_report_id is not None:
+            if event_report_id is not None and not sent_before:
                 _attach(session, event_report_id, row, now_ns)
             return AddedRecording(recording(row), created)
 

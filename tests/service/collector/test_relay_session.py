@@ -12,7 +12,7 @@ from mms import Client
 from service.collector.relay_session import RelaySession
 from service.recordings import Incoming
 from service.storage.states import EventReportState, LinkState, RecordingState
-from tests.service.collector.conftest import Bench, eventually
+from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
 
 
@@ -139,6 +139,51 @@ def test_the_same_record_under_a_new_time_is_not_doubled(bench: Bench, relay: Sc
     assert len(bench.recordings()) == 2
 
 
+def test_a_record_whose_time_changes_is_not_what_the_next_trigger_made(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    relay.write_record("HR_1", b"of yesterday")
+    relay.silent = True
+    with bench.session():
+        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
+        report_id = bench.request()
+        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+    for file in relay.events.iterdir():
+        os.utime(file, (1_000_000_000, 1_000_000_000))
+    relay.write_record("HR_2", b"made while the collector was away")
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FETCHED)
+    recordings = {recording.name: recording.id for recording in bench.recordings()}
+    assert bench.report(report_id).recording_id == recordings["HR_2"]
+
+
+def test_a_clock_that_is_set_ends_no_report(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    right_ns = time.time_ns
+    relay.silent = True
+    bench.settings = bench.settings.model_copy(update={"record_timeout_s": 20.0})
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        monkeypatch.setattr(time, "time_ns", lambda: right_ns() + 3600 * 1_000_000_000)
+        relay.write_record("HR_10001", b"after the clock was set")
+        assert bench.reaches(report_id, EventReportState.FETCHED)
+
+
+def test_a_cut_ends_no_wish_that_waits_for_its_turn(bench: Bench, relay: ScriptedRelay) -> None:
+    long_ago_ns = time.time_ns() - 3600 * 1_000_000_000
+    wishes = [bench.repository.request_event_report(MOTOR, now_ns=long_ago_ns).id for _ in range(3)]
+    relay.stop()
+    with bench.session():
+        assert eventually(lambda: bench.link() is LinkState.DOWN)
+        again = bench.start_relay()
+        try:
+            assert all(bench.reaches(wish, EventReportState.FETCHED) for wish in wishes)
+        finally:
+            again.stop()
+
+
 def test_a_relay_that_is_down_says_so_and_comes_back(bench: Bench) -> None:
     report_id = bench.request()
     with bench.session():
@@ -219,6 +264,19 @@ def test_the_entry_id_is_saved_only_when_its_record_is_safe(
         assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
 
 
+def test_a_full_disk_is_not_blamed_on_the_relay(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def disk_full(incoming: Incoming) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Incoming, "keep", disk_full)
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FAILED)
+    assert "is not visited: OSError: [Errno 28] No space left" in (bench.report(report_id).reason or "")
+
+
 def test_without_the_report_control_block_the_directory_is_polled(bench: Bench, relay: ScriptedRelay) -> None:
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.UP)
@@ -270,9 +328,9 @@ def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytes
     failures: list[str] = []
     note_failure = RelaySession._note_failure
 
-    def counted(session: RelaySession, reason: str) -> None:
+    def counted(session: RelaySession, trouble: str, reason: str) -> None:
         failures.append(reason)
-        note_failure(session, reason)
+        note_failure(session, trouble, reason)
 
     monkeypatch.setattr(RelaySession, "_note_failure", counted)
     with capture_logs() as logs, bench.session():

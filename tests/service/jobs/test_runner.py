@@ -184,6 +184,24 @@ def test_the_runner_is_not_ready_before_its_workers_are(
 
 
 def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, store: RecordingStore) -> None:
-    add(repository, store, "fine")
+    recording_id = add(repository, store, "fine")
     with running(repository, store, prepare_worker=fail_to_start) as runner:
-        wait_until(lambda: "the job runner stopped" in (runner.problem() or ""))
+        wait_until(lambda: "the worker processes ended" in (runner.problem() or ""))
+    (job,) = repository.jobs(recording_id, limit=5).items
+    assert (job.state, job.attempts) == (JobState.QUEUED, 0), "it was not the job's fault"
+
+
+def test_workers_that_die_idle_are_replaced(repository: Repository, store: RecordingStore) -> None:
+    with running(repository, store) as runner:
+        wait_until(lambda: runner.problem() is None)
+        for worker in idle_workers():
+            os.kill(worker, signal.SIGKILL)
+        recording_id = add(repository, store, "fine")
+        wait_until(lambda: ended(repository, recording_id))
+        wait_until(lambda: runner.problem() is None)
+    assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
+
+
+def idle_workers() -> list[int]:
+    """Process ids of this process's workers."""
+    return [child.pid for child in multiprocessing.active_children() if child.pid is not None]

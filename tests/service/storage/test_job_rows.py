@@ -42,6 +42,15 @@ def test_a_job_is_claimed_once(repository: Repository, recording_id: str) -> Non
     assert repository.claim_job(now_ns=NOW_NS) is None
 
 
+def test_a_clock_that_is_set_back_holds_up_no_job(repository: Repository, recording_id: str) -> None:
+    an_hour_ago_ns = NOW_NS - 3600 * SECOND_NS
+    first = claim(repository, now_ns=an_hour_ago_ns)
+    repository.retry_or_fail_job(first.job.id, "broken", now_ns=NOW_NS)
+    assert repository.claim_job(now_ns=NOW_NS + SECOND_NS) is None, "it is tried again later"
+    second = claim(repository, now_ns=an_hour_ago_ns + SECOND_NS)
+    assert (second.job.id, second.job.finished_ns) == (first.job.id, None)
+
+
 def test_a_result_ends_job_recording_and_report(repository: Repository, recording_id: str) -> None:
     job_id = claim(repository).job.id
     for _ in range(2):

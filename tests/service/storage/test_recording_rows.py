@@ -86,7 +86,7 @@ def test_other_content_under_the_same_listing_is_another_recording(
 def test_a_recording_diagnosed_before_ends_the_report_that_gets_it(
     repository: Repository, store: RecordingStore
 ) -> None:
-    repository.add_recording(record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS)
+    repository.add_recording(record(store), motor="PUMP-A1", now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=NOW_NS)
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
@@ -100,6 +100,25 @@ def test_a_recording_diagnosed_before_ends_the_report_that_gets_it(
         now_ns=NOW_NS,
     )
     assert repository.event_report(report.id).state is EventReportState.DIAGNOSED
+
+
+def test_a_record_listed_under_a_new_time_is_not_the_one_a_trigger_made(
+    repository: Repository, store: RecordingStore
+) -> None:
+    touched = RemoteRecord(REMOTE.name, REMOTE.size_bytes, REMOTE.modified_ns + 5)
+    repository.add_recording(record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS)
+    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    repository.mark_triggered(report.id, now_ns=NOW_NS)
+    repository.add_recording(
+        record(store),
+        motor="PUMP-A1",
+        ied="A1_SEL710",
+        remote=touched,
+        event_report_id=report.id,
+        now_ns=NOW_NS,
+    )
+    assert repository.event_report(report.id).state is EventReportState.TRIGGERED
+    assert repository.known_remote_records("A1_SEL710") == {REMOTE, touched}
 
 
 def test_a_refused_record_is_not_pulled_again(repository: Repository) -> None:

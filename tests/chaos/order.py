@@ -1,0 +1,31 @@
+"""What somebody wants run."""
+
+from dataclasses import dataclass
+
+OVERHEAD_S = 45.0
+"""Of a run, for its start and its settling; the rest is the schedule's."""
+
+SHORTEST_S = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """minutes: about how long it may take, start and settling included."""
+
+    seed: int
+    minutes: float
+    recordings: int
+    relays: int
+
+    @property
+    def schedule_s(self) -> float:
+        """How long triggers and faults go on."""
+        return max(SHORTEST_S, 60.0 * self.minutes - OVERHEAD_S)
+
+    @property
+    def command(self) -> str:
+        """What runs the same again."""
+        return (
+            f"make chaos SEED={self.seed} MINUTES={self.minutes:g} RECORDINGS={self.recordings} "
+            f"RELAYS={self.relays}"
+        )

@@ -1,0 +1,160 @@
+"""The network between the service and each relay: a TCP relay that cuts, freezes and refuses on demand."""
+
+import asyncio
+import socket
+import struct
+import threading
+from collections.abc import Mapping
+from contextlib import suppress
+from types import TracebackType
+from typing import Self
+
+from scl import Address
+
+CHUNK_BYTES = 65_536
+RESET = struct.pack("ii", 1, 0)
+"""SO_LINGER on, for no time: closing resets the connection."""
+
+
+class Link:
+    """The way to one relay. Used by the proxy's own thread, but for the counter."""
+
+    def __init__(self, own: Address, seen: Address) -> None:
+        self.own = own
+        self.seen = seen
+        self.carried_bytes = 0
+        self.refuses = False
+        self.cut_after_bytes: int | None = None
+        self.flowing = asyncio.Event()
+        self.flowing.set()
+        self._writers: set[asyncio.StreamWriter] = set()
+        self._server: asyncio.Server | None = None
+
+    async def listen(self) -> None:
+        self._server = await asyncio.start_server(self._accept, self.seen.host, self.seen.port)
+
+    def cut(self) -> None:
+        """Reset every connection."""
+        for writer in list(self._writers):
+            _reset(writer)
+
+    def close(self) -> None:
+        if self._server is not None:
+            self._server.close()
+        self.cut()
+
+    async def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        if self.refuses:
+            _reset(writer)
+            return
+        try:
+            far_reader, far_writer = await asyncio.open_connection(self.own.host, self.own.port)
+        except OSError:  # the relay is off
+            _reset(writer)
+            return
+        both = {writer, far_writer}
+        self._writers |= both
+        try:
+            ways = [
+                asyncio.create_task(self._carry(reader, far_writer, to_service=False)),
+                asyncio.create_task(self._carry(far_reader, writer, to_service=True)),
+            ]
+            await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
+            for way in ways:
+                way.cancel()
+            await asyncio.gather(*ways, return_exceptions=True)
+        finally:
+            self._writers -= both
+            for each in both:
+                _reset(each)
+
+    async def _carry(
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, *, to_service: bool
+    ) -> None:
+        """Until one of the two ends, however it ends."""
+        with suppress(OSError):
+            while chunk := await reader.read(CHUNK_BYTES):
+                await self.flowing.wait()
+                if to_service:
+                    self.carried_bytes += len(chunk)
+                    if self._is_over(len(chunk)):
+                        writer.write(chunk[: len(chunk) // 2])
+                        await writer.drain()
+                        self.cut()
+                        return
+                writer.write(chunk)
+                await writer.drain()
+
+    def _is_over(self, size: int) -> bool:
+        """Whether the cut that was asked for falls into this chunk; then it is done with."""
+        if self.cut_after_bytes is None:
+            return False
+        self.cut_after_bytes -= size
+        if self.cut_after_bytes > 0:
+            return False
+        self.cut_after_bytes = None
+        return True
+
+
+class Proxy:
+    """The links of all relays, in a thread of their own while the context is entered."""
+
+    def __init__(self, ways: Mapping[str, tuple[Address, Address]]) -> None:
+        """`ways`: own and seen address of each relay."""
+        self._loop = asyncio.new_event_loop()
+        self._thread = threading.Thread(target=self._loop.run_forever, name="proxy")
+        self.links = {name: Link(own, seen) for name, (own, seen) in ways.items()}
+
+    @property
+    def carried_bytes(self) -> int:
+        """From all relays to the service."""
+        return sum(link.carried_bytes for link in self.links.values())
+
+    def cut(self, relay: str) -> None:
+        self._loop.call_soon_threadsafe(self.links[relay].cut)
+
+    def cut_after(self, relay: str, size: int) -> None:
+        """Cut once the relay has sent so much more."""
+        self._loop.call_soon_threadsafe(setattr, self.links[relay], "cut_after_bytes", size)
+
+    def refuse(self, relay: str, *, on: bool) -> None:
+        """Turn away new connections; what is connected is cut."""
+        link = self.links[relay]
+        self._loop.call_soon_threadsafe(setattr, link, "refuses", on)
+        if on:
+            self.cut(relay)
+
+    def freeze(self, relay: str, *, on: bool) -> None:
+        """Carry nothing, and lose nothing: what was sent arrives when it thaws."""
+        flowing = self.links[relay].flowing
+        self._loop.call_soon_threadsafe(flowing.clear if on else flowing.set)
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        for link in self.links.values():
+            asyncio.run_coroutine_threadsafe(link.listen(), self._loop).result(10)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        asyncio.run_coroutine_threadsafe(self._close(), self._loop).result(30)
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+        self._loop.close()
+
+    async def _close(self) -> None:
+        for link in self.links.values():
+            link.flowing.set()
+            link.close()
+        others = asyncio.all_tasks() - {asyncio.current_task()}
+        for task in others:
+            task.cancel()
+        await asyncio.gather(*others, return_exceptions=True)
+
+
+def _reset(writer: asyncio.StreamWriter) -> None:
+    connection = writer.get_extra_info("socket")
+    if connection is not None and connection.fileno() >= 0:
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, RESET)
+    writer.transport.abort()
