@@ -18,6 +18,7 @@ class AlarmKind(StrEnum):
     FILE_TOO_LARGE = "file-too-large"
     FILE_UNSTEADY = "file-unsteady"
     DAILY_LIMIT = "daily-limit"
+    RELAY_DIFFERS = "relay-differs"
 
 
 class ClockQuality(StrEnum):
