@@ -1,5 +1,7 @@
 """Relays, their links and what is wrong with them."""
 
+import time
+from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, Query
@@ -7,7 +9,7 @@ from fastapi import APIRouter, Query
 from service.api.context import Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Alarm, Gateway, Ied, IedDetails, LinkChange, LinkFigures, Name
+from service.api.schemas import Alarm, Gateway, Ied, IedDetails, LinkChange, LinkFigures, Name, Quarantine
 
 router = APIRouter(tags=["relays"])
 
@@ -27,13 +29,21 @@ def get_ied(context: Context, name: Name) -> IedDetails:
     repository = context.repository
     ied = Ied.model_validate(repository.ied(name))
     changes = repository.link_changes(name, limit=LATEST_CHANGES)
+    quarantine = repository.quarantine(name)
     return IedDetails(
         **dict(ied),
         gateway=repository.gateway_of(name),
         figures=LinkFigures.model_validate(repository.link_figures(name)),
         changes=[LinkChange.model_validate(change) for change in changes.items],
+        quarantine=None if quarantine is None else Quarantine.model_validate(quarantine),
         alarms=[Alarm.model_validate(alarm) for alarm in repository.standing_alarms(name)],
     )
+
+
+@router.delete("/ieds/{name}/quarantine", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
+def release_ied(context: Context, name: Name) -> None:
+    """Visit a relay again that was set aside, with a clean sheet; harmless where it was not."""
+    context.repository.release(name, now_ns=time.time_ns())
 
 
 @router.get("/ieds/{name}/link-changes", responses=problems(404))

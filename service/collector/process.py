@@ -14,6 +14,7 @@ from typing import BinaryIO, NoReturn
 import structlog
 
 from service.collector.gateway import Gateway, Identity
+from service.collector.visiting import visits_of
 from service.exclusive import exclusive
 from service.installation import installation_id
 from service.logs import configure_logging
@@ -52,12 +53,15 @@ def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
 
 
 def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
+    visits = visits_of(settings.data_directory, number)
+    visits.forget()  # of a gateway whose service ended with it
     gateway = Gateway(
         Identity(gateway_id(settings, number), socket.gethostname(), os.getpid()),
         read_plant(settings),
         Repository(connect(settings.database_url)),
         RecordingStore(settings.recordings_directory),
         settings,
+        visits=visits,
         on_end=_fenced_off,
     )
     log.info("collecting", gateway=number)

@@ -6,6 +6,7 @@ What a relay does wrong ends at its own session: the link is down with its reaso
 import math
 import time
 from collections.abc import Callable
+from contextlib import ExitStack, nullcontext
 from queue import Empty, SimpleQueue
 from threading import Event
 
@@ -18,6 +19,7 @@ from mms import (
     EntryNotFound,
     MmsError,
     NotFound,
+    ProtocolError,
     Reason,
     Report,
     ReportControlInUse,
@@ -28,8 +30,10 @@ from service.collector.allowance import DailyAllowance
 from service.collector.continuity import Continuity, is_of, status_of
 from service.collector.link import Link
 from service.collector.metering import Metering
+from service.collector.quarantine import Conduct
 from service.collector.record_directory import RecordDirectory
 from service.collector.triggering import Triggering
+from service.collector.visiting import Mark, Visits
 from service.plant import Relay
 from service.recordings import RecordingStore
 from service.settings import Settings
@@ -80,10 +84,12 @@ class RelaySession:
         settings: Settings,
         *,
         gateway: str | None = None,
+        visits: Visits | None = None,
         on_sample: Callable[[Sample], None] | None = None,
     ) -> None:
         """`gateway`: who holds the relay's lease; None where relays are not shared.
 
+        visits: where a visit is marked, for whoever finds the process dead; None where nobody would look.
         on_sample: takes what the relay measures; None where nobody wants it.
         """
         self._relay = relay
@@ -112,6 +118,9 @@ class RelaySession:
             if on_sample is None
             else Metering(relay, motor, period_s=settings.metering_period_s, on_sample=on_sample)
         )
+        self._conduct = Conduct(relay.name, repository, first_pause_s=settings.quarantine_s)
+        self._visits = visits
+        self._mark: Mark | None = None
         self._client: Client | None = None
         self._stopping = Event()
         self._something_to_do = Event()
@@ -142,10 +151,12 @@ class RelaySession:
         while not self._stopping.is_set():
             visited_s = time.monotonic()
             reason = None
+            broken = False
             try:
                 self._visit()
             except MmsError as error:
                 reason = str(error)
+                broken = isinstance(error, ProtocolError)
             except LeaseLostError as error:
                 log.warning("visit ended", relay=self._relay.name, reason=str(error))
                 return
@@ -154,6 +165,8 @@ class RelaySession:
                 reason = f"{type(error).__name__}: {error}"
             if reason is not None and not self._stopping.is_set():
                 self._note_failure(reason)
+                if broken and self._is_set_aside(reason):
+                    return
             if time.monotonic() - visited_s > LONGEST_RETRY_S:
                 retry_s = FIRST_RETRY_S
             self._stopping.wait(retry_s)
@@ -161,6 +174,13 @@ class RelaySession:
 
     def _visit(self) -> None:
         """One connection, until it breaks or the session is stopped. Raises MmsError."""
+        with ExitStack() as marked:
+            if self._visits is not None:
+                self._mark = marked.enter_context(self._visits.mark(self._relay.name))
+            self._conduct.visited()
+            self._visit_marked()
+
+    def _visit_marked(self) -> None:
         with Client.connect(
             self._relay.host,
             self._relay.port,
@@ -179,6 +199,7 @@ class RelaySession:
                 self._something_to_do.clear()
                 waiting = self._work(client, inbox)
                 self._link.answered(client.round_trip_s)
+                self._conduct.answered()
                 self._wait(client, HURRIED_PERIOD_S if waiting else self._settings.poll_period_s)
 
     def _wait(self, client: Client, longest_s: float) -> None:
@@ -189,7 +210,8 @@ class RelaySession:
             if self._metering is not None and due_in_s <= 0:
                 self._metering.sample(client)
                 continue
-            self._something_to_do.wait(min(due_in_s, until_s - time.monotonic()))
+            with nullcontext() if self._mark is None else self._mark.waiting():
+                self._something_to_do.wait(min(due_in_s, until_s - time.monotonic()))
 
     def _subscribe(self, client: Client, inbox: Inbox) -> None:
         """Have reports from where the last saved one left off; without reports, the directory is polled."""
@@ -246,6 +268,14 @@ class RelaySession:
             self._triggering.link_failed(reason)
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
+
+    def _is_set_aside(self, reason: str) -> bool:
+        """A visit ended by a broken protocol: whether that was once too often."""
+        try:
+            return self._conduct.broke_the_protocol(reason)
+        except SQLAlchemyError:
+            log.exception("database does not answer, trying again")
+            return False
 
     def _work(self, client: Client, inbox: Inbox) -> bool:
         """One round: reports, directory, event reports. Returns whether a record is on its way."""

@@ -9,6 +9,7 @@ from service.storage.repository.leases import LeaseRows
 from service.storage.repository.links import LinkRows
 from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.plant import PlantRows
+from service.storage.repository.quarantines import QuarantineRows
 from service.storage.repository.recordings import RecordingRows
 
 
@@ -17,6 +18,7 @@ class Repository(
     LinkRows,
     LeaseRows,
     AlarmRows,
+    QuarantineRows,
     EventReportRows,
     RecordingRows,
     JobRows,
