@@ -46,7 +46,9 @@ def _in_bulk(dialogue: Dialogue, cases: int, seed: int, processes: int) -> Itera
     async def campaign(directory: Path) -> tuple[HostileRelay, bulk.Outcome]:
         relay = HostileRelay(dialogue, seed)
         await relay.start()
-        outcome = await bulk.run(relay, cases, processes=processes, directory=directory / "clients")
+        outcome = await bulk.run(
+            relay, cases, processes=processes, directory=directory / "clients", tell=_say
+        )
         await relay.stop()
         return relay, outcome
 

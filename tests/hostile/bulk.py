@@ -4,6 +4,7 @@ import asyncio
 import sys
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from tests.hostile.relay import HostileRelay
 
 LOOK_S = 0.2
 STALL_S = 60.0
+TELL_S = 60.0
 KILOBYTES_A_MEGABYTE = 1024
 
 
@@ -25,18 +27,32 @@ class Outcome:
     stalled: bool = False
 
 
-async def run(relay: HostileRelay, cases: int, *, processes: int, directory: Path) -> Outcome:
-    """Until the relay has answered so many cases more. `directory`: where the clients keep what they pull."""
+async def run(
+    relay: HostileRelay,
+    cases: int,
+    *,
+    processes: int,
+    directory: Path,
+    tell: Callable[[str], None] = lambda _: None,
+) -> Outcome:
+    """Until the relay has answered so many cases more.
+
+    directory: where the clients keep what they pull.  tell: how far it is, now and then.
+    """
     outcome = Outcome()
     until = relay.cases + cases
     visitors = [
         asyncio.create_task(_keep_visiting(relay, number, directory, outcome)) for number in range(processes)
     ]
-    latest, since_s = relay.cases, time.monotonic()
+    latest = relay.cases
+    since_s = told_s = time.monotonic()
     while relay.cases < until:
         await asyncio.sleep(LOOK_S)
         if relay.cases != latest:
             latest, since_s = relay.cases, time.monotonic()
+        if time.monotonic() - told_s > TELL_S:
+            told_s = time.monotonic()
+            tell(f"{relay.cases} cases, {sum(outcome.crashes.values())} client processes ended")
         if time.monotonic() - since_s > STALL_S:
             outcome.stalled = True
             break

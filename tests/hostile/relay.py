@@ -26,7 +26,7 @@ MISCONDUCT = (
 )
 ENDLESS_BYTES = 2_000_000
 ENDLESS_UNIT = bytes([3, 0, 4, 7, 2, 0xF0, 0]) + bytes(1024)  # data that announces more, for ever
-JOURNAL = 8
+JOURNAL = 24
 
 
 @dataclass
@@ -54,10 +54,12 @@ class HostileRelay:
     async def stop(self) -> None:
         self._server.close()
 
-    def _case(self, what: str, octets: bytes = b"") -> None:
+    def _case(self, peer: int, what: str, octets: bytes = b"") -> None:
         self.cases += 1
         self.kinds[what] += 1
-        self.journal.append(f"case {self.cases} of seed {self.seed}: {what}: {octets[:200].hex()}")
+        self.journal.append(
+            f"case {self.cases} of seed {self.seed} to port {peer}: {what}: {octets[:2000].hex()}"
+        )
 
     def _chance(self) -> Random:
         """Of the next case."""
@@ -75,6 +77,7 @@ class HostileRelay:
                     if not await self._answer(pdu.parts[0].content, pdu.parts[-1], writer):
                         break
         finally:
+            self.journal.append(f"port {_port(writer)} ended")
             writer.close()
 
     async def _associate(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -87,7 +90,7 @@ class HostileRelay:
                 answer = spoiler(chance, good)
                 if step and chance.random() < 0.6:  # within right lengths of the frame
                     answer = framed(spoiler(chance, good[7:]))
-                self._case(f"handshake {spoiler.__name__}", answer)
+                self._case(_port(writer), f"handshake {spoiler.__name__}", answer)
                 if chance.random() < 0.1:
                     await self._without_end(writer)
             writer.write(answer)
@@ -106,7 +109,7 @@ class HostileRelay:
         lie = crafted.ANSWERS.get(service.tag)
         if lie is not None and way < 0.6:
             octets = _response(invoke_id, lie(chance))
-            self._case(f"crafted {lie.__name__}", octets)
+            self._case(_port(writer), f"crafted {lie.__name__}", octets)
             writer.write(framed(message(octets)))
         elif way < 0.75:
             spoiler = chance.choice(spoiling.OF_MESSAGES)
@@ -114,12 +117,12 @@ class HostileRelay:
                 octets = _response(invoke_id, spoiler(chance, good))
             else:
                 octets = spoiler(chance, _response(invoke_id, good))
-            self._case(f"message {spoiler.__name__}", octets)
+            self._case(_port(writer), f"message {spoiler.__name__}", octets)
             writer.write(framed(message(octets)))
         elif way < 0.83 and self.dialogue.reports:
             spoiler = chance.choice(spoiling.OF_MESSAGES)
             octets = spoiler(chance, chance.choice(self.dialogue.reports))
-            self._case(f"report {spoiler.__name__}", octets)
+            self._case(_port(writer), f"report {spoiler.__name__}", octets)
             writer.write(framed(message(octets)) + framed(message(_response(invoke_id, good))))
         elif way < 0.9:
             spoiler = chance.choice(spoiling.OF_FRAMES)
@@ -127,7 +130,7 @@ class HostileRelay:
             octets = (
                 framed(spoiler(chance, octets)) if chance.random() < 0.6 else spoiler(chance, framed(octets))
             )
-            self._case(f"frame {spoiler.__name__}", octets)
+            self._case(_port(writer), f"frame {spoiler.__name__}", octets)
             writer.write(octets)
         else:
             return await self._misconduct(chance, invoke_id, good, writer)
@@ -139,7 +142,7 @@ class HostileRelay:
     ) -> bool:
         """What is no answer at all, or somebody else's."""
         kind = chance.choice(MISCONDUCT)
-        self._case(kind)
+        self._case(_port(writer), kind)
         right = framed(message(_response(invoke_id, good)))
         if kind == "wrong invoke id":
             other = chance.choice((b"\x00", b"\xff", b"\x7f\xff\xff\xff", b"", chance.randbytes(4)))
@@ -174,6 +177,11 @@ class HostileRelay:
         for _ in range(ENDLESS_BYTES // len(ENDLESS_UNIT)):
             writer.write(ENDLESS_UNIT)
             await writer.drain()
+
+
+def _port(writer: asyncio.StreamWriter) -> int:
+    """The client's, which tells apart whom was answered."""
+    return int(writer.get_extra_info("peername")[1])
 
 
 @contextmanager
