@@ -126,7 +126,7 @@ def _told(seen: Seen, minutes: float, spent_s: float, simulated_s: float) -> Ite
         yield f"memory: {warm[-1][1]:.0f} MB in all, {slope:+.2f} MB a minute after {begin:.1f} minutes"
     delays = sorted(seen.delays_s.values())
     if len(delays) > 1:
-        p95 = statistics.quantiles(delays, n=20)[-1]
+        p95 = statistics.quantiles(delays, n=20, method="inclusive")[-1]
         yield (
             f"made to stored: median {statistics.median(delays):.2f} s, p95 {p95:.2f} s, "
             f"most {delays[-1]:.2f} s ({len(delays)} recordings)"
