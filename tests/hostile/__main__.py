@@ -15,7 +15,7 @@ from tests.hostile.relay import HostileRelay
 from tests.hostile.surroundings import Snapshot
 
 SERVED_CASES = 500
-SERVED_LIMIT_S = 600.0
+SERVED_LIMIT_S = 300.0
 MOST_MEMORY_MB = 400.0
 """Of a client or gateway process; one that is good needs 60 to 120."""
 

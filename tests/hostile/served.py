@@ -12,6 +12,7 @@ from tests.hostile.bulk import resident_MB
 from tests.hostile.dialogue import Dialogue
 from tests.hostile.relay import HostileRelay, serving
 from tests.hostile.surroundings import Snapshot, strangers
+from tests.integration import processes
 from tests.integration.processes import (
     RELAYS,
     Service,
@@ -29,6 +30,7 @@ HONEST = 0.7
 
 GOOD_MOTORS = ("FAN-A2", "MILL-A3")
 PROBE_S = 0.25
+START_LIMIT_S = 300.0
 SLOWEST_ANSWER_S = 5.0
 CANARIES = ("x.CFG", "x.DAT", "relays.txt", "HR_10001.CFG")
 SETTINGS = {
@@ -36,7 +38,7 @@ SETTINGS = {
     "MCC_POLL_PERIOD_S": "0.5",
     "MCC_REQUEST_TIMEOUT_S": "1",
     "MCC_CONNECT_TIMEOUT_S": "1",
-    "MCC_LEASE_S": "3",
+    "MCC_LEASE_S": "15",
     "MCC_RECORD_TIMEOUT_S": "30",
     "MCC_MAX_FILE_BYTES": "1000000",
     "MCC_WORKERS": "1",
@@ -76,6 +78,7 @@ class ServedOutcome:
 def run(dialogue: Dialogue, seed: int, directory: Path, *, cases: int, limit_s: float) -> ServedOutcome:
     """Until so many cases have gone through the service, or so much time."""
     outcome = ServedOutcome()
+    processes.START_LIMIT_S = START_LIMIT_S
     for name in CANARIES:
         (directory / name).write_text(name)
     with simulated_plant(directory, GOOD) as plant, serving(_relays(dialogue, seed)) as relays:
