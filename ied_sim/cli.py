@@ -101,7 +101,7 @@ def main() -> None:
 def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, RelayScenario]:
     """A scenario for every IED of the file: that of the scenario file, or the healthy reference motor."""
     scenarios = {found.name: healthy_reference(found.name, profile) for found in document.ieds}
-    given = {} if path is None else read_scenario(path)
+    given = {} if path is None else read_scenario(path, profile)
     for name in given:
         if name not in scenarios:
             raise ScenarioError(

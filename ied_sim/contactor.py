@@ -23,13 +23,15 @@ class Contactor:
         self._closures: tuple[Closure, ...] = () if open_at_first else (Closure(),)
         self._lock = threading.Lock()
 
-    def close(self, time_s: float) -> bool:
-        """Connect the motor; False where it was connected, or later was again."""
+    def close(self, time_s: float) -> float | None:
+        """Connect the motor, once it has opened where it is about to: when. None where it was connected."""
         with self._lock:
-            if self._closures and self._closures[-1].opened_s > time_s:
-                return False
-            self._closures += (Closure(time_s),)
-            return True
+            opened_s = self._closures[-1].opened_s if self._closures else -inf
+            if opened_s == inf:
+                return None
+            closed_s = max(time_s, opened_s)
+            self._closures += (Closure(closed_s),)
+            return closed_s
 
     def open(self, time_s: float) -> bool:
         """Disconnect the motor; False where it was not connected."""

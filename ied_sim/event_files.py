@@ -48,15 +48,24 @@ class EventFiles:
         names = (self._name.fullmatch(entry.name) for entry in self._folder.iterdir())
         return sorted({int(name[1]) for name in names if name})
 
-    def store(self, recording: Recording, header: str, summary: EventSummary, *, grow_s: float = 0.0) -> int:
+    def store(
+        self,
+        recording: Recording,
+        header: str,
+        summary: EventSummary,
+        *,
+        utc_offset_min: int = 0,
+        grow_s: float = 0.0,
+    ) -> int:
         """Write one record completely, discard what is too old, and return the record's number.
 
+        utc_offset_min: of the clock that the recording's times are of, for formats that can tell it [min].
         With `grow_s` the largest of its files appears half at first and grows to its size in that time.
         """
         number = FIRST_NUMBER if self.last_number is None else self.last_number + 1
         stem = f"{self._prefix}{number:05d}"
         for written in self._formats:
-            self._write(written, stem, recording, header, summary)
+            self._write(written, stem, recording, header, summary, utc_offset_min)
         files = [self._staging / f"{stem}{suffix}" for suffix in _SUFFIXES_IN_ORDER]
         files = [file for file in files if file.exists()]
         growing = max(files, key=lambda file: file.stat().st_size) if grow_s else None
@@ -80,7 +89,13 @@ class EventFiles:
         self._stopping.set()
 
     def _write(
-        self, written: RecordFormat, stem: str, recording: Recording, header: str, summary: EventSummary
+        self,
+        written: RecordFormat,
+        stem: str,
+        recording: Recording,
+        header: str,
+        summary: EventSummary,
+        utc_offset_min: int,
     ) -> None:
         if written.kind == "CEV":
             write_cev(self._staging / f"{stem}.CEV", recording, summary)
@@ -92,6 +107,7 @@ class EventFiles:
             header_text=header,
             revision=written.revision,
             data_format=written.data_format,
+            utc_offset_min=utc_offset_min,
         )
 
     def _discard(self, number: int) -> None:

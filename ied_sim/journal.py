@@ -41,10 +41,11 @@ class NotedStart:
 
 @dataclass(slots=True)
 class Statistics:
-    """Since `since_ns`: times [s], sums over the running time, extremes, trips by element."""
+    """Since `since_ns`: times [s], sums over the time between starts (`loaded_s`), extremes, trips."""
 
     since_ns: int
     running_s: float = 0.0
+    loaded_s: float = 0.0
     stopped_s: float = 0.0
     current_time_As: float = 0.0
     highest_current_A: float = 0.0
@@ -92,14 +93,17 @@ class Journal:
             if not self._load or time_ns - self._load[-1].time_ns >= self._every_ns:
                 self._load.append(LoadRow(time_ns, seen, thermal_capacity))
 
-    def note_operation(self, duration_s: float, seen: Metering, *, running: bool) -> None:
-        """The motor has run, or stood, for so long."""
+    def note_operation(self, duration_s: float, seen: Metering, *, running: bool, starting: bool) -> None:
+        """The motor has run, or stood, for so long; the current of a start is not one of running."""
         with self._lock:
             if not running:
                 self.statistics.stopped_s += duration_s
                 return
             statistics, current_A = self.statistics, seen.current_A
             statistics.running_s += duration_s
+            if starting:
+                return
+            statistics.loaded_s += duration_s
             statistics.current_time_As += current_A * duration_s
             statistics.highest_current_A = max(statistics.highest_current_A, current_A)
 

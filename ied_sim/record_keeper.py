@@ -62,6 +62,7 @@ class RecordKeeper:
                 record,
                 self._header(record, capture.kind, seen),
                 self._summary(record, capture.kind, targets, seen),
+                utc_offset_min=round((self._switchboard.number(Kind.LOCAL_TIME) or 0.0) / 60),
                 grow_s=self._switchboard.number(Kind.GROWING_FILE) or 0.0,
             )
         self.last_number = number

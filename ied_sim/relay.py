@@ -36,6 +36,9 @@ METERING_PERIOD_S = 1.0
 WATCHFUL_PERIOD_S = 0.1
 """Between looks while something is about to happen: a start, a trip."""
 
+OPENING_NS = 40_000_000
+"""From the command to open until a contactor's current has ended."""
+
 _STAGING = ".staging"
 _TRIP_BITS = {"overcurrent": "50P1T", "thermal": "49T", "unbalance": "46UBT"}
 _TRIP_KINDS = {"overcurrent": "PHASE 50 TRIP", "thermal": "THERMAL TRIP", "unbalance": "UNBALANCE TRIP"}
@@ -145,11 +148,14 @@ class Relay:
         seen = self._watch.look(time_s)
         self._values.refresh_metering(seen, time_ns)
         closure = self._watch.closure(time_s)
+        self._follow_start(closure, time_s)
         self._journal.note_operation(
-            max(0.0, (time_ns - self._looked_ns) * 1e-9), seen, running=closure is not None
+            max(0.0, (time_ns - self._looked_ns) * 1e-9),
+            seen,
+            running=closure is not None,
+            starting=not self._start_noted,
         )
         self._looked_ns = time_ns
-        self._follow_start(closure, time_s)
         tripped = self._protection.look(seen, time_s)
         if closure is not None and tripped:
             self._trip(tripped, time_ns)
@@ -195,13 +201,16 @@ class Relay:
 
     def _set_control(self, reference: str, time_ns: int, *, value: bool) -> None:
         self._bits[reference] = value
-        if "RBGGIO" in reference:
-            self._word.set(f"RB{reference[-2:]}", value, time_ns)
+        number = self._points.remote_bit(reference)
+        if number is not None:
+            together = (each for each in self._bits if self._points.remote_bit(each) == number)
+            self._word.set(f"RB{number}", any(self._bits[each] for each in together), time_ns)
         self._values.controls({reference: value}, time_ns)
 
     def _on_rise(self, reference: str, now_ns: int) -> None:
         if reference in self._points.triggers:
-            self._trigger(now_ns, "ER TRIG (RB01)" if "RBGGIO" in reference else "ER TRIG (RCDTRG)")
+            number = self._points.remote_bit(reference)
+            self._trigger(now_ns, "ER TRIG (RCDTRG)" if number is None else f"ER TRIG (RB{number})")
         elif reference == self._points.control("start"):
             self._start_motor(now_ns)
         elif reference == self._points.control("stop"):
@@ -211,25 +220,28 @@ class Relay:
 
     def _start_motor(self, now_ns: int) -> None:
         contactor = self._scenario.plant.contactor
-        if contactor is None or not contactor.close(self._seconds(now_ns)):
+        closed_s = None if contactor is None else contactor.close(self._seconds(now_ns))
+        if closed_s is None:
             return
+        closed_ns = self._epoch_ns + round(closed_s * 1e9)
         log.info("%s: the motor is started", self.name)
         self.hurries = True
         for bit in ("TRIP", *_TRIP_BITS.values(), "STOPPED"):
-            self._word.set(bit, False, now_ns)  # noqa: FBT003
-        self._word.set("STARTING", True, now_ns)  # noqa: FBT003
+            self._word.set(bit, False, closed_ns)  # noqa: FBT003
+        self._word.set("STARTING", True, closed_ns)  # noqa: FBT003
         self._values.status(dict.fromkeys(("trip", *_TRIP_BITS), False), now_ns)
         if self._scenario.triggers.motor_start:
             self._trigger(now_ns, "ER MOTOR START")
 
     def _stop_motor(self, now_ns: int) -> None:
         contactor = self._scenario.plant.contactor
-        if contactor is None or not contactor.open(self._seconds(now_ns)):
+        open_ns = now_ns + OPENING_NS
+        if contactor is None or not contactor.open(self._seconds(open_ns)):
             return
         log.info("%s: the motor is stopped", self.name)
-        self._word.set("STARTING", False, now_ns)  # noqa: FBT003
-        self._word.set("RUNNING", False, now_ns)  # noqa: FBT003
-        self._word.set("STOPPED", True, now_ns)  # noqa: FBT003
+        self._word.set("STARTING", False, open_ns)  # noqa: FBT003
+        self._word.set("RUNNING", False, open_ns)  # noqa: FBT003
+        self._word.set("STOPPED", True, open_ns)  # noqa: FBT003
 
     def _trip(self, elements: list[str], now_ns: int) -> None:
         log.info("%s: trip: %s", self.name, ", ".join(elements))
@@ -357,4 +369,10 @@ class Relay:
         for unknown in sorted(self._switches.keys() - set(self._points.controls)):
             raise SimulatorError(
                 f"{self.name}: the misbehaviour's switch {unknown} is no control of this relay"
+            )
+        own = self._points.triggers | {self._points.control(key) for key in ("start", "stop", "clear")}
+        for meant in sorted(self._switches.keys() & own):
+            raise SimulatorError(
+                f"{self.name}: the misbehaviour's switch {meant} has a meaning of its own (points of its "
+                "profile): choose a free control"
             )

@@ -27,6 +27,7 @@ class RelayMisbehaviour:
         self._buffer_bytes = buffer_bytes
         self._other_client: Client | None = None
         self._on: set[Kind] = set()
+        self._waits = False
 
     def look(self) -> None:
         """Begin and end what has come on or gone off since the last look."""
@@ -69,10 +70,14 @@ class RelayMisbehaviour:
             return
         try:
             client.subscribe(reports, SimpleQueue[Report]())
-        except MmsError:  # somebody has the block; it is tried again at the next look
+        except MmsError as error:
+            if not self._waits:
+                log.warning("another client waits for %s: %s", reports, error)
+            self._waits = True
             client.close()
         else:
-            self._other_client = client
+            log.info("another client has %s", reports)
+            self._other_client, self._waits = client, False
 
     def _flood(self) -> None:
         """Let the quality of the trip flicker: a report for each change, and nothing has happened."""

@@ -46,6 +46,12 @@ class RelayPoints:
         inst, _, rest = inst_reference.partition("/")
         return f"{self._domains.get(inst, inst)}/{rest}"
 
+    @staticmethod
+    def remote_bit(reference: str) -> str | None:
+        """Number of the remote bit ("01") that a control of RBGGIO sets and one of PRBGGIO pulses."""
+        node, _, control = reference.rpartition("/")[2].partition(".")
+        return control.removeprefix("SPCSO") if node.startswith(("RBGGIO", "PRBGGIO")) else None
+
     def control(self, key: str) -> str | None:
         """Reference of the control `key` ("start"), None where the profile names none."""
         found = getattr(self._points, key)

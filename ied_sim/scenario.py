@@ -61,8 +61,11 @@ class RelayScenario:
         }
 
 
-def read_scenario(path: Path) -> dict[str, RelayScenario]:
-    """Scenario of each IED by its name. Raises ScenarioError, ProfileError."""
+def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayScenario]:
+    """Scenario of each IED by its name; `profile` for those that name none.
+
+    Raises ScenarioError, ProfileError.
+    """
     table = read_table(path, ScenarioError)
     try:
         motors = FileTable.model_validate(table).motor
@@ -74,7 +77,7 @@ def read_scenario(path: Path) -> dict[str, RelayScenario]:
             raise ScenarioError(
                 path, f"[motor {motor.ied}] ied", expected="each IED once", found="a second motor"
             )
-        scenarios[motor.ied] = _relay_scenario(path, motor)
+        scenarios[motor.ied] = _relay_scenario(path, motor, profile)
     return scenarios
 
 
@@ -83,18 +86,7 @@ def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayScenario:
 
     Raises ProfileError where there is no such profile.
     """
-    motor = Motor(
-        name=ied,
-        nameplate=Nameplate(rated_power_W=800, rated_voltage_V=380, rated_frequency_Hz=50, pole_pairs=2),
-        parameters=MachineParameters(
-            stator_resistance_ohm=8.4,
-            rotor_resistance_ohm=8.2,
-            stator_leakage_H=0.0328,
-            rotor_leakage_H=0.0328,
-            stator_self_inductance_H=0.4377,
-            inertia_kgm2=0.0229,
-        ),
-    )
+    motor = _reference_motor(ied)
     kind = read_profile(profile)
     return RelayScenario(
         MotorPlant(
@@ -110,16 +102,38 @@ def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayScenario:
     )
 
 
-def _relay_scenario(path: Path, section: MotorTable) -> RelayScenario:
-    where = f"[motor {section.ied}]"
+def _reference_motor(name: str) -> Motor:
+    return Motor(
+        name=name,
+        nameplate=Nameplate(rated_power_W=800, rated_voltage_V=380, rated_frequency_Hz=50, pole_pairs=2),
+        parameters=MachineParameters(
+            stator_resistance_ohm=8.4,
+            rotor_resistance_ohm=8.2,
+            stator_leakage_H=0.0328,
+            rotor_leakage_H=0.0328,
+            stator_self_inductance_H=0.4377,
+            inertia_kgm2=0.0229,
+        ),
+    )
+
+
+def _motor(path: Path, section: MotorTable) -> Motor:
+    """The motor of the tables nameplate and parameters; the reference motor where neither is given."""
+    if section.nameplate is None and section.parameters is None:
+        return _reference_motor(section.ied)
+    table = {"nameplate": section.nameplate, "parameters": section.parameters}
+    given = {name: part for name, part in table.items() if part is not None}
     try:
-        motor = motor_from_table(
-            {"nameplate": section.nameplate, "parameters": section.parameters}, name=section.ied, source=path
-        )
+        return motor_from_table(given, name=section.ied, source=path)
     except MotorFileError as error:
         raise ScenarioError(
-            path, f"{where} {error.field}", expected=error.expected, found=error.found
+            path, f"[motor {section.ied}] {error.field}", expected=error.expected, found=error.found
         ) from error
+
+
+def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> RelayScenario:
+    where = f"[motor {section.ied}]"
+    motor = _motor(path, section)
     course = None if section.fault is None else section.fault.course()
     if course is not None:
         highest_ohm = highest_fault_resistance(motor.parameters, HIGHEST_STEP_RATE_HZ * RATE_PER_STEP)
@@ -130,7 +144,7 @@ def _relay_scenario(path: Path, section: MotorTable) -> RelayScenario:
                 expected=f"at most {highest_ohm:.3g}, above which the shorted loop is too fast to simulate",
                 found=f"{course.resistance_ohm:g}",
             )
-    profile = _profile(path, section)
+    profile = _profile(path, section, profile_name)
     return RelayScenario(
         plant=MotorPlant(
             motor=motor,
@@ -152,9 +166,13 @@ def _relay_scenario(path: Path, section: MotorTable) -> RelayScenario:
     )
 
 
-def _profile(path: Path, section: MotorTable) -> Profile:
+def _profile(path: Path, section: MotorTable, default: str) -> Profile:
     """The motor's relay profile, with the record formats of the scenario where it names some."""
-    profile = read_profile(section.profile or DEFAULT, beside=path.parent)
+    profile = (
+        read_profile(default)
+        if section.profile is None
+        else read_profile(section.profile, beside=path.parent)
+    )
     if section.recorder.formats is None:
         return profile
     try:

@@ -249,8 +249,8 @@ class MotorTable(Table):
     seed: Annotated[int, Field(ge=0)] = 0
     stopped: bool = False
     broken_bars: Annotated[float, Field(ge=0, le=0.3)] = 0.0
-    nameplate: dict[str, object]
-    parameters: dict[str, object]
+    nameplate: dict[str, object] | None = None
+    parameters: dict[str, object] | None = None
     supply: SupplyTable = SupplyTable()
     load: LoadTable = LoadTable()
     fault: FaultTable | None = None

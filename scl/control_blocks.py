@@ -47,10 +47,17 @@ class ControlBlockReader:
     def _named(
         self, elements: Iterator[etree._Element] | list[etree._Element]
     ) -> Iterator[tuple[str, etree._Element]]:
+        """Control blocks of one kind by name, each name once."""
+        seen: set[str] = set()
         for element in elements:
             name = self._document.usable_name(element, "name")
-            if name is not None:
-                yield name, element
+            if name is None:
+                continue
+            if name in seen:
+                self._document.note(element, "a second control block of this name: the first one counts")
+                continue
+            seen.add(name)
+            yield name, element
 
     def reports(self, elements: list[etree._Element]) -> tuple[ReportControl, ...]:
         return tuple(self._report(name, element) for name, element in self._named(elements))

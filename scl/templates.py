@@ -81,7 +81,13 @@ class Templates:
         self._enumerations: dict[str, Enumeration] = {}
         for section in document.children(document.root, "DataTypeTemplates"):
             for element in document.children(section, "LNodeType"):
-                self._node_types.setdefault(element.get("id", ""), []).append(element)
+                of_this_id = self._node_types.setdefault(element.get("id", ""), [])
+                if any(
+                    all(element.get(of) == each.get(of) for of in ("lnClass", "iedType"))
+                    for each in of_this_id
+                ):
+                    document.note(element, "a second type of this id: the first one counts")
+                of_this_id.append(element)
             for element in document.children(section, "DOType", "DAType", "EnumType"):
                 key = etree.QName(element).localname, element.get("id", "")
                 if key in self._elements:

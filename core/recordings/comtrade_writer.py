@@ -46,26 +46,31 @@ def write(
     header_text: str | None = None,
     revision: Revision = 1999,
     data_format: DataFormat = "BINARY",
+    utc_offset_min: int = 0,
 ) -> Path:
     """Write `path`.CFG and .DAT, and .HDR if a header text is given; or all in one `path`.CFF (2013).
 
     path: with suffix .cfg or .cff, whose case the other suffixes follow, or without (then .CFG).
+    utc_offset_min: of the clock that the recording's times are of [min]; only the 2013 edition can say so.
     Every channel needs a full scale, which sets the quantisation (not in FLOAT32). Files appear complete and
     the configuration last: who sees it can read the record. Returns the path to read from.
     Raises ValueError if the format cannot hold the recording; OSError from the file system.
     """
-    if path.suffix.casefold() == ".cff":
-        if revision != 2013:
-            raise ValueError("a combined file is of the 2013 edition")
-        _appear(path, combined_bytes(recording, data_format=data_format, header_text=header_text or ""))
+    combined = path.suffix.casefold() == ".cff"
+    if combined and revision != 2013:
+        raise ValueError("a combined file is of the 2013 edition")
+    configuration = configuration_text(
+        recording, revision=revision, data_format=data_format, utc_offset_min=utc_offset_min
+    )
+    if combined:
+        _appear(path, _combined(configuration, recording, data_format, header_text or ""))
         return path
     if path.suffix.casefold() != ".cfg":
         path = path.with_name(path.name + ".CFG")
-    configuration = configuration_text(recording, revision=revision, data_format=data_format).encode("utf-8")
     data = data_bytes(recording, revision=revision, data_format=data_format)
     upper = path.suffix.isupper()
     contents = {} if header_text is None else {".hdr": header_text.encode("utf-8")}
-    contents |= {".dat": data, ".cfg": configuration}
+    contents |= {".dat": data, ".cfg": configuration.encode("utf-8")}
     for suffix, content in contents.items():
         _appear(path.with_suffix(suffix.upper() if upper else suffix), content)
     return path
@@ -80,6 +85,10 @@ def _appear(file: Path, content: bytes) -> None:
 def combined_bytes(recording: Recording, *, data_format: DataFormat, header_text: str = "") -> bytes:
     """Contents of a 2013 combined file. Raises ValueError as `write`."""
     configuration = configuration_text(recording, revision=2013, data_format=data_format)
+    return _combined(configuration, recording, data_format, header_text)
+
+
+def _combined(configuration: str, recording: Recording, data_format: DataFormat, header_text: str) -> bytes:
     data = data_bytes(recording, revision=2013, data_format=data_format)
     heading = data_format if data_format == "ASCII" else f"{data_format}: {len(data)}"
     head = (
@@ -90,7 +99,11 @@ def combined_bytes(recording: Recording, *, data_format: DataFormat, header_text
 
 
 def configuration_text(
-    recording: Recording, *, revision: Revision = 1999, data_format: DataFormat = "BINARY"
+    recording: Recording,
+    *,
+    revision: Revision = 1999,
+    data_format: DataFormat = "BINARY",
+    utc_offset_min: int = 0,
 ) -> str:
     """Text of the configuration file.
 
@@ -134,8 +147,15 @@ def configuration_text(
     elif (
         revision == 2013
     ):  # times to nanoseconds make them the unit of the time stamps: 1000 of them are 1 us
-        lines += ["1000", "0,0", "0,0"]
+        lines += ["1000", ",".join([_time_code(utc_offset_min)] * 2), "0,0"]
     return "\r\n".join(lines) + "\r\n"
+
+
+def _time_code(utc_offset_min: int) -> str:
+    """Hours, and minutes where there are any: "0", "-5h30" (IEEE C37.111-2013 clause 7.4.10)."""
+    hours, minutes = divmod(abs(utc_offset_min), 60)
+    sign = "-" if utc_offset_min < 0 else ""
+    return f"{sign}{hours}h{minutes:02d}" if minutes else f"{sign}{hours}"
 
 
 def data_bytes(

@@ -37,6 +37,8 @@ class Rewriter:
         self._report_ids = report_ids
         self._files = files
         self._switchboard = switchboard
+        # A block's RptID stands while it is enabled: for an association it is what it was at its beginning.
+        self._empties_report_ids = switchboard.is_on(Kind.EMPTY_RPTID)
         self._directory = ""
 
     def request(self, user_data: bytes) -> bytes:
@@ -71,7 +73,7 @@ class Rewriter:
             return Rewritten(user_data, 0 if data is None else len(data.content))
         if pdu.tag == _CONFIRMED_RESPONSE and service.tag == _FILE_DIRECTORY:
             self._rewrite_listing(service)
-        elif not self._switchboard.is_on(Kind.EMPTY_RPTID):
+        elif not self._empties_report_ids:
             return Rewritten(user_data)
         elif pdu.tag == _UNCONFIRMED:
             self._name_after_block(service)

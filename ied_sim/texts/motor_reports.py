@@ -32,7 +32,7 @@ def motor_statistics(story: Story) -> bytes:
     found = story.journal.statistics
     total_s = found.running_s + found.stopped_s
     share = 100 * found.running_s / total_s if total_s else 0.0
-    mean_A = found.current_time_As / found.running_s if found.running_s else 0.0
+    mean_A = found.current_time_As / found.loaded_s if found.loaded_s else 0.0
     lines = [
         f"Since                      {story.stamp(found.since_ns)}",
         f"Running time               {_hours(found.running_s)}",

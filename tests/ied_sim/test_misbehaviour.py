@@ -190,6 +190,57 @@ def test_reports_come_without_an_identifier(tmp_path: Path) -> None:
         assert (report.report_id, "CON/RBGGIO1$ST$SPCSO01" in str(told_of)) == ("", True)
 
 
+def test_a_block_keeps_its_identifier_while_a_client_has_it(tmp_path: Path) -> None:
+    with simulated(tmp_path, scenario_of("sel-710-ed2", by_switch(Kind.EMPTY_RPTID))) as served:
+        reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
+        with served.client() as client:
+            client.subscribe(REPORTS, reports)
+            switch(client, on=True)
+            make_record(served, client)
+            assert reports.get(timeout=20).report_id != ""
+        with served.client() as client:
+            client.subscribe(REPORTS, reports)
+            make_record(served, client)
+            wait_until(lambda: not reports.empty() and reports.get().report_id == "", "a report without")
+
+
+@pytest.mark.parametrize(
+    ("profile", "free", "meant"),
+    [
+        ("rdre", "Rec_FaultRecorder/MOTGGIO1.SPCSO03", "Rec_FaultRecorder/MOTGGIO1.SPCSO02"),
+        ("rdre-readonly", "DR/MOTGGIO1.SPCSO04", "DR/MOTGGIO1.SPCSO01"),
+        ("sel-710-ed1", "CON/RBGGIO1.SPCSO31", "CON/RBGGIO1.SPCSO01"),
+    ],
+)
+def test_every_kind_of_relay_has_free_controls_to_switch_with(
+    tmp_path: Path, profile: str, free: str, meant: str
+) -> None:
+    refused = Misbehaviour(Kind.REFUSED_CONTROL, switch=free)
+    with simulated(tmp_path / "free", scenario_of(profile, refused)) as served, served.client() as client:
+        client.operate(served.reference(free), value=True)
+        with pytest.raises(ControlRefused):
+            client.operate(served.reference(meant), value=True)
+        assert not served.relay._word["STOPPED"]
+    by_meant = scenario_of(profile, Misbehaviour(Kind.REFUSED_CONTROL, switch=meant))
+    with (
+        pytest.raises(SimulatorError, match=r"has a meaning of its own .*choose a free control"),
+        simulated(tmp_path / "meant", by_meant),
+    ):
+        pass
+
+
+def test_local_time_is_told_where_the_format_can_tell_it(tmp_path: Path) -> None:
+    """COMTRADE 2013 has a time code, so that the times of its records are known in UTC after all."""
+    local = Misbehaviour(Kind.LOCAL_TIME, -19_800.0, at_s=0.0)
+    with simulated(tmp_path / "relay", scenario_of("rdre", local)) as served, served.client() as client:
+        now_s = time.time()
+        client.operate(served.reference("Rec_FaultRecorder/DEF_RDRE1.RcdTrg"), value=True)
+        wait_until(lambda: len(names(client, "COMTRADE")) == 3, "a record")
+        configuration = fetch(client, "COMTRADE", tmp_path / "fetched")[0]
+    assert "\r\n-5h30,-5h30\r\n" in configuration.read_bytes().decode()
+    assert read(configuration).trigger_time_ns * 1e-9 == pytest.approx(now_s, abs=5)
+
+
 def test_the_clock_is_wrong_and_records_are_in_local_time(tmp_path: Path) -> None:
     wrong = Misbehaviour(Kind.CLOCK_OFFSET, -100.0, at_s=0.0)
     local = Misbehaviour(Kind.LOCAL_TIME, 7200.0, at_s=0.0)

@@ -28,7 +28,7 @@ def rms(samples: NDArray[np.float64]) -> float:
 def switched(closed_s: float, opened_s: float | None = None) -> MotorPlant:
     """The reference motor, at rest until `closed_s`."""
     contactor = Contactor(open_at_first=True)
-    assert contactor.close(closed_s)
+    assert contactor.close(closed_s) == closed_s
     if opened_s is not None:
         assert contactor.open(opened_s)
     return replace(plant(), contactor=contactor)
@@ -70,10 +70,10 @@ def test_nothing_flows_once_it_is_opened() -> None:
 
 def test_a_contactor_is_closed_and_opened_once() -> None:
     contactor = Contactor()
-    assert not contactor.close(1.0)
+    assert contactor.close(1.0) is None
     assert contactor.open(2.0)
     assert not contactor.open(3.0)
-    assert contactor.close(4.0)
+    assert contactor.close(4.0) == 4.0
     assert contactor.closure_at(3.0) is None
     assert [each.closed_s for each in contactor.closures(1.0, 5.0)] == [-np.inf, 4.0]
 

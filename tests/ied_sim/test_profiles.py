@@ -225,6 +225,10 @@ def test_a_user_writes_a_profile(tmp_path: Path) -> None:
     profile = read_profile("own.toml", beside=tmp_path)
     assert (profile.name, profile.record.cycles) == ("own", 15)
     assert profile.record.written()[0] == RecordFormat("CEV")
+    scenario = replace(scenario_of("sel-710-ed1"), profile=profile)
+    with simulated(tmp_path / "relay", scenario) as served, served.client() as client:
+        client.operate(served.reference("CON/RBGGIO1.SPCSO01"), value=True)
+        wait_until(lambda: "EVENTS/HR_10000.CEV" in names(client, "EVENTS"), "a record")
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import scl
 from core.machines.parameters import Connection
 from ied_sim import scenario_tables
 from ied_sim.errors import ScenarioError
+from ied_sim.misbehaviour import Kind
 from ied_sim.scenario import healthy_reference, read_scenario
 from ied_sim.toml_errors import Table
 
@@ -50,6 +51,17 @@ def test_a_motor_without_more_is_healthy_at_half_load_on_its_rated_supply(tmp_pa
     assert relay.plant.supply.frequency_Hz == 50
     assert relay.recorder.capacity == 20
     assert relay.truth(0.0) == {"mu_f": 0.0, "theta_f": None, "load_level": 0.5}
+
+
+def test_a_fault_of_the_relay_alone_needs_no_motor(tmp_path: Path) -> None:
+    text = '[[motor]]\nied = "R1"\n[[motor.misbehaviour]]\nkind = "frozen"\n'
+    relay = read_scenario(write(tmp_path, text), "rdre")["R1"]
+    assert relay.profile.name == "rdre"
+    assert relay.plant.motor == healthy_reference("R1").plant.motor
+    assert [each.kind for each in relay.misbehaviour] == [Kind.FROZEN]
+    half = MINIMAL[: MINIMAL.index("[motor.parameters]")]
+    with pytest.raises(ScenarioError, match=r"\[motor R1\] \[parameters\]: expected a table"):
+        read_scenario(write(tmp_path, half))
 
 
 def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:

@@ -13,8 +13,9 @@ from ied_sim.contactor import Contactor
 from ied_sim.profile import Triggers
 from ied_sim.protection import DefiniteTime, ProtectionSettings, ThermalOverload
 from ied_sim.scenario import RelayScenario
+from mms import Client, FunctionalConstraint
 from tests.ied_sim.serving import wait_until
-from tests.ied_sim.simulating import Simulated, fetch, names, recordings, scenario_of, simulated, text
+from tests.ied_sim.simulating import IED, Simulated, fetch, names, recordings, scenario_of, simulated, text
 
 
 def stopped(scenario: RelayScenario) -> RelayScenario:
@@ -62,6 +63,9 @@ def test_a_start_is_recorded_from_rest_and_told_in_every_report(tmp_path: Path) 
         assert re.search(r"Start time +0\.\d+ s", report)
         statistics = text(client, "REPORTS/MOT.TXT")
         assert re.search(r"Number of starts +1\r", statistics)
+        highest = re.search(r"Peak running current +([\d.]+) A", statistics)
+        assert highest is not None
+        assert float(highest[1]) < 2 * 1.203 < float(peak[1]), "a start's current is not one of running"
 
         found = recordings(fetch(client, "EVENTS", tmp_path / "fetched"))
     for recording in found:
@@ -122,9 +126,28 @@ def test_a_trip_stops_the_motor_and_makes_a_record(
         (recording,) = recordings(fetch(client, "EVENTS", tmp_path / "fetched"))
     at = recording.trigger_index or 0
     assert np.abs(recording.samples[:3, :at]).max() > 1.5
-    assert np.abs(recording.samples[:3, at + 1 :]).max() < 0.1
+    opening = round(0.04 * recording.sample_rate_hz)
+    assert np.abs(recording.samples[:3, at : at + opening - 2]).max() > 1.5, "until the contactor has opened"
+    assert np.abs(recording.samples[:3, at + opening + 2 :]).max() < 0.1
     assert recording.digitals is not None
     assert recording.digitals.state("TRIP")[at + 1 :].all()
+
+
+def test_a_pulse_bit_pulses_its_remote_bit(tmp_path: Path) -> None:
+    with simulated(tmp_path, scenario_of("sel-710-ed2")) as served, served.client() as client:
+        client.operate(f"{IED}CON/PRBGGIO1.SPCSO02", value=True)
+        wait_until(lambda: "RB02 Deasserted" in ser(client), "the end of the pulse")
+        client.operate(f"{IED}CON/RBGGIO1.SPCSO05", value=True)
+        client.operate(f"{IED}CON/PRBGGIO1.SPCSO05", value=True)
+        pulsed = f"{IED}CON/PRBGGIO1.SPCSO05.stVal"
+        wait_until(lambda: client.read(pulsed, FunctionalConstraint.ST) is False, "the end of the pulse")
+        assert "RB05 Asserted" in ser(client)
+        assert "RB05 Deasserted" not in ser(client), "the remote bit itself is still set"
+
+
+def ser(client: Client) -> str:
+    """The sequential events, bit and state one blank apart."""
+    return re.sub(r" +", " ", text(client, "REPORTS/SER.TXT"))
 
 
 def test_a_load_above_its_level_makes_a_record_once(tmp_path: Path) -> None:

@@ -189,6 +189,14 @@ def test_logs_settings_and_goose(tmp_path: Path) -> None:
         ({"templates": TEMPLATES.replace('EnumType id="Mode"', 'EnumType id="Mood"')}, "no EnumType 'Mode'"),
         ({"templates": TEMPLATES + '<EnumType id="Mode"/>'}, "a second type of this id"),
         (
+            {"templates": '<LNodeType id="GGIO" lnClass="GGIO"/>' + TEMPLATES},
+            "a second type of this id: the first one counts",
+        ),
+        (
+            {"node_zero": '<LN0 lnType="LLN0"><ReportControl name="R"/><ReportControl name="R"/></LN0>'},
+            "a second control block of this name: the first one counts",
+        ),
+        (
             {"templates": TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="Ind1" type="MV"/>')},
             "a second member of this name",
         ),
