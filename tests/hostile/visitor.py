@@ -3,6 +3,7 @@
 Errors of MMS are what is expected. Whatever else is raised is told on standard output, one line each.
 """
 
+import os
 import queue
 import sys
 import traceback
@@ -84,7 +85,8 @@ def main(port: int, seed: str, directory: Path) -> None:
     controls._TERMINATION_WAIT_S = 0.05  # type: ignore[misc]
     connection._LOSS_NOTICE_S = 0.02  # type: ignore[misc]
     visitor = Visitor(port, seed, directory)
-    while True:
+    campaign = os.getppid()
+    while os.getppid() == campaign:  # however that ends
         try:
             visitor.visit()
         except ConnectFailed:
