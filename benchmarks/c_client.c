@@ -4,6 +4,9 @@
  *   c_client operate HOST PORT LD/LN.DO 0|1 by the control model found; "operated"
  *   c_client reports HOST PORT RCB SECONDS  enables the block, asks for all values; "report MEMBERS" for each
  *
+ *
+ * With CERTIFICATE KEY AUTHORITY PINNED after these, four files, it does so over TLS.
+ *
  * The few declarations it needs are its own, so that it links against the shared library alone.
  */
 #include <stdbool.h>
@@ -18,7 +21,7 @@ typedef void* Handle;
 typedef bool (*FilePart)(void*, uint8_t*, uint32_t);
 typedef void (*ReportArrived)(void*, Handle);
 
-extern Handle IedConnection_create(void);
+extern Handle IedConnection_createEx(Handle, bool);
 extern void IedConnection_destroy(Handle);
 extern void IedConnection_connect(Handle, int*, const char*, int);
 extern Handle IedConnection_getLogicalDeviceList(Handle, int*);
@@ -41,6 +44,16 @@ extern bool ControlObjectClient_selectWithValue(Handle, Handle);
 extern bool ControlObjectClient_operate(Handle, Handle, uint64_t);
 extern void LinkedList_destroy(Handle);
 
+/* Weak, because a library may have been built without TLS. */
+#define IF_THERE __attribute__((weak))
+extern Handle TLSConfiguration_create(void) IF_THERE;
+extern void TLSConfiguration_setAllowOnlyKnownCertificates(Handle, bool) IF_THERE;
+extern bool TLSConfiguration_setOwnCertificateFromFile(Handle, const char*) IF_THERE;
+extern bool TLSConfiguration_setOwnKeyFromFile(Handle, const char*, const char*) IF_THERE;
+extern bool TLSConfiguration_addCACertificateFromFile(Handle, const char*) IF_THERE;
+extern bool TLSConfiguration_addAllowedCertificateFromFile(Handle, const char*) IF_THERE;
+extern void TLSConfiguration_destroy(Handle) IF_THERE;
+
 enum { SBO_NORMAL = 2, SBO_ENHANCED = 4 };
 enum { RPT_ENA = 2, GI = 1024, CONNECTION_LOST = 3, ATTEMPTS = 5 };
 
@@ -58,10 +71,10 @@ static int fail(const char* what, int error)
 }
 
 /* The library may report success and lose the association at the first request: ask something first. */
-static Handle connected(const char* host, int port, int* error)
+static Handle connected(const char* host, int port, Handle tls, int* error)
 {
     for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
-        Handle connection = IedConnection_create();
+        Handle connection = IedConnection_createEx(tls, true);
         IedConnection_connect(connection, error, host, port);
         if (*error == 0) {
             Handle names = IedConnection_getLogicalDeviceList(connection, error);
@@ -74,6 +87,21 @@ static Handle connected(const char* host, int port, int* error)
         if (*error != CONNECTION_LOST)
             break;
     }
+    return NULL;
+}
+
+static Handle tls_with(char** files)
+{
+    Handle tls = TLSConfiguration_create ? TLSConfiguration_create() : NULL;
+    if (tls == NULL)
+        return NULL;
+    TLSConfiguration_setAllowOnlyKnownCertificates(tls, true);
+    if (TLSConfiguration_setOwnCertificateFromFile(tls, files[0])
+        && TLSConfiguration_setOwnKeyFromFile(tls, files[1], NULL)
+        && TLSConfiguration_addCACertificateFromFile(tls, files[2])
+        && TLSConfiguration_addAllowedCertificateFromFile(tls, files[3]))
+        return tls;
+    TLSConfiguration_destroy(tls);
     return NULL;
 }
 
@@ -151,12 +179,15 @@ static int reports(Handle connection, const char* reference, double seconds)
 
 int main(int argc, char** argv)
 {
-    if (argc != 6) {
-        fprintf(stderr, "c_client pull|operate|reports HOST PORT OBJECT NUMBER\n");
+    if (argc != 6 && argc != 10) {
+        fprintf(stderr, "c_client pull|operate|reports HOST PORT OBJECT NUMBER [CERTIFICATE KEY AUTHORITY PINNED]\n");
         return 2;
     }
+    Handle tls = argc == 10 ? tls_with(argv + 6) : NULL;
+    if (argc == 10 && tls == NULL)
+        return fail("TLS with these files", 0);
     int error = 0;
-    Handle connection = connected(argv[2], atoi(argv[3]), &error);
+    Handle connection = connected(argv[2], atoi(argv[3]), tls, &error);
     if (connection == NULL)
         return fail("connect", error);
     int result = 2;
@@ -167,5 +198,7 @@ int main(int argc, char** argv)
     else if (strcmp(argv[1], "reports") == 0)
         result = reports(connection, argv[4], atof(argv[5]));
     IedConnection_destroy(connection);
+    if (tls)
+        TLSConfiguration_destroy(tls);
     return result;
 }

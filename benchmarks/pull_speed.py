@@ -9,16 +9,18 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from benchmarks.interoperability.peers import PeerError, linked
-from mms import Client
+from mms import Client, TlsConfiguration
 from mms.library import shared_library
+from mms.library_noise import keep_tls_notes_off_stderr
 from service.collector.listing import understand
 from service.collector.pulling import pull
 from service.recordings import RecordingStore
+from tests.mms.pki import Pki
 from tests.mms.relays import LOOPBACK, RelayProcess
 from tests.service.api.comtrade_files import CFG
 
 FILE_BYTES = 20_000_000
-ROUNDS = 15
+ROUNDS, TLS_ROUNDS = 15, 3
 FOLDER, STEM = "EVENTS", "HR_10001"
 DATA_FILE = f"{FOLDER}/{STEM}.DAT"
 IN_C, OURS, STORED = "libiec61850's client in C", "mms.Client", "collector into the store (fsync, SHA-256)"
@@ -35,31 +37,38 @@ class _Counted:
 
 
 def measure() -> Iterator[str]:
-    """Median of the rounds by each way, and each one's share of the speed in C."""
+    """Median of the rounds by each way, in clear and over TLS, and each one's share of the speed in C."""
     with tempfile.TemporaryDirectory(prefix="statorwatch-pull-") as name:
-        seconds = _rounds(Path(name))
+        directory = Path(name)
+        pki = Pki.make(directory)
+        for channel, rounds, certificates in (("clear", ROUNDS, None), ("TLS", TLS_ROUNDS, pki)):
+            seconds = _rounds(directory / channel, certificates, rounds)
+            yield from _told(channel, rounds, seconds)
+
+
+def _told(channel: str, rounds: int, seconds: Mapping[str, list[float]]) -> Iterator[str]:
     medians = {way: statistics.median(times) for way, times in seconds.items()}
     megabytes = FILE_BYTES / 1e6
     if IN_C not in medians:
         yield "no C compiler, so nothing to compare with"
     for way, median in medians.items():
-        line = f"clear, {way}: {megabytes / median:.0f} MB/s, {median:.3f} s (median of {ROUNDS})"
+        line = f"{channel}, {way}: {megabytes / median:.3g} MB/s, {median:.3f} s (median of {rounds})"
         if way != IN_C and IN_C in medians:
             line += f", {medians[IN_C] / median:.0%} of C's"
         yield line
 
 
-def _rounds(directory: Path) -> dict[str, list[float]]:
+def _rounds(directory: Path, pki: Pki | None, rounds: int) -> dict[str, list[float]]:
     """Seconds of each way, which take turns; the first round is not counted."""
     events = directory / "relay" / FOLDER
     events.mkdir(parents=True)
     (events / f"{STEM}.CFG").write_bytes(CFG)
     (events / f"{STEM}.DAT").write_bytes(bytes(range(250)) * (FILE_BYTES // 250))
-    relay = RelayProcess(directory / "relay")
+    relay = RelayProcess(directory / "relay", None if pki is None else pki.folder)
     try:
-        ways = _ways(directory, relay.port)
+        ways = _ways(directory, relay.port, pki)
         seconds: dict[str, list[float]] = {way: [] for way in ways}
-        for turn in range(ROUNDS + 1):
+        for turn in range(rounds + 1):
             for way, fetch in ways.items():
                 taken_s = fetch()
                 if turn:
@@ -69,29 +78,32 @@ def _rounds(directory: Path) -> dict[str, list[float]]:
     return seconds
 
 
-def _ways(directory: Path, port: int) -> Mapping[str, Callable[[], float]]:
+def _ways(directory: Path, port: int, pki: Pki | None) -> Mapping[str, Callable[[], float]]:
     """Each connects anew, fetches once and tells how long the fetching took [s]."""
     ways: dict[str, Callable[[], float]] = {}
+    tls = None if pki is None else pki.of_client()
     try:
         program = linked(shared_library(), directory / "c_client")
-        ways[IN_C] = lambda: _in_c(program, port)
+        ways[IN_C] = lambda: _in_c(program, port, tls)
     except PeerError as error:
         print(error, file=sys.stderr)
-    ways[OURS] = lambda: _ours(port)
-    ways[STORED] = lambda: _stored(directory, port)
+    ways[OURS] = lambda: _ours(port, tls)
+    ways[STORED] = lambda: _stored(directory, port, tls)
     return ways
 
 
-def _in_c(program: Path, port: int) -> float:
+def _in_c(program: Path, port: int, tls: TlsConfiguration | None) -> float:
     command = [str(program), "pull", LOOPBACK, str(port), DATA_FILE, "1"]
+    if tls is not None:
+        command += [str(path) for path in (tls.certificate, tls.key, tls.ca, *tls.pinned)]
     answer = subprocess.run(command, capture_output=True, text=True, check=True)
     received, taken_s = answer.stdout.split()
     assert int(received) == FILE_BYTES
     return float(taken_s)
 
 
-def _ours(port: int) -> float:
-    with Client.connect(LOOPBACK, port) as client:
+def _ours(port: int, tls: TlsConfiguration | None) -> float:
+    with Client.connect(LOOPBACK, port, tls=tls) as client:
         sink = _Counted()
         begun_s = time.perf_counter()
         client.download(DATA_FILE, sink, expected_size=FILE_BYTES)
@@ -100,9 +112,12 @@ def _ours(port: int) -> float:
     return taken_s
 
 
-def _stored(directory: Path, port: int) -> float:
+def _stored(directory: Path, port: int, tls: TlsConfiguration | None) -> float:
     """Both files of the record, as the collector pulls them."""
-    with Client.connect(LOOPBACK, port) as client, tempfile.TemporaryDirectory(dir=directory) as root:
+    with (
+        Client.connect(LOOPBACK, port, tls=tls) as client,
+        tempfile.TemporaryDirectory(dir=directory) as root,
+    ):
         store = RecordingStore(Path(root))
         (record,) = understand(client.files(FOLDER), FOLDER).records
         begun_s = time.perf_counter()
@@ -113,5 +128,6 @@ def _stored(directory: Path, port: int) -> float:
 
 
 if __name__ == "__main__":
+    keep_tls_notes_off_stderr()
     for line in measure():
         print(line)

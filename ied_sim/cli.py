@@ -18,6 +18,7 @@ from ied_sim.profile import DEFAULT, read_profile, shipped
 from ied_sim.scenario import RelayScenario, healthy_reference, read_scenario
 from ied_sim.simulator import Simulator
 from ied_sim.standalone import IED_NAME, standalone
+from mms.library_noise import keep_tls_notes_off_stderr
 from scl import Address
 
 app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -119,6 +120,8 @@ def _serve(
     # Waited for instead of handled, and blocked before any thread starts: all threads inherit it.
     signals = (signal.SIGTERM, signal.SIGINT)
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)
+    if any(scenario.access.tls is not None for scenario in scenarios.values()):
+        keep_tls_notes_off_stderr()
     warm_up()
     with (
         tempfile.TemporaryDirectory(prefix="ied-sim-") as temporary,

@@ -108,6 +108,7 @@ class Relay:
             staging=staging,
             operated=self._operate,
             texts={path: self._text(maker) for path, maker in self._offered.items()},
+            access=scenario.access,
         )
         self._values = RelayValues(
             self._relay_server, self._points, profile.points.metering, profile.points.sequence
@@ -123,8 +124,11 @@ class Relay:
 
     @property
     def serves_itself(self) -> bool:
-        """Whether its server has a thread of its own: one that restarts cannot share a pump."""
-        return Kind.RESTART in self.switchboard.kinds
+        """Whether its server has a thread of its own.
+
+        One that restarts cannot share a pump, and one that shakes hands over TLS would hold the others up.
+        """
+        return Kind.RESTART in self.switchboard.kinds or self._scenario.access.tls is not None
 
     def stop(self) -> None:
         """Abandon a capture under way; the server itself belongs to its pump."""
@@ -328,12 +332,18 @@ class Relay:
     def _listening_at(self, address: Address, doors: FrontDoors | None) -> Address:
         """Where the server listens: behind a front if clients must see what the server cannot do."""
         files = self._scenario.profile.files
-        unusual = files is not None and (
-            files.separator != "/" or files.listed != "path" or files.entries_per_listing is not None
+        rewritten = bool(self.switchboard.kinds & ON_THE_WIRE) or (
+            files is not None
+            and (files.separator != "/" or files.listed != "path" or files.entries_per_listing is not None)
         )
         sessions = self._scenario.profile.sessions
-        unusual = unusual or sessions > MOST_CONNECTIONS
-        if not unusual and not self.switchboard.kinds & ON_THE_WIRE:
+        encrypted = self._scenario.access.tls is not None
+        if encrypted and rewritten:
+            raise SimulatorError(
+                f"{self.name}: its profile or scenario needs a front between relay and clients, which could "
+                "not read TLS; take another profile (sel-710-ed2, say), or leave out tls or the misbehaviour"
+            )
+        if encrypted or not (rewritten or sessions > MOST_CONNECTIONS):
             return address
         if doors is None:
             raise SimulatorError(

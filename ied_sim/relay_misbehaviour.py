@@ -31,10 +31,10 @@ class RelayMisbehaviour:
 
     def look(self) -> None:
         """Begin and end what has come on or gone off since the last look."""
-        known = self._switchboard.kinds & {Kind.REPORT_TAKEN, Kind.BUFFER_OVERFLOW, Kind.RESTART}
-        for kind in sorted(known):
+        for kind in sorted(self._switchboard.kinds):
             on = self._switchboard.is_on(kind)
             if on != (kind in self._on):
+                log.info("%s: %s", "misbehaves" if on else "behaves again", kind)
                 (self._begin if on else self._end)(kind)
                 self._on ^= {kind}
         if Kind.REPORT_TAKEN in self._on and self._other_client is None:
@@ -45,14 +45,12 @@ class RelayMisbehaviour:
             self._other_client.close()
 
     def _begin(self, kind: Kind) -> None:
-        log.info("misbehaves: %s", kind)
         if kind is Kind.RESTART:
             self._server.go_down()
         elif kind is Kind.BUFFER_OVERFLOW:
             self._flood()
 
     def _end(self, kind: Kind) -> None:
-        log.info("behaves again: %s", kind)
         if kind is Kind.RESTART:
             self._server.come_up()
         elif kind is Kind.REPORT_TAKEN:

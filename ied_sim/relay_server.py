@@ -5,6 +5,7 @@ import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from ied_sim.access import Access
 from ied_sim.loopback import ReservedAddress
 from ied_sim.profile import Profile
 from ied_sim.relay_clock import RelayClock
@@ -53,6 +54,7 @@ class RelayServer:
         staging: Path,
         operated: Operated,
         texts: Mapping[str, TextMaker],
+        access: Access,
     ) -> None:
         # Under one name for all: relays of one kind then have one text, which is checked once.
         self._model = sys.intern(model.replace(f"MODEL({name}){{", f"MODEL({_ANY_NAME}){{", 1))
@@ -65,6 +67,7 @@ class RelayServer:
         self._staging = staging
         self._operated = operated
         self._texts = texts
+        self._access = access
         self._values: dict[str, Value | Quality] = {}
         self._stamps: dict[str, tuple[str | None, str | None]] = {}
         self._lock = threading.Lock()
@@ -150,6 +153,8 @@ class RelayServer:
             report_buffer_bytes=self._profile.report_buffer_bytes,
             file_root=self._root if served else None,
             on_file_request=self._make_texts if served else None,
+            tls=self._access.tls,
+            passwords=self._access.passwords,
         )
         for reference in self._points.controls:
             server.on_operate(reference, self._operated)

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from core.machines.motor_file import MotorFileError, motor_from_table
 from core.machines.parameters import MachineParameters, Motor, Nameplate
+from ied_sim.access import Access
 from ied_sim.contactor import Contactor
 from ied_sim.errors import ScenarioError
 from ied_sim.event_recorder import RecorderSettings
@@ -29,13 +30,14 @@ from ied_sim.scenario_tables import (
 )
 from ied_sim.toml_errors import first_error, read_table
 from ied_sim.windings import highest_fault_resistance
+from mms import CredentialFileError
 
 LOAD_PROFILE_S = 60.0
 
 
 @dataclass(frozen=True, slots=True)
 class RelayScenario:
-    """What one relay protects, what kind of relay it is, how it records and what it does wrong.
+    """What one relay protects, what kind of relay it is, how it records, what it does wrong, whom it lets in.
 
     load_profile_s: time between rows of the load profile.
     """
@@ -47,6 +49,7 @@ class RelayScenario:
     protection: ProtectionSettings = field(default_factory=ProtectionSettings)
     misbehaviour: tuple[Misbehaviour, ...] = ()
     load_profile_s: float = LOAD_PROFILE_S
+    access: Access = field(default_factory=Access)
 
     def truth(self, time_s: float) -> dict[str, float | int | None]:
         """The true condition at a time since the start: mu_f (the equivalent level), theta_f, load_level."""
@@ -163,7 +166,20 @@ def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> Relay
         protection=section.protection.settings(),
         misbehaviour=tuple(each.misbehaviour() for each in section.misbehaviour),
         load_profile_s=section.recorder.load_profile_s,
+        access=_access(path, section),
     )
+
+
+def _access(path: Path, section: MotorTable) -> Access:
+    try:
+        return section.access.access(path.parent)
+    except CredentialFileError as error:
+        raise ScenarioError(
+            path,
+            f"[motor {section.ied}] access: {error.path}",
+            expected=error.expected,
+            found=error.found,
+        ) from error
 
 
 def _profile(path: Path, section: MotorTable, default: str) -> Profile:

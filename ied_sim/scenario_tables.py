@@ -6,6 +6,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from core.machines.parameters import Motor, Nameplate
+from ied_sim.access import AccessTable
 from ied_sim.fault import FaultCourse
 from ied_sim.load import Load, LoadCycle
 from ied_sim.misbehaviour import PARAMETERS, Kind, Misbehaviour
@@ -260,6 +261,7 @@ class MotorTable(Table):
     triggers: TriggersTable = TriggersTable()
     protection: ProtectionTable = ProtectionTable()
     misbehaviour: tuple[MisbehaviourTable, ...] = ()
+    access: AccessTable = AccessTable()
 
 
 class FileTable(Table):

@@ -9,19 +9,25 @@ from mms.client import Client, DataSetMember
 from mms.controls import AddCause, ControlModel
 from mms.errors import (
     AccessDenied,
+    AssociationRejected,
+    CertificateRefused,
     ConnectFailed,
     ConnectionLost,
     ControlRefused,
+    CredentialFileError,
     EntryNotFound,
     FileSizeMismatch,
     MmsError,
     ModelError,
     NotFound,
     ProtocolError,
+    RelayNotTrusted,
     ReportControlInUse,
     ServerStartFailed,
     TemporarilyUnavailable,
     Timeout,
+    TlsNotSpoken,
+    TlsRequired,
 )
 from mms.file_access import FileAnswer, FileOperation, FileRequest
 from mms.files import FileEntry
@@ -29,6 +35,7 @@ from mms.pump import ServerPump
 from mms.references import FunctionalConstraint
 from mms.reports import Reason, Report, ReportMember
 from mms.server import MOST_CONNECTIONS, ControlAction, Server
+from mms.tls import TlsConfiguration, TlsVersion
 from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Validity, Value
 
 __all__ = [
@@ -36,13 +43,16 @@ __all__ = [
     "MOST_CONNECTIONS",
     "AccessDenied",
     "AddCause",
+    "AssociationRejected",
     "BitString",
+    "CertificateRefused",
     "Client",
     "ConnectFailed",
     "ConnectionLost",
     "ControlAction",
     "ControlModel",
     "ControlRefused",
+    "CredentialFileError",
     "DataAccessError",
     "DataSetMember",
     "EntryNotFound",
@@ -58,6 +68,7 @@ __all__ = [
     "ProtocolError",
     "Quality",
     "Reason",
+    "RelayNotTrusted",
     "Report",
     "ReportControlInUse",
     "ReportMember",
@@ -67,6 +78,10 @@ __all__ = [
     "TemporarilyUnavailable",
     "Timeout",
     "Timestamp",
+    "TlsConfiguration",
+    "TlsNotSpoken",
+    "TlsRequired",
+    "TlsVersion",
     "Validity",
     "Value",
 ]

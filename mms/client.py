@@ -12,6 +12,7 @@ from mms.data_sets import members_of
 from mms.files import FileEntry, Sink, download, list_files
 from mms.references import FunctionalConstraint, logical_device, object_reference
 from mms.reports import Report, Subscriptions
+from mms.tls import TlsConfiguration
 from mms.values import DataAccessError, Value, decode
 
 _DATA_OBJECT, _DATA_SET, _BUFFERED, _UNBUFFERED = range(4)  # the library's ACSIClass
@@ -49,9 +50,15 @@ class Client:
     @classmethod
     def connect(
         cls, host: str, port: int = 102, *, connect_timeout_s: float = 5.0, request_timeout_s: float = 5.0,
-        on_closed: Callable[[], None] | None = None,
+        on_closed: Callable[[], None] | None = None, tls: TlsConfiguration | None = None,
+        password: str | None = None,
     ) -> Self:  # fmt: skip
-        """Associate; ConnectFailed if that does not succeed within about `connect_timeout_s`.
+        """Associate; ConnectFailed, or its kind that says why, if that does not succeed within about
+        `connect_timeout_s`.
+
+        With `tls`, over TLS (usually at port 3782), and with nobody but the pinned: RelayNotTrusted,
+        CertificateRefused, TlsNotSpoken, or CredentialFileError before anything is sent; TlsRequired without.
+        `password` is ACSE's, printable ASCII, in clear unless there is `tls`: AssociationRejected.
 
         `on_closed` is called once, on a thread of the library, when the association has ended, whoever ended
         it. A frozen relay ends nothing: only a successful read shows health.
@@ -59,7 +66,7 @@ class Client:
         return cls(
             Connection(
                 host, port, connect_timeout_s=connect_timeout_s, request_timeout_s=request_timeout_s,
-                on_closed=on_closed,
+                on_closed=on_closed, tls=tls, password=password,
             )
         )  # fmt: skip
 

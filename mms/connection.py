@@ -11,18 +11,23 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from enum import Enum
 from typing import Final, Protocol
 
 from mms import errors
 from mms.callbacks import guarded, inside_callback
+from mms.credentials import Credentials
 from mms.library import library
 from mms.prototypes import ConnectionClosedHandler
+from mms.refusals import refused
+from mms.time_limit import between, limited
+from mms.tls import TlsConfiguration
 
 log: Final = logging.getLogger("mms")
 
 _CONNECTION_LOST: Final = 3
+_REJECTED: Final = 5
 _TIMEOUT: Final = 20
 _LOSS_NOTICE_S: Final = 0.1
 _ATTEMPTS: Final = 5
@@ -70,12 +75,14 @@ class Connection:
 
     def __init__(
         self, host: str, port: int, *, connect_timeout_s: float, request_timeout_s: float,
-        on_closed: Callable[[], None] | None = None,
+        on_closed: Callable[[], None] | None = None, tls: TlsConfiguration | None = None,
+        password: str | None = None,
     ) -> None:  # fmt: skip
         """Associate with the MMS server at `host` (a name or IPv4 address) and `port`.
 
         A name may have several addresses, dead ones among them: each is tried in its share of the time.
-        Raises ConnectFailed. The library may report success and then lose the association at the first
+        Raises ConnectFailed and its kinds, CredentialFileError; ValueError for a password that cannot be
+        sent. The library may report success and then lose the association at the first
         request: a probe follows every connect, and the whole is tried again when just that happens.
         """
         self.host: Final = f"{host}:{port}"
@@ -86,21 +93,48 @@ class Connection:
         self.round_trip_s: float | None = None
         self._handlers: list[object] = []  # C holds them until the connection is destroyed
         addresses = self._resolve(host, port)
-        deadline = time.monotonic() + connect_timeout_s
-        code = _CONNECTION_LOST
-        for turn, address in enumerate(addresses):
+        self._credentials = Credentials(self.lib, tls, password)
+        try:
+            self._reach(addresses, port, time.monotonic() + connect_timeout_s, on_closed)
+        except BaseException:
+            self._credentials.destroy()
+            raise
+        self._state = _State.OPEN
+        _open_connections.add(self)
+
+    def _reach(
+        self, addresses: tuple[str, ...], port: int, deadline: float, on_closed: Callable[[], None] | None
+    ) -> None:
+        """Associate with the first address that lets us. Raises ConnectFailed and its kinds."""
+        for turn, address in enumerate(addresses, 1):
             now = time.monotonic()
-            code = self._associate(address, port, now + (deadline - now) / (len(addresses) - turn), on_closed)
+            end = now + (deadline - now) / (len(addresses) - turn + 1)
+            code = self._associate(address, port, end, on_closed)
             if code == 0:
-                self._state = _State.OPEN
-                _open_connections.add(self)
                 return
-        reason = errors.client_error(self.host, "connect", code).message
-        if code == _CONNECTION_LOST:
+            if turn < len(addresses):
+                continue
+            error = self._refused(code, (address, port), deadline)
+            if len(addresses) > 1:
+                reason = f"{error.message} (the last of its addresses {', '.join(addresses)})"
+                error = type(error)(self.host, "connect", code, reason)
+            raise error
+
+    def _refused(self, code: int, address: tuple[str, int], deadline: float) -> errors.MmsError:
+        if code == _CONNECTION_LOST and self._credentials.tls is None:
             reason = "the relay ends every association at once: no session left?"
-        if len(addresses) > 1:
-            reason += f" (the last of its addresses {', '.join(addresses)})"
-        raise errors.ConnectFailed(self.host, "connect", code, reason)
+            return errors.ConnectFailed(self.host, "connect", code, reason)
+        if code not in (_CONNECTION_LOST, _REJECTED):
+            return errors.ConnectFailed(
+                self.host, "connect", code, errors.client_error(self.host, "connect", code).message
+            )
+        return refused(
+            self.host,
+            address,
+            self._credentials.tls,
+            password=self._credentials.has_password,
+            deadline=deadline,
+        )
 
     def _resolve(self, host: str, port: int) -> tuple[str, ...]:
         if not 0 < port < 65536:
@@ -122,7 +156,7 @@ class Connection:
             if remaining_s <= 0 and attempt > 1:
                 break
             self._notice = _ClosedNotice(on_closed)
-            code = self._attempt(address.encode("ascii"), port, max(remaining_s, 0.001))
+            code = self._attempt(address, port, max(remaining_s, 0.001))
             if code == 0 and self._notice.arm():
                 return 0
             self._destroy()
@@ -132,11 +166,9 @@ class Connection:
             time.sleep(_PAUSE_BETWEEN_ATTEMPTS_S)
         return _CONNECTION_LOST
 
-    def _attempt(self, address: bytes, port: int, timeout_s: float) -> int:
+    def _attempt(self, address: str, port: int, timeout_s: float) -> int:
         lib = self.lib
-        self._pointer = lib.IedConnection_create()
-        if not self._pointer:
-            raise MemoryError("the MMS library has no memory for a connection")
+        self._pointer = self._credentials.new_connection()
         notice = self._notice
 
         def closed(_parameter: int | None, _connection: int | None) -> None:
@@ -151,7 +183,9 @@ class Connection:
             self._pointer, timeout_ms
         )  # the association's part, and the probe's
         error = ctypes.c_int(0)
-        lib.IedConnection_connect(self._pointer, ctypes.byref(error), address, port)
+        unlimited = self._credentials.tls is None
+        with nullcontext() if unlimited else limited(between(peer=(address, port)), timeout_s):
+            lib.IedConnection_connect(self._pointer, ctypes.byref(error), address.encode("ascii"), port)
         if error.value == 0:
             names = lib.IedConnection_getLogicalDeviceList(self._pointer, ctypes.byref(error))
             if names:
@@ -226,6 +260,7 @@ class Connection:
                 return
             self._state = _State.CLOSED
             self._destroy()
+            self._credentials.destroy()
         self._notice.give()
         _open_connections.discard(self)
 

@@ -34,6 +34,20 @@ class ControlModel(IntEnum):
     DIRECT_ENHANCED = 3
     SBO_ENHANCED = 4
 
+    @property
+    def words(self) -> str:
+        """As SCL files write it."""
+        return _WORDS[self]
+
+
+_WORDS: Final = (
+    "status-only",
+    "direct-with-normal-security",
+    "sbo-with-normal-security",
+    "direct-with-enhanced-security",
+    "sbo-with-enhanced-security",
+)
+
 
 class AddCause(IntEnum):
     """Why a control was refused (IEC 61850-7-2, AddCause)."""

@@ -5,6 +5,8 @@ Service errors are those of ISO 9506-2 as IEC 61850-8-1 maps them; the numbers k
 libiec61850's.
 """
 
+from pathlib import Path
+
 
 class MmsError(Exception):
     """An MMS service did not do what was asked.
@@ -26,6 +28,26 @@ class MmsError(Exception):
 
 class ConnectFailed(MmsError):
     """No association: name unknown, port refused, nobody answered, or the relay has no session left."""
+
+
+class RelayNotTrusted(ConnectFailed):
+    """The relay's certificate is not a pinned one, of no known authority, expired or revoked."""
+
+
+class CertificateRefused(ConnectFailed):
+    """The relay speaks TLS and ended the handshake: it does not take our certificate."""
+
+
+class TlsNotSpoken(ConnectFailed):
+    """TLS is configured for the relay, and it answers without."""
+
+
+class TlsRequired(ConnectFailed):
+    """No TLS is configured for the relay, and it speaks nothing else there."""
+
+
+class AssociationRejected(ConnectFailed):
+    """The relay answers and rejects the association (ACSE): a wrong password, or one is missing."""
 
 
 class ConnectionLost(MmsError):
@@ -86,6 +108,22 @@ class FileSizeMismatch(MmsError):
 
 class ServerStartFailed(MmsError):
     """The server cannot listen on its address and port."""
+
+
+class CredentialFileError(ValueError):
+    """A file with a certificate, a key or a password cannot be used.
+
+    `path` names it, `expected` and `found` say why; never what is in it.
+    """
+
+    def __init__(self, path: Path, expected: str, found: str) -> None:
+        super().__init__(path, expected, found)
+        self.path = path
+        self.expected = expected
+        self.found = found
+
+    def __str__(self) -> str:
+        return f"{self.path}: expected {self.expected}, found {self.found}"
 
 
 class ModelError(ValueError):

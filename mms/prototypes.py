@@ -52,6 +52,11 @@ WaitForExecutionHandler = CFUNCTYPE(c_int, c_void_p, c_void_p, c_void_p, c_bool,
 # MmsError (parameter, connection, service, local file name, other file name)
 FileAccessHandler = CFUNCTYPE(c_int, c_void_p, c_void_p, c_int, c_char_p, c_char_p)
 
+# void (parameter, level, code, message, TLS connection)
+TlsEventHandler = CFUNCTYPE(None, c_void_p, c_int, c_int, c_char_p, c_void_p)
+# bool (parameter, authentication parameter, security token, application reference)
+Authenticator = CFUNCTYPE(c_bool, c_void_p, c_void_p, c_void_p, c_void_p)
+
 PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     # linked lists
     "LinkedList_getNext": (c_void_p, [c_void_p]),
@@ -94,8 +99,33 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "MmsValue_newBoolean": (c_void_p, [c_bool]),
     "MmsValue_clone": (c_void_p, [c_void_p]),
     "MmsValue_delete": (None, [c_void_p]),
+    # TLS
+    "TLSConfiguration_create": (c_void_p, []),
+    "TLSConfiguration_destroy": (None, [c_void_p]),
+    "TLSConfiguration_setEventHandler": (None, [c_void_p, TlsEventHandler, c_void_p]),
+    "TLSConfiguration_setChainValidation": (None, [c_void_p, c_bool]),
+    "TLSConfiguration_setTimeValidation": (None, [c_void_p, c_bool]),
+    "TLSConfiguration_setAllowOnlyKnownCertificates": (None, [c_void_p, c_bool]),
+    "TLSConfiguration_enableSessionResumption": (None, [c_void_p, c_bool]),
+    "TLSConfiguration_setMinTlsVersion": (None, [c_void_p, c_int]),
+    "TLSConfiguration_setMaxTlsVersion": (None, [c_void_p, c_int]),
+    "TLSConfiguration_setOwnKey": (c_bool, [c_void_p, c_char_p, c_int, c_char_p]),
+    "TLSConfiguration_setOwnCertificate": (c_bool, [c_void_p, c_char_p, c_int]),
+    "TLSConfiguration_addAllowedCertificate": (c_bool, [c_void_p, c_char_p, c_int]),
+    "TLSConfiguration_addCACertificate": (c_bool, [c_void_p, c_char_p, c_int]),
+    "TLSConnection_getTLSVersion": (c_int, [c_void_p]),
+    # passwords
+    "AcseAuthenticationParameter_create": (c_void_p, []),
+    "AcseAuthenticationParameter_destroy": (None, [c_void_p]),
+    "AcseAuthenticationParameter_setAuthMechanism": (None, [c_void_p, c_int]),
+    "AcseAuthenticationParameter_setPassword": (None, [c_void_p, c_char_p]),
+    "AcseAuthenticationParameter_getAuthMechanism": (c_int, [c_void_p]),
+    "AcseAuthenticationParameter_getPassword": (c_void_p, [c_void_p]),
+    "AcseAuthenticationParameter_getPasswordLength": (c_int, [c_void_p]),
+    "MmsConnection_getIsoConnectionParameters": (c_void_p, [c_void_p]),
+    "IsoConnectionParameters_setAcseAuthenticationParameter": (None, [c_void_p, c_void_p]),
     # client: association
-    "IedConnection_create": (c_void_p, []),
+    "IedConnection_createEx": (c_void_p, [c_void_p, c_bool]),
     "IedConnection_destroy": (None, [c_void_p]),
     "IedConnection_connect": (None, [c_void_p, _ERROR, c_char_p, c_int]),
     "IedConnection_setConnectTimeout": (None, [c_void_p, c_uint32]),
@@ -187,6 +217,7 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "IedServerConfig_useIntegratedGoosePublisher": (None, [c_void_p, c_bool]),
     "IedServer_createWithConfig": (c_void_p, [c_void_p, c_void_p, c_void_p]),
     "IedServer_destroy": (None, [c_void_p]),
+    "IedServer_setAuthenticator": (None, [c_void_p, Authenticator, c_void_p]),
     "IedServer_setLocalIpAddress": (None, [c_void_p, c_char_p]),
     "IedServer_setWriteAccessPolicy": (None, [c_void_p, c_int, c_int]),
     "IedServer_startThreadless": (None, [c_void_p, c_int]),

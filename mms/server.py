@@ -6,7 +6,8 @@ The library serves without threads of its own; a ServerPump drives any number of
 import ctypes
 import math
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -19,8 +20,11 @@ from mms.errors import ModelError, ServerStartFailed
 from mms.file_access import FileAnswer, FileGuard, FileHook
 from mms.library import library
 from mms.model import Model, Node
+from mms.passwords import authenticator
 from mms.prototypes import ControlHandler, FileAccessHandler, WaitForExecutionHandler
 from mms.references import FunctionalConstraint
+from mms.time_limit import between, limited
+from mms.tls import TlsConfiguration, TlsContext
 from mms.values import Quality, Value, decode
 
 if TYPE_CHECKING:
@@ -29,6 +33,7 @@ if TYPE_CHECKING:
 _DENY: Final = 1  # AccessPolicy
 _FAILED, _OK = 0, 1  # ControlHandlerResult
 _PATIENCE_AFTER_REQUEST_S: Final = 0.01  # only enabling a block or an interrogation makes reports
+_LONGEST_HANDSHAKE_S: Final = 5.0
 MOST_CONNECTIONS: Final = 5
 """Clients of one server; compiled into the wheel's library."""
 
@@ -66,6 +71,7 @@ class Server:
         self, model_text: str, *, port: int, ied_name: str | None = None, address: str = "127.0.0.1",
         file_root: Path | None = None, max_connections: int = MOST_CONNECTIONS,
         report_buffer_bytes: int = 65_536, on_file_request: FileHook | None = None,
+        tls: TlsConfiguration | None = None, passwords: Iterable[str] = (),
     ) -> None:  # fmt: skip
         """Build the model and the server; `start` or a ServerPump makes it listen.
 
@@ -73,8 +79,10 @@ class Server:
         `max_connections` clients connect; the library's own limit is 5. `report_buffer_bytes` is the buffer
         of each report control block. `file_root` is the folder whose files are served (none: no file
         service), read only; `on_file_request` is asked first. Replace files by renaming: one that shrinks
-        while it is sent is filled up with whatever the memory holds. ModelError if the text is wrong in any
-        way, also where the library would not mind.
+        while it is sent is filled up with whatever the memory holds. With `tls` only clients with a pinned
+        certificate are served, with `passwords` only those that know one of them.
+        ModelError if the text is wrong in any way, also where the library would not mind;
+        CredentialFileError for the files of `tls`; ValueError for a password that cannot be sent.
         """
         if not 0 < port < 65536:
             raise ValueError(f"not a TCP port: {port} (the library cannot choose one)")
@@ -89,8 +97,17 @@ class Server:
         self._library_holds_model = False
         self._handlers: list[object] = []
         self._pump: ServerPump | None = None
-        self._model = Model(self._lib, model_text, ied_name)
-        self._server = self._build_server(file_root, max_connections, report_buffer_bytes)
+        authenticate = authenticator(self._lib, passwords)
+        self._tls = None if tls is None else TlsContext(self._lib, tls)
+        try:
+            self._model = Model(self._lib, model_text, ied_name)
+            self._server = self._build_server(file_root, max_connections, report_buffer_bytes)
+        except BaseException:
+            self._destroy_tls()
+            raise
+        if authenticate is not None:
+            self._handlers.append(authenticate)
+            self._lib.IedServer_setAuthenticator(self._server, authenticate, None)
         self._refuse_writes()
         if file_root is not None:
             self._guard_files(FileGuard(file_root, on_file_request))
@@ -108,7 +125,8 @@ class Server:
         lib.IedServerConfig_enableDynamicDataSetService(config, off)
         lib.IedServerConfig_enableLogService(config, on)  # lists log control blocks, keeps no logs
         lib.IedServerConfig_useIntegratedGoosePublisher(config, off)
-        server = lib.IedServer_createWithConfig(self._model.pointer, None, config)
+        tls = None if self._tls is None else self._tls.pointer
+        server = lib.IedServer_createWithConfig(self._model.pointer, tls, config)
         lib.IedServerConfig_destroy(config)
         if not server:
             self._model.destroy()
@@ -296,7 +314,7 @@ class Server:
         with self._lock:
             if self._state is not _State.RUNNING or self._lib.IedServer_waitReady(self._server, 0) <= 0:
                 return False
-            self._lib.IedServer_processIncomingData(self._server)
+            self._process_incoming()
             self._lib.IedServer_performPeriodicTasks(self._server)
             self._patience_s = min(self._patience_s, _PATIENCE_AFTER_REQUEST_S)
             return True
@@ -313,8 +331,14 @@ class Server:
             self._lib.IedServer_performPeriodicTasks(self._server)
             if self._lib.IedServer_getNumberOfOpenConnections(self._server) == 0:
                 return False
-            self._lib.IedServer_processIncomingData(self._server)
+            self._process_incoming()
             return True
+
+    def _process_incoming(self) -> None:
+        """Accept, read and answer. A handshake of TLS is waited for, with everything else at a stand."""
+        ours = between(own=(self.address, self.port))
+        with nullcontext() if self._tls is None else limited(ours, _LONGEST_HANDSHAKE_S):
+            self._lib.IedServer_processIncomingData(self._server)
 
     @property
     def patience_s(self) -> float:
@@ -334,8 +358,13 @@ class Server:
             self._state = _State.STOPPED
             self._lib.IedServer_destroy(self._server)
             self._server = 0
+            self._destroy_tls()
             self._model.destroy()
             self._handlers.clear()
+
+    def _destroy_tls(self) -> None:
+        if self._tls is not None:
+            self._tls.destroy()
 
     def _require_alive(self, operation: str) -> None:
         if self._state is _State.STOPPED:

@@ -25,6 +25,7 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.plant import Plant, read_plant
 from service.recordings import RecordingStore
+from service.relay_access import clear_passwords
 from service.scheduling import Scheduler
 from service.settings import Settings
 from service.storage import Repository, connect, migrate
@@ -45,7 +46,7 @@ def serve(settings: Settings) -> None:
     Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError.
     """
     signal.signal(signal.SIGTERM, _stop)
-    plant = read_plant(settings)
+    plant = _plant(settings)
     _require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False), _listener(settings) as listener:
         migrate(settings.database_url)
@@ -86,7 +87,7 @@ def collect(settings: Settings) -> None:
     end = Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda _number, _frame: end.set())
-    plant = read_plant(settings)
+    plant = _plant(settings)
     _require_writable(settings.data_directory)
     with exclusive(settings.data_directory / "service.lock", wait=False):
         repository = Repository(connect(settings.database_url))
@@ -95,6 +96,14 @@ def collect(settings: Settings) -> None:
             log.info("collecting for a service elsewhere", relays=len(plant.relays))
             end.wait()
     log.info("collecting ended")
+
+
+def _plant(settings: Settings) -> Plant:
+    """Raises PlantError, SettingsError."""
+    plant = read_plant(settings)
+    for relay in clear_passwords(settings.relays, [relay.name for relay in plant.relays]):
+        log.warning("the relay's password goes over the network in clear: configure TLS for it", relay=relay)
+    return plant
 
 
 def _answer(context: ApiContext, listener: socket.socket) -> None:

@@ -7,14 +7,16 @@ import tomllib
 from collections.abc import Mapping
 from ipaddress import IPv4Address, IPv6Address
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Self
 
-from pydantic import AfterValidator, Field, ValidationError
+from pydantic import Field, ValidationError
 from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDict
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
-AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
+from service.relay_access import AbsolutePath, RelayAccess
+
 PATHS = ("data_directory", "recordings_directory", "scd", "motors")
+RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
 
 
 class SettingsError(ValueError):
@@ -58,6 +60,7 @@ class Settings(BaseSettings):
     job_attempts: int = Field(default=3, ge=1, le=20)
     job_retry_delay_s: float = Field(default=2.0, ge=0)
 
+    relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=100, ge=1, le=1000)
     lease_s: float = Field(default=30.0, ge=1, le=600)
     events_directory: str = "EVENTS"
@@ -109,15 +112,37 @@ def _read_table(config: Path) -> dict[str, object]:
         value = table.get(name)
         if isinstance(value, str):
             table[name] = config.absolute().parent / value
+    relays = table.get("relays")
+    if isinstance(relays, dict):
+        table["relays"] = {name: _anchored(relay, config.absolute().parent) for name, relay in relays.items()}
     return table
+
+
+def _anchored(table: object, folder: Path) -> object:
+    """A relay's table, with its relative paths meant from `folder`."""
+    if not isinstance(table, dict):
+        return table
+    return {
+        name: _paths(value, folder) if name in RELAY_PATHS else _anchored(value, folder)
+        for name, value in table.items()
+    }
+
+
+def _paths(value: object, folder: Path) -> object:
+    if isinstance(value, list):
+        return [_paths(each, folder) for each in value]
+    return folder / value if isinstance(value, str) else value
 
 
 def _first_problem(error: ValidationError, config: Path | None) -> SettingsError:
     problem = error.errors(include_url=False)[0]
     source = "settings" if config is None else f"settings ({config}, environment, options)"
-    field = ".".join(str(part) for part in problem["loc"][:1])
+    depth = None if problem["loc"][:1] == ("relays",) else 1
+    field = ".".join(str(part) for part in problem["loc"][:depth])
     if problem["type"] == "extra_forbidden":
         return SettingsError(
             source, field, expected="a setting named in docs/settings.md", found="another name"
         )
+    if problem["type"] == "missing":
+        return SettingsError(source, field, expected="this setting", found="none")
     return SettingsError(source, field, expected=problem["msg"], found=repr(problem["input"]))

@@ -9,7 +9,20 @@ from fastapi import APIRouter, Query
 from service.api.context import Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Alarm, Gateway, Ied, IedDetails, LinkChange, LinkFigures, Name, Quarantine
+from service.api.schemas import (
+    Acquisition,
+    Alarm,
+    Difference,
+    Gateway,
+    Ied,
+    IedDetails,
+    IgnoredFile,
+    LinkChange,
+    LinkFigures,
+    Name,
+    Quarantine,
+)
+from service.storage.records import RelayFindings
 
 router = APIRouter(tags=["relays"])
 
@@ -30,6 +43,7 @@ def get_ied(context: Context, name: Name) -> IedDetails:
     ied = Ied.model_validate(repository.ied(name))
     changes = repository.link_changes(name, limit=LATEST_CHANGES)
     quarantine = repository.quarantine(name)
+    findings = repository.relay_findings(name)
     return IedDetails(
         **dict(ied),
         gateway=repository.gateway_of(name),
@@ -37,6 +51,12 @@ def get_ied(context: Context, name: Name) -> IedDetails:
         changes=[LinkChange.model_validate(change) for change in changes.items],
         quarantine=None if quarantine is None else Quarantine.model_validate(quarantine),
         alarms=[Alarm.model_validate(alarm) for alarm in repository.standing_alarms(name)],
+        acquisition=_acquisition(findings),
+        differences=[] if findings is None else [Difference.model_validate(d) for d in findings.differences],
+        ignored_files=[]
+        if findings is None
+        else [IgnoredFile.model_validate(file) for file in findings.ignored_files],
+        ignored_files_in_all=0 if findings is None else findings.ignored_in_all,
     )
 
 
@@ -44,6 +64,12 @@ def get_ied(context: Context, name: Name) -> IedDetails:
 def release_ied(context: Context, name: Name) -> None:
     """Visit a relay again that was set aside, with a clean sheet; harmless where it was not."""
     context.repository.release(name, now_ns=time.time_ns())
+
+
+def _acquisition(findings: RelayFindings | None) -> Acquisition | None:
+    if findings is None:
+        return None
+    return Acquisition.model_validate({**findings.acquisition, "found_time": findings.found_ns})
 
 
 @router.get("/ieds/{name}/link-changes", responses=problems(404))

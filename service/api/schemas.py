@@ -11,6 +11,8 @@ from core.diagnosis.stator import MODELS
 from core.diagnosis.verdict import Verdict
 from core.recordings import Quantity
 from service.api.times import Time
+from service.plant.differences import DifferenceKind
+from service.plant.overrides import TriggerAction
 from service.storage.states import (
     AlarmKind,
     ClockQuality,
@@ -141,11 +143,50 @@ class Gateway(Document):
     relays: int
 
 
+class Acquisition(Document):
+    """What the service uses of a relay to have its recordings; null what it does not offer.
+
+    asked: whether the relay itself was asked at `found_time`, or its SCL is taken at its word. trigger: the
+    control that makes a record; trigger_action: set and reset, or a pulse that falls by itself.
+    records_told_by: what tells of a new record. overridden: what the motors file decides. remarks: what
+    cannot be had of it, and what is used instead.
+    """
+
+    found_time: Time
+    asked: bool
+    trigger: str | None
+    trigger_action: TriggerAction | None
+    control_model: str | None
+    record_made: str | None
+    record_number: str | None
+    records_told_by: Literal["buffered-report", "unbuffered-report", "polling"]
+    report_control: str | None
+    events_directory: str | None
+    overridden: list[str]
+    remarks: list[str]
+
+
+class Difference(Document):
+    """Relay and SCL differ; `expected` is null where nobody expected it, `found` where the relay lacks it."""
+
+    kind: DifferenceKind
+    expected: str | None
+    found: str | None
+
+
+class IgnoredFile(Document):
+    """A file of the relay's events directory that is not taken; `name` as printable text."""
+
+    name: str
+    reason: str
+
+
 class IedDetails(Ied):
     """A relay with the figures of its link, its latest link changes and the alarms that stand.
 
-    gateway: id of the one that visits it, null while none does.  quarantine: null where nothing is held
-    against it.
+    gateway: id of the one that visits it, null while none does. acquisition: null before the first visit.
+    quarantine: null where nothing is held against it.
+    differences: from its SCL. ignored_files: the first hundred of `ignored_files_in_all`.
     """
 
     gateway: str | None
@@ -153,6 +194,10 @@ class IedDetails(Ied):
     changes: list[LinkChange]
     quarantine: Quarantine | None
     alarms: list[Alarm]
+    acquisition: Acquisition | None
+    differences: list[Difference]
+    ignored_files: list[IgnoredFile]
+    ignored_files_in_all: int
 
 
 class Motor(Document):
@@ -358,6 +403,27 @@ class Measurement(Document):
     reactive_power_var: float | None
     power_factor: float | None
     frequency_Hz: float | None
+    average_current_A: float | None
+    maximum_current_A: float | None
+    minimum_current_A: float | None
+    average_voltage_V: float | None
+    maximum_voltage_V: float | None
+    minimum_voltage_V: float | None
+    average_power_W: float | None
+    maximum_power_W: float | None
+    minimum_power_W: float | None
+    maximum_ia_A: float | None
+    maximum_ib_A: float | None
+    maximum_ic_A: float | None
+    minimum_ia_A: float | None
+    minimum_ib_A: float | None
+    minimum_ic_A: float | None
+    maximum_vab_V: float | None
+    maximum_vbc_V: float | None
+    maximum_vca_V: float | None
+    minimum_vab_V: float | None
+    minimum_vbc_V: float | None
+    minimum_vca_V: float | None
 
 
 class WaveformChannel(Document):

@@ -261,6 +261,19 @@ def health(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) -
     show_health(url, motor, as_json=as_json)
 
 
+@app.command()
+def relay(
+    name: Annotated[str, typer.Argument(metavar="RELAY", help="The relay's name in the plant's SCD.")],
+    url: Url = DEFAULT_URL,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Show what is used of a relay, and where it is not what its SCL says."""
+    from service.cli.relay import show_relay
+
+    show_relay(url, name, as_json=as_json)
+
+
 @app.command("import-scl")
 def import_scl(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="An SCD, CID, IID or ICD file.")],

@@ -32,6 +32,7 @@ class Link:
         self._period_s = period_s
         self._untold = LinkTraffic()
         self._told_s: float | None = None
+        self._remark: str | None = None
         self._failure_logged: tuple[str, float] | None = None
 
     def connected(self) -> None:
@@ -54,13 +55,13 @@ class Link:
         """Bytes of a file came."""
         self._untold = replace(self._untold, received_bytes=self._untold.received_bytes + number_of_bytes)
 
-    def answered(self, round_trip_s: float | None) -> None:
-        """The relay answered; its latest answer took that long."""
+    def answered(self, round_trip_s: float | None, remark: str | None = None) -> None:
+        """The relay answered; its latest answer took that long. remark: what it cannot give at present."""
         now_s = time.monotonic()
-        if self._told_s is not None and now_s - self._told_s < self._period_s:
+        if self._told_s is not None and now_s - self._told_s < self._period_s and remark == self._remark:
             return
-        self._tell(LinkState.UP, None, round_trip_s)
-        self._told_s = now_s
+        self._tell(LinkState.UP, remark, round_trip_s)
+        self._told_s, self._remark = now_s, remark
 
     def failed(self, reason: str) -> None:
         """The link is down; tried again later."""

@@ -10,7 +10,12 @@ from typing import Protocol
 
 REQUIRED_SUFFIXES = (".CFG", ".DAT")
 OPTIONAL_SUFFIXES = (".HDR", ".INF")
+WHOLE_SUFFIXES = (".CFF", ".CEV")
+"""Files that are a recording each: COMTRADE 2013 combined, SEL Compressed ASCII event report."""
+
+RECORD_SUFFIXES = REQUIRED_SUFFIXES + OPTIONAL_SUFFIXES + WHOLE_SUFFIXES
 LONGEST_NAME = 100
+MOST_IGNORED = 100
 
 
 class FileEntry(Protocol):
@@ -36,7 +41,7 @@ class ListedFile:
 
 @dataclass(frozen=True, slots=True)
 class ListedRecord:
-    """The files of one COMTRADE record, as listed. `name` is their common stem."""
+    """The files of one recording in one format, as listed. `name` is their common stem."""
 
     name: str
     files: tuple[ListedFile, ...]
@@ -53,8 +58,18 @@ class ListedRecord:
     @property
     def missing(self) -> tuple[str, ...]:
         """Suffixes a COMTRADE record cannot do without and this one does not have."""
-        present = {_suffix(file.local_name) for file in self.files}
-        return tuple(suffix for suffix in REQUIRED_SUFFIXES if suffix not in present)
+        if self.suffixes & set(WHOLE_SUFFIXES):
+            return ()
+        return tuple(suffix for suffix in REQUIRED_SUFFIXES if suffix not in self.suffixes)
+
+    @property
+    def suffixes(self) -> frozenset[str]:
+        return frozenset(_suffix(file.local_name) for file in self.files)
+
+    @property
+    def file_names(self) -> str:
+        """For people."""
+        return ", ".join(file.local_name for file in self.files)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,27 +82,39 @@ class RefusedFile:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """A directory of a relay, understood."""
+    """A directory of a relay, understood.
+
+    ignored: files that belong to no recording, at most MOST_IGNORED of `ignored_in_all`.
+    """
 
     records: tuple[ListedRecord, ...]
     refused: tuple[RefusedFile, ...]
+    ignored: tuple[RefusedFile, ...] = ()
+    ignored_in_all: int = 0
 
 
 def understand(entries: Iterable[FileEntry], directory: str) -> Listing:
     """Group the listed files of `directory` into records.
 
-    Other files (reports, Compressed ASCII of the same events) are passed over in silence. Files whose name
-    cannot be trusted, or that claim another's name, are refused.
+    Files whose name cannot be trusted, or that claim another's name, are refused; files of other kinds are
+    ignored.
     """
     groups: dict[str, dict[str, ListedFile]] = {}
     refused: list[RefusedFile] = []
+    ignored: list[RefusedFile] = []
+    ignored_in_all = 0
     for entry in entries:
+        if not is_of_a_record(entry.name):
+            ignored_in_all += 1
+            if len(ignored) < MOST_IGNORED:
+                ignored.append(RefusedFile(printable(entry.name), _why_ignored(entry.name)))
+            continue
         local_name = last_component(entry.name)
         suffix = _suffix(local_name)
-        if suffix not in REQUIRED_SUFFIXES + OPTIONAL_SUFFIXES:
-            continue
         reason = objection(entry.name, directory)
-        files = groups.setdefault(local_name[: -len(suffix)].upper(), {}) if reason is None else {}
+        stem = local_name[: -len(suffix)].upper()
+        group = f"{stem}{suffix}" if suffix in WHOLE_SUFFIXES else stem
+        files = groups.setdefault(group, {}) if reason is None else {}
         if reason is None and suffix in files:
             reason = "the relay lists two files of this name"
         if reason is not None:
@@ -103,7 +130,23 @@ def understand(entries: Iterable[FileEntry], directory: str) -> Listing:
         ListedRecord(name=_stem(files), files=tuple(files[suffix] for suffix in sorted(files)))
         for files in groups.values()
     )
-    return Listing(records=records, refused=tuple(refused))
+    return Listing(records, tuple(refused), tuple(ignored), ignored_in_all)
+
+
+def is_of_a_record(name: str) -> bool:
+    """Whether a file, by its name alone, belongs to a recording."""
+    return _suffix(last_component(name)) in RECORD_SUFFIXES
+
+
+def printable(name: str) -> str:
+    """A relay's file name, safe to print."""
+    return name if name.isprintable() and len(name) <= LONGEST_NAME else ascii(name)[:LONGEST_NAME]
+
+
+def _why_ignored(name: str) -> str:
+    if not last_component(name):
+        return "a folder: not looked into"
+    return "no file of a recording (.CFG with .DAT, .CFF, .CEV)"
 
 
 def objection(name: str, directory: str) -> str | None:
@@ -128,7 +171,10 @@ def last_component(name: str) -> str:
 
 def remote_name(name: str, directory: str) -> str:
     """What to ask the relay for: some list full paths, some list bare names."""
-    return name if "/" in _posix(name) else f"{directory.rstrip('/')}/{name}"
+    if "/" in _posix(name) or not directory.strip("/\\"):
+        return name
+    slash = "\\" if directory.endswith("\\") else "/"
+    return directory.rstrip("/\\") + slash + name
 
 
 def _posix(name: str) -> str:

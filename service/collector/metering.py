@@ -15,6 +15,9 @@ log = structlog.get_logger(__name__)
 LARGEST_POWER_OF_TEN = 24
 """yotta; IEC 61850-7-3, multiplier."""
 
+STATISTICS_PERIOD_S = 60.0
+"""Least time between samples of the relay's own statistics, which change slowly and are many."""
+
 NOT_OFFERED = (AccessDenied, NotFound)
 
 
@@ -28,20 +31,24 @@ class Metering:
         self, relay: Relay, motor: str, *, period_s: float, on_sample: Callable[[Sample], None]
     ) -> None:
         self._relay = relay
+        self._measurands = relay.measurands
         self._motor = motor
         self._period_s = period_s
         self._on_sample = on_sample
         self._factors: dict[Measurand, float] | None = None
         self._next_s = 0.0
+        self._next_statistics_s = 0.0
 
-    def begin(self) -> None:
-        """A new connection: find out again what the relay offers."""
+    def begin(self, measurands: tuple[Measurand, ...] | None = None) -> None:
+        """A new connection: find out again what the relay offers, among what was found or is promised."""
+        if measurands is not None:
+            self._measurands = measurands
         self._factors = None
         self._next_s = time.monotonic()
 
     def due_in_s(self) -> float:
         """Until the next sample [s]; infinite where none is wanted."""
-        wanted = self._period_s > 0 and self._relay.measurands and self._factors != {}
+        wanted = self._period_s > 0 and self._measurands and self._factors != {}
         return max(0.0, self._next_s - time.monotonic()) if wanted else math.inf
 
     def sample(self, client: Client) -> None:
@@ -53,7 +60,12 @@ class Metering:
         if self._factors is None:
             self._factors = self._offered(client)
         values: dict[str, float] = {}
+        with_statistics = time.monotonic() >= self._next_statistics_s
+        if with_statistics:
+            self._next_statistics_s = time.monotonic() + STATISTICS_PERIOD_S
         for measurand, factor in self._factors.items():
+            if measurand.quantity.is_statistic and not with_statistics:
+                continue
             try:
                 value = client.read(measurand.reference, FunctionalConstraint.MX)
             except TemporarilyUnavailable:
@@ -67,7 +79,7 @@ class Metering:
         """What the relay has of what its model promises, and what each value is to be multiplied by."""
         offered: dict[Measurand, float] = {}
         missing: dict[str, str] = {}
-        for measurand in self._relay.measurands:
+        for measurand in self._measurands:
             try:
                 client.read(measurand.reference, FunctionalConstraint.MX)
                 offered[measurand] = _factor(client, measurand)

@@ -13,6 +13,7 @@ from typing import BinaryIO, NoReturn
 
 import structlog
 
+from mms.library_noise import keep_tls_notes_off_stderr
 from service.collector.gateway import Gateway, Identity
 from service.collector.visiting import visits_of
 from service.exclusive import exclusive
@@ -40,6 +41,8 @@ def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     settings = Settings.model_validate_json(settings_pipe.readline())
     number = int(sys.argv[1])
+    if any(access.tls is not None for access in settings.relays.values()):
+        keep_tls_notes_off_stderr()
     configure_logging("collector")
     service_gone = Event()
     Thread(target=_watch, args=(settings_pipe, service_gone), name="parent-watch", daemon=True).start()

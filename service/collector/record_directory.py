@@ -14,8 +14,10 @@ import structlog
 from mms import AccessDenied, Client, FileSizeMismatch, NotFound, TemporarilyUnavailable
 from service.collector.alarms import RelayAlarms
 from service.collector.allowance import DAY_NS, DailyAllowance
+from service.collector.event_folder import EventFolder
+from service.collector.formats import Chosen, one_format_an_event, remote_of
 from service.collector.link import Link
-from service.collector.listing import ListedRecord, Listing, understand
+from service.collector.listing import MOST_IGNORED, ListedRecord, Listing, RefusedFile, understand
 from service.collector.pulling import RecordTooLargeError, pull
 from service.collector.settling import Settled, Settling
 from service.plant import Relay
@@ -29,6 +31,9 @@ log = structlog.get_logger(__name__)
 
 SETTLE_S = 0.2
 """How long a record's sizes and times must stand still before it is pulled."""
+
+EARLY_S = 5.0
+"""How long an event report must stand still at a relay that writes COMTRADE, too: that may be on its way."""
 
 UNSTEADY_S = 600.0
 """How long a record may go on changing before it is an alarm."""
@@ -51,13 +56,17 @@ class Scan:
     """What one scan of the directory came to, by names of records.
 
     listed: all there are.  taken: newly stored or refused for good.  waiting: new ones that are not ready, or
-    are to be tried again soon.  held_back: ready ones that wait for another day.
+    are to be tried again soon.  held_back: ready ones that wait for another day.  ignored: files that are not
+    taken, with the reason; `ignored_in_all` may be more.  unreachable: why no record could be had at all.
     """
 
     listed: frozenset[str]
     taken: tuple[str, ...]
     waiting: tuple[str, ...]
     held_back: tuple[str, ...]
+    ignored: tuple[RefusedFile, ...] = ()
+    ignored_in_all: int = 0
+    unreachable: str | None = None
 
 
 class RecordDirectory:
@@ -71,6 +80,7 @@ class RecordDirectory:
         store: RecordingStore,
         settings: Settings,
         *,
+        folder: EventFolder,
         link: Link,
         alarms: RelayAlarms,
         allowance: DailyAllowance,
@@ -79,14 +89,18 @@ class RecordDirectory:
         self._motor = motor
         self._repository = repository
         self._store = store
-        self._directory = settings.events_directory
+        self._folder = folder
         self._max_file_bytes = settings.max_file_bytes
         self._link = link
         self._alarms = alarms
         self._allowance = allowance
         self._settling = Settling(
-            settle_s=SETTLE_S, patience_s=settings.record_timeout_s, unsteady_s=UNSTEADY_S
+            settle_s=SETTLE_S,
+            patience_s=settings.record_timeout_s,
+            unsteady_s=UNSTEADY_S,
+            early_s=min(EARLY_S, settings.record_timeout_s / 2),
         )
+        self._hopeless: set[ListedRecord] = set()
         # This session alone writes the relay's records: having asked once, it knows them.
         self._asked = False
         self._known: set[RemoteRecord] = set()
@@ -100,30 +114,35 @@ class RecordDirectory:
         Raises MmsError when the link fails, OSError when the disk does; what was stored until then stays.
         """
         self._recall()
-        listing = understand(client.files(self._directory), self._directory)
+        contents = self._folder.contents(client)
+        if contents.directory is None:
+            unreachable = self._folder.missing if self._folder.no_files else None
+            return Scan(frozenset(), (), (), (), unreachable=unreachable)
+        listing = understand(contents.entries, contents.directory)
         self._note_refused_files(listing)
-        self._give_up_what_is_gone(listing)
-        new = [record for record in listing.records if _remote(record) not in self._known]
+        self._hopeless.intersection_update(listing.records)
+        chosen = one_format_an_event(listing.records, self._known, self._hopeless)
+        self._give_up_what_is_gone(chosen)
+        new = [record for record in chosen.records if remote_of(record) not in self._known]
         new.sort(key=lambda record: (record.modified_ns, record.name))
-        settled = self._settling.look(new, time.monotonic())
+        settled = self._settling.look(new, time.monotonic(), early=chosen.early)
         ready, unsteady = self._without_shape_shifters(settled)
         self._note_unsteady(unsteady)
-        for record in settled.incomplete:
-            suffix = record.missing[0]
-            self._refuse(
-                record, f"{record.name}: expected a {suffix} file in {self._directory}, found none", owner
-            )
+        self._give_up_the_incomplete(settled.incomplete, chosen, contents.directory, owner)
         held_back = self._take_all(client, ready, owner)
         patient = {record.name for record in unsteady}.union(held_back)
+        ignored = chosen.passed_over + listing.ignored
         return Scan(
             listed=frozenset(record.name for record in listing.records),
-            taken=tuple(record.name for record in new if _remote(record) in self._known),
+            taken=tuple(record.name for record in new if remote_of(record) in self._known),
             waiting=tuple(
                 record.name
                 for record in new
-                if _remote(record) not in self._known and record.name not in patient
+                if remote_of(record) not in self._known and record.name not in patient
             ),
             held_back=held_back,
+            ignored=ignored[:MOST_IGNORED],
+            ignored_in_all=len(chosen.passed_over) + listing.ignored_in_all,
         )
 
     def _recall(self) -> None:
@@ -181,11 +200,25 @@ class RecordDirectory:
             )
         self._alarms.keep(AlarmKind.FILE_UNSTEADY, {record.name for record in unsteady})
 
-    def _give_up_what_is_gone(self, listing: Listing) -> None:
+    def _give_up_the_incomplete(
+        self, incomplete: tuple[ListedRecord, ...], chosen: Chosen, directory: str, owner: Owner
+    ) -> None:
+        """Files that are not coming any more: another format is taken, or the record refused."""
+        for record in incomplete:
+            reason = (
+                f"{record.name}: expected a {record.missing[0]} file in {directory or 'the root'}, found none"
+            )
+            if record in chosen.replaceable and record not in self._hopeless:
+                self._hopeless.add(record)
+                log.warning("another format is taken", relay=self._relay, record=record.name, reason=reason)
+            else:
+                self._refuse(record, reason, owner)
+
+    def _give_up_what_is_gone(self, chosen: Chosen) -> None:
         """A record that was seen, and that the relay replaced or discarded before it could be pulled."""
         if not self._announced:
             return
-        for remote in self._announced - {_remote(record) for record in listing.records}:
+        for remote in self._announced - {remote_of(record) for record in chosen.records}:
             reason = f"{remote.name}: the relay discarded or changed it before it could be pulled"
             self._repository.give_up_remote_record(self._relay, remote, reason)
             self._announced.discard(remote)
@@ -193,7 +226,7 @@ class RecordDirectory:
 
     def _take(self, client: Client, record: ListedRecord, owner: Owner) -> None:
         """Pull and store one record. Where that fails, refuse it or leave it for the next scan."""
-        remote = _remote(record)
+        remote = remote_of(record)
         if remote not in self._announced:
             self._repository.announce_recording(self._relay, self._motor, remote, now_ns=time.time_ns())
             self._announced.add(remote)
@@ -246,7 +279,7 @@ class RecordDirectory:
         log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
         self._attempts[record.name] += 1
         attempts = self._repository.note_failed_pull(
-            self._relay, self._motor, _remote(record), reason, now_ns=time.time_ns()
+            self._relay, self._motor, remote_of(record), reason, now_ns=time.time_ns()
         )
         if attempts >= PULL_ATTEMPTS:
             self._refuse(record, reason, owner)
@@ -255,7 +288,7 @@ class RecordDirectory:
         self._repository.reject_remote_record(
             self._relay,
             self._motor,
-            _remote(record),
+            remote_of(record),
             reason,
             now_ns=time.time_ns(),
             event_report_id=owner(record.name),
@@ -265,9 +298,5 @@ class RecordDirectory:
 
     def _settle(self, record: ListedRecord) -> None:
         """This record's fate is written down."""
-        self._known.add(_remote(record))
-        self._announced.discard(_remote(record))
-
-
-def _remote(record: ListedRecord) -> RemoteRecord:
-    return RemoteRecord(record.name, record.size_bytes, record.modified_ns)
+        self._known.add(remote_of(record))
+        self._announced.discard(remote_of(record))

@@ -7,35 +7,26 @@ import math
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, nullcontext
-from queue import Empty, SimpleQueue
 from threading import Event
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from mms import (
-    AccessDenied,
-    Client,
-    EntryNotFound,
-    MmsError,
-    NotFound,
-    ProtocolError,
-    Reason,
-    Report,
-    ReportControlInUse,
-    ReportMember,
-)
+from mms import Client, CredentialFileError, MmsError, ProtocolError
 from service.collector.alarms import RelayAlarms
 from service.collector.allowance import DailyAllowance
-from service.collector.continuity import Continuity, is_of, status_of
+from service.collector.discovery import Discovery
+from service.collector.event_folder import EventFolder
 from service.collector.link import Link
 from service.collector.metering import Metering
 from service.collector.quarantine import Conduct
-from service.collector.record_directory import RecordDirectory
+from service.collector.record_directory import RecordDirectory, Scan
+from service.collector.subscription import Inbox, Subscription
 from service.collector.triggering import Triggering
 from service.collector.visiting import Mark, Visits
 from service.plant import Relay
 from service.recordings import RecordingStore
+from service.relay_access import AccessError, credentials
 from service.settings import Settings
 from service.storage import LeaseLostError, Repository
 from service.storage.records import Sample
@@ -45,31 +36,7 @@ log = structlog.get_logger(__name__)
 HURRIED_PERIOD_S = 0.2
 """Between scans while a record is known to be on its way."""
 
-ENTRY_ID_OCTETS = 8
-"""IEC 61850-8-1; anything else a relay sends could not be given back to it."""
-
 FIRST_RETRY_S, LONGEST_RETRY_S = 0.5, 10.0
-
-
-class Inbox(SimpleQueue[Report]):
-    """Reports as they arrive from the MMS layer's thread; whoever waits on `arrival` wakes up."""
-
-    def __init__(self, arrival: Event) -> None:
-        super().__init__()
-        self._arrival = arrival
-
-    def put(self, item: Report, block: bool = True, timeout: float | None = None) -> None:
-        super().put(item, block, timeout)
-        self._arrival.set()
-
-    def drain(self) -> list[Report]:
-        """What has arrived, oldest first."""
-        reports: list[Report] = []
-        while True:
-            try:
-                reports.append(self.get_nowait())
-            except Empty:
-                return reports
 
 
 class RelaySession:
@@ -100,14 +67,19 @@ class RelaySession:
             settings.max_relay_bytes_per_day, day=figures.day, used_bytes=figures.day_bytes
         )
         self._link = Link(relay.name, repository, allowance, period_s=settings.poll_period_s)
+        alarms = RelayAlarms(relay.name, repository)
+        self._discovery = Discovery(relay, repository, alarms)
+        self._subscription = Subscription(relay.name, repository, self._link)
+        self._folder = EventFolder(relay.name, settings.events_directory, relay.overrides.events_directory)
         self._directory = RecordDirectory(
             relay,
             motor,
             repository,
             store,
             settings,
+            folder=self._folder,
             link=self._link,
-            alarms=RelayAlarms(relay.name, repository),
+            alarms=alarms,
             allowance=allowance,
         )
         self._triggering = Triggering(
@@ -124,10 +96,7 @@ class RelaySession:
         self._client: Client | None = None
         self._stopping = Event()
         self._something_to_do = Event()
-        self._unsaved_entry_id: bytes | None = None
         self._expecting_until_s = 0.0
-        self._overflow_means_loss = False
-        self._continuity = Continuity(relay.fault_number)
 
     def wake(self) -> None:
         """Somebody asked for an event report."""
@@ -154,7 +123,7 @@ class RelaySession:
             broken = False
             try:
                 self._visit()
-            except MmsError as error:
+            except (MmsError, CredentialFileError, AccessError) as error:
                 reason = str(error)
                 broken = isinstance(error, ProtocolError)
             except LeaseLostError as error:
@@ -173,7 +142,10 @@ class RelaySession:
             retry_s = min(2 * retry_s, LONGEST_RETRY_S)
 
     def _visit(self) -> None:
-        """One connection, until it breaks or the session is stopped. Raises MmsError."""
+        """One connection, until it breaks or the session is stopped.
+
+        Raises MmsError; CredentialFileError, AccessError for what is to be shown the relay.
+        """
         with ExitStack() as marked:
             if self._visits is not None:
                 self._mark = marked.enter_context(self._visits.mark(self._relay.name))
@@ -181,26 +153,38 @@ class RelaySession:
             self._visit_marked()
 
     def _visit_marked(self) -> None:
+        shown = credentials(self._settings.relays, self._relay.name)
         with Client.connect(
             self._relay.host,
             self._relay.port,
             connect_timeout_s=self._settings.connect_timeout_s,
             request_timeout_s=self._settings.request_timeout_s,
+            tls=shown.tls,
+            password=shown.spoken_password,
         ) as client:
             self._client = client
-            inbox = Inbox(self._something_to_do)
-            self._continuity.begin()
-            self._subscribe(client, inbox)
+            self._begin(client)
             log.info("connected", relay=self._relay.name, host=self._relay.host, port=self._relay.port)
-            self._link.connected()
-            if self._metering is not None:
-                self._metering.begin()
             while not self._stopping.is_set():
                 self._something_to_do.clear()
-                waiting = self._work(client, inbox)
-                self._link.answered(client.round_trip_s)
+                waiting = self._work(client)
+                self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
                 self._conduct.answered()
                 self._wait(client, HURRIED_PERIOD_S if waiting else self._settings.poll_period_s)
+
+    def _begin(self, client: Client) -> None:
+        """A new connection: find out what the relay is, and use that. Raises MmsError."""
+        acquisition = self._discovery.look(client)
+        self._triggering.use(acquisition)
+        self._folder.begin()
+        if self._metering is not None:
+            self._metering.begin(acquisition.measurands)
+        self._subscription.begin(client, Inbox(self._something_to_do), acquisition)
+        self._link.connected()
+
+    def _remarks(self) -> list[str]:
+        """What of the relay cannot be had at present."""
+        return [words for words in (self._subscription.refusal, self._folder.missing) if words is not None]
 
     def _wait(self, client: Client, longest_s: float) -> None:
         """Until there is something to do, or for so long; what is to be sampled meanwhile is."""
@@ -212,55 +196,6 @@ class RelaySession:
                 continue
             with nullcontext() if self._mark is None else self._mark.waiting():
                 self._something_to_do.wait(min(due_in_s, until_s - time.monotonic()))
-
-    def _subscribe(self, client: Client, inbox: Inbox) -> None:
-        """Have reports from where the last saved one left off; without reports, the directory is polled."""
-        self._unsaved_entry_id = None
-        control = self._relay.report_control
-        if control is None:
-            log.info("the relay reports no records, the directory is polled", relay=self._relay.name)
-            return
-        try:
-            entry_id = self._repository.entry_id(self._relay.name)
-            # A block enabled without an EntryID begins with the overflow bit set, whatever it lost.
-            self._overflow_means_loss = entry_id is not None
-            try:
-                client.subscribe(control, inbox, entry_id=entry_id)
-            except EntryNotFound:
-                self._overflow_means_loss = False
-                self._link.lost_reports()
-                log.warning(
-                    "reports lost: the relay no longer holds the last one seen", relay=self._relay.name
-                )
-                client.subscribe(control, inbox)
-        except (AccessDenied, NotFound, ReportControlInUse) as error:
-            log.warning("no reports, the directory is polled", relay=self._relay.name, reason=str(error))
-
-    def _heed(self, report: Report) -> None:
-        """A report hurries the scans when it says that a record is, or will soon be, in the directory."""
-        overflowed = report.buffer_overflow and self._overflow_means_loss
-        self._overflow_means_loss = True
-        if overflowed:
-            # No loss: whatever the lost reports announced is in the directory, which is scanned anyway.
-            log.info("the relay's report buffer had overflowed", relay=self._relay.name)
-        missed = self._continuity.missed_before(report)
-        if missed is not None:
-            log.info("reports missed", relay=self._relay.name, reason=missed)
-        self._link.reported(gap=overflowed or missed is not None)
-        if report.entry_id is not None and len(report.entry_id) == ENTRY_ID_OCTETS:
-            self._unsaved_entry_id = report.entry_id
-        if any(self._tells_of_a_record(member) for member in report.members):
-            self._expecting_until_s = time.monotonic() + self._settings.record_timeout_s
-            log.info("record announced", relay=self._relay.name)
-
-    def _tells_of_a_record(self, member: ReportMember) -> bool:
-        if not member.reasons & (Reason.DATA_CHANGE | Reason.UNKNOWN):
-            return False
-        if member.reference is None:
-            return True
-        if self._relay.record_made is not None and is_of(member.reference, self._relay.record_made):
-            return status_of(member) is True
-        return self._relay.fault_number is not None and is_of(member.reference, self._relay.fault_number)
 
     def _note_failure(self, reason: str) -> None:
         self._link.failed(reason)
@@ -277,19 +212,27 @@ class RelaySession:
             log.exception("database does not answer, trying again")
             return False
 
-    def _work(self, client: Client, inbox: Inbox) -> bool:
+    def _work(self, client: Client) -> bool:
         """One round: reports, directory, event reports. Returns whether a record is on its way."""
-        for report in inbox.drain():
-            self._heed(report)
+        self._subscription.keep(client)
+        if self._subscription.heed_all():
+            self._expecting_until_s = time.monotonic() + self._settings.record_timeout_s
         self._triggering.recall()
         scan = self._directory.scan(client, self._triggering.claim)
         triggered = self._triggering.follow(client, scan)
         if scan.taken:
             self._expecting_until_s = 0.0
         expecting = bool(scan.waiting) or time.monotonic() < self._expecting_until_s
-        if self._unsaved_entry_id is not None and not expecting:
-            # Only now: after a crash the relay repeats every report from this EntryID on, and what the
-            # reports before it announced is safe.
-            self._repository.save_entry_id(self._relay.name, self._unsaved_entry_id)
-            self._unsaved_entry_id = None
+        if not expecting:
+            self._subscription.save()
+        self._note_findings(scan)
         return expecting or triggered
+
+    def _note_findings(self, scan: Scan) -> None:
+        self._discovery.note(
+            report_control=self._subscription.report_control,
+            directory=self._folder.directory,
+            remarks=self._remarks(),
+            ignored=scan.ignored,
+            ignored_in_all=scan.ignored_in_all,
+        )

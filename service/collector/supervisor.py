@@ -18,6 +18,9 @@ SHORTEST_DELAY_S, LONGEST_DELAY_S = 0.2, 30.0
 STABLE_AFTER_S = 60.0
 STOP_PATIENCE_S = 5.0
 
+PIPE_BYTES = 1024**2
+"""Room for the settings of a few thousand relays: the system's usual 64 kB would be too little for 200."""
+
 
 def _nothing(_exit_code: int | None) -> None:
     """For a collector whose end nobody needs to know."""
@@ -27,7 +30,7 @@ class CollectorSupervisor:
     """Starts the collector as a child process, and starts it again when it ends.
 
     The child reads its settings from its standard input and ends when that closes: it cannot outlive this
-    process, however this process dies, and nothing secret appears in a command line or an environment.
+    process, however this process dies, and no setting appears in a command line or an environment.
     """
 
     def __init__(
@@ -108,7 +111,10 @@ class CollectorSupervisor:
             if self._stopping.is_set():
                 return None
             child = self._child = subprocess.Popen(  # noqa: S603 - our own module
-                self._command, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL
+                self._command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                pipesize=PIPE_BYTES,
             )
             # Before anybody may close that pipe. One line fits into it, so this waits for no child.
             _hand_over(child, self._settings)

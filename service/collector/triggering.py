@@ -13,18 +13,27 @@ import time
 
 import structlog
 
-from mms import AccessDenied, Client, ControlRefused, FunctionalConstraint, NotFound
+from mms import (
+    AccessDenied,
+    Client,
+    ControlRefused,
+    FunctionalConstraint,
+    NotFound,
+    ProtocolError,
+    TemporarilyUnavailable,
+)
 from service.collector.clock import reading, stamp_of
 from service.collector.record_directory import Scan
-from service.plant import Relay
+from service.plant import Acquisition, Relay, TriggerAction, promised
 from service.storage import Repository
 from service.storage.records import EventReport
 from service.storage.states import EventReportState
 
 log = structlog.get_logger(__name__)
 
-REFUSALS = (AccessDenied, ControlRefused, NotFound)
-"""The relay answers, and the answer is no. Link errors leave a report as it is, until its time limit."""
+REFUSALS = (AccessDenied, ControlRefused, NotFound, ProtocolError, ValueError)
+"""The relay answers, and the answer is no; ValueError: an override that is no reference. Link errors leave a
+report as it is, until its time limit."""
 
 IN_THE_RELAY = (EventReportState.TRIGGERED, EventReportState.RECORDED)
 
@@ -42,6 +51,7 @@ class Triggering:
         self, relay: Relay, repository: Repository, *, record_timeout_s: float, gateway: str | None = None
     ) -> None:
         self._relay = relay
+        self._acquisition = promised(relay)
         self._repository = repository
         self._gateway = gateway
         self._timeout_ns = round(record_timeout_s * 1e9)
@@ -49,6 +59,10 @@ class Triggering:
         self._started_ns = time.time_ns()
         self._outstanding: EventReport | None = None
         self._listed_before: frozenset[str] = frozenset()
+
+    def use(self, acquisition: Acquisition) -> None:
+        """What a new connection has found."""
+        self._acquisition = acquisition
 
     def recall(self) -> None:
         """Look up which report, if any, waits for a record of this relay."""
@@ -72,7 +86,7 @@ class Triggering:
         report = self._outstanding
         if report is None:
             pending = self._repository.pending_event_report(self._relay.name)
-            return pending is not None and self._trigger(client, pending, scan.listed)
+            return pending is not None and self._grant(client, pending, scan)
         held_back = [name for name in scan.held_back if name not in self._listed_before]
         if held_back:
             self._fail(
@@ -99,10 +113,20 @@ class Triggering:
             if self._is_overdue(report):
                 self._fail(report, f"{self._relay.name} does not answer: {reason}")
 
-    def _trigger(self, client: Client, report: EventReport, listed: frozenset[str]) -> bool:
-        control = self._relay.trigger_control
+    def _grant(self, client: Client, report: EventReport, scan: Scan) -> bool:
+        """Trigger, unless there is nothing to trigger by or no way to have the record."""
+        control = self._acquisition.trigger
+        if control is None:
+            self._fail(report, f"{self._relay.name} cannot be triggered: {self._acquisition.no_trigger}")
+        elif scan.unreachable is not None:
+            self._fail(report, f"{self._relay.name} is not triggered: {scan.unreachable}")
+        else:
+            return self._trigger(client, report, control, scan.listed)
+        return False
+
+    def _trigger(self, client: Client, report: EventReport, control: str, listed: frozenset[str]) -> bool:
         try:
-            if client.read(f"{control}.stVal", FunctionalConstraint.ST) is True:
+            if _is_set(client, control):
                 client.operate(control, False)  # noqa: FBT003 - the value of a control
             stamp_before = stamp_of(client, control)
             self._repository.mark_triggered(report.id, now_ns=time.time_ns(), gateway=self._gateway)
@@ -119,6 +143,8 @@ class Triggering:
         if stamp is not None and stamp != stamp_before:
             clock = reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
             self._repository.note_clock(self._relay.name, clock)
+        if self._acquisition.trigger_action is TriggerAction.PULSE and not _is_set(client, control):
+            return True
         try:
             client.operate(control, False)  # noqa: FBT003
         except REFUSALS as error:
@@ -132,3 +158,11 @@ class Triggering:
     def _is_overdue(self, report: EventReport) -> bool:
         since_ns = report.recorded_ns or report.triggered_ns or report.requested_ns
         return time.time_ns() > max(since_ns, self._started_ns) + self._timeout_ns
+
+
+def _is_set(client: Client, control: str) -> bool:
+    """Whether a control is on; some relays do not let what may be written be read. Raises MmsError (link)."""
+    try:
+        return client.read(f"{control}.stVal", FunctionalConstraint.ST) is True
+    except (AccessDenied, NotFound, TemporarilyUnavailable):
+        return False

@@ -1,19 +1,32 @@
 """The plant as the service sees it: sites, relays with their references, motors with their parameters."""
 
+from service.plant.acquisition import Acquisition, offered, promised
+from service.plant.differences import Difference, differences
 from service.plant.errors import PlantError
 from service.plant.files import read_plant
 from service.plant.metering import Measurand, MeteredQuantity
 from service.plant.model import Plant, PlantMotor, Relay, Site
+from service.plant.offer import Offer, ReportBlock
+from service.plant.overrides import Overrides, TriggerAction
 from service.plant.schedule import Schedule
 
 __all__ = [
+    "Acquisition",
+    "Difference",
     "Measurand",
     "MeteredQuantity",
+    "Offer",
+    "Overrides",
     "Plant",
     "PlantError",
     "PlantMotor",
     "Relay",
+    "ReportBlock",
     "Schedule",
     "Site",
+    "TriggerAction",
+    "differences",
+    "offered",
+    "promised",
     "read_plant",
 ]

@@ -5,7 +5,8 @@ nameplate and equivalent circuit of each motor. Both must name the same motors.
 """
 
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import scl
@@ -14,18 +15,34 @@ from core.machines.parameters import Motor
 from service.plant.errors import PlantError
 from service.plant.metering import measurands
 from service.plant.model import Plant, PlantMotor, Relay, Site
-from service.plant.recognition import REMOTE_BIT, recognise
+from service.plant.offer import promised_by
+from service.plant.overrides import OverrideError, Overrides, overrides_from_table
+from service.plant.recognition import recognise
 from service.plant.schedule import Schedule
+from service.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
 from service.settings import Settings, SettingsError
 
 
 def read_plant(settings: Settings) -> Plant:
     """The plant of the settings' two files. Raises PlantError, or SettingsError where one is not set."""
-    return plant_of_files(
+    plant = plant_of_files(
         _given(settings.scd, "scd", "the path of the plant's SCD file"),
         _given(settings.motors, "motors", "the path of the plant's motors file (TOML)"),
         settings.subnetwork,
     )
+    names = {relay.name for relay in plant.relays}
+    for source, named in (("settings", settings.relays), ("environment", named_in_environment())):
+        for unknown in sorted(set(named) - names):
+            field = f"relays.{unknown}" if source == "settings" else f"{PASSWORD_VARIABLE}{unknown}"
+            expected = f"a relay of {settings.scd} ({', '.join(sorted(names))})"
+            raise SettingsError(source, field, expected=expected, found="another name")
+    return replace(plant, relays=tuple(_at_its_port(relay, settings.relays) for relay in plant.relays))
+
+
+def _at_its_port(relay: Relay, access: Mapping[str, RelayAccess]) -> Relay:
+    """The relay at its port for TLS, where the settings name one."""
+    tls = access.get(relay.name, RelayAccess()).tls
+    return relay if tls is None or tls.port is None else replace(relay, port=tls.port)
 
 
 def plant_of_files(scd_path: Path, motors_path: Path, subnetwork: str | None = None) -> Plant:
@@ -37,7 +54,7 @@ def plant_of_files(scd_path: Path, motors_path: Path, subnetwork: str | None = N
         configuration = scl.read(scd_path)
         if subnetwork is not None:
             configuration = configuration.seen_from(subnetwork)
-        return _plant(configuration, *_motors(motors_path), motors_path)
+        return _plant(configuration, _motors(motors_path), motors_path)
     except scl.SclError as error:
         line = "" if error.line is None else f"line {error.line}: "
         raise PlantError(
@@ -51,8 +68,17 @@ def _given(path: Path | None, name: str, expected: str) -> Path:
     return path
 
 
-def _motors(path: Path) -> tuple[dict[str, Motor], dict[str, Schedule]]:
-    """The motors of the motors file and the schedules of those that have one, by name."""
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """What the motors file says of one motor and its relay."""
+
+    motor: Motor
+    schedule: Schedule | None
+    overrides: Overrides
+
+
+def _motors(path: Path) -> dict[str, _Entry]:
+    """What the motors file says, by the motors' names."""
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
@@ -67,24 +93,24 @@ def _motors(path: Path) -> tuple[dict[str, Motor], dict[str, Schedule]]:
     if document or not isinstance(tables, list):
         found = ", ".join(document) or "none"
         raise PlantError(path, "top level", expected="[[motor]] tables and nothing else", found=found)
-    motors: dict[str, Motor] = {}
-    schedules: dict[str, Schedule] = {}
+    entries: dict[str, _Entry] = {}
     for number, table in enumerate(tables, start=1):
         name = table.pop("name", None)
         if not isinstance(name, str) or not name:
             raise PlantError(path, f"motor {number}: name", expected="the motor's name", found=repr(name))
-        if name in motors:
+        if name in entries:
             raise PlantError(path, f"motor {number}: name", expected="each motor once", found=f"{name} again")
         expression = table.pop("schedule", None)
-        if expression is not None:
-            schedules[name] = _schedule(expression, path, name)
+        schedule = None if expression is None else _schedule(expression, path, name)
         try:
-            motors[name] = motor_from_table(table, name=name, source=str(path))
-        except MotorFileError as error:
+            overrides = overrides_from_table(table.pop("relay", {}))
+            motor = motor_from_table(table, name=name, source=str(path))
+        except (MotorFileError, OverrideError) as error:
             raise PlantError(
                 path, f"motor {name}: {error.field}", expected=error.expected, found=error.found
             ) from error
-    return motors, schedules
+        entries[name] = _Entry(motor, schedule, overrides)
+    return entries
 
 
 def _schedule(expression: object, path: Path, motor: str) -> Schedule:
@@ -96,9 +122,7 @@ def _schedule(expression: object, path: Path, motor: str) -> Schedule:
         ) from error
 
 
-def _plant(
-    configuration: scl.Scl, motors: dict[str, Motor], schedules: dict[str, Schedule], motors_path: Path
-) -> Plant:
+def _plant(configuration: scl.Scl, entries: dict[str, _Entry], motors_path: Path) -> Plant:
     path = configuration.path
     feeders = configuration.feeders()
     if not feeders:
@@ -112,14 +136,14 @@ def _plant(
     _once(path, "relay", (feeder.ied for feeder in feeders))
     _one_relay_an_address(configuration, [feeder.ied for feeder in feeders])
     names = {feeder.motor for feeder in feeders}
-    for missing in sorted(names - motors.keys()):
+    for missing in sorted(names - entries.keys()):
         raise PlantError(
             motors_path,
             f"motor {missing}",
             expected=f"its [[motor]] table, as {path.name} has it",
             found="none",
         )
-    for unknown in sorted(motors.keys() - names):
+    for unknown in sorted(entries.keys() - names):
         known = ", ".join(sorted(names))
         raise PlantError(
             motors_path,
@@ -130,14 +154,14 @@ def _plant(
     sites = {feeder.site: Site(feeder.site, feeder.site_description) for feeder in feeders}
     return Plant(
         sites=tuple(sites.values()),
-        relays=tuple(_relay(configuration, feeder) for feeder in feeders),
+        relays=tuple(_relay(configuration, feeder, entries[feeder.motor].overrides) for feeder in feeders),
         motors=tuple(
             PlantMotor(
-                motors[feeder.motor],
+                entries[feeder.motor].motor,
                 feeder.motor_description,
                 feeder.site,
                 feeder.ied,
-                schedules.get(feeder.motor),
+                entries[feeder.motor].schedule,
             )
             for feeder in feeders
         ),
@@ -164,18 +188,11 @@ def _one_relay_an_address(configuration: scl.Scl, relays: Iterable[str]) -> None
         )
 
 
-def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
-    """The references the service uses, found in the relay's own model."""
+def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder, overrides: Overrides) -> Relay:
+    """What the relay's model promises, and what the motors file says of it."""
     ied = configuration.ied(feeder.ied)
     address = configuration.address(feeder.ied)
     points = recognise(ied)
-    if points.trigger is None:
-        raise PlantError(
-            configuration.path,
-            f"relay {ied.name}",
-            expected=f"the remote bit {REMOTE_BIT} or RcdTrg of an RDRE (CDC SPC) that triggers a record",
-            found="none",
-        )
     return Relay(
         name=ied.name,
         site=feeder.site,
@@ -189,4 +206,6 @@ def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder) -> Relay:
         report_control=points.report_control,
         metering_data_set=points.metering_data_set,
         measurands=measurands(ied),
+        expected=promised_by(ied),
+        overrides=overrides,
     )

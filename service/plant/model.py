@@ -1,9 +1,11 @@
 """Sites, relays and motors as plain values."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from core.machines.parameters import Motor
 from service.plant.metering import Measurand
+from service.plant.offer import Offer
+from service.plant.overrides import AS_RECOGNISED, Overrides
 from service.plant.schedule import Schedule
 
 
@@ -15,14 +17,17 @@ class Site:
 
 @dataclass(frozen=True, slots=True)
 class Relay:
-    """A motor relay: where it answers and the IEC 61850 references the service uses.
+    """A motor relay: where it answers, and what its SCL promises of the references the service uses.
 
-    trigger_control: control whose operation makes an event recording, "A1_SEL710CON/RBGGIO1.SPCSO01".
+    trigger_control: control whose operation makes an event recording, "A1_SEL710CON/RBGGIO1.SPCSO01", None
+    where there is none.
     record_made, fault_number: status the relay sets when a record is ready, None where it has none.
     report_control: buffered report "A1_SEL710CFG/LLN0.BR.BRep01" whose data set holds record_made, None
-    where there is none: then the directory alone tells of records.
+    where there is none.
     metering_data_set: data set with the measured currents, None where the relay offers none.
     measurands: what it measures all the time.
+    expected: all that the SCL promises, to be compared with what the relay offers.
+    overrides: what somebody has decided against all recognition.
     """
 
     name: str
@@ -31,12 +36,14 @@ class Relay:
     port: int
     manufacturer: str
     type: str
-    trigger_control: str
+    trigger_control: str | None
     record_made: str | None
     fault_number: str | None
     report_control: str | None
     metering_data_set: str | None
     measurands: tuple[Measurand, ...] = ()
+    expected: Offer | None = field(default=None, compare=False, repr=False)
+    overrides: Overrides = AS_RECOGNISED
 
 
 @dataclass(frozen=True, slots=True)

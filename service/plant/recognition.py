@@ -1,12 +1,27 @@
-"""What the service recognises in a relay's model: how to trigger it, and what tells of its records."""
+"""What the service recognises in a relay's model: how to trigger it, and what tells of its records.
 
-from collections.abc import Iterable
+The same rules read an SCL file and what a relay itself offers.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from scl.data_model import Ied
+from service.plant.offer import Offer, promised_by
 
 REMOTE_BIT = "RBGGIO1.SPCSO01"
 """Remote bit RB01 of the SEL-700 family, which the relay's event report trigger equation (ER) listens to."""
+
+RECORD_TRIGGER = "RcdTrg"
+"""Of an RDRE (IEC 61850-7-4): falls by itself."""
+
+NO_TRIGGER = (
+    "no control that makes a record (remote bit RB01, or RcdTrg of an RDRE): "
+    "it records what it records itself"
+)
+NO_RECORD_MADE = "no RcdMade of an RDRE: records are found by listing its directory"
+NO_BUFFERED_REPORT = "no buffered report that holds RcdMade: records are found by listing its directory"
+NO_CURRENTS = "no data set with the currents of an MMXU"
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,58 +29,83 @@ class RecognisedPoints:
     """References of the points, None for those the model lacks; `missing` says in words what that means.
 
     trigger: a control that has the relay record an event.  record_made, record_number: status of its
-    recorder.  report_control: a buffered report whose data set holds record_made.  metering_data_set: one
-    that holds the currents.
+    recorder.  report_controls: reports whose data set holds record_made, buffered ones first.
+    report_control: the first buffered one.  metering_data_set: one that holds the currents.
     """
 
     trigger: str | None
     record_made: str | None
     record_number: str | None
-    report_control: str | None
+    report_controls: tuple[str, ...]
     metering_data_set: str | None
-    missing: tuple[str, ...]
+
+    @property
+    def report_control(self) -> str | None:
+        return next((reference for reference in self.report_controls if ".BR." in reference), None)
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        missing = {
+            NO_TRIGGER: self.trigger is None,
+            NO_RECORD_MADE: self.record_made is None,
+            NO_BUFFERED_REPORT: self.record_made is not None and self.report_control is None,
+            NO_CURRENTS: self.metering_data_set is None,
+        }
+        return tuple(words for words, lacks in missing.items() if lacks)
 
 
 def recognise(ied: Ied) -> RecognisedPoints:
-    """The points of one relay."""
-    trigger = trigger_control(ied)
-    record_made = _first(placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdMade"))
-    reports = () if record_made is None else ied.report_controls(buffered=True, covering=record_made)
-    report_control = _first(reference for report in reports for reference in report.references)
-    metering = _metering_data_set(ied)
-    missing = {
-        "no control that makes a record (remote bit RB01, or RcdTrg of an RDRE): "
-        "it records what it records itself": trigger is None,
-        "no RcdMade of an RDRE: records are found by listing its directory": record_made is None,
-        "no buffered report that holds RcdMade: records are found by listing its directory": (
-            record_made is not None and report_control is None
-        ),
-        "no data set with the currents of an MMXU": metering is None,
-    }
+    """The points of one relay, from its SCL."""
+    controls = {placed.reference for placed in ied.data_objects(common_data_class="SPC")}
+    return recognise_offer(promised_by(ied), controls.__contains__)
+
+
+def recognise_offer(
+    offer: Offer, is_control: Callable[[str], bool], expected: Sequence[str] = ()
+) -> RecognisedPoints:
+    """The points among what is offered.
+
+    is_control: whether a data object can be operated, asked of few.  expected: references to be preferred
+    where there is a choice, or others of the same node and object where the logical device has another name.
+    """
+
+    def order(references: Iterable[str]) -> list[str]:
+        return sorted(references, key=lambda found: _strangeness(found, expected))
+
+    bits = order(f"{node}.SPCSO01" for node in offer.nodes if node.endswith("/RBGGIO1"))
+    triggers = [*filter(offer.has, bits), *order(offer.objects("RDRE", RECORD_TRIGGER))]
+    triggers.sort(key=lambda found: _strangeness(found, expected))
+    record_made = next(iter(order(offer.objects("RDRE", "RcdMade"))), None)
+    recorder = "" if record_made is None else record_made.partition(".")[0]
+    numbers = order(offer.objects("RDRE", "FltNum"))
+    numbers.sort(key=lambda found: found.partition(".")[0] != recorder)
     return RecognisedPoints(
-        trigger=trigger,
+        trigger=next(filter(is_control, triggers), None),
         record_made=record_made,
-        record_number=_first(placed.reference for placed in ied.data_objects(ln_class="RDRE", name="FltNum")),
-        report_control=report_control,
-        metering_data_set=metering,
-        missing=tuple(words for words, lacks in missing.items() if lacks),
+        record_number=next(iter(numbers), None),
+        report_controls=() if record_made is None else tuple(_reports(offer, record_made, expected)),
+        metering_data_set=_metering_data_set(offer, expected),
     )
 
 
-def trigger_control(ied: Ied) -> str | None:
-    """Reference of the control that has this relay record an event; None where it offers none."""
-    controls = [placed.reference for placed in ied.data_objects(common_data_class="SPC")]
-    recorders = (placed.reference for placed in ied.data_objects(ln_class="RDRE", name="RcdTrg"))
-    bits = (reference for reference in controls if reference.endswith(f"/{REMOTE_BIT}"))
-    return _first(bits) or _first(reference for reference in recorders if reference in controls)
+def _reports(offer: Offer, record_made: str, expected: Sequence[str]) -> list[str]:
+    telling = set(offer.data_sets_covering(record_made))
+    blocks = [block for block in offer.report_blocks if block.data_set in telling]
+    blocks.sort(key=lambda block: (not block.buffered, _strangeness(block.reference, expected)))
+    return [block.reference for block in blocks]
 
 
-def _metering_data_set(ied: Ied) -> str | None:
-    currents = _first(placed.reference for placed in ied.data_objects(ln_class="MMXU", name="A"))
+def _metering_data_set(offer: Offer, expected: Sequence[str]) -> str | None:
+    currents = next(iter(offer.objects("MMXU", "A")), None)
     if currents is None:
         return None
-    return _first(data_set.reference for data_set in ied.data_sets() if data_set.covers(currents))
+    found = sorted(offer.data_sets_covering(currents), key=lambda data_set: _strangeness(data_set, expected))
+    return next(iter(found), None)
 
 
-def _first(references: Iterable[str]) -> str | None:
-    return next(iter(references), None)
+def _strangeness(reference: str, expected: Sequence[str]) -> int:
+    """The place of what is expected; more for its namesake in another logical device, most for all else."""
+    if reference in expected:
+        return expected.index(reference)
+    tails = {known.partition("/")[2] for known in expected}
+    return len(expected) + (reference.partition("/")[2] not in tails)

@@ -52,6 +52,7 @@ class Base(DeclarativeBase):
         JobState: _words(JobState),
         Verdict: _words(Verdict),
         Mapping[str, object]: JSON,
+        list[Mapping[str, object]]: JSON,
     }
 
 
@@ -78,6 +79,7 @@ class IedRow(Base):
     link_changed_ns: Mapped[int | None]
     last_success_ns: Mapped[int | None]
     entry_id: Mapped[bytes | None] = mapped_column(LargeBinary)
+    entry_report_control: Mapped[str | None]
     clock_offset_ns: Mapped[int | None]
     clock_uncertainty_ns: Mapped[int | None]
     clock_quality: Mapped[ClockQuality | None]
@@ -163,6 +165,19 @@ class AlarmRow(Base):
         Index("ix_alarms_ied_cleared_ns", "ied", "cleared_ns"),
         Index("ix_alarms_raised_ns_id", "raised_ns", "id"),
     )
+
+
+class RelayFindingsRow(Base):
+    """What was found at a relay when it was last visited: what is used of it, what is not as promised."""
+
+    __tablename__ = "relay_findings"
+
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), primary_key=True)
+    found_ns: Mapped[int]
+    acquisition: Mapped[Mapping[str, object]]
+    differences: Mapped[list[Mapping[str, object]]]
+    ignored_files: Mapped[list[Mapping[str, object]]]
+    ignored_in_all: Mapped[int]
 
 
 class MotorRow(Base):
@@ -268,6 +283,27 @@ class MeasurementRow(Base):
     reactive_power_var: Mapped[float | None]
     power_factor: Mapped[float | None]
     frequency_Hz: Mapped[float | None]
+    average_current_A: Mapped[float | None]
+    maximum_current_A: Mapped[float | None]
+    minimum_current_A: Mapped[float | None]
+    average_voltage_V: Mapped[float | None]
+    maximum_voltage_V: Mapped[float | None]
+    minimum_voltage_V: Mapped[float | None]
+    average_power_W: Mapped[float | None]
+    maximum_power_W: Mapped[float | None]
+    minimum_power_W: Mapped[float | None]
+    maximum_ia_A: Mapped[float | None]
+    maximum_ib_A: Mapped[float | None]
+    maximum_ic_A: Mapped[float | None]
+    minimum_ia_A: Mapped[float | None]
+    minimum_ib_A: Mapped[float | None]
+    minimum_ic_A: Mapped[float | None]
+    maximum_vab_V: Mapped[float | None]
+    maximum_vbc_V: Mapped[float | None]
+    maximum_vca_V: Mapped[float | None]
+    minimum_vab_V: Mapped[float | None]
+    minimum_vbc_V: Mapped[float | None]
+    minimum_vca_V: Mapped[float | None]
 
     __table_args__ = (Index("ix_measurements_step_s_time_ns", "step_s", "time_ns"),)
 

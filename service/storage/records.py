@@ -1,6 +1,6 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, Literal, TypeVar
 
@@ -147,6 +147,22 @@ class Alarm:
 
 
 @dataclass(frozen=True, slots=True)
+class RelayFindings:
+    """What was found at a relay when it was last visited, as JSON documents.
+
+    acquisition: what is used of it.  differences: from its SCL.  ignored_files: those of its events directory
+    that are not taken, with the reason; `ignored_in_all` may be more.
+    """
+
+    ied: str
+    found_ns: int
+    acquisition: Mapping[str, object]
+    differences: Sequence[Mapping[str, object]] = ()
+    ignored_files: Sequence[Mapping[str, object]] = ()
+    ignored_in_all: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class MotorEntry:
     """A motor; `schedule` is a cron expression in UTC."""
 
@@ -285,7 +301,11 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Measurement:
-    """Measured values, or means of `samples` of them from `time_ns` on; None where the relay has none."""
+    """Measured values, or means of `samples` of them from `time_ns` on; None where the relay has none.
+
+    average_..., maximum_..., minimum_...: the relay's own statistics; of several, the largest maximum and the
+    smallest minimum.
+    """
 
     time_ns: int
     samples: int
@@ -302,6 +322,27 @@ class Measurement:
     reactive_power_var: float | None
     power_factor: float | None
     frequency_Hz: float | None
+    average_current_A: float | None
+    maximum_current_A: float | None
+    minimum_current_A: float | None
+    average_voltage_V: float | None
+    maximum_voltage_V: float | None
+    minimum_voltage_V: float | None
+    average_power_W: float | None
+    maximum_power_W: float | None
+    minimum_power_W: float | None
+    maximum_ia_A: float | None
+    maximum_ib_A: float | None
+    maximum_ic_A: float | None
+    minimum_ia_A: float | None
+    minimum_ib_A: float | None
+    minimum_ic_A: float | None
+    maximum_vab_V: float | None
+    maximum_vbc_V: float | None
+    maximum_vca_V: float | None
+    minimum_vab_V: float | None
+    minimum_vbc_V: float | None
+    minimum_vca_V: float | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ class AlarmKind(StrEnum):
     FILE_UNSTEADY = "file-unsteady"
     DAILY_LIMIT = "daily-limit"
     QUARANTINED = "quarantined"
+    RELAY_DIFFERS = "relay-differs"
 
 
 class ClockQuality(StrEnum):

@@ -52,7 +52,9 @@ class SimulatedPlant:
 
 
 @contextmanager
-def simulated_plant(directory: Path, relays: Sequence[str] = RELAYS) -> Iterator[SimulatedPlant]:
+def simulated_plant(
+    directory: Path, relays: Sequence[str] = RELAYS, scenario: Path = SCENARIO
+) -> Iterator[SimulatedPlant]:
     """The demo plant on free ports; only the named relays are switched on."""
     scd = directory / "plant.scd"
     ports = free_ports(len(RELAYS))
@@ -62,7 +64,7 @@ def simulated_plant(directory: Path, relays: Sequence[str] = RELAYS) -> Iterator
         {relay: Address("127.0.0.1", port) for relay, port in zip(RELAYS, ports, strict=True)},
     )
     files = directory / "relays"
-    command = [sys.executable, "-m", "ied_sim", "--scd", str(scd), "--scenario", str(SCENARIO)]
+    command = [sys.executable, "-m", "ied_sim", "--scd", str(scd), "--scenario", str(scenario)]
     command += ["--files", str(files)]
     command += [word for relay in relays for word in ("--ied", relay)]
     with (

@@ -7,12 +7,12 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from mms import FileAnswer, FileRequest, Server, ServerStartFailed
+from mms import FileAnswer, FileRequest, Server, ServerStartFailed, TlsConfiguration
 from tests.mms.relay_model import MODEL_TEXT
 
 LOOPBACK: Final = "127.0.0.1"
@@ -27,13 +27,15 @@ def free_port() -> int:
 
 def start_relay(
     *, file_root: Path | None = None, max_connections: int = 5, report_buffer_bytes: int = 65_536,
-    on_file_request: Callable[[FileRequest], FileAnswer] | None = None,
+    on_file_request: Callable[[FileRequest], FileAnswer] | None = None, tls: TlsConfiguration | None = None,
+    passwords: Iterable[str] = (),
 ) -> Server:  # fmt: skip
     """A running server on a free port; tries again if another process was faster."""
     for attempt in range(5):
         server = Server(
             MODEL_TEXT, port=free_port(), file_root=file_root, max_connections=max_connections,
             report_buffer_bytes=report_buffer_bytes, on_file_request=on_file_request,
+            tls=tls, passwords=passwords,
         )  # fmt: skip
         try:
             server.start()
@@ -58,9 +60,11 @@ def eventually(condition: Callable[[], bool], timeout_s: float = 5.0) -> bool:
 class RelayProcess:
     """A relay in a process of its own, to be frozen or killed."""
 
-    def __init__(self, file_root: Path) -> None:
+    def __init__(self, file_root: Path, certificates: Path | None = None) -> None:
+        """With the certificates of a Pki it speaks TLS."""
+        folder = [] if certificates is None else [str(certificates)]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "tests.mms.relay_process", str(file_root)],
+            [sys.executable, "-m", "tests.mms.relay_process", str(file_root), *folder],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
         )  # fmt: skip
         assert self._process.stdout is not None

@@ -18,7 +18,8 @@ from mms.values import BitString, Quality, Timestamp, Validity, decode
 
 SOURCES = sorted(Path(mms.__file__).parent.glob("*.py"))
 C_PREFIXES = (
-    "Client", "Config", "Control", "DataAttribute_", "File", "Ied", "LinkedList_", "Mms", "ModelNode_",
+    "Acse", "Client", "Config", "Control", "DataAttribute_", "File", "Ied", "Iso", "LinkedList_", "Mms",
+    "ModelNode_", "TLSConfiguration_", "TLSConnection_",
 )  # fmt: skip
 
 

@@ -1,9 +1,11 @@
 """docs/settings.md and docs/api.md name what there is, and nothing else."""
 
 import re
+from dataclasses import fields
 from pathlib import Path
 
 from service.api import ApiContext, create_app
+from service.plant import Overrides
 from service.recordings import RecordingStore
 from service.settings import Settings
 from service.storage import Repository, connect
@@ -14,6 +16,12 @@ DOCS = Path(__file__).parents[2] / "docs"
 def test_every_setting_is_documented() -> None:
     rows = re.findall(r"^\| `(\w+)` \|", (DOCS / "settings.md").read_text(encoding="utf-8"), re.MULTILINE)
     assert sorted(rows) == sorted(Settings.model_fields)
+
+
+def test_every_decision_about_a_relay_is_documented() -> None:
+    page = (DOCS / "relays.md").read_text(encoding="utf-8")
+    keys = re.findall(r"^(\w+) = .*$", page.partition("[motor.relay]\n")[2].partition("```")[0], re.MULTILINE)
+    assert sorted(keys) == sorted(field.name for field in fields(Overrides))
 
 
 def test_every_route_is_documented(tmp_path: Path) -> None:

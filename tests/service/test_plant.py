@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 import scl
-from service.plant import PlantError, Schedule, read_plant
+from service.plant import Overrides, PlantError, Schedule, read_plant
 from service.settings import Settings, SettingsError
 
 DEMO_MOTORS = Path(__file__).parents[2] / "service" / "demo" / "motors.toml"
@@ -96,7 +96,6 @@ def test_a_motor_the_scd_does_not_have(motors: Path) -> None:
             "(P elements IP and MMS-Port), found 127.0.0.1:10210 for 2 of them",
         ),
         ('<P type="MMS-Port">10211</P>', '<P type="MMS-Port">70000</P>', "expected a port from 1 to 65535"),
-        ("SPCSO01", "SPCSX01", "relay A1_SEL710: expected the remote bit RBGGIO1.SPCSO01 or RcdTrg"),
         ("</SCL>", "", "expected"),
     ],
 )
@@ -130,6 +129,49 @@ def test_a_relay_that_tells_of_no_record_is_taken_and_polled(motors: Path, tmp_p
     relay = read_plant(settings(motors, tmp_path / "old.scd")).relay("A1_SEL710")
     assert (relay.record_made, relay.report_control) == (None, None)
     assert relay.trigger_control == "A1_SEL710CON/RBGGIO1.SPCSO01"
+
+
+def test_a_relay_that_cannot_be_triggered_is_taken_all_the_same(motors: Path, tmp_path: Path) -> None:
+    content = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8").replace("SPCSO01", "SPCSX01")
+    (tmp_path / "readonly.scd").write_text(content, encoding="utf-8")
+    relay = read_plant(settings(motors, tmp_path / "readonly.scd")).relay("A1_SEL710")
+    assert relay.trigger_control is None
+    assert relay.report_control == "A1_SEL710CFG/LLN0.BR.BRep01"
+
+
+def test_the_motors_file_may_decide_about_the_relay(motors: Path) -> None:
+    text = motors.read_text(encoding="utf-8")
+    table = '[motor.relay]\ntrigger = "none"\nevents_directory = "COMTRADE"\n\n[motor.nameplate]'
+    motors.write_text(text.replace("[motor.nameplate]", table, 1))
+    plant = read_plant(settings(motors))
+    decided, left = plant.relays[:2]
+    assert (decided.overrides.trigger, decided.overrides.events_directory) == ("none", "COMTRADE")
+    assert left.overrides == Overrides()
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("trigger = 1", "relay.trigger: expected a control such as"),
+        ('trigger = "RBGGIO1.SPCSO01"', "relay.trigger: expected a control such as"),
+        (
+            'report_control = "A1/LLN0.BRep01"',
+            "relay.report_control: expected a report control block such as",
+        ),
+        ('trigger_action = "push"', "relay.trigger_action: expected 'set-reset' or 'pulse', found 'push'"),
+        ('events_directory = ""', "relay.events_directory: expected a folder of the relay"),
+        (
+            'folder = "EVENTS"',
+            "relay.folder: expected one of trigger, report_control, trigger_action, events_",
+        ),
+    ],
+)
+def test_what_is_wrong_in_what_it_decides_is_named(motors: Path, line: str, message: str) -> None:
+    text = motors.read_text(encoding="utf-8")
+    motors.write_text(text.replace("[motor.nameplate]", f"[motor.relay]\n{line}\n\n[motor.nameplate]", 1))
+    with pytest.raises(PlantError) as failure:
+        read_plant(settings(motors))
+    assert f"motor PUMP-A1: {message}" in str(failure.value)
 
 
 def test_a_motor_may_have_a_schedule(motors: Path) -> None:

@@ -69,3 +69,52 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 def test_a_password_in_the_url_is_not_shown() -> None:
     settings = Settings(database_url="postgresql+psycopg://mcc:secret@db.example/mcc")
     assert "secret" not in repr(settings)
+
+
+RELAY = """
+[relays.A1_SEL710]
+password_file = "secrets/A1"
+tls = { certificate = "mcc.pem", key = "/keys/mcc.key", ca = "ca.pem", pinned = ["old.pem", "new.pem"] }
+[relays.ca]
+password_file = "secrets/ca"
+"""
+
+
+def test_the_files_of_a_relay_are_meant_from_the_settings_folder(tmp_path: Path) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text(RELAY)
+    relays = Settings.load(config).relays
+    assert relays["ca"].password_file == tmp_path / "secrets" / "ca", "a relay of that name is a relay"
+    access = relays["A1_SEL710"]
+    assert access.password_file == tmp_path / "secrets" / "A1"
+    assert access.tls is not None
+    assert access.tls.certificate == tmp_path / "mcc.pem"
+    assert access.tls.key == Path("/keys/mcc.key")
+    assert access.tls.pinned == (tmp_path / "old.pem", tmp_path / "new.pem")
+
+
+def test_settings_handed_to_a_gateway_keep_their_relays(tmp_path: Path) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text(RELAY)
+    settings = Settings.load(config)
+    assert Settings.model_validate_json(settings.model_dump_json()) == settings
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ('[relays.A1]\npassword = "hidden"', "relays.A1.password: expected a setting named in"),
+        (
+            '[relays.A1.tls]\npassword = "hidden"\nkey = "k"\npinned = ["p"]',
+            "relays.A1.tls.certificate: expected this setting, found none",
+        ),
+        ('[relays.A1.tls]\ncertificate = "c"\nkey = "k"\npinned = []', "relays.A1.tls.pinned: expected"),
+        ('relays = "hidden"', "relays: expected Input should be a valid dictionary"),
+    ],
+)
+def test_what_is_wrong_with_a_relay_is_named(tmp_path: Path, content: str, message: str) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text(content)
+    with pytest.raises(SettingsError, match=r"mcc\.toml") as failure:
+        Settings.load(config)
+    assert message in str(failure.value)

@@ -4,6 +4,7 @@ from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
 from service.storage.repository.condition import ConditionRows
 from service.storage.repository.event_reports import EventReportRows
+from service.storage.repository.findings import FindingsRows
 from service.storage.repository.jobs import JobRows
 from service.storage.repository.leases import LeaseRows
 from service.storage.repository.links import LinkRows
@@ -16,6 +17,7 @@ from service.storage.repository.recordings import RecordingRows
 class Repository(
     PlantRows,
     LinkRows,
+    FindingsRows,
     LeaseRows,
     AlarmRows,
     QuarantineRows,

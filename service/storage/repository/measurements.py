@@ -32,6 +32,27 @@ FIGURES: tuple[InstrumentedAttribute[float | None], ...] = (
     MeasurementRow.reactive_power_var,
     MeasurementRow.power_factor,
     MeasurementRow.frequency_Hz,
+    MeasurementRow.average_current_A,
+    MeasurementRow.maximum_current_A,
+    MeasurementRow.minimum_current_A,
+    MeasurementRow.average_voltage_V,
+    MeasurementRow.maximum_voltage_V,
+    MeasurementRow.minimum_voltage_V,
+    MeasurementRow.average_power_W,
+    MeasurementRow.maximum_power_W,
+    MeasurementRow.minimum_power_W,
+    MeasurementRow.maximum_ia_A,
+    MeasurementRow.maximum_ib_A,
+    MeasurementRow.maximum_ic_A,
+    MeasurementRow.minimum_ia_A,
+    MeasurementRow.minimum_ib_A,
+    MeasurementRow.minimum_ic_A,
+    MeasurementRow.maximum_vab_V,
+    MeasurementRow.maximum_vbc_V,
+    MeasurementRow.maximum_vca_V,
+    MeasurementRow.minimum_vab_V,
+    MeasurementRow.minimum_vbc_V,
+    MeasurementRow.minimum_vca_V,
 )
 
 
@@ -98,7 +119,7 @@ def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int
             literal(step_s),
             begin,
             func.sum(MeasurementRow.samples),
-            *(_mean(figure) for figure in FIGURES),
+            *(_of_an_interval(figure) for figure in FIGURES),
         )
         .where(
             MeasurementRow.step_s == finer, MeasurementRow.time_ns >= from_ns, MeasurementRow.time_ns < to_ns
@@ -107,6 +128,15 @@ def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int
     )
     names = ["motor", "step_s", "time_ns", "samples", *(figure.key for figure in FIGURES)]
     session.execute(insert(MeasurementRow).from_select(names, means))
+
+
+def _of_an_interval(figure: InstrumentedAttribute[float | None]) -> ColumnElement[float | None]:
+    """The mean; of a relay's own maxima and minima, the largest and the smallest."""
+    if figure.key.startswith("maximum_"):
+        return func.max(figure)
+    if figure.key.startswith("minimum_"):
+        return func.min(figure)
+    return _mean(figure)
 
 
 def _mean(figure: InstrumentedAttribute[float | None]) -> ColumnElement[float | None]:

@@ -48,15 +48,21 @@ class PlantRows(Sessions):
             row.clock_offset_ns, row.clock_uncertainty_ns = reading.offset_ns, reading.uncertainty_ns
             row.clock_quality, row.clock_measured_ns = reading.quality, reading.measured_ns
 
-    def entry_id(self, ied: str) -> bytes | None:
-        """EntryID of the last buffered report whose records are safe here. Raises NotFoundError."""
-        with self._read() as session:
-            return found(session, IedRow, ied, "IED").entry_id
+    def entry_id(self, ied: str, report_control: str | None = None) -> bytes | None:
+        """EntryID of the last buffered report whose records are safe here; None for another block's.
 
-    def save_entry_id(self, ied: str, entry_id: bytes) -> None:
-        """Remembers where to resume the buffered report. Raises NotFoundError."""
+        Each block has a buffer of its own. Raises NotFoundError.
+        """
+        with self._read() as session:
+            row = found(session, IedRow, ied, "IED")
+            unknown = report_control is None or row.entry_report_control is None
+            return row.entry_id if unknown or row.entry_report_control == report_control else None
+
+    def save_entry_id(self, ied: str, entry_id: bytes, report_control: str | None = None) -> None:
+        """Remembers where to resume the buffered report of a block. Raises NotFoundError."""
         with self._write() as session:
-            found(session, IedRow, ied, "IED").entry_id = entry_id
+            row = found(session, IedRow, ied, "IED")
+            row.entry_id, row.entry_report_control = entry_id, report_control
 
     def sites(self, *, limit: int, after: Cursor | None = None) -> Page[SiteEntry]:
         with self._read() as session:

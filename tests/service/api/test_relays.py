@@ -1,7 +1,7 @@
 import httpx
 
 from service.storage import Repository
-from service.storage.records import LinkTraffic
+from service.storage.records import LinkTraffic, RelayFindings
 from service.storage.states import AlarmKind, LinkState
 from tests.service.plants import NOW_NS, SECOND_NS
 
@@ -26,6 +26,36 @@ def test_a_relay_tells_its_link(client: httpx.Client, repository: Repository) ->
         "reports": 0,
         "report_gaps": 0,
     }
+
+
+ACQUISITION = {
+    "asked": True,
+    "trigger": f"{NAME}CON/RBGGIO1.SPCSO01",
+    "trigger_action": "set-reset",
+    "control_model": "direct-with-normal-security",
+    "record_made": f"{NAME}PRO/FLTRDRE1.RcdMade",
+    "record_number": None,
+    "records_told_by": "polling",
+    "report_control": None,
+    "events_directory": "COMTRADE",
+    "overridden": ["report_control"],
+    "remarks": [],
+}
+
+
+def test_a_relay_tells_what_is_used_of_it(client: httpx.Client, repository: Repository) -> None:
+    before = client.get(URL).json()
+    assert (before["acquisition"], before["differences"], before["ignored_files"]) == (None, [], [])
+    missing = {"kind": "logical-node", "expected": "A1_SEL710PRO/FLTRDRE1", "found": None}
+    ignored = {"name": "NOTES.TXT", "reason": "no file of a recording"}
+    for times in (3, 1):
+        findings = RelayFindings(NAME, NOW_NS, ACQUISITION, [missing] * times, [ignored], 7)
+        repository.note_findings(findings)
+        assert repository.relay_findings(NAME) == findings
+    after = client.get(URL).json()
+    assert after["acquisition"] == {**ACQUISITION, "found_time": FIRST}
+    assert after["differences"] == [missing]
+    assert (after["ignored_files"], after["ignored_files_in_all"]) == ([ignored], 7)
 
 
 def test_a_relay_tells_the_history_of_its_link(client: httpx.Client, repository: Repository) -> None:

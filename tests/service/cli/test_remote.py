@@ -1,5 +1,6 @@
 """The commands that ask a running service, against the API on a real port."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -9,8 +10,10 @@ from service.cli.app import main
 from service.recordings import RecordingStore
 from service.settings import Settings
 from service.storage import Repository
+from service.storage.records import RelayFindings
 from service.storage.states import LinkState
 from tests.service.api.serving import serving
+from tests.service.api.test_relays import ACQUISITION
 from tests.service.fixtures import database_url, engine, repository
 from tests.service.plants import NOW_NS
 
@@ -32,6 +35,28 @@ def test_the_motors_whose_relay_is_down_say_why(
     words = " ".join(line[column:].split("  ")[0].strip() for line in shown.splitlines()[3:])
     assert "down: 10.0.0.7:102: connection refused" in " ".join(words.split())
     assert "up" in words
+
+
+def test_a_relay_tells_what_is_used_of_it(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    app = create_app(
+        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+    )
+    missing = {"kind": "logical-node", "expected": "A1_SEL710PRO/FLTRDRE1", "found": None}
+    ignored = {"name": "NOTES.TXT", "reason": "no file of a recording"}
+    with serving(app) as client:
+        assert main(["relay", "A1_SEL710", "--url", str(client.base_url)]) == 0
+        assert "not visited yet" in capsys.readouterr().out
+        repository.note_findings(RelayFindings("A1_SEL710", NOW_NS, ACQUISITION, [missing], [ignored], 1))
+        assert main(["relay", "A1_SEL710", "--url", str(client.base_url)]) == 0
+        shown = " ".join(capsys.readouterr().out.replace("\N{BOX DRAWINGS LIGHT VERTICAL}", " ").split())
+        assert main(["relay", "A1_SEL710", "--url", str(client.base_url), "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["differences"] == [missing]
+        assert main(["relay", "NOPE", "--url", str(client.base_url)]) == 1
+    for words in ("direct-with-normal-security", "COMTRADE", "NOTES.TXT: no file of a recording"):
+        assert words in shown
+    assert "found none" in shown
 
 
 def test_a_key_triggers_once(

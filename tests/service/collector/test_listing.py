@@ -80,8 +80,16 @@ def test_two_files_that_claim_one_name_do_not_overwrite_each_other() -> None:
     assert "two files" in listing.refused[0].reason
 
 
-def test_other_files_are_passed_over() -> None:
-    assert understand(listed("C4_1.CEV", "HISTORY.TXT", "SUBFOLDER/", ""), "EVENTS").records == ()
+def test_other_files_are_ignored_and_said_to_be() -> None:
+    listing = understand(listed("HISTORY.TXT", "SUBFOLDER/", "a\x1b[2J.txt"), "EVENTS")
+    assert (listing.records, listing.refused) == ((), ())
+    assert {file.name: file.reason.partition(":")[0].partition(" (")[0] for file in listing.ignored} == {
+        "HISTORY.TXT": "no file of a recording",
+        "SUBFOLDER/": "a folder",
+        "'a\\x1b[2J.txt'": "no file of a recording",
+    }
+    many = understand(listed(*(f"{number}.TXT" for number in range(500))), "EVENTS")
+    assert (len(many.ignored), many.ignored_in_all) == (100, 500)
 
 
 def test_a_record_tells_what_it_lacks() -> None:

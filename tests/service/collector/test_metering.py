@@ -2,16 +2,19 @@
 
 import time
 from dataclasses import replace
+from pathlib import Path
 from threading import Thread
 
 import pytest
 
 import scl
-from mms import Client
+from mms import Client, Server
+from scl.model_text import model_text
+from service.collector.browsing import browse
 from service.collector.metering import Metering
 from service.collector.relay_session import RelaySession
 from service.plant import Measurand, MeteredQuantity, Relay
-from service.plant.metering import measurands
+from service.plant.metering import measurands, measurands_offered
 from service.storage.records import Sample
 from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
@@ -78,6 +81,54 @@ def test_a_relay_that_measures_nothing_is_not_asked_again(bench: Bench, metered:
     assert metering.due_in_s() == 0, "another connection, another chance"
     switched_off = Metering(metered, MOTOR, period_s=0, on_sample=samples.append)
     assert switched_off.due_in_s() > 1e9
+
+
+MSTA_NODE = '<LN prefix="MET" lnClass="MSTA" inst="1" lnType="MSTA"/>'
+MSTA_TYPE = """<LNodeType id="MSTA" lnClass="MSTA"><DO name="Beh" type="ENS_Beh"/>
+    <DO name="AvAmps" type="MV_W"/><DO name="MaxW" type="MV_W"/><DO name="MaxA" type="WYE_A"/></LNodeType>
+    <LNodeType id="MSQI" """
+
+
+def test_statistics_are_sampled_where_the_relay_has_them(tmp_path: Path, bench: Bench) -> None:
+    """Once a minute at most; in the relay's own model or in its SCL, both lead there."""
+    text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8").replace('<LNodeType id="MSQI" ', MSTA_TYPE)
+    path = tmp_path / "statistics.scd"
+    path.write_text(
+        text.replace('<LN prefix="MET" lnClass="MSQI"', MSTA_NODE + '<LN prefix="MET" lnClass="MSQI"')
+    )
+    document = scl.read(path)
+    msta = f"{NAME}MET/METMSTA1"
+    statistics = {"average_current_A": 5.5, "maximum_power_W": 810.0, "maximum_ib_A": 11.5}
+    promised = {each for each in measurands(document.ied(NAME)) if each.quantity.is_statistic}
+    assert {each.quantity for each in promised} == {*statistics, "maximum_ia_A", "maximum_ic_A"}
+    server = Server(model_text(document, NAME), port=bench.relay.port)
+    server.start()
+    try:
+        server.update_many(
+            {
+                f"{msta}.AvAmps.mag.f": 5.5,
+                f"{msta}.MaxW.mag.f": 810.0,
+                f"{msta}.MaxA.phsB.cVal.mag.f": 11.5,
+            }
+        )
+        samples: list[Sample] = []
+        with Client.connect("127.0.0.1", bench.relay.port) as client:
+            offer = browse(client, None)
+            assert offer is not None
+            found = measurands_offered(offer, ())
+            assert promised <= set(found)
+            metering = Metering(bench.relay, MOTOR, period_s=60, on_sample=samples.append)
+            metering.begin(found)
+            metering.sample(client)
+            metering.sample(client)
+    finally:
+        server.stop()
+    first, second = (
+        {name: value for name, value in each.values.items() if name in statistics} for each in samples
+    )
+    assert first == pytest.approx(statistics)
+    assert second == {}
+    assert "frequency_Hz" in samples[1].values
 
 
 def test_a_session_samples_while_it_waits(bench: Bench, relay: ScriptedRelay, metered: Relay) -> None:

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from structlog.testing import capture_logs
 
-from mms import Client, Report
-from service.collector.relay_session import Inbox, RelaySession
+from mms import Client
+from service.collector.relay_session import RelaySession
 from service.recordings import Incoming
 from service.storage.states import EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import Bench, eventually
-from tests.service.collector.scripted_relay import CONTROL, NAME, REPORT_CONTROL, ScriptedRelay
+from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
 
 
 def test_a_wish_becomes_a_stored_record(bench: Bench, relay: ScriptedRelay) -> None:
@@ -265,9 +265,6 @@ def test_a_relay_that_forgot_the_last_report_is_subscribed_anew(bench: Bench, re
         assert eventually(lambda: bench.repository.entry_id(NAME) not in (None, forgotten))
 
 
-OVERFLOWED = "the relay's report buffer had overflowed"
-
-
 def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.collector.relay_session.FIRST_RETRY_S", 0.05)
     failures: list[str] = []
@@ -290,29 +287,3 @@ def test_a_relay_that_stays_down_is_mentioned_now_and_then(
     monkeypatch.setattr("service.collector.link.REMIND_AFTER_S", 0.0)
     with capture_logs() as logs, bench.session():
         assert eventually(lambda: [entry["event"] for entry in logs].count("link down") >= 2)
-
-
-@pytest.mark.parametrize("resumed", [False, True])
-def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRelay, resumed: bool) -> None:
-    """A block that is enabled without an EntryID begins with the bit set."""
-    report = Report(
-        rcb_reference=REPORT_CONTROL,
-        report_id="",
-        entry_id=None,
-        sequence_number=0,
-        timestamp_ns=None,
-        buffer_overflow=True,
-        data_set=None,
-        members=(),
-    )
-    session = RelaySession(bench.relay, "PUMP-A1", bench.repository, bench.store, bench.settings)
-    if resumed:
-        with bench.session():
-            relay.write_record("HR_1")
-            assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
-    with Client.connect("127.0.0.1", relay.port) as client, capture_logs() as logs:
-        session._subscribe(client, Inbox(session._something_to_do))
-        session._heed(report)
-        assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed)
-        session._heed(report)
-        assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed) + 1

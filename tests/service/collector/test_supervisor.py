@@ -11,6 +11,7 @@ from threading import Thread
 import pytest
 
 from service.collector.supervisor import CollectorSupervisor, _hand_over
+from service.relay_access import RelayAccess, RelayTls
 from service.settings import Settings
 from tests.service.collector.conftest import eventually
 
@@ -73,6 +74,22 @@ def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path, monkeypatch:
     assert eventually(lambda: supervised.process_id is not None)
     supervised.stop()
     assert supervised.process_id is None
+
+
+def test_the_settings_of_a_thousand_relays_wait_for_no_collector(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.supervisor.STOP_PATIENCE_S", 0.2)
+    tls = RelayTls(certificate=tmp_path, key=tmp_path, pinned=(tmp_path, tmp_path), ca=tmp_path)
+    relays = {f"A{number}_SEL710": RelayAccess(tls=tls, password_file=tmp_path) for number in range(1000)}
+    settings = Settings(data_directory=tmp_path, relays=relays)
+    supervised = CollectorSupervisor(settings, (sys.executable, "-c", STUBBORN))
+    supervised.start()
+    assert eventually(lambda: supervised.process_id is not None)
+    stopping = Thread(target=supervised.stop, daemon=True)
+    stopping.start()
+    stopping.join(20)
+    assert not stopping.is_alive()
 
 
 def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> None:

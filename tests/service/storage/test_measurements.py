@@ -66,6 +66,16 @@ def test_means_are_those_of_the_samples(repository: Repository) -> None:
     assert sum(minute.samples for minute in minutes) == sum(s.motor == "PUMP-A1" for s in samples)
 
 
+def test_of_the_relay_s_own_extremes_the_extremes_are_kept(repository: Repository) -> None:
+    for second, value in enumerate((3.0, 7.0, 5.0)):
+        values = {"maximum_ia_A": value, "minimum_ia_A": value, "average_current_A": value}
+        repository.add_samples([Sample("PUMP-A1", BEGIN_NS + second * SECOND_NS, values)])
+    repository.average_measurements(now_ns=BEGIN_NS + 1200 * SECOND_NS)
+    for step_s in (60, 900):
+        (kept,) = measured(repository, step_s)
+        assert (kept.maximum_ia_A, kept.minimum_ia_A, kept.average_current_A) == (7.0, 3.0, 5.0)
+
+
 def test_an_interval_that_is_not_over_has_no_mean(repository: Repository) -> None:
     repository.add_samples([Sample("PUMP-A1", BEGIN_NS, {"ia_A": 1.0})])
     repository.average_measurements(now_ns=BEGIN_NS + 179 * SECOND_NS)

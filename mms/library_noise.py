@@ -1,0 +1,51 @@
+"""Standard error without what the library writes there about certificates, some thirty lines a handshake.
+
+The wheel's library is built with that on, and there is no switch.
+"""
+
+import atexit
+import os
+import sys
+import threading
+from collections.abc import Iterator
+from typing import Final
+
+_STDERR: Final = 2
+_MARK: Final = b"TLS: "
+_CHUNK: Final = 65_536
+_LAST_LINES_S: Final = 1.0
+
+
+def keep_tls_notes_off_stderr() -> None:
+    """From now on; once a process, before anything holds `sys.stderr`.
+
+    Python writes to the same place as before. What C code writes passes through a thread, so the last words
+    of a process that dies in C may be lost; whoever waits for it still learns the signal.
+    """
+    real = os.dup(_STDERR)
+    reading, writing = os.pipe()
+    os.dup2(writing, _STDERR)
+    os.close(writing)
+    sys.stderr = os.fdopen(os.dup(real), "w", buffering=1, encoding="utf-8", errors="backslashreplace")
+    passing_on = threading.Thread(target=_pass_on, args=(reading, real), name="stderr", daemon=True)
+    passing_on.start()
+
+    @atexit.register
+    def pass_on_the_rest() -> None:
+        os.dup2(real, _STDERR)
+        passing_on.join(_LAST_LINES_S)
+
+
+def _pass_on(reading: int, real: int) -> None:
+    with os.fdopen(reading, "rb", buffering=_CHUNK) as lines:
+        for line in other_lines(lines):
+            os.write(real, line)
+
+
+def other_lines(lines: Iterator[bytes]) -> Iterator[bytes]:
+    """Those that are no note of the library's: they begin with TLS, and indented or empty lines go on."""
+    in_note = False
+    for line in lines:
+        in_note = line.startswith(_MARK) or (in_note and (line.startswith(b"  ") or not line.strip()))
+        if not in_note:
+            yield line

@@ -1,0 +1,175 @@
+"""Why a relay did not let us in, in words: the library tells only that.
+
+After a failure, and only then, a connection of our own or two look at what answers there. They send what any
+client begins with: a transport connect request (ISO 8073, in TPKT) or a TLS ClientHello. They send no
+password, and our certificate only to a relay that the library trusts and that has not said what it thinks of
+it.
+"""
+
+import socket
+import ssl
+import time
+from enum import Enum
+from typing import Final
+
+from mms import errors
+from mms.tls import TLS_PORT, TlsContext, TlsVersion
+
+_CONNECT_REQUEST: Final = bytes.fromhex("0300001611e00000000100c0010dc2020001c1020000")
+_TPKT, _TLS_ALERT, _TLS_HANDSHAKE = 3, 21, 22
+_LONGEST_LOOK_S: Final = 1.0
+
+
+class _Answer(Enum):
+    """What a first message brought."""
+
+    MMS = "the transport of MMS"
+    TLS = "a TLS handshake"
+    ALERT = "a TLS alert"
+    OTHER = "something else"
+    END = "the connection's end"
+    NONE = "nothing"
+    REFUSED = "a refusal"
+    UNREACHABLE = "no connection"
+
+
+def refused(
+    host: str, address: tuple[str, int], tls: TlsContext | None, *, password: bool, deadline: float
+) -> errors.MmsError:
+    """The error for a connect that failed.
+
+    host: the relay as the user named it.  deadline: when its time is over [s, monotonic].
+    """
+    look = _Look(address, deadline)
+    distrust = None if tls is None else tls.distrust()
+    if tls is not None and distrust is not None:
+        reason = (
+            f"the relay's certificate is not trusted: {distrust}. Expected {', '.join(tls.trusted)}. If the "
+            "relay has a new certificate, pin that one; else somebody else answers there"
+        )
+        return errors.RelayNotTrusted(host, "connect", 0, reason)
+    if look.is_late:
+        return _no_relay(host, _Answer.NONE)
+    if tls is None:
+        return _without_tls(host, look, password=password)
+    version = tls.undisturbed
+    if version is TlsVersion.TLS_1_2 or (version is TlsVersion.TLS_1_3 and look.is_let_in(tls)):
+        return errors.AssociationRejected(host, "connect", 0, _rejected(password=password))
+    return _with_tls(host, look)
+
+
+def _without_tls(host: str, look: "_Look", *, password: bool) -> errors.MmsError:
+    answer = look.at(_CONNECT_REQUEST)
+    if answer is _Answer.MMS:
+        return errors.AssociationRejected(host, "connect", 0, _rejected(password=password))
+    if answer is _Answer.END:
+        answer = look.at(_client_hello())
+    if answer in (_Answer.TLS, _Answer.ALERT):
+        reason = "the relay speaks TLS at this port: configure certificates for it (tls)"
+        return errors.TlsRequired(host, "connect", 0, reason)
+    return _no_relay(host, answer)
+
+
+def _with_tls(host: str, look: "_Look") -> errors.MmsError:
+    answer = look.at(_client_hello())
+    if answer is _Answer.TLS:
+        reason = (
+            "the relay ended the TLS handshake: it does not take our certificate. Expected: one that the "
+            "relay has pinned or whose authority it knows, and which is valid by the relay's clock"
+        )
+        return errors.CertificateRefused(host, "connect", 0, reason)
+    if answer is _Answer.ALERT:
+        reason = "the relay speaks TLS, but no version or cipher that we do (TLS 1.2 and 1.3, IEC 62351-3)"
+        return errors.ConnectFailed(host, "connect", 0, reason)
+    if answer is _Answer.END and look.at(_CONNECT_REQUEST) is _Answer.MMS:
+        reason = (
+            "the relay answers at this port without TLS: expected TLS. Turn it on in the relay, or give its "
+            f"TLS port (usually {TLS_PORT}), or take tls out of the relay's configuration"
+        )
+        return errors.TlsNotSpoken(host, "connect", 0, reason)
+    return _no_relay(host, answer)
+
+
+def _rejected(*, password: bool) -> str:
+    if password:
+        return "the relay rejects the association: expected the password it knows, found another one"
+    return "the relay rejects the association: does it want a password? None is configured for it"
+
+
+def _no_relay(host: str, answer: _Answer) -> errors.MmsError:
+    reasons = {
+        _Answer.REFUSED: "the connection was rejected: nothing listens at this port",
+        _Answer.UNREACHABLE: "no connection: is the relay on, its address right, the way to it open?",
+        _Answer.NONE: "no answer in time",
+        _Answer.END: "the relay ends every connection at once: no session left?",
+    }
+    default = "what answers there speaks neither MMS nor TLS: is the port right?"
+    return errors.ConnectFailed(host, "connect", 0, reasons.get(answer, default))
+
+
+class _Look:
+    """First messages to one address, and what comes back."""
+
+    def __init__(self, address: tuple[str, int], deadline: float) -> None:
+        self._address = address
+        self._deadline = deadline
+
+    @property
+    def is_late(self) -> bool:
+        return time.monotonic() >= self._deadline
+
+    @property
+    def _patience_s(self) -> float:
+        return min(_LONGEST_LOOK_S, self._deadline - time.monotonic())
+
+    def is_let_in(self, tls: TlsContext) -> bool:
+        """Whether a relay with a pinned certificate answers to ours."""
+        patience_s = self._patience_s
+        if patience_s <= 0:
+            return False
+        try:
+            with (
+                socket.create_connection(self._address, patience_s) as connection,
+                tls.again().wrap_socket(connection) as secured,
+            ):
+                if not tls.is_pinned(secured.getpeercert(binary_form=True)):
+                    return False
+                secured.sendall(_CONNECT_REQUEST)
+                return secured.recv(1)[:1] == bytes([_TPKT])
+        except OSError:
+            return False
+
+    def at(self, message: bytes) -> _Answer:
+        """The kind of the answer; NONE too where no time is left to ask."""
+        patience_s = self._patience_s
+        if patience_s <= 0:
+            return _Answer.NONE
+        try:
+            connection = socket.create_connection(self._address, patience_s)
+        except ConnectionRefusedError:
+            return _Answer.REFUSED
+        except OSError:
+            return _Answer.UNREACHABLE
+        with connection:
+            try:
+                connection.sendall(message)
+                first = connection.recv(1)
+            except TimeoutError:
+                return _Answer.NONE
+            except OSError:
+                return _Answer.END
+        kinds = {_TPKT: _Answer.MMS, _TLS_ALERT: _Answer.ALERT, _TLS_HANDSHAKE: _Answer.TLS}
+        return kinds.get(first[0], _Answer.OTHER) if first else _Answer.END
+
+
+def _client_hello() -> bytes:
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname = False
+    context.verify_mode = ssl.CERT_NONE  # it ends before any certificate
+    outgoing = ssl.MemoryBIO()
+    handshake = context.wrap_bio(ssl.MemoryBIO(), outgoing)
+    try:
+        handshake.do_handshake()
+    except ssl.SSLWantReadError:
+        return outgoing.read()
+    raise AssertionError("a handshake with nobody")

@@ -1,0 +1,205 @@
+"""TLS for MMS associations (IEC 62351-3, IEC 62351-4 T-profile): both sides show a certificate, and pin.
+
+The library's Mbed TLS does the work; here are the configuration, checked before anything connects, and the
+owner of the C object made of it.
+"""
+
+import ctypes
+import os
+import ssl
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+from pathlib import Path
+from typing import Final
+
+from cryptography import x509
+from cryptography.hazmat.primitives import serialization
+
+from mms.callbacks import guarded
+from mms.credential_files import PrivateKey, described, is_self_signed, read_certificates, read_identity
+from mms.errors import CredentialFileError
+from mms.prototypes import TlsEventHandler
+
+TLS_PORT: Final = 3782
+"""Where servers speak TLS by default (IEC 62351-3)."""
+
+_INCIDENT: Final = 2  # TLSEventLevel
+_ESTABLISHED: Final = 16  # TLS_EVENT_CODE_INF_SESSION_ESTABLISHED
+_UNTRUSTED: Final = {
+    6: "it is not valid, or not yet: compare the clocks",
+    11: "it has expired",
+    12: "it has been revoked",
+    13: "it is none of the pinned ones",
+    14: "no known authority (ca) has signed it",
+}
+"""The library's event codes for what is wrong with the peer's certificate."""
+
+_counting: Final = threading.Lock()
+"""The library counts its configurations, unguarded, to know when to end its cryptography."""
+
+
+class TlsVersion(IntEnum):
+    """The numbers are the library's TLSConfigVersion."""
+
+    TLS_1_2 = 6
+    TLS_1_3 = 7
+
+
+@dataclass(frozen=True, slots=True)
+class TlsConfiguration:
+    """Who we are and whom we trust.
+
+    certificate, key: our own; the key file must be its owner's alone (mode 600).  pinned: the certificates of
+    those we speak with, at least one; more while one is being exchanged.  ca: the authorities that sign them;
+    None where the pinned ones are self-signed.  Files are PEM or DER.
+    """
+
+    certificate: Path
+    key: Path
+    pinned: tuple[Path, ...]
+    ca: Path | None = None
+    minimum_version: TlsVersion = TlsVersion.TLS_1_2
+    maximum_version: TlsVersion | None = None
+
+    def check(self) -> None:
+        """Raises CredentialFileError: which file, what was expected and found."""
+        _Material.read(self)
+
+
+@dataclass(frozen=True, slots=True)
+class _Material:
+    """What the files hold."""
+
+    chain: tuple[x509.Certificate, ...]
+    key: PrivateKey
+    pinned: tuple[x509.Certificate, ...]
+    authorities: tuple[x509.Certificate, ...]
+
+    @classmethod
+    def read(cls, configuration: TlsConfiguration) -> "_Material":
+        if not configuration.pinned:
+            raise ValueError("pinned: expected the certificate of the other side, found none")
+        chain, key = read_identity(configuration.certificate, configuration.key)
+        pinned: list[x509.Certificate] = []
+        for path in configuration.pinned:
+            certificates = read_certificates(path)
+            if configuration.ca is None and not all(map(is_self_signed, certificates)):
+                raise CredentialFileError(
+                    path, "a self-signed certificate, or its authority's given as ca", "one signed by another"
+                )
+            pinned.extend(certificates)
+        authorities = tuple(pinned) if configuration.ca is None else read_certificates(configuration.ca)
+        return cls(chain, key, tuple(pinned), authorities)
+
+
+class TlsContext:
+    """The library's TLSConfiguration: for one client connection or one server, and destroyed after it."""
+
+    def __init__(self, lib: ctypes.CDLL, configuration: TlsConfiguration) -> None:
+        """Raises CredentialFileError: which file, what was expected and found."""
+        self._lib = lib
+        self._configuration = configuration
+        self._incidents: list[int] = []
+        self._established: TlsVersion | None = None
+        self._material = material = _Material.read(configuration)
+        self.trusted: Final = tuple(described(certificate) for certificate in material.pinned)
+        self._handler = TlsEventHandler(guarded(self._note, None))
+        with _counting:
+            self.pointer = int(lib.TLSConfiguration_create() or 0)
+        if not self.pointer:
+            raise MemoryError("the MMS library has no memory for a TLS configuration")
+        try:
+            self._fill(material)
+        except BaseException:
+            self.destroy()
+            raise
+
+    def _fill(self, material: _Material) -> None:
+        lib, given = self._lib, self._configuration
+        lib.TLSConfiguration_setEventHandler(self.pointer, self._handler, None)
+        yes, no = True, False
+        lib.TLSConfiguration_setChainValidation(self.pointer, yes)
+        lib.TLSConfiguration_setTimeValidation(self.pointer, yes)
+        lib.TLSConfiguration_setAllowOnlyKnownCertificates(self.pointer, yes)
+        lib.TLSConfiguration_enableSessionResumption(self.pointer, no)  # it would skip the certificates
+        lib.TLSConfiguration_setMinTlsVersion(self.pointer, int(given.minimum_version))
+        if given.maximum_version is not None:
+            lib.TLSConfiguration_setMaxTlsVersion(self.pointer, int(given.maximum_version))
+        key = material.key.private_bytes(
+            serialization.Encoding.DER, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+        )
+        if not lib.TLSConfiguration_setOwnKey(self.pointer, key, len(key), None):
+            raise self._not_taken(given.key)
+        for certificate in material.chain:
+            self._give(lib.TLSConfiguration_setOwnCertificate, certificate, given.certificate)
+        for certificate in material.pinned:
+            self._give(lib.TLSConfiguration_addAllowedCertificate, certificate, given.pinned[0])
+        for certificate in material.authorities:
+            self._give(lib.TLSConfiguration_addCACertificate, certificate, given.ca or given.pinned[0])
+
+    def _give(
+        self, take: Callable[[int, bytes, int], bool], certificate: x509.Certificate, path: Path
+    ) -> None:
+        content = certificate.public_bytes(serialization.Encoding.DER)
+        if not take(self.pointer, content, len(content)):
+            raise self._not_taken(path)
+
+    def _not_taken(self, path: Path) -> CredentialFileError:
+        expected = "RSA, or an elliptic curve of NIST or Brainpool (IEC 62351-3)"
+        return CredentialFileError(path, expected, "an algorithm the MMS library does not know")
+
+    def _note(
+        self, _parameter: int | None, level: int, code: int, _message: bytes | None, connection: int | None
+    ) -> None:
+        if level == _INCIDENT:
+            self._incidents.append(code)
+        elif code == _ESTABLISHED:
+            self._established = TlsVersion(self._lib.TLSConnection_getTLSVersion(connection))
+
+    def distrust(self) -> str | None:
+        """What is wrong with the certificate the peer showed; None where nothing was found wrong with it."""
+        return next((_UNTRUSTED[code] for code in self._incidents if code in _UNTRUSTED), None)
+
+    @property
+    def undisturbed(self) -> TlsVersion | None:
+        """The version of a handshake that succeeded, where nothing has gone wrong since that was noticed.
+
+        With TLS 1.2 the peer has taken our certificate then; with 1.3 it says so, or not, only afterwards.
+        """
+        return None if self._incidents else self._established
+
+    def again(self) -> ssl.SSLContext:
+        """For a handshake of our own with the same certificate; compare the peer's by `is_pinned`."""
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+        context.check_hostname = False
+        context.verify_mode = ssl.CERT_NONE
+        identity = b"".join(each.public_bytes(serialization.Encoding.PEM) for each in self._material.chain)
+        identity += self._material.key.private_bytes(
+            serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+        )
+        memory = os.memfd_create("identity")  # the ssl module takes files only, and none is to hold the key
+        try:
+            os.write(memory, identity)
+            context.load_cert_chain(f"/proc/self/fd/{memory}")
+        finally:
+            os.close(memory)
+        return context
+
+    def is_pinned(self, certificate: bytes | None) -> bool:
+        """Whether it, in DER, is one of those we trust."""
+        pinned = (each.public_bytes(serialization.Encoding.DER) for each in self._material.pinned)
+        return certificate is not None and certificate in pinned
+
+    def forget(self) -> None:
+        """Begin another attempt."""
+        self._incidents.clear()
+        self._established = None
+
+    def destroy(self) -> None:
+        """Free it, once its connection or server has been destroyed; harmless twice."""
+        pointer, self.pointer = self.pointer, 0
+        if pointer:
+            with _counting:
+                self._lib.TLSConfiguration_destroy(pointer)

@@ -1,0 +1,63 @@
+"""`mcc relay`: what a running service uses of one relay, and where that is not what its SCL says."""
+
+from collections.abc import Mapping
+
+from rich.table import Table
+from rich.text import Text
+
+from service.cli.output import failing_clearly, one_line, print_document, results
+from service.rest_client import Document, ServiceClient, ServiceError, segment
+
+_USED = (
+    ("trigger", "trigger"),
+    ("trigger_action", "operated as"),
+    ("control_model", "control model"),
+    ("record_made", "record made"),
+    ("records_told_by", "records told by"),
+    ("report_control", "report control"),
+    ("events_directory", "events directory"),
+)
+NOT_VISITED = "not visited yet"
+NONE = "none"
+
+
+def show_relay(url: str, relay: str, *, as_json: bool) -> None:
+    """Print what is used of a relay, what differs from its SCL, what is ignored. Raises CommandError."""
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        ied = service.get(f"/ieds/{segment(relay)}")
+    if as_json:
+        print_document(ied)
+        return
+    table = Table(title=Text(relay), title_justify="left", show_header=False)
+    for name, value in _lines(ied):
+        table.add_row(name, Text(one_line(value)))
+    results().print(table)
+
+
+def _lines(ied: Document) -> list[tuple[str, str]]:
+    reason = f": {ied['link_reason']}" if ied["link_reason"] else ""
+    lines = [("link", f"{ied['link_state']}{reason}")]
+    used = ied["acquisition"]
+    if isinstance(used, Mapping):
+        lines.extend((words, str(used[key] or NONE)) for key, words in _USED)
+        lines.extend(("decided by the motors file", str(name)) for name in used["overridden"])
+        lines.extend(("remark", str(remark)) for remark in used["remarks"])
+    else:
+        lines.append(("used", NOT_VISITED))
+    lines.extend(
+        (
+            f"other than its SCL: {each['kind']}",
+            f"expected {each['expected'] or NONE}, found {each['found'] or NONE}",
+        )
+        for each in _items(ied, "differences")
+    )
+    lines.extend(
+        ("ignored file", f"{each['name']}: {each['reason']}") for each in _items(ied, "ignored_files")
+    )
+    lines.extend(("alarm", f"{each['kind']}: {each['reason']}") for each in _items(ied, "alarms"))
+    return lines
+
+
+def _items(document: Document, name: str) -> list[Mapping[str, object]]:
+    items = document[name]
+    return [each for each in items if isinstance(each, Mapping)] if isinstance(items, list) else []

@@ -1,0 +1,151 @@
+"""How recordings are had of one relay: what of it the service uses, and where that is not as promised.
+
+What somebody overrode comes first, then what the relay offers, then (where it could not be asked) its SCL.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from service.plant.metering import Measurand, measurands_offered
+from service.plant.model import Relay
+from service.plant.offer import Offer
+from service.plant.overrides import NONE, TriggerAction
+from service.plant.recognition import NO_TRIGGER, recognise_offer
+
+_REMOTE_BITS = re.compile(r"/RBGGIO\d+\.SPCSO\d+$")
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """Something the service uses that the relay has otherwise than promised, and what is done about it.
+
+    subject: "trigger", "record-made", "reports", "metering".
+    """
+
+    subject: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Acquisition:
+    """What is used of one relay, None or empty where it has none.
+
+    trigger: the control that makes a record; no_trigger: why there is none.  record_made, record_number:
+    status of its recorder.  report_controls: blocks that tell of a record, the best first.
+    asked: whether the relay itself was asked, or its SCL taken at its word.
+    """
+
+    trigger: str | None
+    trigger_action: TriggerAction
+    no_trigger: str
+    record_made: str | None
+    record_number: str | None
+    report_controls: tuple[str, ...]
+    measurands: tuple[Measurand, ...]
+    asked: bool
+    deviations: tuple[Deviation, ...] = ()
+
+
+def promised(relay: Relay) -> Acquisition:
+    """What the SCL says, taken at its word."""
+    overrides = relay.overrides
+    return Acquisition(
+        trigger=_chosen(overrides.trigger, relay.trigger_control),
+        trigger_action=overrides.trigger_action or _action(_chosen(overrides.trigger, relay.trigger_control)),
+        no_trigger=_no_trigger(relay),
+        record_made=relay.record_made,
+        record_number=relay.fault_number,
+        report_controls=_reports(overrides.report_control, _promised_reports(relay)),
+        measurands=relay.measurands,
+        asked=False,
+    )
+
+
+def offered(relay: Relay, offer: Offer, is_control: Callable[[str], bool]) -> Acquisition:
+    """What the relay itself offers. is_control: whether one of its data objects can be operated."""
+    overrides = relay.overrides
+    promises = [
+        relay.trigger_control,
+        relay.record_made,
+        relay.fault_number,
+        *_promised_reports(relay),
+        relay.metering_data_set,
+    ]
+    points = recognise_offer(offer, is_control, [promise for promise in promises if promise is not None])
+    trigger = _chosen(overrides.trigger, points.trigger)
+    measurands = measurands_offered(offer, relay.measurands)
+    deviations = (
+        _deviation("trigger", relay.trigger_control, points.trigger, "it cannot be asked for a record")
+        if overrides.trigger is None
+        else _overridden_trigger(trigger, offer),
+        _deviation("record-made", relay.record_made, points.record_made, "its directory is polled"),
+        _deviation("reports", relay.report_control, points.report_control, "others are tried, or polling")
+        if overrides.report_control is None
+        else None,
+        _metering(relay.measurands, measurands),
+    )
+    return Acquisition(
+        trigger=trigger,
+        trigger_action=overrides.trigger_action or _action(trigger),
+        no_trigger=_no_trigger(relay),
+        record_made=points.record_made,
+        record_number=points.record_number,
+        report_controls=_reports(overrides.report_control, points.report_controls),
+        measurands=measurands,
+        asked=True,
+        deviations=tuple(found for found in deviations if found is not None),
+    )
+
+
+def _promised_reports(relay: Relay) -> tuple[str, ...]:
+    """The one its SCL promises, then the others that tell of a record too."""
+    first = () if relay.report_control is None else (relay.report_control,)
+    if relay.expected is None or relay.record_made is None:
+        return first
+    recognised = recognise_offer(relay.expected, lambda _reference: False, first)
+    return tuple(dict.fromkeys((*first, *recognised.report_controls)))
+
+
+def _chosen(override: str | None, recognised: str | None) -> str | None:
+    if override == NONE:
+        return None
+    return override or recognised
+
+
+def _reports(override: str | None, recognised: tuple[str, ...]) -> tuple[str, ...]:
+    if override == NONE:
+        return ()
+    return recognised if override is None else (override,)
+
+
+def _action(trigger: str | None) -> TriggerAction:
+    is_bit = trigger is not None and _REMOTE_BITS.search(trigger) is not None
+    return TriggerAction.SET_RESET if is_bit else TriggerAction.PULSE
+
+
+def _no_trigger(relay: Relay) -> str:
+    if relay.overrides.trigger == NONE:
+        return "the motors file says that it is not to be triggered"
+    return f"it offers {NO_TRIGGER}"
+
+
+def _deviation(subject: str, expected: str | None, found: str | None, consequence: str) -> Deviation | None:
+    if expected is None or expected == found:
+        return None
+    if found is None:
+        return Deviation(subject, f"expected {expected}, as its SCL says, found none: {consequence}")
+    return Deviation(subject, f"expected {expected}, as its SCL says, found and used {found}")
+
+
+def _overridden_trigger(trigger: str | None, offer: Offer) -> Deviation | None:
+    if trigger is None or offer.has(trigger):
+        return None
+    return Deviation("trigger", f"expected {trigger}, as the motors file says, found none")
+
+
+def _metering(expected: tuple[Measurand, ...], found: tuple[Measurand, ...]) -> Deviation | None:
+    lost = {each.quantity for each in expected} - {each.quantity for each in found}
+    if not lost:
+        return None
+    return Deviation("metering", f"its SCL says that it measures {', '.join(sorted(lost))}; it does not")

@@ -1,0 +1,118 @@
+"""What the service shows a relay that does not speak with everybody: certificates, a password.
+
+Settings hold paths only. Secrets are read where they are used, at each connect, from files that are their
+owner's alone or from the environment; so nothing that prints or hands on settings can tell them.
+"""
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Final, Literal
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, SecretStr
+
+from mms import CredentialFileError, TlsConfiguration, TlsVersion
+from mms.credential_files import read_secret
+from mms.passwords import EXPECTED, is_password
+
+AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
+
+PASSWORD_VARIABLE: Final = "MCC_RELAY_PASSWORD_"  # noqa: S105 - the name of one
+"""Followed by the relay's name as the SCD has it; wins over the file."""
+
+_VERSIONS: Final = {"1.2": TlsVersion.TLS_1_2, "1.3": TlsVersion.TLS_1_3}
+
+
+class RelayTls(BaseModel):
+    """Files of TLS with one relay, PEM or DER; `port` where the SCD's is not the one that speaks TLS."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    certificate: AbsolutePath
+    key: AbsolutePath
+    pinned: tuple[AbsolutePath, ...] = Field(min_length=1)
+    ca: AbsolutePath | None = None
+    minimum_version: Literal["1.2", "1.3"] = "1.2"
+    port: int | None = Field(default=None, ge=1, le=65535)
+
+    def configuration(self) -> TlsConfiguration:
+        return TlsConfiguration(
+            certificate=self.certificate,
+            key=self.key,
+            pinned=self.pinned,
+            ca=self.ca,
+            minimum_version=_VERSIONS[self.minimum_version],
+        )
+
+
+class RelayAccess(BaseModel):
+    """One relay's table of the setting `relays`."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    tls: RelayTls | None = None
+    password_file: AbsolutePath | None = None
+
+
+class AccessError(ValueError):
+    """A password in the environment cannot be used; the message does not show it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Credentials:
+    """For one connect."""
+
+    tls: TlsConfiguration | None
+    password: SecretStr | None
+
+    @property
+    def spoken_password(self) -> str | None:
+        """As it is. Hand it on at once, keep it nowhere."""
+        return None if self.password is None else self.password.get_secret_value()
+
+
+def credentials(relays: Mapping[str, RelayAccess], name: str) -> Credentials:
+    """What the settings and the environment say of the relay `name`; nothing for one they do not name.
+
+    Raises CredentialFileError, AccessError.
+    """
+    access = relays.get(name, RelayAccess())
+    return Credentials(
+        tls=None if access.tls is None else access.tls.configuration(), password=_password(access, name)
+    )
+
+
+def clear_passwords(relays: Mapping[str, RelayAccess], names: Iterable[str]) -> tuple[str, ...]:
+    """The relays whose password anybody on the way can read: it is sent without TLS."""
+    found = []
+    for name in names:
+        access = relays.get(name, RelayAccess())
+        given = access.password_file is not None or f"{PASSWORD_VARIABLE}{name}" in os.environ
+        if given and access.tls is None:
+            found.append(name)
+    return tuple(found)
+
+
+def named_in_environment() -> tuple[str, ...]:
+    """The relays whose password the environment holds."""
+    return tuple(
+        variable.removeprefix(PASSWORD_VARIABLE)
+        for variable in os.environ
+        if variable.startswith(PASSWORD_VARIABLE)
+    )
+
+
+def _password(access: RelayAccess, name: str) -> SecretStr | None:
+    variable = f"{PASSWORD_VARIABLE}{name}"
+    spoken = os.environ.get(variable)
+    if spoken is not None:
+        if not is_password(spoken):
+            raise AccessError(f"environment: {variable}: expected {EXPECTED}, found something else")
+        return SecretStr(spoken)
+    if access.password_file is None:
+        return None
+    content = read_secret(access.password_file).decode("latin-1").removesuffix("\n").removesuffix("\r")
+    if not is_password(content):
+        raise CredentialFileError(access.password_file, f"{EXPECTED} on its one line", "something else")
+    return SecretStr(content)

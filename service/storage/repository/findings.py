@@ -1,0 +1,29 @@
+"""What was found at the relays: what is used of each, and what is not as its SCL promises."""
+
+from service.storage.models import IedRow, RelayFindingsRow
+from service.storage.records import RelayFindings
+from service.storage.repository.sessions import Sessions, found, record_of
+
+
+class FindingsRows(Sessions):
+    def note_findings(self, findings: RelayFindings) -> None:
+        """Remembers what was found at a relay in the place of what was found before. Raises NotFoundError."""
+        with self._write() as session:
+            found(session, IedRow, findings.ied, "IED")
+            session.merge(
+                RelayFindingsRow(
+                    ied=findings.ied,
+                    found_ns=findings.found_ns,
+                    acquisition=findings.acquisition,
+                    differences=list(findings.differences),
+                    ignored_files=list(findings.ignored_files),
+                    ignored_in_all=findings.ignored_in_all,
+                )
+            )
+
+    def relay_findings(self, ied: str) -> RelayFindings | None:
+        """None before the first visit. Raises NotFoundError."""
+        with self._read() as session:
+            found(session, IedRow, ied, "IED")
+            row = session.get(RelayFindingsRow, ied)
+            return None if row is None else record_of(RelayFindings, row)

@@ -1,0 +1,54 @@
+"""Certificates for tests: a plant's authority, what it signs, and what it did not sign."""
+
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from cryptography import x509
+from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.hazmat.primitives.asymmetric import ec
+from cryptography.x509.oid import NameOID
+
+VALID = timedelta(days=30)
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """A certificate with its private key, in memory and as PEM files; the key's is its owner's alone."""
+
+    certificate: x509.Certificate
+    private_key: ec.EllipticCurvePrivateKey
+    certificate_file: Path
+    key_file: Path
+
+
+def identity(
+    folder: Path, name: str, *, issuer: Identity | None = None, authority: bool = False,
+    since: timedelta = -timedelta(hours=1), until: timedelta = VALID,
+) -> Identity:  # fmt: skip
+    """A new one called `name`, signed by its issuer or by itself; `since` and `until` from now."""
+    private_key = ec.generate_private_key(ec.SECP256R1())
+    subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, name)])
+    now = datetime.now(UTC)
+    certificate = (
+        x509.CertificateBuilder()
+        .subject_name(subject)
+        .issuer_name(subject if issuer is None else issuer.certificate.subject)
+        .public_key(private_key.public_key())
+        .serial_number(x509.random_serial_number())
+        .not_valid_before(now + since)
+        .not_valid_after(now + until)
+        .add_extension(x509.BasicConstraints(ca=authority, path_length=None), critical=True)
+        .sign(private_key if issuer is None else issuer.private_key, hashes.SHA256())
+    )
+    certificate_file, key_file = folder / f"{name}.pem", folder / f"{name}.key"
+    certificate_file.write_bytes(certificate.public_bytes(serialization.Encoding.PEM))
+    key_file.touch(mode=0o600)
+    key_file.write_bytes(
+        private_key.private_bytes(
+            serialization.Encoding.PEM,
+            serialization.PrivateFormat.PKCS8,
+            serialization.NoEncryption(),
+        )
+    )
+    return Identity(certificate, private_key, certificate_file, key_file)

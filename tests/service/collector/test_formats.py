@@ -1,0 +1,119 @@
+"""One event, one recording, in whatever formats a relay writes it; and files that are no recording."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from core.recordings import read
+from service.collector.formats import one_format_an_event, remote_of
+from service.collector.listing import ListedRecord, understand
+from service.storage.states import EventReportState, RecordingState
+from tests.ied_sim.simulating import IED, scenario_of, simulated
+from tests.service.collector.conftest import Bench, eventually
+from tests.service.collector.expectations import at, expecting
+from tests.service.collector.scripted_relay import NAME, ScriptedRelay
+from tests.service.collector.test_listing import listed
+
+
+def records(*names: str) -> tuple[ListedRecord, ...]:
+    return understand(listed(*names), "EVENTS").records
+
+
+def chosen(*names: str) -> list[str]:
+    return [record.file_names for record in one_format_an_event(records(*names), (), ()).records]
+
+
+@pytest.mark.parametrize(
+    ("names", "taken"),
+    [
+        (["CR_10007.CEV"], ["CR_10007.CEV"]),
+        (["C4_10007.CEV", "CR_10007.CEV"], ["CR_10007.CEV"]),
+        (["CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT"], ["HR_10007.CFG, HR_10007.DAT"]),
+        (["X.CEV", "X.CFF"], ["X.CFF"]),
+        (["X.CFF", "X.CFG", "X.DAT"], ["X.CFG, X.DAT"]),
+        (["HR_10007.HDR", "CR_10007.CEV"], ["CR_10007.CEV"]),
+        (["CR_10007.CEV", "HR_10008.CFG", "HR_10008.DAT"], ["CR_10007.CEV", "HR_10008.CFG, HR_10008.DAT"]),
+        (["DR10007.CEV", "HR_10007.CFG"], ["DR10007.CEV", "HR_10007.CFG"]),
+    ],
+)
+def test_one_format_of_each_event_is_taken(names: list[str], taken: list[str]) -> None:
+    assert chosen(*names) == taken
+
+
+def test_what_was_taken_stays_taken() -> None:
+    both = records("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
+    (report,) = (record for record in both if record.suffixes == {".CEV"})
+    kept = one_format_an_event(both, {remote_of(report)}, ())
+    assert kept.records == (report,)
+    assert [(file.name, file.reason) for file in kept.passed_over] == [
+        ("HR_10007.CFG, HR_10007.DAT", "the same event as CR_10007.CEV, which is taken")
+    ]
+
+
+def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
+    """A wish becomes a stored event report."""
+    scenario = scenario_of("sel-710-ed1")
+    record = scenario.profile.record.model_copy(update={"formats": ("CEV",)})
+    scenario = replace(scenario, profile=scenario.profile.model_copy(update={"record": record}))
+    with simulated(tmp_path / "relays", scenario) as served:
+        here = at(expecting(bench, served.document.ied(IED)), served)
+        wish = here.request()
+        with here.session():
+            assert eventually(lambda: here.report(wish).state is EventReportState.FETCHED, 20)
+    (recording,) = here.recordings()
+    assert recording.digest is not None
+    stored = here.store.find(recording.digest)
+    assert [file.name for file in stored.files] == [f"{recording.name}.CEV"]
+    assert {channel.phase for channel in read(stored.entry).channels} >= set("abc")
+
+
+def test_an_event_report_waits_for_its_comtrade(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.write_record("HR_10001")
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("HR_10001"))
+        relay.write_file("CR_10002.CEV", b"event report")
+        assert not eventually(lambda: bench.recording("CR_10002") is not None, 0.6)
+        relay.write_record("HR_10002")
+        assert eventually(lambda: bench.is_stored("HR_10002"))
+        assert eventually(lambda: "CR_10002.CEV" in ignored(bench))
+        relay.write_file("CR_10003.CEV", b"an event report that has no other format")
+        assert eventually(lambda: bench.is_stored("CR_10003"))
+    assert len(bench.recordings()) == 3
+
+
+def test_a_comtrade_that_comes_too_late_is_no_second_recording(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.write_file("CR_10001.CEV", b"the first this relay ever wrote")
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("CR_10001"))
+        relay.write_record("HR_10001")
+        assert eventually(lambda: "HR_10001.CFG, HR_10001.DAT" in ignored(bench))
+    with bench.session():  # nor after a restart
+        relay.write_record("HR_10002")
+        assert eventually(lambda: bench.is_stored("HR_10002"))
+    assert sorted(recording.name for recording in bench.recordings()) == ["CR_10001", "HR_10002"]
+
+
+def test_an_event_report_stands_in_for_a_comtrade_without_its_data(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    relay.write_file("HR_10001.CFG", b"configuration alone")
+    relay.write_file("CR_10001.CEV", b"event report")
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("CR_10001"))
+    assert [recording.state for recording in bench.recordings()] == [RecordingState.FETCHED]
+
+
+def test_files_that_are_no_recording_are_told(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.write_file("NOTES.TXT", b"nobody knows")
+    relay.write_record("HR_1")
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("HR_1"))
+        assert eventually(lambda: list(ignored(bench)) == ["EVENTS/NOTES.TXT"])
+        (relay.events / "NOTES.TXT").unlink()
+        assert eventually(lambda: ignored(bench) == {})
+
+
+def ignored(bench: Bench) -> dict[object, object]:
+    findings = bench.repository.relay_findings(NAME)
+    return {} if findings is None else {file["name"]: file["reason"] for file in findings.ignored_files}
