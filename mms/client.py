@@ -1,6 +1,5 @@
 """The MMS client of one relay: ACSI services of IEC 61850-7-2 as methods, mapped by IEC 61850-8-1."""
 
-import ctypes
 import queue
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,6 +8,7 @@ from typing import Final, Self
 
 from mms import controls, errors
 from mms.connection import Connection
+from mms.data_sets import members_of
 from mms.files import FileEntry, Sink, download, list_files
 from mms.references import FunctionalConstraint, logical_device, object_reference
 from mms.reports import Report, Subscriptions
@@ -173,13 +173,7 @@ class Client:
 
     def data_set_directory(self, reference: str) -> tuple[str, ...]:
         """The members' references "LD/LN.DO.DA[FC]" of the data set "LD/LN.name"."""
-        lib = self._connection.lib
-        deletable = ctypes.c_bool(False)  # noqa: FBT003 (a C cell)
-        members = self._connection.request(
-            f"directory of data set {reference}", lib.IedConnection_getDataSetDirectory,
-            object_reference(reference, names=2), ctypes.byref(deletable),
-        )  # fmt: skip
-        return tuple(self._connection.strings(members))
+        return members_of(self._connection, reference)
 
     def read_data_set(self, reference: str) -> tuple[DataSetMember, ...]:
         """All members' values in one request; the directory is read once a connection.

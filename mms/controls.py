@@ -126,8 +126,12 @@ def _no_control(connection: Connection, operation: str, reference: str) -> error
         object_reference(f"{reference}.ctlModel"),
         FunctionalConstraint.CF,
     )
-    found = decode(lib, model)
-    lib.MmsValue_delete(model)
+    try:
+        found = decode(lib, model)
+    except ValueError as error:
+        return errors.ProtocolError(connection.host, operation, 0, str(error))
+    finally:
+        lib.MmsValue_delete(model)
     if found == ControlModel.STATUS_ONLY:
         return _status_only(connection, operation)
     if isinstance(found, int):

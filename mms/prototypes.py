@@ -31,6 +31,12 @@ class LastApplError(Structure):
     _fields_ = [("ctlNum", c_int), ("error", c_int), ("addCause", c_int)]
 
 
+class VariableAccessSpecification(Structure):
+    """The library's MmsVariableAccessSpecification; index -1: none."""
+
+    _fields_ = [("domain", c_char_p), ("item", c_char_p), ("index", c_int32), ("component", c_char_p)]
+
+
 # void (parameter, connection)
 ConnectionClosedHandler = CFUNCTYPE(None, c_void_p, c_void_p)
 # void (parameter, report)
@@ -131,7 +137,8 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "IedConnection_getLogicalDeviceDirectory": (c_void_p, [c_void_p, _ERROR, c_char_p]),
     "IedConnection_getLogicalNodeDirectory": (c_void_p, [c_void_p, _ERROR, c_char_p, c_int]),
     "IedConnection_readObject": (c_void_p, [c_void_p, _ERROR, c_char_p, c_int]),
-    "IedConnection_getDataSetDirectory": (c_void_p, [c_void_p, _ERROR, c_char_p, _FLAG]),
+    "MmsConnection_readNamedVariableListDirectory": (c_void_p, [c_void_p, _ERROR, c_char_p, c_char_p, _FLAG]),
+    "MmsVariableAccessSpecification_destroy": (None, [c_void_p]),
     "IedConnection_readDataSetValues": (c_void_p, [c_void_p, _ERROR, c_char_p, c_void_p]),
     "ClientDataSet_getValues": (c_void_p, [c_void_p]),
     "ClientDataSet_destroy": (None, [c_void_p]),

@@ -77,6 +77,10 @@ class ServiceClient:
         path = f"{API}/motors/{segment(motor)}/event-reports"
         return _document(self._request("POST", path, {}, headers))
 
+    def release(self, ied: str) -> None:
+        """Have a relay visited again that was set aside. Raises ServiceError."""
+        self._request("DELETE", f"{API}/ieds/{segment(ied)}/quarantine", {})
+
     def event_report(self, report_id: str) -> Document:
         """How an event report is doing. Raises ServiceError."""
         return self.get(f"/event-reports/{segment(report_id)}")

@@ -68,6 +68,7 @@ class Settings(BaseSettings):
     request_timeout_s: float = Field(default=5.0, gt=0)
     record_timeout_s: float = Field(default=30.0, gt=0)
     poll_period_s: float = Field(default=5.0, gt=0)
+    quarantine_s: float = Field(default=60.0, gt=0, le=86_400)
     metering_period_s: float = Field(default=10.0, ge=0)
     metering_sample_days: float = Field(default=1.0, gt=0)
     metering_minute_days: float = Field(default=31.0, gt=0)

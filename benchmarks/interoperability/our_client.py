@@ -12,6 +12,7 @@ from benchmarks.interoperability.peers import Result, Tree, c_server
 from mms import Client, ConnectFailed, FunctionalConstraint, Report
 from scl import Address
 from service.rest_client import ServiceClient
+from tests.integration import processes
 from tests.integration.processes import RELAYS, all_recordings, eventually, running_service
 from tests.mms.relays import LOOPBACK, free_port
 from tests.service.api.comtrade_files import CFG, DAT
@@ -30,6 +31,7 @@ CONTROL_MODELS = (
 )
 REPORT_BLOCKS = ("LLN0.RP.EventsRCB01", "LLN0.BR.EventsBRCB01", "LLN0.BR.Measurements01")
 REPORT_PATIENCE_S = 10.0
+SERVICE_START_LIMIT_S = 300.0
 
 
 def results(tree: Tree) -> Iterator[Result]:
@@ -134,6 +136,7 @@ def _fetched(client: Client, events: Path) -> Result:
 
 def _collected(directory: Path, port: int, events: Path) -> Result:
     """The whole service, as a process: the C server stands where the demo plant's first relay would."""
+    processes.START_LIMIT_S = SERVICE_START_LIMIT_S
     scd = directory / "plant.scd"
     addresses = {relay: Address(LOOPBACK, free_port()) for relay in RELAYS}
     scl.with_addresses(scl.DEMO_PLANT_SCD, scd, addresses | {RELAYS[0]: Address(LOOPBACK, port)})

@@ -1,5 +1,7 @@
 """Relays, their links and what is wrong with them."""
 
+import time
+from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, Query
@@ -18,6 +20,7 @@ from service.api.schemas import (
     LinkChange,
     LinkFigures,
     Name,
+    Quarantine,
 )
 from service.storage.records import RelayFindings
 
@@ -39,12 +42,14 @@ def get_ied(context: Context, name: Name) -> IedDetails:
     repository = context.repository
     ied = Ied.model_validate(repository.ied(name))
     changes = repository.link_changes(name, limit=LATEST_CHANGES)
+    quarantine = repository.quarantine(name)
     findings = repository.relay_findings(name)
     return IedDetails(
         **dict(ied),
         gateway=repository.gateway_of(name),
         figures=LinkFigures.model_validate(repository.link_figures(name)),
         changes=[LinkChange.model_validate(change) for change in changes.items],
+        quarantine=None if quarantine is None else Quarantine.model_validate(quarantine),
         alarms=[Alarm.model_validate(alarm) for alarm in repository.standing_alarms(name)],
         acquisition=_acquisition(findings),
         differences=[] if findings is None else [Difference.model_validate(d) for d in findings.differences],
@@ -53,6 +58,12 @@ def get_ied(context: Context, name: Name) -> IedDetails:
         else [IgnoredFile.model_validate(file) for file in findings.ignored_files],
         ignored_files_in_all=0 if findings is None else findings.ignored_in_all,
     )
+
+
+@router.delete("/ieds/{name}/quarantine", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
+def release_ied(context: Context, name: Name) -> None:
+    """Visit a relay again that was set aside, with a clean sheet; harmless where it was not."""
+    context.repository.release(name, now_ns=time.time_ns())
 
 
 def _acquisition(findings: RelayFindings | None) -> Acquisition | None:

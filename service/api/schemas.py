@@ -121,6 +121,18 @@ class Alarm(Document):
     cleared_time: Time | None = Field(validation_alias="cleared_ns")
 
 
+class Quarantine(Document):
+    """A relay set aside until `until_time`, or back since then and not trusted yet.
+
+    times: how often in a row; 0 where it is one of several relays of which one crashed a gateway.
+    """
+
+    reason: str
+    times: int
+    since_time: Time = Field(validation_alias="since_ns")
+    until_time: Time = Field(validation_alias="until_ns")
+
+
 class Gateway(Document):
     """A process that visits relays: `relays` is how many it holds at present."""
 
@@ -173,12 +185,14 @@ class IedDetails(Ied):
     """A relay with the figures of its link, its latest link changes and the alarms that stand.
 
     gateway: id of the one that visits it, null while none does. acquisition: null before the first visit.
+    quarantine: null where nothing is held against it.
     differences: from its SCL. ignored_files: the first hundred of `ignored_files_in_all`.
     """
 
     gateway: str | None
     figures: LinkFigures
     changes: list[LinkChange]
+    quarantine: Quarantine | None
     alarms: list[Alarm]
     acquisition: Acquisition | None
     differences: list[Difference]

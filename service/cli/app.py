@@ -210,6 +210,19 @@ def commission(
 
 
 @app.command()
+def release(
+    relay: Annotated[str, typer.Argument(metavar="RELAY", help="The relay's name in the plant's SCD.")],
+    url: Url = DEFAULT_URL,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Visit a relay again that was set aside for what it answered."""
+    from service.cli.remote import release_relay
+
+    release_relay(url, relay, as_json=as_json)
+
+
+@app.command()
 def trigger(
     motor: MotorName,
     url: Url = DEFAULT_URL,

@@ -14,7 +14,7 @@ from service.verdicts import level, to_the_second, verdict_text
 
 ENDED = ("diagnosed", "failed")
 POLL_PERIOD_S = 0.25
-LINK_COLOURS = {"up": "green", "down": "red"}
+LINK_COLOURS = {"up": "green", "down": "red", "quarantined": "red"}
 NO_RECORDING = "no recording yet"
 
 
@@ -83,6 +83,17 @@ def show_health(url: str, motor: str, *, as_json: bool) -> None:
     for name, value in _condition(health):
         table.add_row(name, value)
     results().print(table)
+
+
+def release_relay(url: str, relay: str, *, as_json: bool) -> None:
+    """Have a relay visited again that was set aside. Raises CommandError."""
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        service.release(relay)
+        found = service.get(f"/ieds/{segment(relay)}")
+    if as_json:
+        print_document(found)
+        return
+    results().print(Text(f"{relay}: released, visited again within seconds"), soft_wrap=True)
 
 
 def _health(service: ServiceClient, motor: str) -> Document:

@@ -12,6 +12,8 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.collector.fence import Fence
 from service.collector.neighbours import Neighbours
 from service.collector.relay_session import RelaySession
+from service.collector.triggering import Triggering
+from service.collector.visiting import Visits
 from service.plant import Plant
 from service.recordings import RecordingStore
 from service.settings import Settings
@@ -63,7 +65,10 @@ class Gateway:
         settings: Settings,
         *,
         on_end: Callable[[], None],
+        visits: Visits | None = None,
     ) -> None:
+        """visits: where it marks which relays it is busy with; None where nobody would read it."""
+        self._marks = visits
         self._identity = identity
         self._plant = plant
         self._repository = repository
@@ -73,6 +78,7 @@ class Gateway:
         self._neighbours = Neighbours(settings.lease_s)
         self._visits: dict[str, _Visit] = {}
         self._leaving: dict[str, _Visit] = {}
+        self._aside: dict[str, Triggering] = {}
         self._samples: SimpleQueue[Sample] = SimpleQueue()
         self._unwritten: list[Sample] = []
         self._registered = False
@@ -117,7 +123,9 @@ class Gateway:
             return
         self._fence.renewed(began_s)
         self._forget_abandoned()
-        for ied in share.held - share.surplus - self._visits.keys() - self._leaving.keys():
+        self._leave_alone(share.held)
+        busy = self._visits.keys() | self._leaving.keys() | self._aside.keys()
+        for ied in share.held - share.surplus - busy:
             self._visit(ied)
         for ied in share.surplus & self._visits.keys():
             self._visits[ied].session.stop()
@@ -129,6 +137,23 @@ class Gateway:
         for gateway, beats in self._neighbours.dead(others, time.monotonic()).items():
             if self._repository.end_gateway(gateway, beats=beats, now_ns=time.time_ns()):
                 log.warning("a gateway is dead, its relays are shared out", gateway=gateway)
+
+    def _leave_alone(self, held: frozenset[str]) -> None:
+        """Relays set aside are not visited; what somebody asks of them fails in time, with the reason."""
+        now_ns = time.time_ns()
+        aside = {
+            each.ied: each.reason
+            for each in self._repository.quarantines()
+            if each.until_ns > now_ns and each.ied in held
+        }
+        self._aside = {ied: self._aside.get(ied) or self._triggering(ied) for ied in aside}
+        for ied, reason in aside.items():
+            self._aside[ied].link_failed(f"it is set aside, {reason}")
+
+    def _triggering(self, ied: str) -> Triggering:
+        return Triggering(
+            self._plant.relay(ied), self._repository, record_timeout_s=self._settings.record_timeout_s
+        )
 
     def _write_samples(self) -> None:
         """What all relays measured, in one transaction. Raises SQLAlchemyError: kept for the next time."""
@@ -156,6 +181,7 @@ class Gateway:
             self._store,
             self._settings,
             gateway=self._identity.id,
+            visits=self._marks,
             on_sample=self._samples.put,
         )
         thread = Thread(target=session.run, name=f"relay-{ied}", daemon=True)

@@ -8,7 +8,9 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.collector.process import gateway_id
+from service.collector.quarantine import after_end
 from service.collector.supervisor import CollectorSupervisor
+from service.collector.visiting import visits_of
 from service.plant import Plant
 from service.settings import Settings
 from service.storage import Repository
@@ -49,14 +51,23 @@ class Gateways:
     def _supervisor(self, number: int) -> CollectorSupervisor:
         gateway = gateway_id(self._settings, number)
 
-        def free_relays() -> None:
+        def ended(exit_code: int | None) -> None:
             """The process is dead for sure: nobody needs to wait for its leases to run out."""
+            try:
+                after_end(
+                    visits_of(self._settings.data_directory, number),
+                    exit_code,
+                    self._repository,
+                    first_pause_s=self._settings.quarantine_s,
+                )
+            except (SQLAlchemyError, OSError) as error:
+                log.warning("nobody is set aside for the gateway's end", error=str(error))
             try:
                 self._repository.end_gateway(gateway, now_ns=time.time_ns())
             except SQLAlchemyError as error:
                 log.warning("the leases run out by themselves", error=str(error))
 
-        return CollectorSupervisor(self._settings, number=number, on_end=free_relays)
+        return CollectorSupervisor(self._settings, number=number, on_end=ended)
 
 
 @contextmanager

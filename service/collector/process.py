@@ -15,6 +15,7 @@ import structlog
 
 from mms.library_noise import keep_tls_notes_off_stderr
 from service.collector.gateway import Gateway, Identity
+from service.collector.visiting import visits_of
 from service.exclusive import exclusive
 from service.installation import installation_id
 from service.logs import configure_logging
@@ -58,12 +59,15 @@ def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
     name = gateway_id(settings, number)
     store = RecordingStore(settings.recordings_directory, name.replace("/", "-"))
     store.discard_incoming()
+    visits = visits_of(settings.data_directory, number)
+    visits.forget()  # of a gateway whose service ended with it
     gateway = Gateway(
         Identity(name, socket.gethostname(), os.getpid()),
         read_plant(settings),
         Repository(connect(settings.database_url)),
         store,
         settings,
+        visits=visits,
         on_end=_fenced_off,
     )
     log.info("collecting", gateway=number)

@@ -6,21 +6,24 @@ What a relay does wrong ends at its own session: the link is down with its reaso
 import math
 import time
 from collections.abc import Callable
+from contextlib import ExitStack, nullcontext
 from threading import Event
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from mms import Client, CredentialFileError, MmsError
+from mms import Client, CredentialFileError, MmsError, ProtocolError
 from service.collector.alarms import RelayAlarms
 from service.collector.allowance import DailyAllowance
 from service.collector.discovery import Discovery
 from service.collector.event_folder import EventFolder
 from service.collector.link import Link
 from service.collector.metering import Metering
+from service.collector.quarantine import Conduct
 from service.collector.record_directory import RecordDirectory, Scan
 from service.collector.subscription import Inbox, Subscription
 from service.collector.triggering import Triggering
+from service.collector.visiting import Mark, Visits
 from service.plant import Relay
 from service.recordings import RecordingStore
 from service.relay_access import AccessError, credentials
@@ -48,10 +51,12 @@ class RelaySession:
         settings: Settings,
         *,
         gateway: str | None = None,
+        visits: Visits | None = None,
         on_sample: Callable[[Sample], None] | None = None,
     ) -> None:
         """`gateway`: who holds the relay's lease; None where relays are not shared.
 
+        visits: where a visit is marked, for whoever finds the process dead; None where nobody would look.
         on_sample: takes what the relay measures; None where nobody wants it.
         """
         self._relay = relay
@@ -85,6 +90,9 @@ class RelaySession:
             if on_sample is None
             else Metering(relay, motor, period_s=settings.metering_period_s, on_sample=on_sample)
         )
+        self._conduct = Conduct(relay.name, repository, first_pause_s=settings.quarantine_s)
+        self._visits = visits
+        self._mark: Mark | None = None
         self._client: Client | None = None
         self._stopping = Event()
         self._something_to_do = Event()
@@ -113,10 +121,12 @@ class RelaySession:
             visited_s = time.monotonic()
             reason = None
             trouble = "does not answer"
+            broken = False
             try:
                 self._visit()
             except (MmsError, CredentialFileError, AccessError) as error:
                 reason = str(error)
+                broken = isinstance(error, ProtocolError)
             except LeaseLostError as error:
                 log.warning("visit ended", relay=self._relay.name, reason=str(error))
                 return
@@ -126,6 +136,8 @@ class RelaySession:
                 trouble = "is not visited"
             if reason is not None and not self._stopping.is_set():
                 self._note_failure(trouble, reason)
+                if broken and self._is_set_aside(reason):
+                    return
             if time.monotonic() - visited_s > LONGEST_RETRY_S:
                 retry_s = FIRST_RETRY_S
             self._stopping.wait(retry_s)
@@ -136,6 +148,13 @@ class RelaySession:
 
         Raises MmsError; CredentialFileError, AccessError for what is to be shown the relay.
         """
+        with ExitStack() as marked:
+            if self._visits is not None:
+                self._mark = marked.enter_context(self._visits.mark(self._relay.name))
+            self._conduct.visited()
+            self._visit_marked()
+
+    def _visit_marked(self) -> None:
         shown = credentials(self._settings.relays, self._relay.name)
         with Client.connect(
             self._relay.host,
@@ -152,6 +171,7 @@ class RelaySession:
                 self._something_to_do.clear()
                 waiting = self._work(client)
                 self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
+                self._conduct.answered()
                 self._wait(client, HURRIED_PERIOD_S if waiting else self._settings.poll_period_s)
 
     def _begin(self, client: Client) -> None:
@@ -176,7 +196,8 @@ class RelaySession:
             if self._metering is not None and due_in_s <= 0:
                 self._metering.sample(client)
                 continue
-            self._something_to_do.wait(min(due_in_s, until_s - time.monotonic()))
+            with nullcontext() if self._mark is None else self._mark.waiting():
+                self._something_to_do.wait(min(due_in_s, until_s - time.monotonic()))
 
     def _note_failure(self, trouble: str, reason: str) -> None:
         self._link.failed(reason)
@@ -184,6 +205,14 @@ class RelaySession:
             self._triggering.link_failed(f"{trouble}: {reason}")
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
+
+    def _is_set_aside(self, reason: str) -> bool:
+        """A visit ended by a broken protocol: whether that was once too often."""
+        try:
+            return self._conduct.broke_the_protocol(reason)
+        except SQLAlchemyError:
+            log.exception("database does not answer, trying again")
+            return False
 
     def _work(self, client: Client) -> bool:
         """One round: reports, directory, event reports. Returns whether a record is on its way."""

@@ -22,7 +22,7 @@ PIPE_BYTES = 1024**2
 """Room for the settings of a few thousand relays: the system's usual 64 kB would be too little for 200."""
 
 
-def _nothing() -> None:
+def _nothing(_exit_code: int | None) -> None:
     """For a collector whose end nobody needs to know."""
 
 
@@ -39,9 +39,12 @@ class CollectorSupervisor:
         command: tuple[str, ...] = COMMAND,
         *,
         number: int = 0,
-        on_end: Callable[[], None] = _nothing,
+        on_end: Callable[[int | None], None] = _nothing,
     ) -> None:
-        """`number`: its own among the collectors of one service.  on_end: called after each of its ends."""
+        """`number`: its own among the collectors of one service.  on_end: called after each of its ends.
+
+        It is given the exit code, None where the collector did not start.
+        """
         self._settings = settings
         self._command = (*command, str(number))
         self._on_end = on_end
@@ -87,11 +90,13 @@ class CollectorSupervisor:
         delay_s = SHORTEST_DELAY_S
         while not self._stopping.is_set():
             started_s = time.monotonic()
+            exit_code = None
             try:
-                ended = f"exit code {self._run_once()}"
+                exit_code = self._run_once()
+                ended = f"exit code {exit_code}"
             except OSError as error:  # no process or memory left at the moment
                 ended = f"it does not start: {error}"
-            self._on_end()
+            self._on_end(exit_code)
             if self._stopping.is_set():
                 return
             if time.monotonic() - started_s > STABLE_AFTER_S:

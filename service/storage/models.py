@@ -107,6 +107,18 @@ class LeaseRow(Base):
     gateway: Mapped[str] = mapped_column(ForeignKey("gateways.id"), index=True)
 
 
+class QuarantineRow(Base):
+    """A relay set aside until `until_ns`, or back since, not trusted yet. `times`: 0 where only suspected."""
+
+    __tablename__ = "quarantines"
+
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), primary_key=True)
+    reason: Mapped[str]
+    times: Mapped[int]
+    since_ns: Mapped[int]
+    until_ns: Mapped[int]
+
+
 class LinkChangeRow(Base):
     """One change of a link's state, or of the reason why it is down."""
 

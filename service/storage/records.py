@@ -72,6 +72,20 @@ class IedEntry:
 
 
 @dataclass(frozen=True, slots=True)
+class Quarantine:
+    """A relay set aside from `since_ns` until `until_ns`, and not trusted yet afterwards.
+
+    times: how often in a row; 0 where it is one of several that are suspected.
+    """
+
+    ied: str
+    reason: str
+    times: int
+    since_ns: int
+    until_ns: int
+
+
+@dataclass(frozen=True, slots=True)
 class GatewayEntry:
     """A process that visits relays, and how many it holds leases of."""
 

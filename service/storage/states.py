@@ -9,6 +9,7 @@ class LinkState(StrEnum):
     UNKNOWN = "unknown"
     UP = "up"
     DOWN = "down"
+    QUARANTINED = "quarantined"
 
 
 class AlarmKind(StrEnum):
@@ -18,6 +19,7 @@ class AlarmKind(StrEnum):
     FILE_TOO_LARGE = "file-too-large"
     FILE_UNSTEADY = "file-unsteady"
     DAILY_LIMIT = "daily-limit"
+    QUARANTINED = "quarantined"
     RELAY_DIFFERS = "relay-differs"
 
 

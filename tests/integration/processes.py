@@ -145,8 +145,8 @@ class Service:
 def running_service(directory: Path, scd: Path, **settings: str) -> Iterator[Service]:
     """A running service; the block's end is its end, with no process left over."""
     service = Service(directory, scd, settings)
-    service.start()
     try:
+        service.start()
         yield service
     finally:
         if not service.has_ended():

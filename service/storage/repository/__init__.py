@@ -10,6 +10,7 @@ from service.storage.repository.leases import LeaseRows
 from service.storage.repository.links import LinkRows
 from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.plant import PlantRows
+from service.storage.repository.quarantines import QuarantineRows
 from service.storage.repository.recordings import RecordingRows
 
 
@@ -19,6 +20,7 @@ class Repository(
     FindingsRows,
     LeaseRows,
     AlarmRows,
+    QuarantineRows,
     EventReportRows,
     RecordingRows,
     JobRows,

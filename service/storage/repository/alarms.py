@@ -4,6 +4,7 @@ import uuid
 from collections.abc import Collection
 
 from sqlalchemy import delete, select, update
+from sqlalchemy.orm import Session
 
 from service.storage.models import AlarmRow, IedRow
 from service.storage.records import Alarm, Cursor, Page
@@ -20,21 +21,9 @@ class AlarmRows(Sessions):
 
         Raises NotFoundError.
         """
-        standing = select(AlarmRow).where(
-            AlarmRow.ied == ied,
-            AlarmRow.kind == kind,
-            AlarmRow.subject == subject,
-            AlarmRow.cleared_ns.is_(None),
-        )
         with self._write() as session:
             found(session, IedRow, ied, "IED")
-            row = only(session, standing)
-            if row is None:
-                row = AlarmRow(id=str(uuid.uuid4()), ied=ied, kind=kind, subject=subject, raised_ns=now_ns)
-                session.add(row)
-            row.reason = reason
-            session.flush()
-            return alarm(row)
+            return alarm(raised(session, ied, kind, subject, reason, now_ns))
 
     def clear_alarms(self, ied: str, alarm_ids: Collection[str], *, now_ns: int) -> None:
         """Ends alarms; those that ended before stay as they are."""
@@ -77,6 +66,32 @@ class AlarmRows(Sessions):
         order: Order = [AlarmRow.raised_ns, AlarmRow.id]
         with self._read() as session:
             return page_of(session, query, order, alarm, limit=limit, after=after, descending=True)
+
+
+def raised(session: Session, ied: str, kind: AlarmKind, subject: str, reason: str, now_ns: int) -> AlarmRow:
+    """The alarm that stands, with this reason."""
+    standing = select(AlarmRow).where(
+        AlarmRow.ied == ied,
+        AlarmRow.kind == kind,
+        AlarmRow.subject == subject,
+        AlarmRow.cleared_ns.is_(None),
+    )
+    row = only(session, standing)
+    if row is None:
+        row = AlarmRow(id=str(uuid.uuid4()), ied=ied, kind=kind, subject=subject, raised_ns=now_ns)
+        session.add(row)
+    row.reason = reason
+    session.flush()
+    return row
+
+
+def clear_standing(session: Session, ied: str, kind: AlarmKind, now_ns: int) -> None:
+    """Ends a relay's alarms of a kind."""
+    session.execute(
+        update(AlarmRow)
+        .where(AlarmRow.ied == ied, AlarmRow.kind == kind, AlarmRow.cleared_ns.is_(None))
+        .values(cleared_ns=now_ns)
+    )
 
 
 def alarm(row: AlarmRow) -> Alarm:

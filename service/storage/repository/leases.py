@@ -119,7 +119,7 @@ def _take(session: Session, ied: str, gateway: str) -> bool:
 def _end(session: Session, gateway: str, now_ns: int) -> None:
     held = select(IedRow).join(LeaseRow, LeaseRow.ied == IedRow.name).where(LeaseRow.gateway == gateway)
     for row in session.scalars(held).all():
-        if row.link_state is not LinkState.UNKNOWN:
+        if row.link_state not in (LinkState.UNKNOWN, LinkState.QUARANTINED):
             change_link(session, row, LinkState.UNKNOWN, GATEWAY_GONE, now_ns)
     session.execute(delete(LeaseRow).where(LeaseRow.gateway == gateway))
     session.execute(delete(GatewayRow).where(GatewayRow.id == gateway))

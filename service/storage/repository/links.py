@@ -42,7 +42,8 @@ class LinkRows(Sessions):
         """Sets the link of every relay that nobody visits to unknown: for the start."""
         with self._write() as session:
             known = select(IedRow).where(
-                IedRow.link_state != LinkState.UNKNOWN, IedRow.name.not_in(select(LeaseRow.ied))
+                IedRow.link_state.not_in((LinkState.UNKNOWN, LinkState.QUARANTINED)),
+                IedRow.name.not_in(select(LeaseRow.ied)),
             )
             for row in session.scalars(known).all():
                 change_link(session, row, LinkState.UNKNOWN, reason, now_ns)

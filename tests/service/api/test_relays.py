@@ -114,3 +114,25 @@ def test_alarms(client: httpx.Client, repository: Repository) -> None:
     assert client.get("/api/v1/alarms", params={"standing": "false"}).json()["items"] == listed[1:]
     assert client.get("/api/v1/alarms", params={"ied": "A2_SEL710"}).json()["items"] == []
     assert 'mcc_alarms{kind="file-refused"} 0.0' in client.get("/metrics").text
+
+
+def test_a_relay_set_aside_tells_why_and_is_released(client: httpx.Client, repository: Repository) -> None:
+    assert client.get(URL).json()["quarantine"] is None
+    repository.set_aside(NAME, "it lied", first_pause_s=60.0, longest_pause_s=86_400.0, now_ns=NOW_NS)
+    ied = client.get(URL).json()
+    assert ied["quarantine"] == {
+        "reason": "it lied",
+        "times": 1,
+        "since_time": FIRST,
+        "until_time": "2025-10-09T08:54:20.000000000Z",
+    }
+    assert (ied["link_state"], ied["link_reason"]) == (
+        "quarantined",
+        "set aside until 2025-10-09T08:54:20Z: it lied",
+    )
+    assert [alarm["kind"] for alarm in ied["alarms"]] == ["quarantined"]
+    assert client.delete(f"{URL}/quarantine").status_code == 204
+    ied = client.get(URL).json()
+    assert (ied["quarantine"], ied["link_state"], ied["alarms"]) == (None, "unknown", [])
+    assert client.delete(f"{URL}/quarantine").status_code == 204
+    assert client.delete("/api/v1/ieds/NOPE/quarantine").status_code == 404

@@ -69,3 +69,17 @@ def test_a_key_triggers_once(
         for key in ("a", "a", "\N{GREEK SMALL LETTER BETA}"):
             assert main(["trigger", "PUMP-A1", "--key", key, "--url", str(client.base_url)]) == 0
     assert len(repository.event_reports(limit=10).items) == 2
+
+
+def test_a_relay_is_released(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    repository.set_aside("A1_SEL710", "it lied", first_pause_s=60.0, longest_pause_s=60.0, now_ns=NOW_NS)
+    app = create_app(
+        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+    )
+    with serving(app) as client:
+        assert main(["release", "A1_SEL710", "--url", str(client.base_url)]) == 0
+        assert main(["release", "NOPE", "--url", str(client.base_url)]) == 1
+    assert "A1_SEL710: released" in capsys.readouterr().out
+    assert repository.quarantines() == ()

@@ -97,7 +97,7 @@ def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> No
     supervised = CollectorSupervisor(
         Settings(data_directory=tmp_path),
         (str(tmp_path / "missing"),),
-        on_end=lambda: ends.append(time.monotonic()),
+        on_end=lambda _: ends.append(time.monotonic()),
     )
     supervised.start()
     assert eventually(lambda: len(ends) >= 2)

@@ -1,0 +1,133 @@
+"""A short campaign; the long one is python -m tests.hostile."""
+
+import asyncio
+import io
+import itertools
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from ied_sim.front.ber import Element
+from mms import Client, FileSizeMismatch, ProtocolError, files
+from tests.hostile import bulk, crafted, spoiling
+from tests.hostile.dialogue import PRO, Dialogue, overheard, tlv
+from tests.hostile.relay import HostileRelay, serving
+from tests.hostile.surroundings import Snapshot, strangers
+from tests.mms.relays import LOOPBACK
+
+CASES = 300
+MOST_MEMORY_MB = 400.0
+
+pytestmark = pytest.mark.timeout(180)
+
+
+@pytest.fixture(scope="module")
+def dialogue() -> Dialogue:
+    return overheard()
+
+
+def test_a_dialogue_has_every_service(dialogue: Dialogue) -> None:
+    services = {
+        b"\xa1",
+        b"\xa4",
+        b"\xa5",
+        b"\xa6",
+        b"\xac",
+        b"\xbf\x4d",
+        b"\xbf\x48",
+        b"\x9f\x49",
+        b"\x9f\x4a",
+    }
+    assert services <= dialogue.latest.keys()
+    assert len(dialogue.handshake) == 2
+    assert dialogue.reports
+
+
+def test_nothing_a_relay_answers_is_more_than_an_error(dialogue: Dialogue, tmp_path: Path) -> None:
+    (tmp_path / "x.CFG").write_text("canary")
+    before = Snapshot.of(tmp_path, without=tmp_path / "clients")
+
+    async def campaign() -> bulk.Outcome:
+        relay = HostileRelay(dialogue, seed=1)
+        await relay.start()
+        outcome = await bulk.run(relay, CASES, processes=3, directory=tmp_path / "clients")
+        await relay.stop()
+        assert relay.cases >= CASES
+        return outcome
+
+    outcome = asyncio.run(campaign())
+    assert outcome.untyped == {}
+    assert not outcome.stalled
+    assert 0 < outcome.most_memory_MB < MOST_MEMORY_MB
+    assert before.changed(Snapshot.of(tmp_path, without=tmp_path / "clients")) == []
+    for client in (tmp_path / "clients").iterdir():
+        assert strangers(client) == []
+
+
+def test_a_million_files_are_too_many(dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files, "_LISTING_LIMIT", 5_000)
+
+    def endless(number: int) -> bytes:
+        entries = b"".join(
+            tlv(
+                0x30,
+                tlv(0xA0, tlv(0x19, b"HR_%09d.CFG" % (number * 500 + k))) + tlv(0xA1, tlv(0x80, b"\x01")),
+            )
+            for k in range(500)
+        )
+        content = tlv(0xA0, tlv(0x30, entries)) + tlv(0x81, b"\xff")
+        return crafted.FILE_DIRECTORY + tlv(0x30, content)[1:]
+
+    with lying(dialogue, {crafted.FILE_DIRECTORY: endless}) as port, Client.connect(LOOPBACK, port) as client:
+        with pytest.raises(ProtocolError, match="never ends"):
+            client.files("EVENTS")
+        assert client.logical_devices(), "the association stands"
+
+
+def test_a_file_without_end_is_left_at_its_listed_size(dialogue: Dialogue) -> None:
+    def endless(_number: int) -> bytes:
+        content = tlv(0x80, bytes(50_000)) + tlv(0x81, b"\xff")
+        return b"\xbf\x49" + tlv(0x30, content)[1:]
+
+    with lying(dialogue, {crafted.FILE_READ: endless}) as port, Client.connect(LOOPBACK, port) as client:
+        with pytest.raises(FileSizeMismatch) as caught:
+            client.download("EVENTS/HR_10001.DAT", io.BytesIO(), expected_size=120_000)
+        assert caught.value.received <= 170_000
+
+
+def test_a_member_that_is_none_is_an_error(dialogue: Dialogue) -> None:
+    """The library's own function for it follows a null pointer."""
+    good = dialogue.latest[b"\xac"]
+    assert b"GGIO1$ST$Ind" in good
+    spoilt = good.replace(b"GGIO1$ST$Ind", b"GGIO1_ST_Ind")
+    with (
+        lying(dialogue, {b"\xac": lambda _: spoilt}) as port,
+        Client.connect(LOOPBACK, port) as client,
+        pytest.raises(ProtocolError, match="not a member of a data set: b'GGIO1_ST_Ind"),
+    ):
+        client.data_set_directory(f"{PRO}/LLN0.DSet01")
+
+
+@contextmanager
+def lying(dialogue: Dialogue, lies: Mapping[bytes, Callable[[int], bytes]]) -> Iterator[int]:
+    """A relay that is good but for these answers, made from their number; its port."""
+    count = itertools.count()
+
+    class Lying(Dialogue):
+        def answer(self, service: Element) -> bytes | None:
+            lie = lies.get(service.tag)
+            return super().answer(service) if lie is None else lie(next(count))
+
+    told = Lying(dialogue.handshake, dialogue.answers, dialogue.latest)
+    with serving({"relay": HostileRelay(told, 1, honest=1.0)}) as relays:
+        yield relays["relay"].port
+
+
+def test_a_spoilt_answer_can_be_made_again(dialogue: Dialogue) -> None:
+    good = dialogue.latest[b"\xa4"]
+    for spoiler in spoiling.OF_MESSAGES:
+        assert spoiler(Random(3), good) == spoiler(Random(3), good)
+    assert crafted.listing(Random(5)) == crafted.listing(Random(5))

@@ -1,0 +1,101 @@
+"""A client process that asks a hostile relay everything, again and again; arguments: port, seed, directory.
+
+Errors of MMS are what is expected. Whatever else is raised is told on standard output, one line each.
+"""
+
+import os
+import queue
+import sys
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from random import Random
+
+from mms import (
+    Client,
+    ConnectFailed,
+    ConnectionLost,
+    FunctionalConstraint,
+    MmsError,
+    Report,
+    connection,
+    controls,
+)
+from service.collector.listing import understand
+from service.collector.pulling import pull
+from service.recordings import RecordingStore, RecordingStoreError
+from tests.hostile.dialogue import CON, PRO
+from tests.mms.relays import LOOPBACK
+
+REQUEST_TIMEOUT_S = 0.06
+REQUESTS_A_CONNECTION = 60
+MAX_FILE_BYTES = 1_000_000
+
+
+class Visitor:
+    """Asks at random; a record's files go to a real store."""
+
+    def __init__(self, port: int, seed: str, directory: Path) -> None:
+        self._port = port
+        self._chance = Random(seed)
+        self._store = RecordingStore(directory / "recordings")
+        self._reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
+
+    def visit(self) -> None:
+        """One association. Raises MmsError."""
+        with Client.connect(
+            LOOPBACK, self._port, connect_timeout_s=0.5, request_timeout_s=REQUEST_TIMEOUT_S
+        ) as client:
+            requests: tuple[Callable[[Client], object], ...] = (
+                lambda c: c.logical_nodes(PRO),
+                lambda c: c.data_objects(f"{PRO}/GGIO1"),
+                lambda c: c.buffered_reports(f"{PRO}/LLN0"),
+                lambda c: c.read(f"{PRO}/GGIO1.Types", FunctionalConstraint.ST),
+                lambda c: c.read(f"{PRO}/GGIO1.AnIn1", FunctionalConstraint.MX),
+                lambda c: c.read_data_set(f"{PRO}/LLN0.DSet01"),
+                lambda c: c.operate(f"{CON}/RBGGIO1.SPCSO0{self._chance.randint(1, 4)}", value=True),
+                self._subscribe,
+                lambda c: c.files("EVENTS"),
+                self._pull,
+                self._pull,
+            )
+            for _ in range(REQUESTS_A_CONNECTION):
+                try:
+                    self._chance.choice(requests)(client)
+                except ConnectionLost:
+                    return
+                except (MmsError, RecordingStoreError):
+                    continue
+                while not self._reports.empty():
+                    self._reports.get()
+
+    def _subscribe(self, client: Client) -> None:
+        client.subscribe(
+            f"{PRO}/LLN0.BR.BRep01", self._reports, entry_id=self._chance.choice((None, bytes(8)))
+        )
+
+    def _pull(self, client: Client) -> None:
+        """As the collector does it."""
+        for record in understand(client.files("EVENTS"), "EVENTS").records[:5]:
+            if max(file.size for file in record.files) <= MAX_FILE_BYTES:
+                pull(client, record, self._store, max_file_bytes=MAX_FILE_BYTES, on_bytes=lambda _: None)
+
+
+def main(port: int, seed: str, directory: Path) -> None:
+    controls._TERMINATION_WAIT_S = 0.05  # type: ignore[misc]
+    connection._LOSS_NOTICE_S = 0.02  # type: ignore[misc]
+    visitor = Visitor(port, seed, directory)
+    campaign = os.getppid()
+    while os.getppid() == campaign:  # however that ends
+        try:
+            visitor.visit()
+        except ConnectFailed:
+            continue
+        except MmsError:
+            continue
+        except Exception:  # noqa: BLE001 (that there is none is what is tested)
+            print(repr(traceback.format_exc()), flush=True)  # noqa: T201 (the campaign reads it)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), sys.argv[2], Path(sys.argv[3]))

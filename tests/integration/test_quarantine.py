@@ -1,0 +1,61 @@
+"""A gateway crashes while it is busy with a relay: a real service sets that relay aside and goes on."""
+
+import os
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import scl
+from scl import Address
+from service.cli.app import main
+from service.rest_client import ServiceClient
+from tests.integration.processes import RELAYS, Service, descendants, eventually, running_service
+from tests.mms.relays import LOOPBACK, free_port, mute_server
+
+pytestmark = pytest.mark.timeout(300)
+
+RELAY = RELAYS[0]
+
+
+@pytest.fixture
+def service(tmp_path: Path) -> Iterator[Service]:
+    """One relay accepts connections and never answers; the others refuse them at once."""
+    scd = tmp_path / "plant.scd"
+    with mute_server() as mute:
+        addresses = {name: Address(LOOPBACK, free_port()) for name in RELAYS}
+        scl.with_addresses(scl.DEMO_PLANT_SCD, scd, addresses | {RELAY: Address(LOOPBACK, mute)})
+        with running_service(tmp_path, scd, MCC_CONNECT_TIMEOUT_S="600", MCC_WORKERS="1") as running:
+            yield running
+
+
+def gateway(service: Service) -> int | None:
+    """Its process id."""
+    for process_id in descendants(service.process_id):
+        if b"service.collector" in Path(f"/proc/{process_id}/cmdline").read_bytes():
+            return process_id
+    return None
+
+
+def visited(service: Service) -> set[str]:
+    return {path.name for path in (service.data / "visiting" / "0").glob("*")}
+
+
+def test_the_relay_is_set_aside_the_gateway_goes_on_and_a_command_releases(service: Service) -> None:
+    assert eventually(lambda: visited(service) == {RELAY}, 60)
+    crashed = gateway(service)
+    assert crashed is not None
+    os.kill(crashed, signal.SIGSEGV)
+    with ServiceClient(service.url) as client:
+        assert eventually(lambda: client.get(f"/ieds/{RELAY}")["link_state"] == "quarantined", 60)
+        assert "its answers crashed the gateway (SIGSEGV)" in str(client.get(f"/ieds/{RELAY}")["link_reason"])
+        assert eventually(lambda: gateway(service) not in (None, crashed), 60)
+        other = RELAYS[1]
+        assert eventually(lambda: client.get(f"/ieds/{other}")["link_state"] == "down", 60), (
+            "it is visited on"
+        )
+        assert RELAY not in visited(service)
+        assert main(["release", RELAY, "--url", service.url]) == 0
+        assert eventually(lambda: RELAY in visited(service), 60)
+        assert client.get(f"/ieds/{RELAY}")["quarantine"] is None
