@@ -6,8 +6,9 @@ from http import HTTPStatus
 from fastapi import APIRouter
 
 from service.api.context import Context
+from service.api.document import Name
 from service.api.problems import problems
-from service.api.schemas import Baseline, BaselineRequest, Name, Recording
+from service.api.schemas import Baseline, BaselineRequest, Recording
 from service.storage.records import RecordingEntry
 
 router = APIRouter(prefix="/motors/{name}/baseline", tags=["condition"])

@@ -8,9 +8,10 @@ from uuid import UUID
 from fastapi import APIRouter, Header, Query, Request, Response
 
 from service.api.context import Context
+from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import EventReport, Name
+from service.api.schemas import EventReport
 
 router = APIRouter(tags=["event reports"])
 

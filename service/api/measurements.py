@@ -6,9 +6,10 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from service.api.context import Context
+from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Measurement, Name
+from service.api.schemas import Measurement
 from service.api.times import TimeParameter
 
 router = APIRouter(tags=["condition"])

@@ -5,9 +5,10 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from service.api.context import Context
+from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Diagnosis, Health, Motor, Name, Recording, Site, TrendPoint
+from service.api.schemas import Diagnosis, Health, Motor, Recording, Site, TrendPoint
 from service.api.times import TimeParameter, rfc3339
 from service.storage.records import MotorHealth, Quantity
 

@@ -7,9 +7,10 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from service.api.context import Context
+from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import (
+from service.api.relay_schemas import (
     Acquisition,
     Alarm,
     Difference,
@@ -19,7 +20,6 @@ from service.api.schemas import (
     IgnoredFile,
     LinkChange,
     LinkFigures,
-    Name,
     Quarantine,
 )
 from service.storage.records import RelayFindings

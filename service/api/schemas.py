@@ -4,18 +4,16 @@ from collections.abc import Iterable
 from typing import Annotated, Literal
 from uuid import UUID
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from core.diagnosis.search import DEFAULT_METHOD, METHODS
 from core.diagnosis.stator import MODELS
 from core.diagnosis.verdict import Verdict
 from core.recordings import Quantity
+from service.api.document import Document
+from service.api.relay_schemas import RelayClock
 from service.api.times import Time
-from service.plant.differences import DifferenceKind
-from service.plant.overrides import TriggerAction
 from service.storage.states import (
-    AlarmKind,
-    ClockQuality,
     EventReportOrigin,
     EventReportState,
     JobState,
@@ -23,9 +21,6 @@ from service.storage.states import (
     RecordingSource,
     RecordingState,
 )
-
-Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00/]+$")]
-"""Name of a site, IED or motor in a path."""
 
 
 def _one_of(known: Iterable[str]) -> AfterValidator:
@@ -44,160 +39,9 @@ Method = Annotated[str, _one_of(METHODS), Field(json_schema_extra={"enum": [*MET
 Model = Annotated[str, _one_of(MODELS), Field(json_schema_extra={"enum": [*MODELS]})]
 
 
-class Document(BaseModel):
-    model_config = ConfigDict(from_attributes=True, validate_by_name=True)
-
-
 class Site(Document):
     name: str
     description: str
-
-
-Seconds = Annotated[float, BeforeValidator(lambda value: value / 1e9 if isinstance(value, int) else value)]
-"""Kept as nanoseconds inside."""
-
-
-class RelayClock(Document):
-    """A relay's clock less the service's, and what the relay says of it; null before the first trigger.
-
-    It is read off the relay's stamp of a trigger, within `clock_uncertainty_s`, at `clock_measured_time`.
-    """
-
-    clock_offset_s: Seconds | None = Field(validation_alias="clock_offset_ns")
-    clock_uncertainty_s: Seconds | None = Field(validation_alias="clock_uncertainty_ns")
-    clock_quality: ClockQuality | None
-    clock_measured_time: Time | None = Field(validation_alias="clock_measured_ns")
-
-
-class Ied(RelayClock):
-    """A relay; `last_success_time` is when it last answered. `clock_...`: its clock less the service's."""
-
-    name: str
-    site: str
-    host: str
-    port: int
-    manufacturer: str
-    type: str
-    link_state: LinkState
-    link_reason: str | None
-    link_changed_time: Time | None = Field(validation_alias="link_changed_ns")
-    last_success_time: Time | None = Field(validation_alias="last_success_ns")
-
-
-class LinkFigures(Document):
-    """What went over a relay's link since the relay is known.
-
-    round_trip_s: duration of its latest answer. received_bytes: of files. report_gaps: how often reports were
-    lost, which costs time and no recording: the relay's directory is what counts.
-    """
-
-    round_trip_s: float | None
-    connections: int
-    received_bytes: int
-    reports: int
-    report_gaps: int
-
-
-class LinkChange(Document):
-    """The state a link changed to, and why."""
-
-    time: Time = Field(validation_alias="changed_ns")
-    state: LinkState
-    reason: str | None
-
-
-class Alarm(Document):
-    """What somebody has to look after at a relay; it stands while `cleared_time` is null.
-
-    subject: the record or file it is about, as printable text, empty where it is about the relay.
-    """
-
-    id: str
-    ied: str
-    kind: AlarmKind
-    subject: str
-    reason: str
-    raised_time: Time = Field(validation_alias="raised_ns")
-    cleared_time: Time | None = Field(validation_alias="cleared_ns")
-
-
-class Quarantine(Document):
-    """A relay set aside until `until_time`, or back since then and not trusted yet.
-
-    times: how often in a row; 0 where it is one of several relays of which one crashed a gateway.
-    """
-
-    reason: str
-    times: int
-    since_time: Time = Field(validation_alias="since_ns")
-    until_time: Time = Field(validation_alias="until_ns")
-
-
-class Gateway(Document):
-    """A process that visits relays: `relays` is how many it holds at present."""
-
-    id: str
-    host: str
-    process_id: int
-    started_time: Time = Field(validation_alias="started_ns")
-    relays: int
-
-
-class Acquisition(Document):
-    """What the service uses of a relay to have its recordings; null what it does not offer.
-
-    asked: whether the relay itself was asked at `found_time`, or its SCL is taken at its word. trigger: the
-    control that makes a record; trigger_action: set and reset, or a pulse that falls by itself.
-    records_told_by: what tells of a new record. overridden: what the motors file decides. remarks: what
-    cannot be had of it, and what is used instead.
-    """
-
-    found_time: Time
-    asked: bool
-    trigger: str | None
-    trigger_action: TriggerAction | None
-    control_model: str | None
-    record_made: str | None
-    record_number: str | None
-    records_told_by: Literal["buffered-report", "unbuffered-report", "polling"]
-    report_control: str | None
-    events_directory: str | None
-    overridden: list[str]
-    remarks: list[str]
-
-
-class Difference(Document):
-    """Relay and SCL differ; `expected` is null where nobody expected it, `found` where the relay lacks it."""
-
-    kind: DifferenceKind
-    expected: str | None
-    found: str | None
-
-
-class IgnoredFile(Document):
-    """A file of the relay's events directory that is not taken; `name` as printable text."""
-
-    name: str
-    reason: str
-
-
-class IedDetails(Ied):
-    """A relay with the figures of its link, its latest link changes and the alarms that stand.
-
-    gateway: id of the one that visits it, null while none does. acquisition: null before the first visit.
-    quarantine: null where nothing is held against it.
-    differences: from its SCL. ignored_files: the first hundred of `ignored_files_in_all`.
-    """
-
-    gateway: str | None
-    figures: LinkFigures
-    changes: list[LinkChange]
-    quarantine: Quarantine | None
-    alarms: list[Alarm]
-    acquisition: Acquisition | None
-    differences: list[Difference]
-    ignored_files: list[IgnoredFile]
-    ignored_files_in_all: int
 
 
 class Motor(Document):
