@@ -10,6 +10,8 @@ from ied_sim.scenario import read_scenario
 from tests.ied_sim.simulating import scenario_of, simulated
 from tests.ied_sim.test_scenario import MINIMAL
 
+SWITCH = "CON/RBGGIO1.SPCSO30"
+
 
 def test_time_switches_too() -> None:
     now = [0.0]
