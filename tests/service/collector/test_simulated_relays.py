@@ -46,6 +46,10 @@ def always(kind: Kind, number: float = 0.0, for_s: float = float("inf")) -> Misb
         ("sel-710-ed2", (always(Kind.GROWING_FILE, 1.0),)),
         ("sel-710-ed2", (always(Kind.REPORT_TAKEN),)),
         ("sel-710-ed1", (always(Kind.CUT_MID_FILE, 100, for_s=4.0),)),
+        ("sel-710-ed1", (always(Kind.CLOCK_OFFSET, -86_400.0), always(Kind.FEW_SESSIONS, 1))),
+        ("rdre", (always(Kind.LOCAL_TIME, 7_200.0),)),
+        ("sel-710-ed2", (Misbehaviour(Kind.FROZEN, at_s=0.5, for_s=3.0),)),
+        ("sel-710-ed2", (Misbehaviour(Kind.RESTART, at_s=1.0, for_s=2.0),)),
     ],
     ids=lambda each: each if isinstance(each, str) else "-".join(m.kind for m in each) or "well",
 )
@@ -67,6 +71,20 @@ def test_a_wish_becomes_a_stored_record(
         served_files = tmp_path / "relays" / IED / scenario.profile.files.folder
         for file in stored.directory.iterdir():
             assert file.read_bytes() == (served_files / file.name).read_bytes()
+
+
+def test_a_record_that_is_never_as_long_as_listed_is_refused_in_writing(bench: Bench, tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed2", always(Kind.WRONG_SIZE, 7))
+    with simulated(tmp_path / "relays", scenario) as served:
+        here = of(bench, served, "EVENTS")
+        with here.session() as session:
+            assert eventually(lambda: here.link() is LinkState.UP)
+            wish = here.request()
+            session.wake()
+            assert eventually(lambda: here.report(wish).state is EventReportState.FAILED)
+        (recording,) = here.recordings()
+    assert recording.digest is None
+    assert "expected" in (here.report(wish).reason or "")
 
 
 def test_a_refused_control_fails_the_wish_with_its_reason(bench: Bench, tmp_path: Path) -> None:
