@@ -6,7 +6,7 @@ from tests.hostile.dialogue import tlv
 
 FILE_OPEN, FILE_READ, FILE_CLOSE, FILE_DIRECTORY = b"\xbf\x48", b"\x9f\x49", b"\x9f\x4a", b"\xbf\x4d"
 NAMES = (
-    *(b"../../x.CFG", b"../../../../../../etc/passwd", b"/etc/passwd", b"/tmp/x.DAT", b"..\\..\\x.DAT"),
+    *(b"../../x.CFG", b"../../../../../../etc/passwd", b"/etc/passwd", b"/x.DAT", b"..\\..\\x.DAT"),
     *(
         b"C:\\x.CFG",
         b"EVENTS/../../x.CFG",

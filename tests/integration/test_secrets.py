@@ -32,19 +32,6 @@ WRONG = "Wv7-the-wrong-one-Wv7"
 MOTOR = """
 [[motor]]
 ied = "{ied}"
-[motor.nameplate]
-rated_power_W = 800
-rated_voltage_V = 380
-rated_frequency_Hz = 50
-pole_pairs = 2
-connection = "star"
-[motor.parameters]
-stator_resistance_ohm = 8.4
-rotor_resistance_ohm = 8.2
-stator_leakage_H = 0.0328
-rotor_leakage_H = 0.0328
-stator_self_inductance_H = 0.4377
-inertia_kgm2 = 0.0229
 [motor.access]
 password_file = "{ied}.password"
 """
