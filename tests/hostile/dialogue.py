@@ -116,8 +116,10 @@ def _listening(dialogue: Dialogue, target: int) -> Iterator[int]:
     with background_loop() as loop:
         starting = asyncio.start_server(note.relay, LOOPBACK, 0)
         server = asyncio.run_coroutine_threadsafe(starting, loop).result(10)
-        yield int(server.sockets[0].getsockname()[1])
-        loop.call_soon_threadsafe(server.close)
+        try:
+            yield int(server.sockets[0].getsockname()[1])
+        finally:
+            loop.call_soon_threadsafe(server.close)
 
 
 class _Note:

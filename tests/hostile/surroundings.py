@@ -10,12 +10,12 @@ ALLOWED = (
     r"(gateway-\d+|service)\.lock",
     r"installation",
     r"visiting(/\d+(/[A-Za-z0-9_]+)?)?",
-    r"recordings(/incoming(/[0-9a-f]{32})?)?",
+    r"recordings(/incoming(/[0-9a-z-]{1,60}(/[0-9a-f]{32})?)?)?",
     r"recordings/[0-9a-f]{2}(/[0-9a-f]{64})?",
 )
 """What a service keeps in its data directory, besides the files of recordings."""
 
-RECORDED = r"recordings/([0-9a-f]{2}/[0-9a-f]{64}|incoming/[0-9a-f]{32})/([^/]+)"
+RECORDED = r"recordings/([0-9a-f]{2}/[0-9a-f]{64}|incoming/[0-9a-z-]{1,60}/[0-9a-f]{32})/([^/]+)"
 LONGEST_NAME = 100
 
 

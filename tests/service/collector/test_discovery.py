@@ -1,6 +1,7 @@
 """Relays that are not what their SCL says, over real MMS: told, not fatal, and used as they are."""
 
 from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 
@@ -236,13 +237,13 @@ def test_browsing_is_cheap(relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
     with Client.connect("127.0.0.1", relay.port) as client:
         asked: list[str] = []
         connection = client._connection
-        request = connection.request
+        exclusive = connection.exclusive
 
-        def counted(operation: str, *arguments: object) -> object:
+        def counted(operation: str) -> AbstractContextManager[int]:
             asked.append(operation)
-            return request(operation, *arguments)  # type: ignore[arg-type]
+            return exclusive(operation)
 
-        monkeypatch.setattr(connection, "request", counted)
+        monkeypatch.setattr(connection, "exclusive", counted)
         offer = browse(client, None)
     assert offer is not None
     on_the_wire = [
