@@ -15,8 +15,8 @@ from ied_sim.plant import DISTURBANCE_MEMORY_S, METERING_STEP_RATE_HZ, START_MEM
 
 TRACE_RATE_HZ = 2_000.0
 
-STARTING_ABOVE, RUNNING_BELOW = 2.5, 1.5
-"""Multiples of the rated current between which a start begins and ends."""
+RUNNING_BELOW = 1.5
+"""Times the rated current: a start ends where the current has fallen to this."""
 NO_CURRENT = 0.05
 
 _NOTICEABLE_LEVEL = 0.002

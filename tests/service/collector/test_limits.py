@@ -115,11 +115,7 @@ def test_a_record_of_another_size_at_each_look_is_asked_for_a_few_times_only(
         assert eventually(lambda: bench.alarms() == {AlarmKind.FILE_UNSTEADY: ["SHIFTY"]})
         relay.write_record("HR_2")
         assert eventually(lambda: bench.is_stored("HR_2")), "the others do not suffer"
-        assert eventually(
-            lambda: (
-                [r.state for r in bench.recordings() if r.name == "SHIFTY"] == [RecordingState.REJECTED] * 3
-            )
-        )
+        assert eventually(lambda: shifty(bench) == [RecordingState.REJECTED] * 3)
         assert all("before it could be pulled" in (r.reason or "") for r in bench.recordings() if r.reason)
     relay.shifts = False
     with bench.session():
