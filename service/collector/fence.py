@@ -1,28 +1,27 @@
 """Ends a gateway's visits before anybody else may think it dead.
 
 Whoever has seen a gateway's counter stand still for `lease_s` takes its relays. A gateway that has not
-renewed its leases for half of that stops its visits; at four fifths it ends as a process, whatever its
-threads are doing, and the system closes its connections. One that was frozen ends as soon as it wakes.
+renewed its leases for four fifths of that ends as a process, whatever its threads are doing, and the system
+closes its connections. One that was frozen ends as soon as it wakes.
 """
 
 import time
 from collections.abc import Callable
 from threading import Event, Thread
 
-DOUBT, END = 0.5, 0.8
+END = 0.8
 LOOKS = 20
-"""A lease: so many looks of the fence, for a margin between the fractions above and the whole."""
+"""A lease: so many looks of the fence, for a margin between the fraction above and the whole."""
 
 
 class Fence:
     """A thread that counts from the beginning of the latest renewal that succeeded.
 
-    on_doubt: called once each time the renewals stay away.  on_end: called when it is too late for doubts.
+    on_end: called when they stay away for too long.
     """
 
-    def __init__(self, lease_s: float, *, on_doubt: Callable[[], None], on_end: Callable[[], None]) -> None:
+    def __init__(self, lease_s: float, *, on_end: Callable[[], None]) -> None:
         self._lease_s = lease_s
-        self._on_doubt = on_doubt
         self._on_end = on_end
         self._renewed_s = time.monotonic()
         self._closed = Event()
@@ -40,13 +39,7 @@ class Fence:
         self._thread.join()
 
     def _watch(self) -> None:
-        doubted_s: float | None = None
         while not self._closed.wait(self._lease_s / LOOKS):
-            renewed_s = self._renewed_s
-            silent_s = time.monotonic() - renewed_s
-            if silent_s > END * self._lease_s:
+            if time.monotonic() - self._renewed_s > END * self._lease_s:
                 self._on_end()
                 return
-            if silent_s > DOUBT * self._lease_s and doubted_s != renewed_s:
-                doubted_s = renewed_s
-                self._on_doubt()

@@ -3,12 +3,12 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from queue import SimpleQueue
 from threading import Event, Thread
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
+from service.collector.batching import Batches
 from service.collector.fence import Fence
 from service.collector.neighbours import Neighbours
 from service.collector.relay_session import RelaySession
@@ -18,7 +18,6 @@ from service.plant import Plant
 from service.recordings import RecordingStore
 from service.settings import Settings
 from service.storage import LeaseLostError, Repository
-from service.storage.records import Sample
 
 log = structlog.get_logger(__name__)
 
@@ -27,12 +26,6 @@ WISH_PERIOD_S = 0.2
 
 BEATS_OF_A_LEASE = 10
 """How often leases are renewed in the time they last."""
-
-WRITING_PERIOD_S = 1.0
-"""Between transactions that hold what the relays measured."""
-
-MOST_UNWRITTEN = 100_000
-"""Samples kept while the database does not answer; then the oldest go."""
 
 STOP_PATIENCE_S = 2.0
 """A session may be inside a request that lasts up to its time limit; nothing is lost by leaving it there."""
@@ -79,23 +72,20 @@ class Gateway:
         self._visits: dict[str, _Visit] = {}
         self._leaving: dict[str, _Visit] = {}
         self._aside: dict[str, Triggering] = {}
-        self._samples: SimpleQueue[Sample] = SimpleQueue()
-        self._unwritten: list[Sample] = []
+        self._batches = Batches(repository)
         self._registered = False
-        self._fence = Fence(settings.lease_s, on_doubt=self._in_doubt, on_end=on_end)
+        self._fence = Fence(settings.lease_s, on_end=on_end)
 
     def run(self, stop: Event) -> list[str]:
         """Visit relays until `stop` is set. Returns the threads that did not end in time."""
         self._fence.start()
-        next_beat_s = next_writing_s = 0.0
+        self._batches.start()
+        next_beat_s = 0.0
         while not stop.wait(WISH_PERIOD_S):
             try:
                 if time.monotonic() >= next_beat_s:
                     self._beat()
                     next_beat_s = time.monotonic() + self._settings.lease_s / BEATS_OF_A_LEASE
-                if time.monotonic() >= next_writing_s:
-                    self._write_samples()
-                    next_writing_s = time.monotonic() + WRITING_PERIOD_S
                 self._let_go()
                 for ied in self._repository.ieds_with_requests():
                     if ied in self._visits:
@@ -122,7 +112,7 @@ class Gateway:
             self._abandon_all()
             return
         self._fence.renewed(began_s)
-        self._forget_abandoned()
+        self._forget_ended()
         self._leave_alone(share.held)
         busy = self._visits.keys() | self._leaving.keys() | self._aside.keys()
         for ied in share.held - share.surplus - busy:
@@ -155,15 +145,6 @@ class Gateway:
             self._plant.relay(ied), self._repository, record_timeout_s=self._settings.record_timeout_s
         )
 
-    def _write_samples(self) -> None:
-        """What all relays measured, in one transaction. Raises SQLAlchemyError: kept for the next time."""
-        while not self._samples.empty():
-            self._unwritten.append(self._samples.get())
-        del self._unwritten[:-MOST_UNWRITTEN]
-        if self._unwritten:
-            self._repository.add_samples(self._unwritten)
-            self._unwritten.clear()
-
     def _register(self) -> None:
         self._repository.register_gateway(
             self._identity.id,
@@ -182,7 +163,8 @@ class Gateway:
             self._settings,
             gateway=self._identity.id,
             visits=self._marks,
-            on_sample=self._samples.put,
+            on_sample=self._batches.add_sample,
+            on_note=self._batches.add_note,
         )
         thread = Thread(target=session.run, name=f"relay-{ied}", daemon=True)
         thread.start()
@@ -198,14 +180,8 @@ class Gateway:
         for ied in ended:
             del self._leaving[ied]
 
-    def _in_doubt(self) -> None:
-        """From the fence's thread: the leases may soon be over."""
-        log.error("the leases could not be renewed in time: the relays are left", gateway=self._identity.id)
-        for visit in list(self._visits.values()):
-            visit.session.abandon()
-
-    def _forget_abandoned(self) -> None:
-        """Sessions that ended in doubt; the relay is visited anew if its lease stands."""
+    def _forget_ended(self) -> None:
+        """Sessions that ended by themselves; the relay is visited anew if its lease stands."""
         for ied in [ied for ied, visit in self._visits.items() if not visit.thread.is_alive()]:
             del self._visits[ied]
 
@@ -224,6 +200,7 @@ class Gateway:
         for visit in visits:
             visit.thread.join(max(0.0, deadline_s - time.monotonic()))
         left = [visit.thread.name for visit in visits if visit.thread.is_alive()]
+        self._batches.stop(max(0.0, deadline_s - time.monotonic()))
         self._fence.stop()
         if not left:
             try:

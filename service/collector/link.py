@@ -1,6 +1,7 @@
 """What one relay's link does, told to the database and the log without wearing either."""
 
 import time
+from collections.abc import Callable
 from dataclasses import replace
 
 import structlog
@@ -8,7 +9,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.collector.allowance import DailyAllowance
 from service.storage import Repository
-from service.storage.records import LinkTraffic
+from service.storage.records import LinkNote, LinkTraffic
 from service.storage.states import LinkState
 
 log = structlog.get_logger(__name__)
@@ -24,13 +25,21 @@ class Link:
     """
 
     def __init__(
-        self, relay: str, repository: Repository, allowance: DailyAllowance, *, period_s: float
+        self,
+        relay: str,
+        repository: Repository,
+        allowance: DailyAllowance,
+        *,
+        period_s: float,
+        on_note: Callable[[LinkNote], None] | None = None,
     ) -> None:
+        """on_note: takes what goes over a link that stays up; None where it is written at once."""
         self._relay = relay
         self._repository = repository
         self._allowance = allowance
         self._period_s = period_s
         self._untold = LinkTraffic()
+        self._on_note = on_note or (lambda note: repository.note_links((note,)))
         self._told_s: float | None = None
         self._remark: str | None = None
         self._failure_logged: tuple[str, float] | None = None
@@ -58,9 +67,12 @@ class Link:
     def answered(self, round_trip_s: float | None, remark: str | None = None) -> None:
         """The relay answered; its latest answer took that long. remark: what it cannot give at present."""
         now_s = time.monotonic()
-        if self._told_s is not None and now_s - self._told_s < self._period_s and remark == self._remark:
+        if self._told_s is None or remark != self._remark:
+            self._tell(LinkState.UP, remark, round_trip_s)
+        elif now_s - self._told_s >= self._period_s:
+            self._note(round_trip_s)
+        else:
             return
-        self._tell(LinkState.UP, remark, round_trip_s)
         self._told_s, self._remark = now_s, remark
 
     def failed(self, reason: str) -> None:
@@ -80,6 +92,19 @@ class Link:
             traffic=self._untold,
             round_trip_s=round_trip_s,
             day_bytes=(self._allowance.day, self._allowance.used_bytes),
+        )
+        self._untold = LinkTraffic()
+
+    def _note(self, round_trip_s: float | None) -> None:
+        self._on_note(
+            LinkNote(
+                self._relay,
+                time.time_ns(),
+                self._untold,
+                round_trip_s,
+                day=self._allowance.day,
+                day_bytes=self._allowance.used_bytes,
+            )
         )
         self._untold = LinkTraffic()
 

@@ -29,7 +29,7 @@ from service.recordings import RecordingStore
 from service.relay_access import AccessError, credentials
 from service.settings import Settings
 from service.storage import LeaseLostError, Repository
-from service.storage.records import Sample
+from service.storage.records import LinkNote, Sample
 
 log = structlog.get_logger(__name__)
 
@@ -53,11 +53,13 @@ class RelaySession:
         gateway: str | None = None,
         visits: Visits | None = None,
         on_sample: Callable[[Sample], None] | None = None,
+        on_note: Callable[[LinkNote], None] | None = None,
     ) -> None:
         """`gateway`: who holds the relay's lease; None where relays are not shared.
 
         visits: where a visit is marked, for whoever finds the process dead; None where nobody would look.
         on_sample: takes what the relay measures; None where nobody wants it.
+        on_note: takes what goes over a link that stays up; None where it is written at once.
         """
         self._relay = relay
         self._repository = repository
@@ -66,7 +68,7 @@ class RelaySession:
         allowance = DailyAllowance(
             settings.max_relay_bytes_per_day, day=figures.day, used_bytes=figures.day_bytes
         )
-        self._link = Link(relay.name, repository, allowance, period_s=settings.poll_period_s)
+        self._link = Link(relay.name, repository, allowance, period_s=settings.poll_period_s, on_note=on_note)
         alarms = RelayAlarms(relay.name, repository)
         self._discovery = Discovery(relay, repository, alarms)
         self._subscription = Subscription(relay.name, repository, self._link)

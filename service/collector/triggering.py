@@ -59,6 +59,8 @@ class Triggering:
         # report gets its time limit again: its record may wait in the relay.
         self._since_s: dict[tuple[str, EventReportState], float] = {}
         self._outstanding: EventReport | None = None
+        self._next: EventReport | None = None
+        self._claimed = False
         self._listed_before: frozenset[str] = frozenset()
 
     def use(self, acquisition: Acquisition) -> None:
@@ -66,24 +68,28 @@ class Triggering:
         self._acquisition = acquisition
 
     def recall(self) -> None:
-        """Look up which report, if any, waits for a record of this relay."""
-        waiting = self._repository.open_event_reports(self._relay.name, states=IN_THE_RELAY)
-        self._outstanding = waiting[0] if waiting else None
+        """Look up which report, if any, waits for a record of this relay, and which one is next."""
+        reports = self._repository.open_event_reports(self._relay.name)
+        self._outstanding = next((each for each in reports if each.state in IN_THE_RELAY), None)
+        self._next = next((each for each in reports if each.state is EventReportState.REQUESTED), None)
+        self._claimed = False
 
     def claim(self, record_name: str) -> str | None:
         """The report a new record belongs to; it is that record's once both are written down together."""
         self.recall()
+        self._claimed = True
         report = self._outstanding
         if report is None or record_name in self._listed_before:
             return None
         return report.id
 
     def follow(self, client: Client, scan: Scan) -> bool:
-        """After a scan: trigger the next report, or see how the outstanding one is doing.
+        """After `recall` and a scan: trigger the next report, or see how the outstanding one is doing.
 
         Returns whether a record is on its way. Raises MmsError when the link fails.
         """
-        self.recall()
+        if self._claimed:
+            self.recall()
         report = self._outstanding
         # The others wait for their turn, not for the relay: their time does not run while the link is fine.
         self._since_s = {
@@ -92,8 +98,7 @@ class Triggering:
             if report is not None and key[0] == report.id
         }
         if report is None:
-            pending = self._repository.pending_event_report(self._relay.name)
-            return pending is not None and self._grant(client, pending, scan)
+            return self._next is not None and self._grant(client, self._next, scan)
         held_back = [name for name in scan.held_back if name not in self._listed_before]
         if held_back:
             self._fail(

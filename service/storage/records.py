@@ -116,6 +116,21 @@ class LinkTraffic:
 
 
 @dataclass(frozen=True, slots=True)
+class LinkNote:
+    """A relay answered at `now_ns`, and what went over its link since the last note.
+
+    day_bytes: counted against the limit of the UTC day `day` (days since 1970), until now.
+    """
+
+    ied: str
+    now_ns: int
+    traffic: LinkTraffic
+    round_trip_s: float | None
+    day: int
+    day_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
 class LinkFigures:
     """What went over a relay's link in all, and how long its latest answer took [s].
 

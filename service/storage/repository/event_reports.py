@@ -1,7 +1,6 @@
 """Event reports: what somebody asked a relay to record, followed to its end."""
 
 import uuid
-from collections.abc import Collection
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
@@ -77,18 +76,11 @@ class EventReportRows(Sessions):
         with self._read() as session:
             return tuple(session.scalars(query))
 
-    def pending_event_report(self, ied: str) -> EventReport | None:
-        """The oldest report of a relay that waits for its trigger."""
-        waiting = self.open_event_reports(ied, states=[EventReportState.REQUESTED])
-        return waiting[0] if waiting else None
-
-    def open_event_reports(
-        self, ied: str, *, states: Collection[EventReportState] = OPEN
-    ) -> tuple[EventReport, ...]:
+    def open_event_reports(self, ied: str) -> tuple[EventReport, ...]:
         """Reports of a relay that have no recording yet, oldest first: what to go on with after a restart."""
         query = (
             select(EventReportRow)
-            .where(EventReportRow.ied == ied, EventReportRow.state.in_(states))
+            .where(EventReportRow.ied == ied, EventReportRow.state.in_(OPEN))
             .order_by(EventReportRow.requested_ns, EventReportRow.id)
         )
         with self._read() as session:

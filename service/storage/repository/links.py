@@ -1,17 +1,35 @@
 """The relays' links: how they are, every change with its reason, and what went over them."""
 
 import uuid
+from collections.abc import Sequence
+from dataclasses import asdict, fields
 
-from sqlalchemy import delete, select
+from sqlalchemy import bindparam, delete, func, select, update
 from sqlalchemy.orm import Session
 
 from service.storage.models import IedRow, LeaseRow, LinkChangeRow, LinkFiguresRow
-from service.storage.records import Cursor, LinkChange, LinkFigures, LinkTraffic, Page
+from service.storage.records import Cursor, LinkChange, LinkFigures, LinkNote, LinkTraffic, Page
 from service.storage.repository.sessions import Order, Sessions, found, page_of, record_of
 from service.storage.states import LinkState
 
 MOST_CHANGES = 1000
 """Kept of each link; the oldest go. A link that changes all day must not fill the disk."""
+
+
+_ANSWERED = update(IedRow).where(IedRow.name == bindparam("of")).values(last_success_ns=bindparam("at"))
+_FIGURES = (
+    update(LinkFiguresRow)
+    .where(LinkFiguresRow.ied == bindparam("of"))
+    .values(
+        round_trip_s=func.coalesce(bindparam("took_s"), LinkFiguresRow.round_trip_s),
+        day=bindparam("new_day"),
+        day_bytes=bindparam("new_day_bytes"),
+        **{
+            name: LinkFiguresRow.__table__.columns[name] + bindparam(f"more_{name}")
+            for name in (field.name for field in fields(LinkTraffic))
+        },
+    )
+)
 
 
 class LinkRows(Sessions):
@@ -37,6 +55,26 @@ class LinkRows(Sessions):
                 row.last_success_ns = now_ns
             if traffic is not None:
                 _add(session, ied, traffic, round_trip_s, day_bytes)
+
+    def note_links(self, notes: Sequence[LinkNote]) -> None:
+        """Adds to the figures of links that are up and stay so. One of an unknown relay is passed over."""
+        if not notes:
+            return
+        with self._write() as session:
+            session.connection().execute(_ANSWERED, [{"of": note.ied, "at": note.now_ns} for note in notes])
+            session.connection().execute(
+                _FIGURES,
+                [
+                    {
+                        "of": note.ied,
+                        "took_s": note.round_trip_s,
+                        "new_day": note.day,
+                        "new_day_bytes": note.day_bytes,
+                        **{f"more_{name}": value for name, value in asdict(note.traffic).items()},
+                    }
+                    for note in notes
+                ],
+            )
 
     def reset_links(self, *, now_ns: int, reason: str | None = None) -> None:
         """Sets the link of every relay that nobody visits to unknown: for the start."""

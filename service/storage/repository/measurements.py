@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from itertools import pairwise
 
-from sqlalchemy import ColumnElement, case, delete, func, insert, literal, select
+from sqlalchemy import ColumnElement, bindparam, case, delete, func, insert, literal, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from service.storage.models import MeasurementRow, MotorRow
@@ -56,15 +56,38 @@ FIGURES: tuple[InstrumentedAttribute[float | None], ...] = (
 )
 
 
+NAMES = tuple(figure.key for figure in FIGURES)
+
+_OF_A_TIME = delete(MeasurementRow).where(
+    MeasurementRow.motor == bindparam("of"),
+    MeasurementRow.step_s == AS_SAMPLED,
+    MeasurementRow.time_ns == bindparam("at"),
+)
+
+
 class MeasurementRows(Sessions):
     def add_samples(self, samples: Iterable[Sample]) -> None:
         """Writes samples; a second one of a motor at the very same time replaces the first."""
+        latest = {(sample.motor, sample.time_ns): sample for sample in samples}
+        if not latest:
+            return
         with self._write() as session:
-            for sample in samples:
-                row = MeasurementRow(
-                    motor=sample.motor, step_s=AS_SAMPLED, time_ns=sample.time_ns, samples=1, **sample.values
-                )
-                session.merge(row)
+            connection = session.connection()
+            connection.execute(_OF_A_TIME, [{"of": motor, "at": time_ns} for motor, time_ns in latest])
+            connection.execute(
+                insert(MeasurementRow),
+                [
+                    {
+                        "motor": sample.motor,
+                        "step_s": AS_SAMPLED,
+                        "time_ns": sample.time_ns,
+                        "samples": 1,
+                        **dict.fromkeys(NAMES),
+                        **sample.values,
+                    }
+                    for sample in latest.values()
+                ],
+            )
 
     def average_measurements(self, *, now_ns: int) -> None:
         """Makes the means of all intervals that are over and have none yet."""

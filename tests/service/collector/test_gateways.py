@@ -6,7 +6,7 @@ import sqlite3
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -115,9 +115,7 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
 
 
 @contextmanager
-def gateway(
-    hall: Hall, name: str, *, most: int = 100, on_end: Callable[[], None] = lambda: None
-) -> Iterator[Gateway]:
+def gateway(hall: Hall, name: str, *, most: int = 100) -> Iterator[Gateway]:
     """A gateway on a thread; the block's end is its ordinary end."""
     settings = hall.settings.model_copy(update={"relays_per_gateway": most})
     made = Gateway(
@@ -126,7 +124,7 @@ def gateway(
         Repository(connect(settings.database_url)),
         RecordingStore(settings.recordings_directory),
         settings,
-        on_end=on_end,
+        on_end=lambda: None,
     )
     stop = Event()
     thread = Thread(target=made.run, args=(stop,))
@@ -245,19 +243,24 @@ def test_gateways_alone_share_the_relays_of_a_service_elsewhere(hall: Hall) -> N
             host.kill()
 
 
-def test_a_gateway_that_cannot_renew_its_leases_leaves_its_relays_and_ends(
-    hall: Hall, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_gateway_that_cannot_renew_its_leases_ends_and_its_connections_with_it(hall: Hall) -> None:
     lease_s = 3 * LEASE_S
     hall.settings = hall.settings.model_copy(update={"lease_s": lease_s})
-    ended = Event()
-    with gateway(hall, "a", on_end=ended.set) as made:
-        assert eventually(hall.all_visited)
-        monkeypatch.setattr(made, "_beat", lambda: None)
+    with (
+        supervised(hall, "a") as supervisor,
+        closing(
+            sqlite3.connect(hall.settings.database_url.removeprefix("sqlite:///"), timeout=60)
+        ) as locking,
+    ):
+        assert eventually(hall.all_visited, 60)
+        visiting = process_of(supervisor)
+        locking.execute("BEGIN IMMEDIATE")
         silent_s = time.monotonic()
+        assert eventually(lambda: supervisor.process_id != visiting)
         assert eventually(lambda: all(visitors(server) == 0 for server in hall.servers.values()))
-        assert ended.wait(10)
         assert time.monotonic() - silent_s < lease_s, "before anybody else can think it dead"
+        locking.rollback()
+        assert eventually(hall.all_visited, 60)
 
 
 def test_a_gateway_declared_dead_by_mistake_starts_again(hall: Hall) -> None:

@@ -8,12 +8,11 @@ from tests.service.plants import NOW_NS, SECOND_NS
 def test_a_report_goes_through_its_states(repository: Repository) -> None:
     report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
     assert (report.state, report.ied, report.requested_ns) == ("requested", "A1_SEL710", NOW_NS)
-    assert repository.pending_event_report("A1_SEL710") == report
-    assert repository.pending_event_report("A2_SEL710") is None
+    assert repository.open_event_reports("A1_SEL710") == (report,)
+    assert repository.open_event_reports("A2_SEL710") == ()
     assert repository.ieds_with_requests() == ("A1_SEL710",)
 
     repository.mark_triggered(report.id, now_ns=NOW_NS + 1)
-    assert repository.pending_event_report("A1_SEL710") is None
     assert repository.ieds_with_requests() == ()
     repository.mark_recorded(report.id, now_ns=NOW_NS + 2)
     assert [r.state for r in repository.open_event_reports("A1_SEL710")] == [EventReportState.RECORDED]
@@ -52,7 +51,6 @@ def test_the_same_key_gives_the_same_report(repository: Repository) -> None:
 def test_the_oldest_report_is_triggered_first(repository: Repository) -> None:
     late = repository.request_event_report("PUMP-A1", now_ns=NOW_NS + SECOND_NS)
     early = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
-    assert repository.pending_event_report("A1_SEL710") == early
     assert [r.id for r in repository.open_event_reports("A1_SEL710")] == [early.id, late.id]
 
 
