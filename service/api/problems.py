@@ -1,6 +1,7 @@
 """Every error is a problem document (RFC 9457, application/problem+json), whoever raised it."""
 
-from collections.abc import Mapping
+import sqlite3
+from collections.abc import Callable, Mapping
 from http import HTTPStatus
 
 import structlog
@@ -8,6 +9,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
+from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 from structlog.typing import FilteringBoundLogger
 
@@ -17,6 +19,19 @@ from service.storage.errors import NotFoundError, StateConflictError, UnusableBa
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
 MEDIA_TYPE = "application/problem+json"
+
+STATUS_OF: dict[type[Exception], HTTPStatus] = {
+    NotFoundError: HTTPStatus.NOT_FOUND,
+    UnusableBaselineError: HTTPStatus.CONFLICT,
+    StateConflictError: HTTPStatus.CONFLICT,
+}
+"""What the storage refuses, and how it is told."""
+
+RETRY_AFTER_S = 5
+"""Told to clients while the database does not answer: a full disk, a lock held for long."""
+
+
+OF_ALL = (HTTPStatus.UNPROCESSABLE_ENTITY, HTTPStatus.SERVICE_UNAVAILABLE)
 
 
 class FieldError(BaseModel):
@@ -49,13 +64,13 @@ class ProblemError(Exception):
 
 
 def problems(*statuses: int) -> dict[int | str, dict[str, object]]:
-    """OpenAPI's description of the errors a route answers with; 422 is always among them."""
+    """OpenAPI's description of the errors a route answers with; those that any may have are among them."""
     return {
         int(status): {
             "description": HTTPStatus(status).phrase,
             "content": {MEDIA_TYPE: {"schema": {"$ref": "#/components/schemas/Problem"}}},
         }
-        for status in (*statuses, HTTPStatus.UNPROCESSABLE_ENTITY)
+        for status in (*statuses, *OF_ALL)
     }
 
 
@@ -84,6 +99,13 @@ def problem_response(
     )
 
 
+def _with_status(status: HTTPStatus) -> Callable[[Request, Exception], JSONResponse]:
+    def answer(request: Request, error: Exception) -> JSONResponse:
+        return problem_response(request.url.path, status, str(error))
+
+    return answer
+
+
 def install(app: FastAPI) -> None:
     """Makes `app` answer every error with a problem document."""
 
@@ -100,22 +122,27 @@ def install(app: FastAPI) -> None:
             detail = f"{request.method} is not possible here"
         return problem_response(request.url.path, error.status_code, detail, headers=error.headers)
 
-    @app.exception_handler(NotFoundError)
-    def _not_found(request: Request, error: NotFoundError) -> JSONResponse:
-        return problem_response(request.url.path, HTTPStatus.NOT_FOUND, str(error))
-
-    @app.exception_handler(UnusableBaselineError)
-    def _unusable(request: Request, error: UnusableBaselineError) -> JSONResponse:
-        return problem_response(request.url.path, HTTPStatus.CONFLICT, str(error))
-
-    @app.exception_handler(StateConflictError)
-    def _conflict(request: Request, error: StateConflictError) -> JSONResponse:
-        return problem_response(request.url.path, HTTPStatus.CONFLICT, str(error))
+    for error_type, status in STATUS_OF.items():
+        app.add_exception_handler(error_type, _with_status(status))
 
     @app.exception_handler(RecordingStoreError)
     def _damaged(request: Request, error: RecordingStoreError) -> JSONResponse:
         log.error("recording store is damaged", error=str(error))
         return problem_response(request.url.path, HTTPStatus.INTERNAL_SERVER_ERROR, str(error))
+
+    @app.exception_handler(OperationalError)
+    def _database(request: Request, error: OperationalError) -> JSONResponse:
+        if getattr(error.orig, "sqlite_errorcode", None) == sqlite3.SQLITE_ERROR:  # a query of ours is wrong
+            return _unexpected(request, error)
+        reason = str(error.orig)
+        log.error("database does not answer", path=request.url.path, error=reason)
+        detail = f"the database does not answer ({reason}); nothing was changed, try again"
+        return problem_response(
+            request.url.path,
+            HTTPStatus.SERVICE_UNAVAILABLE,
+            detail,
+            headers={"Retry-After": str(RETRY_AFTER_S)},
+        )
 
     @app.exception_handler(RequestValidationError)
     def _validation(request: Request, error: RequestValidationError) -> JSONResponse:

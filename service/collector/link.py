@@ -14,15 +14,15 @@ from service.storage.states import LinkState
 
 log = structlog.get_logger(__name__)
 
+NOTE_PERIOD_S = 1.0
+"""A relay that goes on answering is written down this often at most."""
+
 REMIND_AFTER_S = 600.0
 """A link that stays down for the same reason is logged this often."""
 
 
 class Link:
-    """State, figures and history of one link. Used by that relay's session alone.
-
-    period_s: a relay that goes on answering is written down this often.
-    """
+    """State, figures and history of one link. Used by that relay's session alone."""
 
     def __init__(
         self,
@@ -30,14 +30,12 @@ class Link:
         repository: Repository,
         allowance: DailyAllowance,
         *,
-        period_s: float,
         on_note: Callable[[LinkNote], None] | None = None,
     ) -> None:
         """on_note: takes what goes over a link that stays up; None where it is written at once."""
         self._relay = relay
         self._repository = repository
         self._allowance = allowance
-        self._period_s = period_s
         self._untold = LinkTraffic()
         self._on_note = on_note or (lambda note: repository.note_links((note,)))
         self._told_s: float | None = None
@@ -69,7 +67,7 @@ class Link:
         now_s = time.monotonic()
         if self._told_s is None or remark != self._remark:
             self._tell(LinkState.UP, remark, round_trip_s)
-        elif now_s - self._told_s >= self._period_s:
+        elif now_s - self._told_s >= NOTE_PERIOD_S:
             self._note(round_trip_s)
         else:
             return

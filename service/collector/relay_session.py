@@ -68,7 +68,7 @@ class RelaySession:
         allowance = DailyAllowance(
             settings.max_relay_bytes_per_day, day=figures.day, used_bytes=figures.day_bytes
         )
-        self._link = Link(relay.name, repository, allowance, period_s=settings.poll_period_s, on_note=on_note)
+        self._link = Link(relay.name, repository, allowance, on_note=on_note)
         alarms = RelayAlarms(relay.name, repository)
         self._discovery = Discovery(relay, repository, alarms)
         self._subscription = Subscription(relay.name, repository, self._link)

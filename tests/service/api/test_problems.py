@@ -1,14 +1,20 @@
 """Every error has one shape: an RFC 9457 problem document."""
 
+import sqlite3
+from contextlib import closing
 from dataclasses import replace
+from pathlib import Path
 
 import httpx
 import pytest
 from sqlalchemy import Engine
 
 from service.api import ApiContext, create_app
+from service.recordings import RecordingStore
 from service.settings import Settings
+from service.storage import Repository, connect
 from tests.service.api.serving import serving
+from tests.service.plants import two_motor_plant
 
 NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
 
@@ -61,6 +67,25 @@ def test_a_failure_of_the_service(context: ApiContext, engine: Engine) -> None:
     assert response.status_code == 500
     assert response.headers["content-type"] == "application/problem+json"
     assert "no such table" not in response.text, "what went wrong inside is for the log"
+
+
+def test_a_database_that_is_locked_for_long(
+    tmp_path: Path, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.storage.engine.BUSY_TIMEOUT_S", 0.2)
+    repository = Repository(connect(database_url))
+    repository.sync_plant(two_motor_plant())
+    app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
+    file = database_url.removeprefix("sqlite:///")
+    with serving(app) as client, closing(sqlite3.connect(file)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        response = client.post("/api/v1/motors/PUMP-A1/event-reports")
+        assert response.status_code == 503
+        assert response.headers["content-type"] == "application/problem+json"
+        assert int(response.headers["retry-after"]) > 0
+        assert "database is locked" in response.json()["detail"]
+        other.rollback()
+        assert client.post("/api/v1/motors/PUMP-A1/event-reports").status_code == 202
 
 
 @pytest.mark.parametrize(

@@ -118,7 +118,7 @@ def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRel
         data_set=None,
         members=(),
     )
-    link = Link(NAME, bench.repository, DailyAllowance(1), period_s=1)
+    link = Link(NAME, bench.repository, DailyAllowance(1))
     subscription = Subscription(NAME, bench.repository, link)
     if resumed:
         with bench.session():
