@@ -1,0 +1,77 @@
+"""What is written for all relays together arrives once, also where the database is locked meanwhile."""
+
+import sqlite3
+import time
+from contextlib import closing
+
+import pytest
+
+from service.collector.batching import Batches
+from service.storage import Repository, connect
+from service.storage.records import LinkNote, LinkTraffic, Sample
+from service.storage.states import LinkState
+from tests.service.collector.conftest import eventually
+from tests.service.fixtures import database_url
+from tests.service.plants import NOW_NS, SECOND_NS, two_motor_plant
+
+__all__ = ["database_url"]
+
+RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
+
+
+@pytest.fixture
+def repository(database_url: str, monkeypatch: pytest.MonkeyPatch) -> Repository:
+    monkeypatch.setattr("service.storage.engine.BUSY_TIMEOUT_S", 0.2)
+    repository = Repository(connect(database_url))
+    repository.sync_plant(two_motor_plant())
+    repository.set_link_state(RELAY, LinkState.UP, None, now_ns=NOW_NS, traffic=LinkTraffic(connections=1))
+    return repository
+
+
+def note(number: int, *, round_trip_s: float | None = 0.01) -> LinkNote:
+    return LinkNote(
+        RELAY,
+        NOW_NS + number * SECOND_NS,
+        LinkTraffic(received_bytes=100, reports=2, report_gaps=1),
+        round_trip_s,
+        day=7,
+        day_bytes=100 * number,
+    )
+
+
+def test_notes_add_up_and_change_no_state(repository: Repository) -> None:
+    repository.note_links([note(1), note(2, round_trip_s=None)])
+    repository.set_link_state(RELAY, LinkState.DOWN, "refused", now_ns=NOW_NS + 3 * SECOND_NS)
+    repository.note_links([note(2)])
+    figures = repository.link_figures(RELAY)
+    assert (figures.connections, figures.received_bytes, figures.reports, figures.report_gaps) == (
+        1,
+        300,
+        6,
+        3,
+    )
+    assert (figures.round_trip_s, figures.day, figures.day_bytes) == (0.01, 7, 200)
+    ied = repository.ied(RELAY)
+    assert (ied.link_state, ied.link_reason) == (LinkState.DOWN, "refused"), "a late note revives no link"
+    assert ied.last_success_ns == NOW_NS + 2 * SECOND_NS
+    repository.note_links([])
+
+
+def test_a_locked_database_costs_nothing_and_doubles_nothing(
+    repository: Repository, database_url: str
+) -> None:
+    batches = Batches(repository)
+    batches.start()
+    with closing(sqlite3.connect(database_url.removeprefix("sqlite:///"))) as other:
+        other.execute("BEGIN IMMEDIATE")
+        for number in range(5):
+            batches.add_note(note(number))
+            batches.add_sample(Sample(MOTOR, NOW_NS + number, {"ia_A": 1.0}))
+        time.sleep(1.5)  # an attempt of the thread's fails
+        assert repository.link_figures(RELAY).reports == 0
+        other.rollback()
+    assert eventually(lambda: repository.link_figures(RELAY).reports == 10)
+    batches.add_note(note(9))
+    batches.stop(10)
+    assert repository.link_figures(RELAY).received_bytes == 600, "what is left is written at the end"
+    assert len(repository.measurements(MOTOR, 0, limit=100).items) == 5
