@@ -73,6 +73,15 @@ class Link:
             return
         self._told_s, self._remark = now_s, remark
 
+    def left(self) -> None:
+        """The visit ends in good order: what is not written down yet is."""
+        if self._told_s is None:
+            return  # the relay has not answered yet
+        try:
+            self._note(None)
+        except SQLAlchemyError:
+            log.exception("figures of a link are lost", relay=self._relay)
+
     def failed(self, reason: str) -> None:
         """The link is down; tried again later."""
         self._log_failure(reason)

@@ -14,7 +14,7 @@ import structlog
 from mms import AccessDenied, Client, FileSizeMismatch, NotFound, TemporarilyUnavailable
 from service.collector.alarms import RelayAlarms
 from service.collector.allowance import DAY_NS, DailyAllowance
-from service.collector.event_folder import EventFolder
+from service.collector.event_folder import Contents, EventFolder
 from service.collector.formats import Chosen, one_format_an_event, remote_of
 from service.collector.link import Link
 from service.collector.listing import MOST_IGNORED, ListedRecord, Listing, RefusedFile, understand
@@ -69,6 +69,22 @@ class Scan:
     unreachable: str | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class _View:
+    """What a listing comes to, for as long as neither it nor what is known of its records changes.
+
+    decided: how many records are known and hopeless; under one listing both only become more.  new: oldest
+    first.  names: of all records.
+    """
+
+    contents: Contents
+    decided: tuple[int, int]
+    listing: Listing
+    chosen: Chosen
+    new: tuple[ListedRecord, ...]
+    names: frozenset[str]
+
+
 class RecordDirectory:
     """Scans one relay's directory and stores what is new. Used by that relay's session alone."""
 
@@ -101,6 +117,7 @@ class RecordDirectory:
             early_s=min(EARLY_S, settings.record_timeout_s / 2),
         )
         self._hopeless: set[ListedRecord] = set()
+        self._view: _View | None = None
         # This session alone writes the relay's records: having asked once, it knows them.
         self._asked = False
         self._known: set[RemoteRecord] = set()
@@ -118,13 +135,9 @@ class RecordDirectory:
         if contents.directory is None:
             unreachable = self._folder.missing if self._folder.no_files else None
             return Scan(frozenset(), (), (), (), unreachable=unreachable)
-        listing = understand(contents.entries, contents.directory)
-        self._note_refused_files(listing)
-        self._hopeless.intersection_update(listing.records)
-        chosen = one_format_an_event(listing.records, self._known, self._hopeless)
+        view = self._view = self._view_of(contents, contents.directory)
+        listing, chosen, new = view.listing, view.chosen, view.new
         self._give_up_what_is_gone(chosen)
-        new = [record for record in chosen.records if remote_of(record) not in self._known]
-        new.sort(key=lambda record: (record.modified_ns, record.name))
         settled = self._settling.look(new, time.monotonic(), early=chosen.early)
         ready, unsteady = self._without_shape_shifters(settled)
         self._note_unsteady(unsteady)
@@ -133,7 +146,7 @@ class RecordDirectory:
         patient = {record.name for record in unsteady}.union(held_back)
         ignored = chosen.passed_over + listing.ignored
         return Scan(
-            listed=frozenset(record.name for record in listing.records),
+            listed=view.names,
             taken=tuple(record.name for record in new if remote_of(record) in self._known),
             waiting=tuple(
                 record.name
@@ -144,6 +157,24 @@ class RecordDirectory:
             ignored=ignored[:MOST_IGNORED],
             ignored_in_all=len(chosen.passed_over) + listing.ignored_in_all,
         )
+
+    def _view_of(self, contents: Contents, directory: str) -> _View:
+        """Relays list hundreds of records again and again; all but a few listings are as the one before."""
+        before = self._view
+        if before is not None and before.contents == contents:
+            listing = before.listing
+        else:
+            listing = understand(contents.entries, directory)
+            self._note_refused_files(listing)
+            self._hopeless.intersection_update(listing.records)
+        decided = (len(self._known), len(self._hopeless))
+        if before is not None and before.listing is listing and before.decided == decided:
+            return before
+        chosen = one_format_an_event(listing.records, self._known, self._hopeless)
+        new = [record for record in chosen.records if remote_of(record) not in self._known]
+        new.sort(key=lambda record: (record.modified_ns, record.name))
+        names = frozenset(record.name for record in listing.records)
+        return _View(contents, decided, listing, chosen, tuple(new), names)
 
     def _recall(self) -> None:
         """What became of the relay's records before; years of them, so not in the thread that starts all."""

@@ -175,6 +175,7 @@ class RelaySession:
                 self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
                 self._conduct.answered()
                 self._wait(client, HURRIED_PERIOD_S if waiting else self._settings.poll_period_s)
+            self._link.left()
 
     def _begin(self, client: Client) -> None:
         """A new connection: find out what the relay is, and use that. Raises MmsError."""
