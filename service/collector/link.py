@@ -39,6 +39,7 @@ class Link:
         self._untold = LinkTraffic()
         self._on_note = on_note or (lambda note: repository.note_links((note,)))
         self._told_s: float | None = None
+        self._answered_ns = 0
         self._remark: str | None = None
         self._failure_logged: tuple[str, float] | None = None
 
@@ -64,7 +65,7 @@ class Link:
 
     def answered(self, round_trip_s: float | None, remark: str | None = None) -> None:
         """The relay answered; its latest answer took that long. remark: what it cannot give at present."""
-        now_s = time.monotonic()
+        now_s, self._answered_ns = time.monotonic(), time.time_ns()
         if self._told_s is None or remark != self._remark:
             self._tell(LinkState.UP, remark, round_trip_s)
         elif now_s - self._told_s >= NOTE_PERIOD_S:
@@ -106,7 +107,7 @@ class Link:
         self._on_note(
             LinkNote(
                 self._relay,
-                time.time_ns(),
+                self._answered_ns,
                 self._untold,
                 round_trip_s,
                 day=self._allowance.day,
