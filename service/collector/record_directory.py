@@ -86,7 +86,10 @@ class _View:
 
 
 class RecordDirectory:
-    """Scans one relay's directory and stores what is new. Used by that relay's session alone."""
+    """Scans one relay's directory and stores what is new. Used by that relay's session alone.
+
+    listing_s: how long the relay took for the latest listing.
+    """
 
     def __init__(
         self,
@@ -118,6 +121,7 @@ class RecordDirectory:
         )
         self._hopeless: set[ListedRecord] = set()
         self._view: _View | None = None
+        self.listing_s = 0.0
         # This session alone writes the relay's records: having asked once, it knows them.
         self._asked = False
         self._known: set[RemoteRecord] = set()
@@ -131,7 +135,9 @@ class RecordDirectory:
         Raises MmsError when the link fails, OSError when the disk does; what was stored until then stays.
         """
         self._recall()
+        began_s = time.monotonic()
         contents = self._folder.contents(client)
+        self.listing_s = time.monotonic() - began_s
         if contents.directory is None:
             unreachable = self._folder.missing if self._folder.no_files else None
             return Scan(frozenset(), (), (), (), unreachable=unreachable)

@@ -36,6 +36,9 @@ log = structlog.get_logger(__name__)
 HURRIED_PERIOD_S = 0.2
 """Between scans while a record is known to be on its way."""
 
+LISTING_PAUSE = 4.0
+"""Of the time that listing the directory takes: so long a pause before the next, also while in a hurry."""
+
 FIRST_RETRY_S, LONGEST_RETRY_S = 0.5, 10.0
 
 
@@ -174,8 +177,13 @@ class RelaySession:
                 waiting = self._work(client)
                 self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
                 self._conduct.answered()
-                self._wait(client, HURRIED_PERIOD_S if waiting else self._settings.poll_period_s)
+                self._wait(client, self._hurried_period_s() if waiting else self._settings.poll_period_s)
             self._link.left()
+
+    def _hurried_period_s(self) -> float:
+        """A relay that takes long to list its records is not kept busy with that alone."""
+        gentle_s = max(HURRIED_PERIOD_S, LISTING_PAUSE * self._directory.listing_s)
+        return min(gentle_s, self._settings.poll_period_s)
 
     def _begin(self, client: Client) -> None:
         """A new connection: find out what the relay is, and use that. Raises MmsError."""
@@ -231,7 +239,8 @@ class RelaySession:
         if not expecting:
             self._subscription.save()
         self._note_findings(scan)
-        return expecting or triggered
+        # Where a report will tell of the record, there is nothing to look for until it comes.
+        return expecting or (triggered and self._subscription.report_control is None)
 
     def _note_findings(self, scan: Scan) -> None:
         self._discovery.note(

@@ -80,7 +80,8 @@ def make_schedule(plant: ChaosPlant, *, seed: int, length_s: float, recordings: 
         actions += _faults(kind, random, length_s, [""])
     growth = max(1.0, len(plant.relays) / RELAYS_OF_A_RATE)
     for kind in OF_A_RELAY:
-        actions += _faults(kind, random, length_s, _victims(kind, plant), growth)
+        often = growth if kind.name.startswith("link-") else 1.0
+        actions += _faults(kind, random, length_s, _victims(kind, plant), often)
     return sorted(actions)
 
 
@@ -117,11 +118,11 @@ def _victims(kind: FaultKind, plant: ChaosPlant) -> list[str]:
 
 
 def _faults(
-    kind: FaultKind, random: Random, length_s: float, victims: list[str], growth: float = 1.0
+    kind: FaultKind, random: Random, length_s: float, victims: list[str], often: float = 1.0
 ) -> Iterator[Action]:
     """At least one of each kind; two of a kind never at once with the same victim."""
     busy_until_s = dict.fromkeys(victims, 0.0)
-    times = max(1, round(kind.per_minute * growth * length_s / 60.0))
+    times = max(1, round(kind.per_minute * often * length_s / 60.0))
     for number, drawn_s in enumerate(sorted(random.uniform(0.05, 0.95) * length_s for _ in range(times))):
         victim = victims[random.randrange(len(victims))]
         lasts_s = random.uniform(kind.shortest_s, kind.longest_s)
