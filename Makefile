@@ -1,5 +1,5 @@
 # make install | demo | test | lint | bench | fuzz SECONDS=60 | interop LIBIEC61850=TREE      (PYTHON=python3.11 make install: another interpreter)
-# make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/track-record.md)
+# make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/track-record.md)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
 PYTHON ?= python3
 BIN := .venv/bin
@@ -39,7 +39,7 @@ test: install
 chaos: install
 	$(BIN)/python -m tests.chaos --seed $(or $(SEED),1) --minutes $(or $(MINUTES),2) \
 		--recordings $(or $(RECORDINGS),300) --relays $(or $(RELAYS),12) \
-		$(if $(JSON),--json $(JSON)) $(if $(DATA),--data $(DATA))
+		$(if $(FAULTS),--faults $(FAULTS)) $(if $(JSON),--json $(JSON)) $(if $(DATA),--data $(DATA))
 
 compose-test: install
 	$(BIN)/python -m tests.deployment.enterprise $(COMPOSE)

@@ -10,12 +10,17 @@ SHORTEST_S = 20.0
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """minutes: about how long it may take, start and settling included."""
+    """minutes: about how long it may take, start and settling included.
+
+    faults: so many times the usual number of faults a minute. The usual one is for runs of minutes: the
+    service is hurt every eight seconds, and hardly gets to work.
+    """
 
     seed: int
     minutes: float
     recordings: int
     relays: int
+    faults: float = 1.0
 
     @property
     def schedule_s(self) -> float:
@@ -27,5 +32,5 @@ class Order:
         """What runs the same again."""
         return (
             f"make chaos SEED={self.seed} MINUTES={self.minutes:g} RECORDINGS={self.recordings} "
-            f"RELAYS={self.relays}"
+            f"RELAYS={self.relays}" + (f" FAULTS={self.faults:g}" if self.faults != 1.0 else "")
         )

@@ -60,7 +60,13 @@ def run(order: Order, directory: Path, tell: Tell) -> Result:
     """
     history = History()
     plant = make_plant(directory, order.relays)
-    schedule = make_schedule(plant, seed=order.seed, length_s=order.schedule_s, recordings=order.recordings)
+    schedule = make_schedule(
+        plant,
+        seed=order.seed,
+        length_s=order.schedule_s,
+        recordings=order.recordings,
+        faults=order.faults,
+    )
     (directory / "schedule.txt").write_text("".join(f"{action}\n" for action in schedule), encoding="utf-8")
     tell(f"{len(schedule)} actions in {order.schedule_s:.0f} s, listed in {directory / 'schedule.txt'}")
     service = _service(plant, directory, history)

@@ -72,15 +72,20 @@ class Action:
         return f"{self.at_s:7.1f} s  {self.kind} {self.relay}{length} #{self.number}"
 
 
-def make_schedule(plant: ChaosPlant, *, seed: int, length_s: float, recordings: int) -> list[Action]:
-    """The actions in order. The same seed, length and plant give the same schedule."""
+def make_schedule(
+    plant: ChaosPlant, *, seed: int, length_s: float, recordings: int, faults: float = 1.0
+) -> list[Action]:
+    """The actions in order. The same arguments give the same schedule.
+
+    faults: so many times the usual number of faults a minute.
+    """
     random = Random(seed)
     actions = list(_triggers(plant, random, length_s, recordings))
     for kind in OF_THE_SERVICE:
-        actions += _faults(kind, random, length_s, [""])
+        actions += _faults(kind, random, length_s, [""], faults)
     growth = max(1.0, len(plant.relays) / RELAYS_OF_A_RATE)
     for kind in OF_A_RELAY:
-        often = growth if kind.name.startswith("link-") else 1.0
+        often = faults * (growth if kind.name.startswith("link-") else 1.0)
         actions += _faults(kind, random, length_s, _victims(kind, plant), often)
     return sorted(actions)
 
@@ -118,7 +123,7 @@ def _victims(kind: FaultKind, plant: ChaosPlant) -> list[str]:
 
 
 def _faults(
-    kind: FaultKind, random: Random, length_s: float, victims: list[str], often: float = 1.0
+    kind: FaultKind, random: Random, length_s: float, victims: list[str], often: float
 ) -> Iterator[Action]:
     """At least one of each kind; two of a kind never at once with the same victim."""
     busy_until_s = dict.fromkeys(victims, 0.0)
