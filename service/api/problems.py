@@ -9,7 +9,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
-from sqlalchemy.exc import OperationalError
+from sqlalchemy.exc import OperationalError, TimeoutError  # noqa: A004 - that of the database
 from starlette.exceptions import HTTPException
 from structlog.typing import FilteringBoundLogger
 
@@ -130,11 +130,14 @@ def install(app: FastAPI) -> None:
         log.error("recording store is damaged", error=str(error))
         return problem_response(request.url.path, HTTPStatus.INTERNAL_SERVER_ERROR, str(error))
 
+    @app.exception_handler(TimeoutError)
     @app.exception_handler(OperationalError)
-    def _database(request: Request, error: OperationalError) -> JSONResponse:
-        if getattr(error.orig, "sqlite_errorcode", None) == sqlite3.SQLITE_ERROR:  # a query of ours is wrong
-            return _unexpected(request, error)
-        reason = str(error.orig)
+    def _database(request: Request, error: OperationalError | TimeoutError) -> JSONResponse:
+        reason = str(error)
+        if isinstance(error, OperationalError):
+            if getattr(error.orig, "sqlite_errorcode", None) == sqlite3.SQLITE_ERROR:  # our query is wrong
+                return _unexpected(request, error)
+            reason = str(error.orig)
         log.error("database does not answer", path=request.url.path, error=reason)
         detail = f"the database does not answer ({reason}); nothing was changed, try again"
         return problem_response(

@@ -3,12 +3,14 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
+from threading import Lock
 from typing import TYPE_CHECKING, TypeVar
 
 from sqlalchemy import ColumnElement, Engine, Select, text, tuple_
+from sqlalchemy.exc import TimeoutError  # noqa: A004 - that of the database
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from service.storage.engine import WRITES
+from service.storage.engine import BUSY_TIMEOUT_S, WRITES
 from service.storage.errors import NotFoundError
 from service.storage.models import Base
 from service.storage.records import Cursor, Page
@@ -29,6 +31,7 @@ class Sessions:
     def __init__(self, engine: Engine) -> None:
         self._reading = engine
         self._writing = engine.execution_options(**{WRITES: True})
+        self._turn = Lock() if engine.dialect.name == "sqlite" else None
 
     def check(self) -> None:
         """One round trip to the database. Raises sqlalchemy.exc.SQLAlchemyError when it does not answer."""
@@ -42,8 +45,25 @@ class Sessions:
 
     @contextmanager
     def _write(self) -> Iterator[Session]:
-        with Session(self._writing) as session, session.begin():
+        with self._own_turn(), Session(self._writing) as session, session.begin():
             yield session
+
+    @contextmanager
+    def _own_turn(self) -> Iterator[None]:
+        """SQLite has one writer, and who waits for it looks again every 100 ms, whoever was there first.
+
+        So threads of a process take turns before: the next one goes on at once, and no renewal of a lease is
+        passed by forty others. Raises sqlalchemy.exc.TimeoutError.
+        """
+        if self._turn is None:
+            yield
+            return
+        if not self._turn.acquire(timeout=BUSY_TIMEOUT_S):
+            raise TimeoutError(f"other threads have been writing for {BUSY_TIMEOUT_S:g} s")
+        try:
+            yield
+        finally:
+            self._turn.release()
 
 
 def found(session: Session, row_type: type[Row], key: str, kind: str) -> Row:
