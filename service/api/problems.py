@@ -30,7 +30,6 @@ STATUS_OF: dict[type[Exception], HTTPStatus] = {
 RETRY_AFTER_S = 5
 """Told to clients while the database does not answer: a full disk, a lock held for long."""
 
-
 OF_ALL = (HTTPStatus.UNPROCESSABLE_ENTITY, HTTPStatus.SERVICE_UNAVAILABLE)
 
 

@@ -55,11 +55,8 @@ class Batches:
         closed = False
         while not closed:
             closed = self._closed.wait(PERIOD_S)
-            try:
-                self._samples.write()
-                self._notes.write()
-            except SQLAlchemyError as error:
-                log.warning("database does not answer, trying again", error=str(error))
+            self._samples.write_or_keep()
+            self._notes.write_or_keep()
 
 
 class _Batch(Generic[Item]):
@@ -73,11 +70,16 @@ class _Batch(Generic[Item]):
     def add(self, item: Item) -> None:
         self._arrived.put(item)
 
-    def write(self) -> None:
-        """In one transaction. Raises SQLAlchemyError: then it is kept for the next time."""
+    def write_or_keep(self) -> None:
+        """In one transaction; what the database does not take is kept for the next time."""
         while not self._arrived.empty():
             self._unwritten.append(self._arrived.get())
         del self._unwritten[:-MOST_UNWRITTEN]
-        if self._unwritten:
+        if not self._unwritten:
+            return
+        try:
             self._write(self._unwritten)
+        except SQLAlchemyError as error:
+            log.warning("database does not answer, trying again", error=str(error))
+        else:
             self._unwritten.clear()

@@ -25,8 +25,8 @@ _FIGURES = (
         day=bindparam("new_day"),
         day_bytes=bindparam("new_day_bytes"),
         **{
-            name: LinkFiguresRow.__table__.columns[name] + bindparam(f"more_{name}")
-            for name in (field.name for field in fields(LinkTraffic))
+            field.name: LinkFiguresRow.__table__.columns[field.name] + bindparam(f"more_{field.name}")
+            for field in fields(LinkTraffic)
         },
     )
 )
