@@ -9,6 +9,7 @@ from mms.client import Client, DataSetMember
 from mms.controls import AddCause, ControlModel
 from mms.errors import (
     AccessDenied,
+    AssociationBroken,
     AssociationRejected,
     CertificateRefused,
     ConnectFailed,
@@ -43,6 +44,7 @@ __all__ = [
     "MOST_CONNECTIONS",
     "AccessDenied",
     "AddCause",
+    "AssociationBroken",
     "AssociationRejected",
     "BitString",
     "CertificateRefused",

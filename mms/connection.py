@@ -125,9 +125,10 @@ class Connection:
             reason = "the relay ends every association at once: no session left?"
             return errors.ConnectFailed(self.host, "connect", code, reason)
         if code not in (_CONNECTION_LOST, _REJECTED):
-            return errors.ConnectFailed(
-                self.host, "connect", code, errors.client_error(self.host, "connect", code).message
-            )
+            found = errors.client_error(self.host, "connect", code)
+            is_broken = isinstance(found, errors.ProtocolError)
+            kind = errors.AssociationBroken if is_broken else errors.ConnectFailed
+            return kind(self.host, "connect", code, found.message)
         return refused(
             self.host,
             address,

@@ -110,6 +110,10 @@ class ServerStartFailed(MmsError):
     """The server cannot listen on its address and port."""
 
 
+class AssociationBroken(ConnectFailed, ProtocolError):
+    """The relay associates, and answers the first request with what the service does not allow."""
+
+
 class CredentialFileError(ValueError):
     """A file with a certificate, a key or a password cannot be used.
 

@@ -1,8 +1,9 @@
 """The hostile relay: a raw server that associates, and answers requests with something spoilt or crafted."""
 
 import asyncio
+import itertools
 from collections import Counter, deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from random import Random
@@ -193,6 +194,21 @@ def serving(relays: dict[str, HostileRelay]) -> Iterator[dict[str, HostileRelay]
         yield relays
         for relay in relays.values():
             asyncio.run_coroutine_threadsafe(relay.stop(), loop).result(10)
+
+
+@contextmanager
+def lying(dialogue: Dialogue, lies: Mapping[bytes, Callable[[int], bytes]]) -> Iterator[int]:
+    """A relay that is good but for these answers, made from their number; its port."""
+    count = itertools.count()
+
+    class Lying(Dialogue):
+        def answer(self, service: Element) -> bytes | None:
+            lie = lies.get(service.tag)
+            return super().answer(service) if lie is None else lie(next(count))
+
+    told = Lying(dialogue.handshake, dialogue.answers, dialogue.latest)
+    with serving({"relay": HostileRelay(told, 1, honest=1.0)}) as relays:
+        yield relays["relay"].port
 
 
 def _response(invoke_id: bytes, service: bytes) -> bytes:

@@ -2,19 +2,15 @@
 
 import asyncio
 import io
-import itertools
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from random import Random
 
 import pytest
 
-from ied_sim.front.ber import Element
-from mms import Client, FileSizeMismatch, ProtocolError, files
+from mms import AssociationBroken, Client, FileSizeMismatch, ProtocolError, files
 from tests.hostile import bulk, crafted, spoiling
 from tests.hostile.dialogue import PRO, Dialogue, overheard, tlv
-from tests.hostile.relay import HostileRelay, serving
+from tests.hostile.relay import HostileRelay, lying
 from tests.hostile.surroundings import Snapshot, strangers
 from tests.mms.relays import LOOPBACK
 
@@ -111,19 +107,15 @@ def test_a_member_that_is_none_is_an_error(dialogue: Dialogue) -> None:
         client.data_set_directory(f"{PRO}/LLN0.DSet01")
 
 
-@contextmanager
-def lying(dialogue: Dialogue, lies: Mapping[bytes, Callable[[int], bytes]]) -> Iterator[int]:
-    """A relay that is good but for these answers, made from their number; its port."""
-    count = itertools.count()
-
-    class Lying(Dialogue):
-        def answer(self, service: Element) -> bytes | None:
-            lie = lies.get(service.tag)
-            return super().answer(service) if lie is None else lie(next(count))
-
-    told = Lying(dialogue.handshake, dialogue.answers, dialogue.latest)
-    with serving({"relay": HostileRelay(told, 1, honest=1.0)}) as relays:
-        yield relays["relay"].port
+@pytest.mark.parametrize("lie", [b"\xa1\x00", b"\xa1\x02\x05\x00", b"\xa1\x02\x30\x00"])
+def test_who_answers_the_first_request_with_nonsense_broke_the_protocol(
+    dialogue: Dialogue, lie: bytes
+) -> None:
+    with (
+        lying(dialogue, {b"\xa1": lambda _: lie}) as port,
+        pytest.raises(AssociationBroken, match="malformed"),
+    ):
+        Client.connect(LOOPBACK, port)
 
 
 def test_a_spoilt_answer_can_be_made_again(dialogue: Dialogue) -> None:

@@ -5,15 +5,21 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from service.collector import relay_session
 from service.collector.quarantine import FAULTS_IN_A_ROW, PROBATION_S, Conduct, after_end
 from service.collector.visiting import Visits
 from service.storage import Repository
 from service.storage.records import Quarantine
 from service.storage.states import AlarmKind, LinkState
+from tests.hostile.dialogue import overheard
+from tests.hostile.relay import LIST_OF_NAMES, lying
+from tests.service.collector.conftest import Bench, eventually
+from tests.service.collector.scripted_relay import NAME
 from tests.service.fixtures import database_url, engine, repository
 from tests.service.plants import NOW_NS, SECOND_NS
 
@@ -114,6 +120,19 @@ def test_who_breaks_the_protocol_again_and_again_is_set_aside(repository: Reposi
     told = [conduct.broke_the_protocol("nonsense") for _ in range(FAULTS_IN_A_ROW)]
     assert told == [False] * (FAULTS_IN_A_ROW - 1) + [True]
     assert "broke the protocol 5 times in a row, at last: nonsense" in (repository.ied(A).link_reason or "")
+
+
+def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(relay_session, "FIRST_RETRY_S", 0.01)
+    with lying(overheard(), {LIST_OF_NAMES: lambda _: b"\xa1\x00"}) as port:
+        bench.relay = replace(bench.relay, port=port)
+        with bench.session():
+            assert eventually(lambda: bench.link() is LinkState.QUARANTINED)
+    reason = bench.repository.ied(NAME).link_reason or ""
+    assert f"broke the protocol {FAULTS_IN_A_ROW} times in a row" in reason
+    assert "connect: malformed message" in reason
 
 
 def test_good_visits_between_count(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
