@@ -10,7 +10,7 @@ from threading import Event, Thread
 from typing import Generic, TypeVar
 
 import structlog
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.exc import InterfaceError, OperationalError, TimeoutError  # noqa: A004 - of the database
 
 from service.storage import Repository
 from service.storage.records import LinkNote, Sample
@@ -24,6 +24,10 @@ PERIOD_S = 1.0
 
 MOST_UNWRITTEN = 100_000
 """Of a kind, kept while the database does not answer; then the oldest go."""
+
+
+NO_ANSWER = (OperationalError, InterfaceError, TimeoutError)
+"""Of a database that is locked, full or away."""
 
 
 class Batches:
@@ -71,7 +75,7 @@ class _Batch(Generic[Item]):
         self._arrived.put(item)
 
     def write_or_keep(self) -> None:
-        """In one transaction; what the database does not take is kept for the next time."""
+        """In one transaction; while the database does not answer, it is kept for the next time."""
         while not self._arrived.empty():
             self._unwritten.append(self._arrived.get())
         del self._unwritten[:-MOST_UNWRITTEN]
@@ -79,7 +83,9 @@ class _Batch(Generic[Item]):
             return
         try:
             self._write(self._unwritten)
-        except SQLAlchemyError as error:
+        except NO_ANSWER as error:
             log.warning("database does not answer, trying again", error=str(error))
-        else:
-            self._unwritten.clear()
+            return
+        except Exception:  # one that will never be taken must not hold up all that come after it
+            log.exception("lost, the database refuses it", number=len(self._unwritten))
+        self._unwritten.clear()

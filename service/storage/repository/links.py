@@ -4,7 +4,7 @@ import uuid
 from collections.abc import Sequence
 from dataclasses import asdict, fields
 
-from sqlalchemy import bindparam, delete, func, select, update
+from sqlalchemy import bindparam, case, delete, func, select, update
 from sqlalchemy.orm import Session
 
 from service.storage.models import IedRow, LeaseRow, LinkChangeRow, LinkFiguresRow
@@ -23,7 +23,14 @@ _FIGURES = (
     .values(
         round_trip_s=func.coalesce(bindparam("took_s"), LinkFiguresRow.round_trip_s),
         day=bindparam("new_day"),
-        day_bytes=bindparam("new_day_bytes"),
+        day_bytes=case(  # a note that waited tells no news of a day that is known to have more
+            (
+                (LinkFiguresRow.day == bindparam("new_day"))
+                & (LinkFiguresRow.day_bytes > bindparam("new_day_bytes")),
+                LinkFiguresRow.day_bytes,
+            ),
+            else_=bindparam("new_day_bytes"),
+        ),
         **{
             field.name: LinkFiguresRow.__table__.columns[field.name] + bindparam(f"more_{field.name}")
             for field in fields(LinkTraffic)

@@ -3,6 +3,7 @@
 import sqlite3
 import time
 from contextlib import closing
+from dataclasses import replace
 
 import pytest
 
@@ -57,6 +58,18 @@ def test_notes_add_up_and_change_no_state(repository: Repository) -> None:
     repository.note_links([])
 
 
+def test_a_note_that_waited_gives_no_bytes_of_the_day_back(repository: Repository) -> None:
+    repository.set_link_state(
+        RELAY, LinkState.DOWN, "cut", now_ns=NOW_NS, traffic=LinkTraffic(), day_bytes=(7, 500)
+    )
+    repository.note_links([note(2)])
+    assert (repository.link_figures(RELAY).day, repository.link_figures(RELAY).day_bytes) == (7, 500)
+    repository.note_links([note(6)])
+    assert repository.link_figures(RELAY).day_bytes == 600
+    repository.note_links([replace(note(1), day=8)])
+    assert (repository.link_figures(RELAY).day, repository.link_figures(RELAY).day_bytes) == (8, 100)
+
+
 def test_a_locked_database_costs_nothing_and_doubles_nothing(
     repository: Repository, database_url: str
 ) -> None:
@@ -75,3 +88,16 @@ def test_a_locked_database_costs_nothing_and_doubles_nothing(
     batches.stop(10)
     assert repository.link_figures(RELAY).received_bytes == 600, "what is left is written at the end"
     assert len(repository.measurements(MOTOR, 0, limit=100).items) == 5
+
+
+def test_what_the_database_refuses_holds_up_nothing(repository: Repository) -> None:
+    batches = Batches(repository)
+    batches.start()
+    batches.add_sample(Sample("NO-SUCH-MOTOR", NOW_NS, {"ia_A": 1.0}))
+
+    def good_ones_arrive() -> bool:
+        batches.add_sample(Sample(MOTOR, time.time_ns(), {"ia_A": 1.0}))
+        return bool(repository.measurements(MOTOR, 0, limit=100).items)
+
+    assert eventually(good_ones_arrive)
+    batches.stop(10)
