@@ -1,21 +1,29 @@
 """The collector against simulated relays of every kind, and against what they do wrong, over real MMS."""
 
 from dataclasses import replace
+from math import sqrt
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from core.recordings import Recording, read
+from ied_sim.load import Load, LoadCycle
 from ied_sim.misbehaviour import Kind, Misbehaviour
+from ied_sim.plant import rated_current
+from ied_sim.profile import Triggers
 from service.plant.recognition import recognise
-from service.storage.states import EventReportState, LinkState
-from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated
-from tests.service.collector.conftest import Bench, eventually
+from service.storage.states import EventReportState, LinkState, RecordingState
+from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated, text
+from tests.service.collector.conftest import MOTOR, Bench, eventually
+
+RISES_S = 3.0
+"""When the load does, since the relay's start."""
 
 
 def of(bench: Bench, served: Simulated, folder: str) -> Bench:
     """The bench with the simulated relay in its relay's place."""
     points = recognise(served.document.ied(IED))
-    assert points.trigger is not None
     relay = replace(
         bench.relay,
         host=served.address.host,
@@ -94,3 +102,44 @@ def test_a_refused_control_fails_the_wish_with_its_reason(bench: Bench, tmp_path
         with here.session():
             assert eventually(lambda: here.report(wish).state is EventReportState.FAILED)
     assert "blocked by interlocking" in (here.report(wish).reason or "")
+
+
+def test_a_record_of_a_motor_start_is_stored_though_nobody_asked(bench: Bench, tmp_path: Path) -> None:
+    """A relay that no client can trigger: it records each start by itself (ER)."""
+    with simulated(tmp_path / "relays", scenario_of("rdre-readonly")) as served:
+        here = of(bench, served, "COMTRADE")
+        assert here.relay.trigger_control is None
+        with here.session(), served.client() as operator:
+            assert eventually(lambda: here.link() is LinkState.UP)
+            assert here.recordings() == []
+            operator.operate(served.reference("DR/MOTGGIO1.SPCSO02"), value=True)
+            operator.operate(served.reference("DR/MOTGGIO1.SPCSO01"), value=True)
+            stored = stored_unasked(here)
+    before, after = np.split(np.abs(stored.samples[:3]), [stored.trigger_index], axis=1)
+    assert after.max() > 3 * before.max(), "the current of the start"
+
+
+def test_a_record_of_a_high_load_is_stored_though_nobody_asked(bench: Bench, tmp_path: Path) -> None:
+    """A relay that anybody could trigger, and that records a rising load by itself (ER)."""
+    scenario = scenario_of("sel-710-ed2")
+    rising = Load(0.0, cycle=LoadCycle(((0.0, 0.1), (RISES_S, 0.1), (RISES_S + 0.1, 1.0)), 3_600.0))
+    plant = replace(scenario.plant, load=rising)
+    with simulated(
+        tmp_path / "relays", replace(scenario, plant=plant, triggers=Triggers(load_above=0.8))
+    ) as served:
+        here = of(bench, served, "EVENTS")
+        with here.session(), served.client() as operator:
+            assert eventually(lambda: here.link() is LinkState.UP)
+            stored = stored_unasked(here)
+            assert "ER LOAD" in text(operator, "REPORTS/CHISTORY.TXT")
+    assert np.abs(stored.samples[:3]).max() > 0.8 * rated_current(plant.motor) * sqrt(2)
+
+
+def stored_unasked(bench: Bench) -> Recording:
+    """The one recording there is, as the store has it."""
+    assert eventually(lambda: [each.state for each in bench.recordings()] == [RecordingState.FETCHED], 60)
+    (entry,) = bench.recordings()
+    assert (entry.motor, entry.ied) == (MOTOR, bench.relay.name)
+    assert bench.repository.event_reports(limit=10).items == ()
+    assert entry.digest is not None
+    return read(bench.store.find(entry.digest).entry)
