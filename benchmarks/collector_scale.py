@@ -3,7 +3,8 @@
 Every relay is triggered once in --period-minutes, evenly spread. Told: relays that were not heard of for two
 poll periods (missed polls), growth of the memory of all the service's processes after a warm-up, time from a
 record made (its last file in the relay) to stored, and CPU. --period-minutes 0 triggers nothing: connected
-and read only.
+and read only. Ends with 1 and names each limit that was broken; a run without triggers, or shorter than
+JUDGED_MINUTES, is told and not judged.
 """
 
 import argparse
@@ -34,7 +35,14 @@ POLL_PERIOD_S = 5.0
 LOOK_S = 5.0
 WARM_UP_SHARE = 0.2
 START_LIMIT_S = 300.0
-LIMITS = "limits: no missed poll, below 1 MB a minute, p95 at most 2 s"
+JUDGED_MINUTES = 10.0
+"""In less the memory still warms up, and its slope says nothing."""
+
+MEMORY_LIMIT_MB_A_MINUTE = 1.0
+P95_LIMIT_S = 2.0
+LIMITS = (
+    f"limits: no missed poll, below {MEMORY_LIMIT_MB_A_MINUTE:g} MB a minute, p95 at most {P95_LIMIT_S:g} s"
+)
 SECOND_NS = 1e9
 UNDER_WAY = ("requested", "triggered", "recorded")
 
@@ -49,8 +57,38 @@ class Seen:
     delays_s: dict[str, float] = field(default_factory=dict)
     asked: list[str] = field(default_factory=list)
 
+    def memory_slope(self, since_minute: float) -> float | None:
+        """[MB a minute]; None where it was hardly looked at since then."""
+        warm = [(minute, memory) for minute, memory in self.memory if minute >= since_minute]
+        if len(warm) <= 2:
+            return None
+        return float(statistics.linear_regression(*zip(*warm, strict=True)).slope)
 
-def measure(relays: int, minutes: float, period_minutes: float) -> Iterator[str]:
+    def p95_s(self) -> float | None:
+        """Of the delays; None where there are hardly any."""
+        if len(self.delays_s) <= 1:
+            return None
+        return statistics.quantiles(self.delays_s.values(), n=20, method="inclusive")[-1]
+
+
+def broken_limits(seen: Seen, minutes: float, period_minutes: float) -> list[str]:
+    """In words; a figure that is missing breaks its limit."""
+    if period_minutes <= 0 or minutes < JUDGED_MINUTES:
+        return []
+    slope, p95_s = seen.memory_slope(WARM_UP_SHARE * minutes), seen.p95_s()
+    broken = []
+    if seen.looks == 0 or seen.missed:
+        broken.append(f"missed polls: expected none, found {len(seen.missed)} in {seen.looks} looks")
+    if slope is None or slope >= MEMORY_LIMIT_MB_A_MINUTE:
+        found = "too few looks" if slope is None else f"{slope:+.2f}"
+        broken.append(f"memory: expected below {MEMORY_LIMIT_MB_A_MINUTE:g} MB a minute, found {found}")
+    if p95_s is None or p95_s > P95_LIMIT_S:
+        found = f"{len(seen.delays_s)} recordings" if p95_s is None else f"{p95_s:.2f} s"
+        broken.append(f"made to stored: expected p95 at most {P95_LIMIT_S:g} s, found {found}")
+    return broken
+
+
+def measure(seen: Seen, relays: int, minutes: float, period_minutes: float) -> Iterator[str]:
     with tempfile.TemporaryDirectory(prefix="statorwatch-scale-") as name:
         directory = Path(name)
         scd, motors = _files(directory, relays)
@@ -62,7 +100,7 @@ def measure(relays: int, minutes: float, period_minutes: float) -> Iterator[str]
                 up_s = time.monotonic() - begun_s
                 yield f"{relays} relays: all links up {up_s:.1f} s after the service was ready"
                 before_s, simulator_s = _cpu_s(service), cpu_s(simulator)
-                seen = _watch(service, client, directory / "relays", minutes, period_minutes)
+                _watch(seen, service, client, directory / "relays", minutes, period_minutes)
                 spent_s, simulated_s = _cpu_s(service) - before_s, cpu_s(simulator) - simulator_s
                 yield from _told(seen, minutes, spent_s, simulated_s)
                 yield from _outcome(client, seen)
@@ -70,9 +108,8 @@ def measure(relays: int, minutes: float, period_minutes: float) -> Iterator[str]
 
 
 def _watch(
-    service: Service, client: ServiceClient, files: Path, minutes: float, period_minutes: float
-) -> Seen:
-    seen = Seen()
+    seen: Seen, service: Service, client: ServiceClient, files: Path, minutes: float, period_minutes: float
+) -> None:
     motors = sorted(str(motor["name"]) for motor in client.items("/motors"))
     begun_s = time.monotonic()
     while (elapsed_s := time.monotonic() - begun_s) < minutes * 60:
@@ -87,7 +124,6 @@ def _watch(
         time.sleep(0.1)
     eventually(lambda: not _open(client, seen), 60)
     _note_delays(client, files, seen)
-    return seen
 
 
 def _look(service: Service, client: ServiceClient, seen: Seen, minute: float) -> None:
@@ -120,15 +156,14 @@ def _open(client: ServiceClient, seen: Seen) -> list[str]:
 def _told(seen: Seen, minutes: float, spent_s: float, simulated_s: float) -> Iterator[str]:
     yield f"missed polls: {len(seen.missed)} (looked {seen.looks} times at every relay)"
     begin = WARM_UP_SHARE * minutes
-    warm = [(minute, memory) for minute, memory in seen.memory if minute >= begin]
-    if len(warm) > 2:
-        slope = statistics.linear_regression(*zip(*warm, strict=True)).slope
-        yield f"memory: {warm[-1][1]:.0f} MB in all, {slope:+.2f} MB a minute after {begin:.1f} minutes"
-    delays = sorted(seen.delays_s.values())
-    if len(delays) > 1:
-        p95 = statistics.quantiles(delays, n=20, method="inclusive")[-1]
+    slope = seen.memory_slope(begin)
+    if slope is not None:
+        last_MB = seen.memory[-1][1]
+        yield f"memory: {last_MB:.0f} MB in all, {slope:+.2f} MB a minute after {begin:.1f} minutes"
+    delays, p95_s = sorted(seen.delays_s.values()), seen.p95_s()
+    if p95_s is not None:
         yield (
-            f"made to stored: median {statistics.median(delays):.2f} s, p95 {p95:.2f} s, "
+            f"made to stored: median {statistics.median(delays):.2f} s, p95 {p95_s:.2f} s, "
             f"most {delays[-1]:.2f} s ({len(delays)} recordings)"
         )
     service, relays = (100 * used_s / (60 * minutes) for used_s in (spent_s, simulated_s))
@@ -221,15 +256,20 @@ def _served(directory: Path, scd: Path, motors: Path) -> Iterator[Service]:
         yield service
 
 
-def main() -> None:
+def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.collector_scale", description=__doc__)
     parser.add_argument("--relays", type=int, default=200)
     parser.add_argument("--minutes", type=float, default=30.0)
     parser.add_argument("--period-minutes", type=float, default=5.0)
     arguments = parser.parse_args()
-    for line in measure(arguments.relays, arguments.minutes, arguments.period_minutes):
+    seen = Seen()
+    for line in measure(seen, arguments.relays, arguments.minutes, arguments.period_minutes):
         print(line, flush=True)
+    broken = broken_limits(seen, arguments.minutes, arguments.period_minutes)
+    for line in broken:
+        print(f"limit broken: {line}", flush=True)
+    return 1 if broken else 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
