@@ -115,6 +115,7 @@ def test_a_record_of_a_motor_start_is_stored_though_nobody_asked(bench: Bench, t
             operator.operate(served.reference("DR/MOTGGIO1.SPCSO02"), value=True)
             operator.operate(served.reference("DR/MOTGGIO1.SPCSO01"), value=True)
             stored = stored_unasked(here)
+    assert stored.trigger_index is not None
     before, after = np.split(np.abs(stored.samples[:3]), [stored.trigger_index], axis=1)
     assert after.max() > 3 * before.max(), "the current of the start"
 
