@@ -74,6 +74,10 @@ class ProtocolError(MmsError):
     """The peer answered with something the service does not allow, or refused it for another reason."""
 
 
+class FileServiceFailed(ProtocolError):
+    """The peer's file service answered with another error (ISO 9506-2): not this file; the link is fine."""
+
+
 class ControlRefused(MmsError):
     """The relay refused to select, operate or complete a control; `add_cause` says why in words.
 
@@ -184,11 +188,17 @@ _FILE_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     40: (TemporarilyUnavailable, "the file is busy, or too many files are open"),
     81: (NotFound, "no such file"),
     83: (AccessDenied, "access denied"),
+    86: (TemporarilyUnavailable, "temporarily unavailable"),
     92: (TemporarilyUnavailable, "the file is busy"),
     93: (NotFound, "not a file name"),
     96: (AccessDenied, "file access denied"),
     97: (NotFound, "no such file"),
 }
+
+
+_HARDWARE_FAULT = 5
+_SERVICE_ERRORS = range(9, 100)
+"""MmsError numbers of the relay's ServiceErrors; above are its rejects, below what is found on our side."""
 
 
 def client_error(host: str, operation: str, code: int) -> MmsError:
@@ -199,5 +209,7 @@ def client_error(host: str, operation: str, code: int) -> MmsError:
 
 def file_error(host: str, operation: str, code: int) -> MmsError:
     """The error for an MmsError number of the library's file services (ISO 9506-2 ServiceError)."""
-    kind, message = _FILE_ERRORS.get(code, (ProtocolError, f"the file service failed (MMS error {code})"))
+    of_a_file = code == _HARDWARE_FAULT or code in _SERVICE_ERRORS
+    other = FileServiceFailed if of_a_file else ProtocolError
+    kind, message = _FILE_ERRORS.get(code, (other, f"the file service failed (MMS error {code})"))
     return kind(host, operation, code, message)

@@ -10,6 +10,7 @@ frozen, and wakes up after another took its relays over, operates nothing.
 """
 
 import time
+from collections.abc import Set
 
 import structlog
 
@@ -62,6 +63,7 @@ class Triggering:
         self._next: EventReport | None = None
         self._claimed = False
         self._listed_before: frozenset[str] = frozenset()
+        self._held_up_since_s: float | None = None
 
     def use(self, acquisition: Acquisition) -> None:
         """What a new connection has found."""
@@ -98,7 +100,9 @@ class Triggering:
             if report is not None and key[0] == report.id
         }
         if report is None:
-            return self._next is not None and self._grant(client, self._next, scan)
+            if self._next is None or self._is_held_up(scan):
+                return self._next is not None
+            return self._grant(client, self._next, scan)
         held_back = [name for name in scan.held_back if name not in self._listed_before]
         if held_back:
             self._fail(
@@ -107,23 +111,44 @@ class Triggering:
                 "as much today as the setting max_relay_bytes_per_day allows",
             )
             return False
-        appeared = [name for name in scan.waiting if name not in self._listed_before]
+        appeared = {*scan.waiting, *scan.failing} - self._listed_before
         if appeared and report.state is EventReportState.TRIGGERED:
             self._repository.mark_recorded(report.id, now_ns=time.time_ns())
         elif self._is_overdue(report):
-            self._fail(
-                report,
-                f"{self._relay.name}: expected a record within {self._timeout_s:g} s of the trigger, "
-                "found none; check the relay's event report settings (ER)",
-            )
+            self._fail(report, self._why_overdue(scan, appeared))
             return False
         return True
+
+    def _why_overdue(self, scan: Scan, appeared: Set[str]) -> str:
+        failing = sorted(appeared & scan.failing.keys())
+        if failing:
+            return (
+                f"{self._relay.name}: its record could not be fetched within {self._timeout_s:g} s: "
+                f"{scan.failing[failing[0]]}"
+            )
+        return (
+            f"{self._relay.name}: expected a record within {self._timeout_s:g} s of the trigger, "
+            "found none; check the relay's event report settings (ER)"
+        )
 
     def link_failed(self, reason: str) -> None:
         """The relay cannot be asked, `reason` says why: reports that waited for it long enough fail."""
         for report in self._repository.open_event_reports(self._relay.name):
             if self._is_overdue(report):
                 self._fail(report, f"{self._relay.name} {reason}")
+
+    def _is_held_up(self, scan: Scan) -> bool:
+        """Whether the trigger had better wait for records that are about to be taken, which it has not made.
+
+        After a crash in between, nobody would know that they were there before it.
+        """
+        now_s = time.monotonic()
+        if not scan.waiting:
+            self._held_up_since_s = None
+            return False
+        if self._held_up_since_s is None:
+            self._held_up_since_s = now_s
+        return now_s < self._held_up_since_s + self._timeout_s
 
     def _grant(self, client: Client, report: EventReport, scan: Scan) -> bool:
         """Trigger, unless there is nothing to trigger by or no way to have the record."""

@@ -12,6 +12,9 @@ NAME = "A1_SEL710"
 CONTROL = f"{NAME}CON/RBGGIO1.SPCSO01"
 RECORD_MADE = f"{NAME}PRO/FLTRDRE1.RcdMade"
 FAULT_NUMBER = f"{NAME}PRO/FLTRDRE1.FltNum"
+STUCK_S = 2.5
+"""Longer than the bench's collector waits for an answer."""
+
 REPORT_CONTROL = f"{NAME}CFG/LLN0.BR.BRep01"
 
 
@@ -19,6 +22,7 @@ REPORT_CONTROL = f"{NAME}CFG/LLN0.BR.BRep01"
 class ScriptedRelay:
     """Writes a record at each rising edge of RB01, unless told to refuse or to stay silent.
 
+    denied: files of these records cannot be opened.  stuck: asked for these, it answers nobody for STUCK_S.
     shifts: a file of SHIFTY is a byte longer whenever it is opened than it was when it was listed.
     clock_offset_s: it stamps changes of RB01 with a clock so far ahead; None: it stamps nothing.
     """
@@ -29,6 +33,8 @@ class ScriptedRelay:
     silent: bool = False
     busy: bool = False
     shifts: bool = False
+    denied: set[str] = field(default_factory=set)
+    stuck: set[str] = field(default_factory=set)
     clock_offset_s: float | None = None
     clock_quality: int = 0x0A
     edges: int = 0
@@ -70,8 +76,13 @@ class ScriptedRelay:
         if self.shifts and request.operation is FileOperation.OPEN and "SHIFTY" in request.path.name:
             with request.path.open("ab") as file:
                 file.write(b"+")
-        busy = self.busy and request.operation is FileOperation.OPEN
-        return FileAnswer.BUSY if busy else FileAnswer.SERVE
+        if request.operation is not FileOperation.OPEN:
+            return FileAnswer.SERVE
+        if request.path.stem in self.stuck:
+            time.sleep(STUCK_S)
+        if request.path.stem in self.denied:
+            return FileAnswer.DENIED
+        return FileAnswer.BUSY if self.busy else FileAnswer.SERVE
 
     def _operated(self, action: ControlAction) -> "bool | AddCause":
         if self.refuses:
