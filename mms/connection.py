@@ -91,7 +91,7 @@ class Connection:
         self._lock = threading.RLock()
         self._pointer = 0
         self.round_trip_s: float | None = None
-        self._handlers: list[object] = []  # C holds them until the connection is destroyed
+        self._handlers: list[object] = []  # C holds them until they are uninstalled or all is destroyed
         addresses = self._resolve(host, port)
         self._credentials = Credentials(self.lib, tls, password)
         try:
@@ -211,6 +211,11 @@ class Connection:
         """Hold a callback for as long as C may call it."""
         with self._lock:
             self._handlers.append(handler)
+
+    def release(self, handler: object) -> None:
+        """Let go of a callback that was kept, once C cannot call it any more."""
+        with self._lock:
+            self._handlers.remove(handler)
 
     @contextmanager
     def exclusive(self, operation: str) -> Iterator[int]:

@@ -103,6 +103,7 @@ class Subscriptions:
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
         self._report_ids: dict[str, str] = {}
+        self._handlers: dict[str, object] = {}
 
     def subscribe(
         self, reference: str, reports: "queue.SimpleQueue[Report]", *, entry_id: bytes | None,
@@ -136,9 +137,7 @@ class Subscriptions:
         with _control_block(self._connection, operation, reference) as block:
             lib.ClientReportControlBlock_setRptEna(block, False)  # noqa: FBT003 (the library's)
             self._write(operation, block, _Field.ENABLE)
-        with self._connection.exclusive(operation) as pointer:
-            lib.IedConnection_uninstallReportHandler(pointer, reference.encode("ascii"))
-        self._report_ids.pop(reference, None)
+        self._uninstall(operation, reference)
 
     def _claim(self, operation: str, reference: str, block: int) -> str:
         """The block's report ID, once the block is known to be free and its ID to be its own."""
@@ -196,26 +195,35 @@ class Subscriptions:
         self, operation: str, reference: str, report_id: str, block: int, reports: "queue.SimpleQueue[Report]"
     ) -> None:
         connection, lib = self._connection, self._connection.lib
-        name = reference.encode("ascii")
 
         def receive(_parameter: int | None, report: int) -> None:
             reports.put(_copy(lib, reference, report))
 
         handler = ReportHandler(guarded(receive, None))
-        connection.keep(handler)
         with connection.exclusive(operation) as pointer:
-            lib.IedConnection_installReportHandler(pointer, name, report_id.encode("latin-1"), handler, None)
-        self._report_ids[reference] = report_id
+            connection.keep(handler)
+            lib.IedConnection_installReportHandler(
+                pointer, reference.encode("ascii"), report_id.encode("latin-1"), handler, None
+            )
+        self._report_ids[reference], self._handlers[reference] = report_id, handler
         lib.ClientReportControlBlock_setRptEna(block, True)  # noqa: FBT003 (the library's)
         try:
             self._write(operation, block, _Field.ENABLE)
         except errors.MmsError as error:
-            del self._report_ids[reference]
-            with connection.exclusive(operation) as pointer:
-                lib.IedConnection_uninstallReportHandler(pointer, name)
+            self._uninstall(operation, reference)
             if isinstance(error, errors.AccessDenied | errors.TemporarilyUnavailable):
                 raise _in_use(error) from error
             raise
+
+    def _uninstall(self, operation: str, reference: str) -> None:
+        """No report of the block is delivered from now on."""
+        self._report_ids.pop(reference, None)
+        with self._connection.exclusive(operation) as pointer:
+            self._connection.lib.IedConnection_uninstallReportHandler(pointer, reference.encode("ascii"))
+            # The library calls handlers under the lock that uninstalling takes: it is not inside one now.
+            handler = self._handlers.pop(reference, None)
+            if handler is not None:
+                self._connection.release(handler)
 
     def _write(self, operation: str, block: int, field: _Field) -> None:
         single_request = True

@@ -134,7 +134,7 @@ class Gateway:
         aside = {
             each.ied: each.reason
             for each in self._repository.quarantines()
-            if each.until_ns > now_ns and each.ied in held
+            if each.ied in held and each.holds(now_ns)
         }
         self._aside = {ied: self._aside.get(ied) or self._triggering(ied) for ied in aside}
         for ied, reason in aside.items():

@@ -84,6 +84,14 @@ class Quarantine:
     since_ns: int
     until_ns: int
 
+    def holds(self, now_ns: int) -> bool:
+        """Whether the relay is to be left alone at `now_ns`, by a clock that may have been set since.
+
+        Only within the pause's own length of its beginning, on either side: a clock that was a day ahead
+        keeps no relay away for a day, and one of another host, a second behind, ends no pause early.
+        """
+        return abs(now_ns - self.since_ns) < self.until_ns - self.since_ns
+
 
 @dataclass(frozen=True, slots=True)
 class GatewayEntry:

@@ -1,9 +1,11 @@
 """Buffered and unbuffered reports: delivery, resuming after a loss, overflow, and blocks that are taken."""
 
+import gc
 import itertools
 import queue
 import threading
 import time
+import weakref
 
 import pytest
 
@@ -21,6 +23,7 @@ from mms import (
     Timestamp,
     Validity,
 )
+from mms.reports import Subscriptions, _Field
 from tests.mms.relays import LOOPBACK, RelayProcess, start_relay
 
 BUFFERED = "T1PRO/LLN0.BR.BRep01"
@@ -40,6 +43,12 @@ def _drain(reports: "queue.SimpleQueue[Report]", quiet_s: float = 0.4) -> list[R
             found.append(reports.get(timeout=quiet_s))
         except queue.Empty:
             return found
+
+
+def _is_gone(reports: "weakref.ref[queue.SimpleQueue[Report]]") -> bool:
+    """Whether nobody holds the queue any more."""
+    gc.collect()
+    return reports() is None
 
 
 def _event(number: int) -> dict[str, bool | Timestamp]:
@@ -123,6 +132,37 @@ def test_a_block_taken_by_another_client_is_refused_and_given_back_later(
         client.subscribe(reference, reports)
         relay.update(f"{IND01}.stVal", reference == BUFFERED)
         assert reports.get(timeout=5)
+
+
+def test_a_block_taken_at_the_last_moment_leaves_nothing_behind(
+    relay: Server, client: Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A relay may refuse for months: what was to take the reports must not pile up till the link ends."""
+    write = Subscriptions._write
+    with Client.connect(LOOPBACK, relay.port) as other:
+
+        def overtaken(self: Subscriptions, operation: str, block: int, field: _Field) -> None:
+            if self is not other._subscriptions and field is _Field.ENABLE:
+                other.subscribe(BUFFERED, _queue())
+            write(self, operation, block, field)
+
+        monkeypatch.setattr(Subscriptions, "_write", overtaken)
+        reports = _queue()
+        held = weakref.ref(reports)
+        with pytest.raises(ReportControlInUse, match="another client holds the block"):
+            client.subscribe(BUFFERED, reports)
+        del reports
+        assert _is_gone(held)
+
+
+def test_a_block_given_back_leaves_nothing_behind(client: Client) -> None:
+    reports = _queue()
+    held = weakref.ref(reports)
+    client.subscribe(BUFFERED, reports)
+    del reports
+    assert not _is_gone(held)
+    client.unsubscribe(BUFFERED)
+    assert _is_gone(held)
 
 
 def test_a_block_is_enabled_once_a_client(client: Client) -> None:

@@ -12,7 +12,8 @@ from service.storage.repository.leases import require_lease
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import EventReportOrigin, EventReportState
 
-OPEN = (EventReportState.REQUESTED, EventReportState.TRIGGERED, EventReportState.RECORDED)
+IN_THE_RELAY = (EventReportState.TRIGGERED, EventReportState.RECORDED)
+OPEN = (EventReportState.REQUESTED, *IN_THE_RELAY)
 ENDED = (EventReportState.DIAGNOSED, EventReportState.FAILED)
 
 
@@ -69,12 +70,13 @@ class EventReportRows(Sessions):
             return page_of(session, query, order, event_report, limit=limit, after=after, descending=True)
 
     def ieds_with_requests(self) -> tuple[str, ...]:
-        """Relays that have a trigger to be given."""
-        # One look into the index a relay: what was asked for in all those years does not matter.
-        waiting = exists().where(
-            EventReportRow.ied == IedRow.name, EventReportRow.state == EventReportState.REQUESTED
+        """Relays that have a trigger to be given now: none that still owe the record of an earlier one."""
+        # Two looks into the index a relay: what was asked for in all those years does not matter.
+        waiting, outstanding = (
+            exists().where(EventReportRow.ied == IedRow.name, EventReportRow.state.in_(states))
+            for states in ((EventReportState.REQUESTED,), IN_THE_RELAY)
         )
-        query = select(IedRow.name).where(waiting).order_by(IedRow.name)
+        query = select(IedRow.name).where(waiting, ~outstanding).order_by(IedRow.name)
         with self._read() as session:
             return tuple(session.scalars(query))
 

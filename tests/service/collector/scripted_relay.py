@@ -23,6 +23,7 @@ class ScriptedRelay:
     """Writes a record at each rising edge of RB01, unless told to refuse or to stay silent.
 
     denied: files of these records cannot be opened.  stuck: asked for these, it answers nobody for STUCK_S.
+    listings: how often its directory was asked for.
     shifts: a file of SHIFTY is a byte longer whenever it is opened than it was when it was listed.
     clock_offset_s: it stamps changes of RB01 with a clock so far ahead; None: it stamps nothing.
     """
@@ -39,6 +40,7 @@ class ScriptedRelay:
     clock_quality: int = 0x0A
     edges: int = 0
     records: int = 0
+    listings: int = 0
     server: Server = field(init=False)
     _bit: bool = False
 
@@ -73,6 +75,7 @@ class ScriptedRelay:
         self.server.update_many({f"{RECORD_MADE}.stVal": True, f"{FAULT_NUMBER}.stVal": self.records})
 
     def _answer(self, request: FileRequest) -> FileAnswer:
+        self.listings += request.operation is FileOperation.LIST
         if self.shifts and request.operation is FileOperation.OPEN and "SHIFTY" in request.path.name:
             with request.path.open("ab") as file:
                 file.write(b"+")

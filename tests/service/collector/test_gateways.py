@@ -29,7 +29,7 @@ from service.settings import Settings
 from service.storage import LeaseLostError, Repository, connect, migrate
 from service.storage.states import LinkState
 from tests.service.collector.conftest import eventually
-from tests.service.plants import NOW_NS
+from tests.service.plants import NOW_NS, SECOND_NS
 
 LEASE_S = 1.5
 
@@ -268,6 +268,18 @@ def test_a_gateway_declared_dead_by_mistake_starts_again(hall: Hall) -> None:
         assert eventually(lambda: hall.shares() == {"a": 6})
         assert hall.repository.end_gateway("a", now_ns=NOW_NS)
         assert eventually(lambda: hall.shares() == {"a": 6} and hall.all_visited())
+
+
+def test_relays_set_aside_by_a_clock_that_was_ahead_are_visited(hall: Hall) -> None:
+    aside, ahead = sorted(hall.servers)[:2]
+    for ied, ahead_s in ((aside, 0), (ahead, 86_400)):
+        now_ns = time.time_ns() + ahead_s * SECOND_NS
+        hall.repository.set_aside(ied, "why", first_pause_s=60.0, longest_pause_s=86_400.0, now_ns=now_ns)
+    with gateway(hall, "a"):
+        assert eventually(lambda: sum(map(visitors, hall.servers.values())) == 5)
+        assert visitors(hall.servers[ahead]) == 1
+        assert visitors(hall.servers[aside]) == 0
+        assert hall.repository.ied(aside).link_state is LinkState.QUARANTINED
 
 
 def test_a_trigger_needs_the_lease(hall: Hall) -> None:

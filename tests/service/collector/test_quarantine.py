@@ -115,6 +115,29 @@ def test_pauses_grow_up_to_a_day(repository: Repository) -> None:
     assert found[-1].times == 200
 
 
+@pytest.mark.parametrize(
+    ("now_s", "holds"),
+    [
+        (0.0, True),
+        (PAUSE_S - 1, True),
+        (PAUSE_S, False),
+        (-1.0, True),  # another host's clock is behind
+        (-PAUSE_S, False),  # the clock was ahead and is put right
+        (-86_400.0, False),
+    ],
+)
+def test_a_quarantine_holds_no_longer_than_its_length_whatever_the_clock_says(
+    repository: Repository, now_s: float, *, holds: bool
+) -> None:
+    found = repository.set_aside(A, "why", first_pause_s=PAUSE_S, longest_pause_s=86_400.0, now_ns=NOW_NS)
+    assert found.holds(NOW_NS + round(now_s * SECOND_NS)) is holds
+
+
+def test_a_suspect_that_comes_back_at_once_is_not_held(repository: Repository) -> None:
+    repository.suspect([A], "why", pause_s=0.0, now_ns=NOW_NS)
+    assert not any(each.holds(NOW_NS) for each in repository.quarantines())
+
+
 def test_who_breaks_the_protocol_again_and_again_is_set_aside(repository: Repository) -> None:
     conduct = Conduct(A, repository, first_pause_s=PAUSE_S)
     told = [conduct.broke_the_protocol("nonsense") for _ in range(FAULTS_IN_A_ROW)]

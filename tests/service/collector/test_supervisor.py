@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from threading import Thread
+from threading import Event, Thread
 
 import pytest
 
@@ -103,3 +103,52 @@ def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> No
     assert eventually(lambda: len(ends) >= 2)
     assert supervised.problem() == "the collector process is not running"
     supervised.stop()
+
+
+class Clock:
+    """In the supervisor's place of `time`: it goes on where somebody waits, and nobody waits really."""
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+        self.waits_s: list[float] = []
+
+    def monotonic(self) -> float:
+        return self.now_s
+
+    def event(self) -> Event:
+        clock = self
+
+        class Passing(Event):
+            def wait(self, timeout: float | None = None) -> bool:
+                assert timeout is not None
+                clock.waits_s.append(timeout)
+                clock.now_s += timeout
+                return self.is_set()
+
+        return Passing()
+
+
+def test_each_further_end_is_waited_for_longer_until_one_has_run_well(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A collector that ends at once must not keep the machine busy with starting it."""
+    ran_for_s = iter([0.0] * 10 + [60.0, 60.5, 0.0, 0.0])
+    expected_s = [0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8, 25.6, 30.0, 30.0, 30.0, 0.2, 0.4]
+    clock = Clock()
+    monkeypatch.setattr("service.collector.supervisor.time", clock)
+    monkeypatch.setattr("service.collector.supervisor.Event", clock.event)
+    ended = Event()
+
+    def run(exit_code: int | None) -> None:
+        assert exit_code is None
+        clock.now_s += next(ran_for_s)
+        if len(clock.waits_s) == len(expected_s):
+            supervised.ask_to_end()
+            ended.set()
+
+    supervised = CollectorSupervisor(
+        Settings(data_directory=tmp_path), (str(tmp_path / "missing"),), on_end=run
+    )
+    supervised.start()
+    assert ended.wait(10)
+    assert clock.waits_s == pytest.approx(expected_s)

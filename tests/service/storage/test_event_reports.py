@@ -24,6 +24,19 @@ def test_a_report_goes_through_its_states(repository: Repository) -> None:
     assert repository.open_event_reports("A1_SEL710") == ()
 
 
+def test_a_request_waits_until_the_relay_owes_no_record(repository: Repository) -> None:
+    first = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    repository.request_event_report("PUMP-A1", now_ns=NOW_NS + 1)
+    repository.request_event_report("FAN-A2", now_ns=NOW_NS + 2)
+    assert repository.ieds_with_requests() == ("A1_SEL710", "A2_SEL710")
+    repository.mark_triggered(first.id, now_ns=NOW_NS + 3)
+    assert repository.ieds_with_requests() == ("A2_SEL710",)
+    repository.mark_recorded(first.id, now_ns=NOW_NS + 4)
+    assert repository.ieds_with_requests() == ("A2_SEL710",)
+    repository.fail_event_report(first.id, "the record was refused", now_ns=NOW_NS + 5)
+    assert repository.ieds_with_requests() == ("A1_SEL710", "A2_SEL710")
+
+
 def test_a_repeated_step_changes_nothing(repository: Repository) -> None:
     report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
     first = repository.mark_triggered(report.id, now_ns=NOW_NS + 1)

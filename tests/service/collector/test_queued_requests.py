@@ -1,0 +1,83 @@
+"""Event reports that queue up at one relay: the next follows at once, and until then the relay has peace."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import Event, Thread
+
+import pytest
+
+from service.collector.gateway import Gateway, Identity
+from service.plant import Plant, PlantMotor, Site
+from service.storage.states import EventReportState, LinkState
+from tests.service.collector.conftest import MOTOR, Bench, eventually
+from tests.service.collector.scripted_relay import NAME, ScriptedRelay
+from tests.service.plants import SECOND_NS, motor
+
+LONG_S = 60.0
+WATCHED_S = 2.0
+AT_ONCE_S = 1.5
+
+
+@contextmanager
+def gateway(bench: Bench) -> Iterator[None]:
+    """A gateway on a thread that visits the bench's relay."""
+    made = Gateway(
+        Identity("a", "here", os.getpid()),
+        Plant(
+            sites=(Site("FACTORY_A", "Factory A"),),
+            relays=(bench.relay,),
+            motors=(PlantMotor(motor(MOTOR), "pump", "FACTORY_A", NAME),),
+        ),
+        bench.repository,
+        bench.store,
+        bench.settings,
+        on_end=lambda: None,
+    )
+    stop = Event()
+    thread = Thread(target=made.run, args=(stop,))
+    thread.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        thread.join(15)
+        assert not thread.is_alive()
+
+
+@pytest.fixture
+def silent(relay: ScriptedRelay) -> ScriptedRelay:
+    """It makes its records when the test says so."""
+    relay.silent = True
+    return relay
+
+
+def test_a_queue_does_not_hurry_the_listings(bench: Bench, silent: ScriptedRelay) -> None:
+    with gateway(bench.with_settings(poll_period_s=LONG_S, record_timeout_s=LONG_S)):
+        assert eventually(lambda: bench.link() is LinkState.UP)
+        first, second, _ = (bench.request() for _ in range(3))
+        assert bench.reaches(first, EventReportState.TRIGGERED)
+        assert not eventually(lambda: silent.edges > 1, within_s=0.5)
+        before = silent.listings
+        assert not eventually(lambda: silent.listings > before, within_s=WATCHED_S)
+        assert bench.report(second).state is EventReportState.REQUESTED
+        silent.write_record("HR_1")
+        assert bench.reaches(first, EventReportState.FETCHED)
+        assert bench.reaches(second, EventReportState.TRIGGERED)
+    ended, granted = bench.report(first).fetched_ns, bench.report(second).triggered_ns
+    assert ended is not None
+    assert granted is not None
+    assert granted - ended < AT_ONCE_S * SECOND_NS
+
+
+def test_the_next_follows_at_once_where_no_record_came(bench: Bench, silent: ScriptedRelay) -> None:
+    poll_period_s = 2 * AT_ONCE_S
+    with gateway(bench.with_settings(poll_period_s=poll_period_s, record_timeout_s=1.0)):
+        assert eventually(lambda: bench.link() is LinkState.UP)
+        first, second = bench.request(), bench.request()
+        assert bench.reaches(first, EventReportState.FAILED)
+        assert bench.reaches(second, EventReportState.TRIGGERED)
+    failed, granted = bench.report(first).failed_ns, bench.report(second).triggered_ns
+    assert failed is not None
+    assert granted is not None
+    assert granted - failed < AT_ONCE_S * SECOND_NS
