@@ -29,6 +29,7 @@ from mms.errors import (
     Timeout,
     TlsNotSpoken,
     TlsRequired,
+    ValueRefused,
 )
 from mms.file_access import FileAnswer, FileOperation, FileRequest
 from mms.files import FileEntry
@@ -86,4 +87,5 @@ __all__ = [
     "TlsVersion",
     "Validity",
     "Value",
+    "ValueRefused",
 ]

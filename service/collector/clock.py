@@ -6,7 +6,15 @@ between our asking and its answer, so the stamp is off by the clock's offset, gi
 
 import time
 
-from mms import AccessDenied, Client, FunctionalConstraint, NotFound, TemporarilyUnavailable, Timestamp
+from mms import (
+    AccessDenied,
+    Client,
+    FunctionalConstraint,
+    NotFound,
+    TemporarilyUnavailable,
+    Timestamp,
+    ValueRefused,
+)
 from service.storage.records import ClockReading
 from service.storage.states import ClockQuality
 
@@ -21,7 +29,7 @@ def stamp_of(client: Client, control: str) -> Timestamp | None:
     """The stamp of a control's latest change; None where the relay gives none. Raises MmsError (the link)."""
     try:
         stamp = client.read(f"{control}.t", FunctionalConstraint.ST)
-    except (AccessDenied, NotFound, TemporarilyUnavailable):
+    except (AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused):
         return None
     return stamp if isinstance(stamp, Timestamp) and stamp.ns > 0 else None
 

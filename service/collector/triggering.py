@@ -21,6 +21,7 @@ from mms import (
     NotFound,
     ProtocolError,
     TemporarilyUnavailable,
+    ValueRefused,
 )
 from service.collector.clock import reading, stamp_of
 from service.collector.record_directory import Scan
@@ -177,5 +178,5 @@ def _is_set(client: Client, control: str) -> bool:
     """Whether a control is on; some relays do not let what may be written be read. Raises MmsError (link)."""
     try:
         return client.read(f"{control}.stVal", FunctionalConstraint.ST) is True
-    except (AccessDenied, NotFound, TemporarilyUnavailable):
+    except (AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused):
         return False
