@@ -30,6 +30,7 @@ from mms.errors import (
     Timeout,
     TlsNotSpoken,
     TlsRequired,
+    ValueRefused,
 )
 from mms.file_access import FileAnswer, FileOperation, FileRequest
 from mms.files import FileEntry
@@ -88,4 +89,5 @@ __all__ = [
     "TlsVersion",
     "Validity",
     "Value",
+    "ValueRefused",
 ]

@@ -78,6 +78,13 @@ class FileServiceFailed(ProtocolError):
     """The peer's file service answered with another error (ISO 9506-2): not this file; the link is fine."""
 
 
+class ValueRefused(ProtocolError):
+    """The peer answers in good order that it gives or takes no value of this one object.
+
+    A hardware fault, a type that does not fit (ISO 9506-2, DataAccessError); the others are none the worse.
+    """
+
+
 class ControlRefused(MmsError):
     """The relay refused to select, operate or complete a control; `add_cause` says why in words.
 
@@ -165,14 +172,14 @@ _CLIENT_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     22: (NotFound, "no such object"),
     23: (ProtocolError, "the object exists already"),
     24: (AccessDenied, "this kind of access is not supported"),
-    25: (ProtocolError, "type inconsistent"),
+    25: (ValueRefused, "type inconsistent"),
     26: (TemporarilyUnavailable, "temporarily unavailable"),
     27: (NotFound, "the object is not defined"),
     28: (NotFound, "invalid address"),
-    29: (ProtocolError, "hardware fault"),
-    30: (ProtocolError, "the data type is not supported"),
-    31: (ProtocolError, "the object's attributes are inconsistent"),
-    32: (ProtocolError, "the value is invalid"),
+    29: (ValueRefused, "hardware fault"),
+    30: (ValueRefused, "the data type is not supported"),
+    31: (ValueRefused, "the object's attributes are inconsistent"),
+    32: (ValueRefused, "the value is invalid"),
     33: (NotFound, "the object was invalidated"),
     34: (ProtocolError, "malformed message"),
     35: (ProtocolError, "object constraint conflict"),

@@ -22,8 +22,10 @@ from mms import (
     NotFound,
     ProtocolError,
     TemporarilyUnavailable,
+    Timestamp,
+    ValueRefused,
 )
-from service.collector.clock import reading, stamp_of
+from service.collector.clock import ClockWatch, reading, stamp_of
 from service.collector.record_directory import Scan
 from service.plant import Acquisition, Relay, TriggerAction, promised
 from service.storage import Repository
@@ -54,6 +56,7 @@ class Triggering:
         self._relay = relay
         self._acquisition = promised(relay)
         self._repository = repository
+        self._clock = ClockWatch(relay.name, repository)
         self._gateway = gateway
         self._timeout_s = record_timeout_s
         # By a clock that only goes forward: one that is set must end no report's time. After a restart every
@@ -68,6 +71,7 @@ class Triggering:
     def use(self, acquisition: Acquisition) -> None:
         """What a new connection has found."""
         self._acquisition = acquisition
+        self._clock.use(acquisition.measurands)
 
     def recall(self) -> None:
         """Look up which report, if any, waits for a record of this relay, and which one is next."""
@@ -100,9 +104,11 @@ class Triggering:
             if report is not None and key[0] == report.id
         }
         if report is None:
-            if self._next is None or self._is_held_up(scan):
-                return self._next is not None
-            return self._grant(client, self._next, scan)
+            if self._next is not None:
+                return self._is_held_up(scan) or self._grant(client, self._next, scan)
+            if not scan.waiting:
+                self._clock.look(client)
+            return False
         held_back = [name for name in scan.held_back if name not in self._listed_before]
         if held_back:
             self._fail(
@@ -165,7 +171,7 @@ class Triggering:
         try:
             if _is_set(client, control):
                 client.operate(control, False)  # noqa: FBT003 - the value of a control
-            stamp_before = stamp_of(client, control)
+            stamp_before = _stamp_of(client, control)
             self._repository.mark_triggered(report.id, now_ns=time.time_ns(), gateway=self._gateway)
             self._listed_before = listed
             asked_ns = time.time_ns()
@@ -176,10 +182,9 @@ class Triggering:
             return False
         log.info("triggered", relay=self._relay.name, motor=report.motor, event_report=report.id)
         time.sleep(HOLD_S)
-        stamp = stamp_of(client, control)
+        stamp = _stamp_of(client, control)
         if stamp is not None and stamp != stamp_before:
-            clock = reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
-            self._repository.note_clock(self._relay.name, clock)
+            self._clock.note(reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns))
         if self._acquisition.trigger_action is TriggerAction.PULSE and not _is_set(client, control):
             return True
         try:
@@ -198,9 +203,14 @@ class Triggering:
         return now_s > self._since_s.setdefault((report.id, report.state), now_s) + self._timeout_s
 
 
+def _stamp_of(client: Client, control: str) -> Timestamp | None:
+    """Of a control's latest change; None where the relay gives none. Raises MmsError (the link)."""
+    return stamp_of(client, f"{control}.t", FunctionalConstraint.ST)
+
+
 def _is_set(client: Client, control: str) -> bool:
     """Whether a control is on; some relays do not let what may be written be read. Raises MmsError (link)."""
     try:
         return client.read(f"{control}.stVal", FunctionalConstraint.ST) is True
-    except (AccessDenied, NotFound, TemporarilyUnavailable):
+    except (AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused):
         return False

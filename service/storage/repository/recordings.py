@@ -17,6 +17,7 @@ from service.storage.models import (
     RemoteRecordRow,
 )
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
+from service.storage.repository.clocks import give_clock
 from service.storage.repository.event_reports import diagnose_rows, fail_row, fail_rows, fetch_row
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingSource, RecordingState
@@ -307,9 +308,7 @@ def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: 
     row.reason = None
     row.fetched_ns = now_ns
     if row.ied is not None:
-        relay = found(session, IedRow, row.ied, "IED")
-        row.clock_offset_ns, row.clock_uncertainty_ns = relay.clock_offset_ns, relay.clock_uncertainty_ns
-        row.clock_quality, row.clock_measured_ns = relay.clock_quality, relay.clock_measured_ns
+        give_clock(row, found(session, IedRow, row.ied, "IED"))
     session.flush()
     _list_files(session, row, stored)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from structlog.testing import capture_logs
 
-from mms import Client
+from mms import Client, DataAccessError
 from service.collector.relay_session import RelaySession
 from service.recordings import Incoming
 from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
@@ -73,6 +73,19 @@ def test_a_remote_bit_left_set_is_cleared_first(bench: Bench, relay: ScriptedRel
     with bench.session():
         assert bench.reaches(report_id, EventReportState.FETCHED)
     assert relay.edges == 2
+
+
+@pytest.mark.parametrize("refusal", [DataAccessError.HARDWARE_FAULT, DataAccessError.TEMPORARILY_UNAVAILABLE])
+def test_a_remote_bit_that_cannot_be_read_is_cleared(
+    bench: Bench, relay: ScriptedRelay, refusal: DataAccessError
+) -> None:
+    relay.unreadable_while_set = refusal
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FETCHED)
+    assert relay.edges == 1
+    assert not relay.is_set
+    assert bench.repository.link_figures(NAME).connections == 1
 
 
 def test_a_refused_trigger_says_why_and_the_link_stays(bench: Bench, relay: ScriptedRelay) -> None:
