@@ -17,6 +17,7 @@ from mms.errors import (
     ControlRefused,
     CredentialFileError,
     EntryNotFound,
+    FileServiceFailed,
     FileSizeMismatch,
     MmsError,
     ModelError,
@@ -29,6 +30,7 @@ from mms.errors import (
     Timeout,
     TlsNotSpoken,
     TlsRequired,
+    ValueRefused,
 )
 from mms.file_access import FileAnswer, FileOperation, FileRequest
 from mms.files import FileEntry
@@ -62,6 +64,7 @@ __all__ = [
     "FileEntry",
     "FileOperation",
     "FileRequest",
+    "FileServiceFailed",
     "FileSizeMismatch",
     "FunctionalConstraint",
     "MmsError",
@@ -86,4 +89,5 @@ __all__ = [
     "TlsVersion",
     "Validity",
     "Value",
+    "ValueRefused",
 ]

@@ -156,7 +156,10 @@ class Client:
     # GetDataValues, GetDataSetValues, GetDataSetDirectory
 
     def read(self, reference: str, constraint: FunctionalConstraint) -> Value:
-        """The value of a data object or attribute; a structure is a tuple in the order of the model."""
+        """The value of a data object or attribute; a structure is a tuple in the order of the model.
+
+        AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused: the relay says that it gives none.
+        """
         operation = f"read {reference}[{constraint.name}]"
         lib = self._connection.lib
         pointer = self._connection.request(
@@ -167,7 +170,7 @@ class Client:
         finally:
             lib.MmsValue_delete(pointer)
         if isinstance(value, DataAccessError):
-            kind = _ACCESS_ERRORS.get(value, errors.ProtocolError)
+            kind = _ACCESS_ERRORS.get(value, errors.ValueRefused)
             raise kind(self.host, operation, value.value, value.name.lower().replace("_", " "))
         return value
 

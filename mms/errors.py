@@ -74,6 +74,17 @@ class ProtocolError(MmsError):
     """The peer answered with something the service does not allow, or refused it for another reason."""
 
 
+class FileServiceFailed(ProtocolError):
+    """The peer's file service answered with another error (ISO 9506-2): not this file; the link is fine."""
+
+
+class ValueRefused(ProtocolError):
+    """The peer answers in good order that it gives or takes no value of this one object.
+
+    A hardware fault, a type that does not fit (ISO 9506-2, DataAccessError); the others are none the worse.
+    """
+
+
 class ControlRefused(MmsError):
     """The relay refused to select, operate or complete a control; `add_cause` says why in words.
 
@@ -161,14 +172,14 @@ _CLIENT_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     22: (NotFound, "no such object"),
     23: (ProtocolError, "the object exists already"),
     24: (AccessDenied, "this kind of access is not supported"),
-    25: (ProtocolError, "type inconsistent"),
+    25: (ValueRefused, "type inconsistent"),
     26: (TemporarilyUnavailable, "temporarily unavailable"),
     27: (NotFound, "the object is not defined"),
     28: (NotFound, "invalid address"),
-    29: (ProtocolError, "hardware fault"),
-    30: (ProtocolError, "the data type is not supported"),
-    31: (ProtocolError, "the object's attributes are inconsistent"),
-    32: (ProtocolError, "the value is invalid"),
+    29: (ValueRefused, "hardware fault"),
+    30: (ValueRefused, "the data type is not supported"),
+    31: (ValueRefused, "the object's attributes are inconsistent"),
+    32: (ValueRefused, "the value is invalid"),
     33: (NotFound, "the object was invalidated"),
     34: (ProtocolError, "malformed message"),
     35: (ProtocolError, "object constraint conflict"),
@@ -184,11 +195,17 @@ _FILE_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     40: (TemporarilyUnavailable, "the file is busy, or too many files are open"),
     81: (NotFound, "no such file"),
     83: (AccessDenied, "access denied"),
+    86: (TemporarilyUnavailable, "temporarily unavailable"),
     92: (TemporarilyUnavailable, "the file is busy"),
     93: (NotFound, "not a file name"),
     96: (AccessDenied, "file access denied"),
     97: (NotFound, "no such file"),
 }
+
+
+_HARDWARE_FAULT = 5
+_SERVICE_ERRORS = range(9, 100)
+"""MmsError numbers of the relay's ServiceErrors; above are its rejects, below what is found on our side."""
 
 
 def client_error(host: str, operation: str, code: int) -> MmsError:
@@ -199,5 +216,7 @@ def client_error(host: str, operation: str, code: int) -> MmsError:
 
 def file_error(host: str, operation: str, code: int) -> MmsError:
     """The error for an MmsError number of the library's file services (ISO 9506-2 ServiceError)."""
-    kind, message = _FILE_ERRORS.get(code, (ProtocolError, f"the file service failed (MMS error {code})"))
+    of_a_file = code == _HARDWARE_FAULT or code in _SERVICE_ERRORS
+    other = FileServiceFailed if of_a_file else ProtocolError
+    kind, message = _FILE_ERRORS.get(code, (other, f"the file service failed (MMS error {code})"))
     return kind(host, operation, code, message)

@@ -8,6 +8,7 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.settings import Settings
 from service.storage import Repository
+from service.wall_clock import WallClock
 
 log = structlog.get_logger(__name__)
 
@@ -16,7 +17,11 @@ DAY_NS = 86_400 * 1_000_000_000
 
 
 class Housekeeping:
-    """One thread, once a minute."""
+    """One thread, once a minute.
+
+    Nothing is forgotten by a clock that may be ahead, and after one was set no mean is made of an interval
+    that may not be over: both wait until it has settled, and lose nothing by it.
+    """
 
     def __init__(self, settings: Settings, repository: Repository) -> None:
         self._repository = repository
@@ -25,6 +30,7 @@ class Housekeeping:
             60: settings.metering_minute_days,
             900: settings.metering_quarter_hour_days,
         }
+        self._clock = WallClock()
         self._stopping = Event()
         self._thread = Thread(target=self._run, name="housekeeping", daemon=True)
 
@@ -35,16 +41,21 @@ class Housekeeping:
         self._stopping.set()
         self._thread.join()
 
-    def tidy(self, now_ns: int) -> None:
-        """Average, then forget. Raises SQLAlchemyError: try again."""
+    def tidy(self, now_ns: int, monotonic_ns: int) -> None:
+        """Average, then forget, as far as the clock is to be trusted. Raises SQLAlchemyError: try again."""
+        self._clock.look(now_ns, monotonic_ns)
+        if self._clock.was_set:
+            return
         self._repository.average_measurements(now_ns=now_ns)
+        if not self._clock.is_settled:
+            return
         for step_s, days in self._days.items():
             self._repository.forget_measurements(step_s, before_ns=now_ns - round(days * DAY_NS))
 
     def _run(self) -> None:
         while True:
             try:
-                self.tidy(time.time_ns())
+                self.tidy(time.time_ns(), time.monotonic_ns())
             except SQLAlchemyError as error:
                 log.warning("database does not answer, trying again", error=str(error))
             if self._stopping.wait(PERIOD_S):

@@ -16,9 +16,10 @@ from service.storage.states import (
 
 
 class RelayClock(Document):
-    """A relay's clock less the service's, and what the relay says of it; null before the first trigger.
+    """A relay's clock less the service's, and what the relay says of it; null where it is not known.
 
-    It is read off the relay's stamp of a trigger, within `clock_uncertainty_s`, at `clock_measured_time`.
+    It is read off the relay's stamp of a trigger, or of a measured value that has just changed, within
+    `clock_uncertainty_s`, at `clock_measured_time`.
     """
 
     clock_offset_s: Seconds | None = Field(validation_alias="clock_offset_ns")

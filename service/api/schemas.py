@@ -130,7 +130,8 @@ class EventReport(Document):
 class Recording(RelayClock):
     """A recording. `recorded_time` is the trigger time written in the record, known once it was read.
 
-    That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored.
+    That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored,
+    null where that was not made within an hour of it.
     """
 
     id: str

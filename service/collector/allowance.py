@@ -22,10 +22,10 @@ class DailyAllowance:
         self._begin_day(now_ns)
         return self.used_bytes == 0 or self.used_bytes + sum(map(on_disk, sizes)) <= self.limit_bytes
 
-    def charge(self, size: int, now_ns: int) -> None:
-        """A file of this size was asked for, whatever became of it."""
+    def charge(self, number_of_bytes: int, now_ns: int) -> None:
+        """So many came, whatever became of them."""
         self._begin_day(now_ns)
-        self.used_bytes += on_disk(size)
+        self.used_bytes += number_of_bytes
 
     def _begin_day(self, now_ns: int) -> None:
         day = now_ns // DAY_NS
@@ -36,3 +36,8 @@ class DailyAllowance:
 def on_disk(size: int) -> int:
     """Size in whole blocks, at least one [bytes]."""
     return max(1, -(-size // BLOCK_BYTES)) * BLOCK_BYTES
+
+
+def beyond_its_end(size: int) -> int:
+    """What a file of this size leaves empty of its last block [bytes]."""
+    return on_disk(size) - size

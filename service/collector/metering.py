@@ -6,7 +6,14 @@ from collections.abc import Callable, Mapping
 
 import structlog
 
-from mms import AccessDenied, Client, FunctionalConstraint, NotFound, TemporarilyUnavailable
+from mms import (
+    AccessDenied,
+    Client,
+    FunctionalConstraint,
+    NotFound,
+    TemporarilyUnavailable,
+    ValueRefused,
+)
 from service.plant import Measurand, Relay
 from service.storage.records import Sample
 
@@ -24,7 +31,8 @@ NOT_OFFERED = (AccessDenied, NotFound)
 class Metering:
     """Used by that relay's session alone. `on_sample` takes each sample; period_s = 0: none is taken.
 
-    What the model promises and the relay does not have is left out for the length of a connection, and said.
+    What the model promises and the relay does not have is left out for the length of a connection; what it
+    has and cannot give, only from that sample. Both are said.
     """
 
     def __init__(
@@ -35,7 +43,9 @@ class Metering:
         self._motor = motor
         self._period_s = period_s
         self._on_sample = on_sample
-        self._factors: dict[Measurand, float] | None = None
+        self._asked_for = self._measurands
+        self._factors: dict[Measurand, float] = {}
+        self._said: set[Measurand] = set()
         self._next_s = 0.0
         self._next_statistics_s = 0.0
 
@@ -43,12 +53,14 @@ class Metering:
         """A new connection: find out again what the relay offers, among what was found or is promised."""
         if measurands is not None:
             self._measurands = measurands
-        self._factors = None
+        self._asked_for = self._measurands
+        self._factors = {}
+        self._said = set()
         self._next_s = time.monotonic()
 
     def due_in_s(self) -> float:
         """Until the next sample [s]; infinite where none is wanted."""
-        wanted = self._period_s > 0 and self._measurands and self._factors != {}
+        wanted = self._period_s > 0 and self._asked_for
         return max(0.0, self._next_s - time.monotonic()) if wanted else math.inf
 
     def sample(self, client: Client) -> None:
@@ -57,38 +69,52 @@ class Metering:
         if self._next_s < time.monotonic():
             # What was missed, because a long record was pulled meanwhile, is not made up for.
             self._next_s = time.monotonic() + self._period_s
-        if self._factors is None:
-            self._factors = self._offered(client)
-        values: dict[str, float] = {}
         with_statistics = time.monotonic() >= self._next_statistics_s
         if with_statistics:
             self._next_statistics_s = time.monotonic() + STATISTICS_PERIOD_S
-        for measurand, factor in self._factors.items():
-            if measurand.quantity.is_statistic and not with_statistics:
-                continue
-            try:
-                value = client.read(measurand.reference, FunctionalConstraint.MX)
-            except TemporarilyUnavailable:
-                continue
-            if isinstance(value, int | float) and math.isfinite(value):
-                values[measurand.quantity] = float(value) * factor
+        values = self._values(client, with_statistics=with_statistics)
         if values:
             self._on_sample(Sample(self._motor, time.time_ns(), values))
 
-    def _offered(self, client: Client) -> dict[Measurand, float]:
-        """What the relay has of what its model promises, and what each value is to be multiplied by."""
-        offered: dict[Measurand, float] = {}
-        missing: dict[str, str] = {}
-        for measurand in self._measurands:
+    def _values(self, client: Client, *, with_statistics: bool) -> dict[str, float]:
+        values: dict[str, float] = {}
+        left_out: dict[Measurand, str] = {}
+        still_asked_for = []
+        for measurand in self._asked_for:
             try:
-                client.read(measurand.reference, FunctionalConstraint.MX)
-                offered[measurand] = _factor(client, measurand)
+                if with_statistics or not measurand.quantity.is_statistic:
+                    value = self._value(client, measurand)
+                    if value is not None:
+                        values[measurand.quantity] = value
             except NOT_OFFERED as error:
-                missing[measurand.quantity] = str(error)
+                left_out[measurand] = str(error)
+                continue
+            except ValueRefused as error:
+                left_out[measurand] = str(error)
             except TemporarilyUnavailable:
-                offered[measurand] = _factor(client, measurand)
-        _say(self._relay.name, missing)
-        return offered
+                pass
+            still_asked_for.append(measurand)
+        self._asked_for = tuple(still_asked_for)
+        self._say(left_out)
+        return values
+
+    def _value(self, client: Client, measurand: Measurand) -> float | None:
+        """In plain units; None where it is no number."""
+        value = client.read(measurand.reference, FunctionalConstraint.MX)
+        if measurand not in self._factors:
+            self._factors[measurand] = _factor(client, measurand)
+        if isinstance(value, int | float) and math.isfinite(value):
+            return float(value) * self._factors[measurand]
+        return None
+
+    def _say(self, reasons: Mapping[Measurand, str]) -> None:
+        """Once a connection."""
+        new = {each.quantity: reason for each, reason in reasons.items() if each not in self._said}
+        self._said.update(reasons)
+        if new:
+            log.warning(
+                "not measured by the relay, though its model says so", relay=self._relay.name, missing=new
+            )
 
 
 def _factor(client: Client, measurand: Measurand) -> float:
@@ -100,8 +126,3 @@ def _factor(client: Client, measurand: Measurand) -> float:
         return 1.0
     usable = isinstance(power, int) and abs(power) <= LARGEST_POWER_OF_TEN
     return 10.0**power if usable and isinstance(power, int) else 1.0
-
-
-def _say(relay: str, missing: Mapping[str, str]) -> None:
-    if missing:
-        log.warning("not measured by the relay, though its model says so", relay=relay, missing=dict(missing))

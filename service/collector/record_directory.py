@@ -6,19 +6,30 @@ recording where it is a record, as an alarm where a file's name already says tha
 
 import time
 from collections import Counter
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import structlog
 
-from mms import AccessDenied, Client, FileSizeMismatch, NotFound, TemporarilyUnavailable
+from mms import (
+    AccessDenied,
+    Client,
+    ConnectionLost,
+    FileServiceFailed,
+    FileSizeMismatch,
+    NotFound,
+    ProtocolError,
+    TemporarilyUnavailable,
+    Timeout,
+)
 from service.collector.alarms import RelayAlarms
-from service.collector.allowance import DAY_NS, DailyAllowance
+from service.collector.allowance import DAY_NS, DailyAllowance, beyond_its_end
 from service.collector.event_folder import Contents, EventFolder
 from service.collector.formats import Chosen, one_format_an_event, remote_of
 from service.collector.link import Link
 from service.collector.listing import MOST_IGNORED, ListedRecord, Listing, RefusedFile, understand
 from service.collector.pulling import RecordTooLargeError, pull
+from service.collector.retrying import Retries
 from service.collector.settling import Settled, Settling
 from service.plant import Relay
 from service.recordings import RecordingStore, RecordingStoreError, StoredRecording
@@ -29,8 +40,9 @@ from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
 
-SETTLE_S = 0.2
-"""How long a record's sizes and times must stand still before it is pulled."""
+SETTLE_S, UNTOLD_SETTLE_S = 0.2, 2.0
+"""How long a record's sizes and times must stand still before it is pulled: where a report has told that it
+is made, and where none has, so that the relay may be pausing while it writes."""
 
 EARLY_S = 5.0
 """How long an event report must stand still at a relay that writes COMTRADE, too: that may be on its way."""
@@ -38,14 +50,21 @@ EARLY_S = 5.0
 UNSTEADY_S = 600.0
 """How long a record may go on changing before it is an alarm."""
 
-PULL_ATTEMPTS = 3
-"""A file can vanish or change between listing and pulling, when the relay makes room; hardly three times."""
+PULL_ATTEMPTS = 9
+"""A file may be refused, or not as long as listed, while the relay is at it; hardly for the minute that so
+many attempts take with their pauses."""
 
-ATTEMPTS_OF_A_NAME = 10
+ATTEMPTS_OF_A_NAME = 30
 """In all: a file that is of another size each time it is listed must not be asked for without end."""
 
-REFUSALS = (AccessDenied, NotFound, FileSizeMismatch)
+LINKS_ENDED = 5
+"""A record that has ended the visit this often is an alarm."""
+
+REFUSALS = (AccessDenied, FileServiceFailed, FileSizeMismatch, NotFound)
 """What one record can do wrong while the link is fine."""
+
+LINK_FAILURES = (ConnectionLost, ProtocolError, Timeout)
+"""What ends the visit, and may be due to the record that was asked for."""
 
 Owner = Callable[[str], str | None]
 """Tells the event report, if any, that a new record of this name belongs to."""
@@ -56,14 +75,16 @@ class Scan:
     """What one scan of the directory came to, by names of records.
 
     listed: all there are.  taken: newly stored or refused for good.  waiting: new ones that are not ready, or
-    are to be tried again soon.  held_back: ready ones that wait for another day.  ignored: files that are not
-    taken, with the reason; `ignored_in_all` may be more.  unreachable: why no record could be had at all.
+    are to be tried again soon.  failing: why a pull of them failed, by names, of those that are tried again,
+    soon or late.  held_back: ready ones that wait for another day.  ignored: files that are not taken, with
+    the reason; `ignored_in_all` may be more.  unreachable: why no record could be had at all.
     """
 
     listed: frozenset[str]
     taken: tuple[str, ...]
     waiting: tuple[str, ...]
     held_back: tuple[str, ...]
+    failing: Mapping[str, str] = field(default_factory=dict)
     ignored: tuple[RefusedFile, ...] = ()
     ignored_in_all: int = 0
     unreachable: str | None = None
@@ -115,10 +136,12 @@ class RecordDirectory:
         self._allowance = allowance
         self._settling = Settling(
             settle_s=SETTLE_S,
+            untold_s=UNTOLD_SETTLE_S,
             patience_s=settings.record_timeout_s,
             unsteady_s=UNSTEADY_S,
             early_s=min(EARLY_S, settings.record_timeout_s / 2),
         )
+        self._retries = Retries()
         self._hopeless: set[ListedRecord] = set()
         self._view: _View | None = None
         self.listing_s = 0.0
@@ -129,10 +152,11 @@ class RecordDirectory:
         self._attempts: Counter[str] = Counter()
         self._attempts_day = 0
 
-    def scan(self, client: Client, owner: Owner) -> Scan:
-        """List the directory; pull and store what is new and ready, oldest first.
+    def scan(self, client: Client, owner: Owner, *, told: bool) -> Scan:
+        """List the directory; pull and store what is new and ready, oldest first, those that failed last.
 
-        Raises MmsError when the link fails, OSError when the disk does; what was stored until then stays.
+        told: a report has just said that a record is made. Raises MmsError when the link fails, OSError when
+        the disk does; what was stored until then stays.
         """
         self._recall()
         began_s = time.monotonic()
@@ -144,12 +168,16 @@ class RecordDirectory:
         view = self._view = self._view_of(contents, contents.directory)
         listing, chosen, new = view.listing, view.chosen, view.new
         self._give_up_what_is_gone(chosen)
-        settled = self._settling.look(new, time.monotonic(), early=chosen.early)
+        self._retries.keep(new)
+        settled = self._settling.look(new, time.monotonic(), early=chosen.early, told=told)
         ready, unsteady = self._without_shape_shifters(settled)
         self._note_unsteady(unsteady)
         self._give_up_the_incomplete(settled.incomplete, chosen, contents.directory, owner)
-        held_back = self._take_all(client, ready, owner)
-        patient = {record.name for record in unsteady}.union(held_back)
+        held_back = self._take_all(client, self._retries.due(ready, time.monotonic()), owner)
+        patient = {record.name for record in unsteady}.union(
+            held_back, self._retries.put_off(time.monotonic())
+        )
+        self._retries.keep([record for record in new if remote_of(record) not in self._known])
         ignored = chosen.passed_over + listing.ignored
         return Scan(
             listed=view.names,
@@ -160,6 +188,7 @@ class RecordDirectory:
                 if remote_of(record) not in self._known and record.name not in patient
             ),
             held_back=held_back,
+            failing=self._retries.reasons(),
             ignored=ignored[:MOST_IGNORED],
             ignored_in_all=len(chosen.passed_over) + listing.ignored_in_all,
         )
@@ -173,6 +202,7 @@ class RecordDirectory:
             listing = understand(contents.entries, directory)
             self._note_refused_files(listing)
             self._hopeless.intersection_update(listing.records)
+            self._forget_the_untimed(listing)
         decided = (len(self._known), len(self._hopeless))
         if before is not None and before.listing is listing and before.decided == decided:
             return before
@@ -181,6 +211,12 @@ class RecordDirectory:
         new.sort(key=lambda record: (record.modified_ns, record.name))
         names = frozenset(record.name for record in listing.records)
         return _View(contents, decided, listing, chosen, tuple(new), names)
+
+    def _forget_the_untimed(self, listing: Listing) -> None:
+        """Where a relay gives no times, a new record may look like one that is gone."""
+        untimed = {remote for remote in self._known if not remote.modified_ns}
+        if untimed:
+            self._known -= untimed.difference(map(remote_of, listing.records))
 
     def _recall(self) -> None:
         """What became of the relay's records before; years of them, so not in the thread that starts all."""
@@ -235,7 +271,8 @@ class RecordDirectory:
                 f"{record.name}: expected files that stand still and are as long as listed, found others for "
                 f"{UNSTEADY_S:g} s or {ATTEMPTS_OF_A_NAME} attempts",
             )
-        self._alarms.keep(AlarmKind.FILE_UNSTEADY, {record.name for record in unsteady})
+        harmful = {each.name for each in self._retries.failing_for(LINKS_ENDED)}
+        self._alarms.keep(AlarmKind.FILE_UNSTEADY, harmful.union(record.name for record in unsteady))
 
     def _give_up_the_incomplete(
         self, incomplete: tuple[ListedRecord, ...], chosen: Chosen, directory: str, owner: Owner
@@ -277,11 +314,15 @@ class RecordDirectory:
             self._refuse(record, str(error), owner)
             return
         except TemporarilyUnavailable as error:
+            self._retries.failed(record, str(error), time.monotonic())
             log.info("record busy", relay=self._relay, record=record.name, reason=str(error))
             return
         except REFUSALS as error:
             self._note_failed_pull(record, f"{record.name}: {error}", owner)
             return
+        except LINK_FAILURES as error:
+            self._note_lost_link(record, str(error))
+            raise
         added = self._repository.add_recording(
             stored,
             motor=self._motor,
@@ -300,21 +341,26 @@ class RecordDirectory:
         )
 
     def _pull(self, client: Client, record: ListedRecord) -> StoredRecording:
-        sizes = [file.size for file in record.files]
-        if max(sizes) <= self._max_file_bytes:
-            for size in sizes:
-                self._allowance.charge(size, time.time_ns())
-        return pull(
-            client,
-            record,
-            self._store,
-            max_file_bytes=self._max_file_bytes,
-            on_bytes=self._link.received,
+        stored = pull(
+            client, record, self._store, max_file_bytes=self._max_file_bytes, on_bytes=self._received
         )
+        for file in record.files:
+            self._allowance.charge(beyond_its_end(file.size), time.time_ns())
+        return stored
+
+    def _received(self, number_of_bytes: int) -> None:
+        self._link.received(number_of_bytes)
+        self._allowance.charge(number_of_bytes, time.time_ns())
+
+    def _note_lost_link(self, record: ListedRecord, reason: str) -> None:
+        if self._retries.failed(record, reason, time.monotonic()) >= LINKS_ENDED:
+            told = f"{record.name}: its transfer ended the connection {LINKS_ENDED} times, at last: {reason}"
+            self._alarms.raise_alarm(AlarmKind.FILE_UNSTEADY, record.name, told)
 
     def _note_failed_pull(self, record: ListedRecord, reason: str, owner: Owner) -> None:
         log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
         self._attempts[record.name] += 1
+        self._retries.failed(record, reason, time.monotonic())
         attempts = self._repository.note_failed_pull(
             self._relay, self._motor, remote_of(record), reason, now_ns=time.time_ns()
         )

@@ -231,7 +231,8 @@ class RelaySession:
         if self._subscription.heed_all():
             self._expecting_until_s = time.monotonic() + self._settings.record_timeout_s
         self._triggering.recall()
-        scan = self._directory.scan(client, self._triggering.claim)
+        told = time.monotonic() < self._expecting_until_s
+        scan = self._directory.scan(client, self._triggering.claim, told=told)
         triggered = self._triggering.follow(client, scan)
         if scan.taken:
             self._expecting_until_s = 0.0

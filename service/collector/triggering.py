@@ -10,6 +10,7 @@ frozen, and wakes up after another took its relays over, operates nothing.
 """
 
 import time
+from collections.abc import Set
 
 import structlog
 
@@ -21,8 +22,10 @@ from mms import (
     NotFound,
     ProtocolError,
     TemporarilyUnavailable,
+    Timestamp,
+    ValueRefused,
 )
-from service.collector.clock import reading, stamp_of
+from service.collector.clock import ClockWatch, reading, stamp_of
 from service.collector.record_directory import Scan
 from service.plant import Acquisition, Relay, TriggerAction, promised
 from service.storage import Repository
@@ -53,6 +56,7 @@ class Triggering:
         self._relay = relay
         self._acquisition = promised(relay)
         self._repository = repository
+        self._clock = ClockWatch(relay.name, repository)
         self._gateway = gateway
         self._timeout_s = record_timeout_s
         # By a clock that only goes forward: one that is set must end no report's time. After a restart every
@@ -62,10 +66,12 @@ class Triggering:
         self._next: EventReport | None = None
         self._claimed = False
         self._listed_before: frozenset[str] = frozenset()
+        self._held_up_since_s: float | None = None
 
     def use(self, acquisition: Acquisition) -> None:
         """What a new connection has found."""
         self._acquisition = acquisition
+        self._clock.use(acquisition.measurands)
 
     def recall(self) -> None:
         """Look up which report, if any, waits for a record of this relay, and which one is next."""
@@ -98,7 +104,11 @@ class Triggering:
             if report is not None and key[0] == report.id
         }
         if report is None:
-            return self._next is not None and self._grant(client, self._next, scan)
+            if self._next is not None:
+                return self._is_held_up(scan) or self._grant(client, self._next, scan)
+            if not scan.waiting:
+                self._clock.look(client)
+            return False
         held_back = [name for name in scan.held_back if name not in self._listed_before]
         if held_back:
             self._fail(
@@ -107,23 +117,44 @@ class Triggering:
                 "as much today as the setting max_relay_bytes_per_day allows",
             )
             return False
-        appeared = [name for name in scan.waiting if name not in self._listed_before]
+        appeared = {*scan.waiting, *scan.failing} - self._listed_before
         if appeared and report.state is EventReportState.TRIGGERED:
             self._repository.mark_recorded(report.id, now_ns=time.time_ns())
         elif self._is_overdue(report):
-            self._fail(
-                report,
-                f"{self._relay.name}: expected a record within {self._timeout_s:g} s of the trigger, "
-                "found none; check the relay's event report settings (ER)",
-            )
+            self._fail(report, self._why_overdue(scan, appeared))
             return False
         return True
+
+    def _why_overdue(self, scan: Scan, appeared: Set[str]) -> str:
+        failing = sorted(appeared & scan.failing.keys())
+        if failing:
+            return (
+                f"{self._relay.name}: its record could not be fetched within {self._timeout_s:g} s: "
+                f"{scan.failing[failing[0]]}"
+            )
+        return (
+            f"{self._relay.name}: expected a record within {self._timeout_s:g} s of the trigger, "
+            "found none; check the relay's event report settings (ER)"
+        )
 
     def link_failed(self, reason: str) -> None:
         """The relay cannot be asked, `reason` says why: reports that waited for it long enough fail."""
         for report in self._repository.open_event_reports(self._relay.name):
             if self._is_overdue(report):
                 self._fail(report, f"{self._relay.name} {reason}")
+
+    def _is_held_up(self, scan: Scan) -> bool:
+        """Whether the trigger had better wait for records that are about to be taken, which it has not made.
+
+        After a crash in between, nobody would know that they were there before it.
+        """
+        now_s = time.monotonic()
+        if not scan.waiting:
+            self._held_up_since_s = None
+            return False
+        if self._held_up_since_s is None:
+            self._held_up_since_s = now_s
+        return now_s < self._held_up_since_s + self._timeout_s
 
     def _grant(self, client: Client, report: EventReport, scan: Scan) -> bool:
         """Trigger, unless there is nothing to trigger by or no way to have the record."""
@@ -140,7 +171,7 @@ class Triggering:
         try:
             if _is_set(client, control):
                 client.operate(control, False)  # noqa: FBT003 - the value of a control
-            stamp_before = stamp_of(client, control)
+            stamp_before = _stamp_of(client, control)
             self._repository.mark_triggered(report.id, now_ns=time.time_ns(), gateway=self._gateway)
             self._listed_before = listed
             asked_ns = time.time_ns()
@@ -151,10 +182,9 @@ class Triggering:
             return False
         log.info("triggered", relay=self._relay.name, motor=report.motor, event_report=report.id)
         time.sleep(HOLD_S)
-        stamp = stamp_of(client, control)
+        stamp = _stamp_of(client, control)
         if stamp is not None and stamp != stamp_before:
-            clock = reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
-            self._repository.note_clock(self._relay.name, clock)
+            self._clock.note(reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns))
         if self._acquisition.trigger_action is TriggerAction.PULSE and not _is_set(client, control):
             return True
         try:
@@ -173,9 +203,14 @@ class Triggering:
         return now_s > self._since_s.setdefault((report.id, report.state), now_s) + self._timeout_s
 
 
+def _stamp_of(client: Client, control: str) -> Timestamp | None:
+    """Of a control's latest change; None where the relay gives none. Raises MmsError (the link)."""
+    return stamp_of(client, f"{control}.t", FunctionalConstraint.ST)
+
+
 def _is_set(client: Client, control: str) -> bool:
     """Whether a control is on; some relays do not let what may be written be read. Raises MmsError (link)."""
     try:
         return client.read(f"{control}.stVal", FunctionalConstraint.ST) is True
-    except (AccessDenied, NotFound, TemporarilyUnavailable):
+    except (AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused):
         return False

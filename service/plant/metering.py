@@ -113,6 +113,12 @@ class Measurand:
     reference: str
     multiplier: str | None
 
+    @property
+    def stamp(self) -> str:
+        """Reference of the relay's time of its latest change (IEC 61850-7-3, `t`; MX)."""
+        value = next(each for each in _VALUES if self.reference.endswith(f".{each}"))
+        return f"{self.reference.removesuffix(value)}t"
+
 
 def measurands(ied: Ied) -> tuple[Measurand, ...]:
     """Each quantity once: as the first MMXU or MSTA that has it tells it."""

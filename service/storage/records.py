@@ -229,7 +229,8 @@ class RecordingEntry:
     """A recording; `digest` is its place in the recording store, None until it is fetched.
 
     recorded_ns: the trigger time written in the record, known once it was read, by the relay's clock.
-    clock_...: the latest ClockReading of that relay when the recording was stored, None without one.
+    clock_...: the latest ClockReading of that relay when the recording was stored, None without one of
+    about that time.
     """
 
     id: str

@@ -90,15 +90,20 @@ class MeasurementRows(Sessions):
             )
 
     def average_measurements(self, *, now_ns: int) -> None:
-        """Makes the means of all intervals that are over and have none yet."""
+        """Makes the means of all intervals that are over and have none yet.
+
+        A mean that a clock made while it was ahead holds up none of those before it.
+        """
         for finer, step_s in pairwise(STEPS_S):
             with self._write() as session:
                 step_ns = step_s * SECOND_NS
+                to_ns = (now_ns - LATENESS_NS) // step_ns * step_ns
                 latest = session.scalar(
-                    select(func.max(MeasurementRow.time_ns)).where(MeasurementRow.step_s == step_s)
+                    select(func.max(MeasurementRow.time_ns)).where(
+                        MeasurementRow.step_s == step_s, MeasurementRow.time_ns < to_ns
+                    )
                 )
                 from_ns = 0 if latest is None else latest + step_ns
-                to_ns = (now_ns - LATENESS_NS) // step_ns * step_ns
                 _average(session, finer, step_s, from_ns, to_ns)
 
     def forget_measurements(self, step_s: int, *, before_ns: int) -> None:

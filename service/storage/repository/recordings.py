@@ -3,7 +3,7 @@
 import uuid
 from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, func, select
+from sqlalchemy import ColumnElement, delete, func, select
 from sqlalchemy.orm import Session
 
 from service.recordings import StoredRecording
@@ -17,6 +17,7 @@ from service.storage.models import (
     RemoteRecordRow,
 )
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
+from service.storage.repository.clocks import give_clock
 from service.storage.repository.event_reports import diagnose_rows, fail_row, fail_rows, fetch_row
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingSource, RecordingState
@@ -121,8 +122,9 @@ class RecordingRows(Sessions):
     ) -> AddedRecording:
         """A record whose files are stored: its row, its first job and its event report, all or nothing.
 
-        From a relay: `ied` and `remote`; uploaded: neither. Two of a relay are the same by name and digest;
-        of two of a motor one of which was uploaded, it is enough that the waveform's files hold the same.
+        From a relay: `ied` and `remote`; uploaded: neither. Two of a relay are the same by name and waveform:
+        a file that only describes it may come late; it is added. Of two of a motor one of which was uploaded,
+        the waveform is enough.
         The event report gets what its relay had not sent before: a record that is listed again, under another
         time, is none that a trigger made. Raises NotFoundError, StateConflictError.
         """
@@ -142,6 +144,8 @@ class RecordingRows(Sessions):
                 session.add(new_job(row.id, method, model, now_ns))
             elif ied is not None and remote is not None:
                 _link_remote(session, ied, remote, row)
+                if row.ied == ied:
+                    _complete(session, row, stored)
             if event_report_id is not None and not sent_before:
                 _attach(session, event_report_id, row, now_ns)
             return AddedRecording(recording(row), created)
@@ -197,10 +201,13 @@ def _stored_before(
 ) -> RecordingRow | None:
     if ied is None:
         return _of_the_same_waveform(session, motor, stored)
-    same = select(RecordingRow).where(
-        RecordingRow.ied == ied, RecordingRow.name == name, RecordingRow.digest == stored.digest
+    same_name = (RecordingRow.ied == ied, RecordingRow.name == name)
+    same = select(RecordingRow).where(*same_name, RecordingRow.digest == stored.digest)
+    return (
+        only(session, same)
+        or _of_the_same_waveform(session, motor, stored, *same_name)
+        or _of_the_same_waveform(session, motor, stored, RecordingRow.ied.is_(None))
     )
-    return only(session, same) or _of_the_same_waveform(session, motor, stored, RecordingRow.ied.is_(None))
 
 
 def _of_the_same_waveform(
@@ -301,10 +308,23 @@ def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: 
     row.reason = None
     row.fetched_ns = now_ns
     if row.ied is not None:
-        relay = found(session, IedRow, row.ied, "IED")
-        row.clock_offset_ns, row.clock_uncertainty_ns = relay.clock_offset_ns, relay.clock_uncertainty_ns
-        row.clock_quality, row.clock_measured_ns = relay.clock_quality, relay.clock_measured_ns
+        give_clock(row, found(session, IedRow, row.ied, "IED"))
     session.flush()
+    _list_files(session, row, stored)
+
+
+def _complete(session: Session, row: RecordingRow, stored: StoredRecording) -> None:
+    """The same waveform once more, now with files that had not come yet."""
+    listed = select(RecordingFileRow.name).where(RecordingFileRow.recording_id == row.id)
+    if not {file.name for file in stored.files} > set(session.scalars(listed)):
+        return
+    session.execute(delete(RecordingFileRow).where(RecordingFileRow.recording_id == row.id))
+    row.digest = stored.digest
+    row.size_bytes = stored.size_bytes
+    _list_files(session, row, stored)
+
+
+def _list_files(session: Session, row: RecordingRow, stored: StoredRecording) -> None:
     for file in stored.files:
         session.add(
             RecordingFileRow(

@@ -63,6 +63,17 @@ def test_an_allowance_begins_anew_each_day_of_utc() -> None:
     assert (allowance.day, allowance.used_bytes) == (1, 0)
 
 
+def test_what_did_not_come_uses_up_nothing_of_the_day(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.busy = True
+    relay.write_record("HR_1", b"x" * 3 * BLOCK_BYTES)
+    with bench.session():
+        assert eventually(lambda: bench.recording("HR_1") is not None)
+        time.sleep(1.0)  # it is asked for again and again
+        relay.busy = False
+        assert eventually(lambda: bench.is_stored("HR_1"))
+    assert bench.repository.link_figures(NAME).day_bytes == 4 * BLOCK_BYTES, "with a block for the .CFG"
+
+
 def test_a_name_that_cannot_be_trusted_is_an_alarm_while_it_is_listed(
     bench: Bench, relay: ScriptedRelay
 ) -> None:

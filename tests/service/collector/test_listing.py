@@ -102,30 +102,40 @@ def whole(size: int = 100) -> ListedRecord:
 
 
 def test_a_record_is_ready_once_it_stands_still() -> None:
-    settling = Settling(settle_s=0.25, patience_s=30, unsteady_s=60)
-    assert settling.look([whole(10)], 0.0).waiting == (whole(10),)
-    assert settling.look([whole(20)], 0.3).waiting == (whole(20),), "it grew: wait again"
-    assert settling.look([whole(20)], 0.4).waiting == (whole(20),)
-    assert settling.look([whole(20)], 0.6).ready == (whole(20),)
+    settling = Settling(settle_s=0.25, untold_s=0.25, patience_s=30, unsteady_s=60)
+    assert settling.look([whole(10)], 0.0, told=True).waiting == (whole(10),)
+    assert settling.look([whole(20)], 0.3, told=True).waiting == (whole(20),), "it grew: wait again"
+    assert settling.look([whole(20)], 0.4, told=True).waiting == (whole(20),)
+    assert settling.look([whole(20)], 0.6, told=True).ready == (whole(20),)
+
+
+def test_a_record_that_nobody_told_of_must_stand_still_for_longer() -> None:
+    settling = Settling(settle_s=0.25, untold_s=2.0, patience_s=30, unsteady_s=60)
+    assert settling.look([whole()], 0.0, told=False).waiting == (whole(),)
+    assert settling.look([whole()], 1.9, told=False).waiting == (whole(),)
+    assert settling.look([whole()], 1.9, told=True).ready == (whole(),)
+    assert settling.look([whole()], 2.0, told=False).ready == (whole(),)
 
 
 def test_a_record_without_its_data_is_given_up_in_the_end() -> None:
     (half,) = understand(listed("X.CFG"), "EVENTS").records
-    settling = Settling(settle_s=0.25, patience_s=30, unsteady_s=60)
-    assert settling.look([half], 0.0).waiting == (half,)
-    assert settling.look([half], 29.0).waiting == (half,)
-    assert settling.look([half], 30.0).incomplete == (half,)
+    settling = Settling(settle_s=0.25, untold_s=0.25, patience_s=30, unsteady_s=60)
+    assert settling.look([half], 0.0, told=True).waiting == (half,)
+    assert settling.look([half], 29.0, told=True).waiting == (half,)
+    assert settling.look([half], 30.0, told=True).incomplete == (half,)
 
 
 def test_a_record_that_goes_on_changing_is_waited_for_no_longer() -> None:
-    settling = Settling(settle_s=0.25, patience_s=30, unsteady_s=60)
+    settling = Settling(settle_s=0.25, untold_s=0.25, patience_s=30, unsteady_s=60)
     for tenth in range(599):
-        assert settling.look([whole(100 + tenth)], tenth / 10).waiting
-    assert settling.look([whole(1000)], 60.0).unsteady == (whole(1000),)
-    assert settling.look([whole(1001)], 60.1).unsteady == (whole(1001),)
-    assert settling.look([whole(1001)], 60.4).ready == (whole(1001),), "it stands still at last"
-    assert settling.look([], 60.5).waiting == ()
-    assert settling.look([whole(1)], 60.6).waiting == (whole(1),), "another record of the same name"
+        assert settling.look([whole(100 + tenth)], tenth / 10, told=True).waiting
+    assert settling.look([whole(1000)], 60.0, told=True).unsteady == (whole(1000),)
+    assert settling.look([whole(1001)], 60.1, told=True).unsteady == (whole(1001),)
+    assert settling.look([whole(1001)], 60.4, told=True).ready == (whole(1001),), "it stands still at last"
+    assert settling.look([], 60.5, told=True).waiting == ()
+    assert settling.look([whole(1)], 60.6, told=True).waiting == (whole(1),), (
+        "another record of the same name"
+    )
 
 
 names = st.text(max_size=120) | st.lists(

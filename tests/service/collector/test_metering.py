@@ -8,7 +8,7 @@ from threading import Thread
 import pytest
 
 import scl
-from mms import Client, Server
+from mms import Client, DataAccessError, FunctionalConstraint, ProtocolError, Server, Value
 from scl.model_text import model_text
 from service.collector.browsing import browse
 from service.collector.metering import Metering
@@ -67,6 +67,66 @@ def test_what_the_relay_lacks_is_left_out(bench: Bench, metered: Relay) -> None:
     with Client.connect("127.0.0.1", metered.port) as client:
         metering.sample(client)
     assert dict(samples[0].values) == {"ia_A": pytest.approx(CURRENT_A)}
+
+
+@pytest.mark.parametrize(
+    "refusal",
+    [
+        DataAccessError.HARDWARE_FAULT,
+        DataAccessError.TYPE_INCONSISTENT,
+        DataAccessError.VALUE_INVALID,
+        DataAccessError.ACCESS_DENIED,
+        DataAccessError.TEMPORARILY_UNAVAILABLE,
+    ],
+)
+def test_a_value_that_is_refused_ends_no_sample(
+    bench: Bench, relay: ScriptedRelay, metered: Relay, refusal: DataAccessError
+) -> None:
+    samples: list[Sample] = []
+    metering = Metering(metered, MOTOR, period_s=60, on_sample=samples.append)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        metering.begin()
+        for refused in (True, False, True):
+            relay.unreadable = {f"{MMXU}.A": refusal} if refused else {}
+            metering.sample(client)
+        relay.unreadable.clear()
+        metering.begin()
+        metering.sample(client)
+    assert ["ia_A" in sample.values for sample in samples] == [
+        False,
+        refusal is not DataAccessError.ACCESS_DENIED,  # which is refused for the length of a connection
+        False,
+        True,
+    ]
+    assert all(sample.values["frequency_Hz"] == pytest.approx(FREQUENCY_HZ) for sample in samples)
+
+
+def test_a_power_of_ten_that_is_refused_is_not_guessed(
+    bench: Bench, relay: ScriptedRelay, metered: Relay
+) -> None:
+    """The relay's model has none for currents: an object that is refused stands for it."""
+    current = next(each for each in metered.measurands if each.quantity is MeteredQuantity.IA)
+    scaled = replace(current, multiplier=f"{MMXU}.Hz.units.multiplier")
+    relay.unreadable = {f"{MMXU}.Hz": DataAccessError.HARDWARE_FAULT}
+    samples: list[Sample] = []
+    metering = Metering(replace(metered, measurands=(scaled,)), MOTOR, period_s=60, on_sample=samples.append)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        metering.sample(client)
+    assert samples == []
+
+
+def test_a_malformed_answer_ends_the_visit(
+    bench: Bench, metered: Relay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def malformed(client: Client, reference: str, constraint: FunctionalConstraint) -> Value:
+        raise ProtocolError(client.host, f"read {reference}", 34, "malformed message")
+
+    samples: list[Sample] = []
+    metering = Metering(metered, MOTOR, period_s=60, on_sample=samples.append)
+    with Client.connect("127.0.0.1", metered.port) as client:
+        monkeypatch.setattr(Client, "read", malformed)
+        with pytest.raises(ProtocolError, match="malformed"):
+            metering.sample(client)
 
 
 def test_a_relay_that_measures_nothing_is_not_asked_again(bench: Bench, metered: Relay) -> None:
@@ -146,3 +206,22 @@ def test_a_session_samples_while_it_waits(bench: Bench, relay: ScriptedRelay, me
         thread.join(15)
     periods = (samples[-1].time_ns - samples[0].time_ns) / 1e9 / settings.metering_period_s
     assert len(samples) <= periods + 2, "a period that was missed is not made up for"
+
+
+def test_a_value_that_is_refused_ends_no_visit(bench: Bench, relay: ScriptedRelay, metered: Relay) -> None:
+    """Else the relay would be set aside for it after a few, and its records never pulled."""
+    relay.unreadable = {f"{MMXU}.A": DataAccessError.HARDWARE_FAULT}
+    samples: list[Sample] = []
+    settings = bench.settings.model_copy(update={"metering_period_s": 0.05})
+    session = RelaySession(metered, MOTOR, bench.repository, bench.store, settings, on_sample=samples.append)
+    thread = Thread(target=session.run)
+    thread.start()
+    try:
+        assert eventually(lambda: len(samples) >= 5)
+        relay.write_record("HR_1")
+        assert eventually(lambda: bench.is_stored("HR_1"))
+    finally:
+        session.stop()
+        thread.join(15)
+    assert bench.repository.link_figures(NAME).connections == 1
+    assert not any("ia_A" in sample.values for sample in samples)

@@ -2,9 +2,9 @@ import pytest
 
 from service.recordings import RecordingStore, StoredRecording
 from service.storage import NotFoundError, Repository
-from service.storage.records import RemoteRecord
-from service.storage.states import EventReportState, RecordingState
-from tests.service.plants import NOW_NS, fault
+from service.storage.records import ClockReading, RecordingEntry, RemoteRecord
+from service.storage.states import ClockQuality, EventReportState, RecordingState
+from tests.service.plants import NOW_NS, SECOND_NS, fault
 
 REMOTE = RemoteRecord("C_0001", 11, NOW_NS)
 
@@ -206,3 +206,57 @@ def test_nothing_is_added_when_a_part_fails(repository: Repository, store: Recor
         repository.add_recording(record(store), motor="X", now_ns=NOW_NS)
     with pytest.raises(ValueError, match="ied and remote"):
         repository.add_recording(record(store), motor="PUMP-A1", remote=REMOTE, now_ns=NOW_NS)
+
+
+OFFSET_NS = 5 * 86_400 * SECOND_NS
+
+
+def stored_with_a_clock(
+    repository: Repository, store: RecordingStore, measured_ns: int, announced_ns: int = NOW_NS
+) -> RecordingEntry:
+    reading = ClockReading(OFFSET_NS, 7, ClockQuality.SYNCHRONISED, measured_ns)
+    repository.note_clock("A1_SEL710", reading)
+    repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=announced_ns)
+    added = repository.add_recording(
+        record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
+    )
+    return added.recording
+
+
+@pytest.mark.parametrize(
+    ("measured_s", "announced_s", "given"),
+    [(0, 0, True), (-3600, 0, True), (-3601, 0, False), (3601, 0, False), (0, -3601, False)],
+)
+def test_a_recording_is_given_a_clock_reading_of_its_hour(
+    repository: Repository, store: RecordingStore, measured_s: int, announced_s: int, given: bool
+) -> None:
+    found = stored_with_a_clock(
+        repository, store, NOW_NS + measured_s * SECOND_NS, NOW_NS + announced_s * SECOND_NS
+    )
+    expected = (OFFSET_NS, 7, ClockQuality.SYNCHRONISED, NOW_NS + measured_s * SECOND_NS)
+    clock = (
+        found.clock_offset_ns,
+        found.clock_uncertainty_ns,
+        found.clock_quality,
+        found.clock_measured_ns,
+    )
+    assert clock == (expected if given else (None, None, None, None))
+
+
+@pytest.mark.parametrize(
+    ("made_s", "kept"),
+    [(0, True), (-14 * 3600, True), (14 * 3600, True), (-86_400, False), (-30 * 86_400, False)],
+)
+def test_a_record_of_another_day_loses_the_reading(
+    repository: Repository, store: RecordingStore, made_s: int, kept: bool
+) -> None:
+    """It waited in a relay that could not be reached; its times may be local ones."""
+    stored = stored_with_a_clock(repository, store, NOW_NS)
+    claimed = repository.claim_job(now_ns=NOW_NS)
+    assert claimed is not None
+    by_the_relay_s_clock_ns = NOW_NS + OFFSET_NS + made_s * SECOND_NS
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=by_the_relay_s_clock_ns, now_ns=NOW_NS)
+    found = repository.recording(stored.id)
+    assert (found.clock_offset_ns, found.clock_quality) == (
+        (OFFSET_NS, ClockQuality.SYNCHRONISED) if kept else (None, None)
+    )
