@@ -1,5 +1,6 @@
 """The collector against simulated relays of every kind, and against what they do wrong, over real MMS."""
 
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,8 @@ from service.plant.recognition import recognise
 from service.storage.states import EventReportState, LinkState
 from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated
 from tests.service.collector.conftest import Bench, eventually
+from tests.service.collector.expectations import at, expecting
+from tests.service.collector.scripted_relay import NAME
 
 
 def of(bench: Bench, served: Simulated, folder: str) -> Bench:
@@ -94,3 +97,22 @@ def test_a_refused_control_fails_the_wish_with_its_reason(bench: Bench, tmp_path
         with here.session():
             assert eventually(lambda: here.report(wish).state is EventReportState.FAILED)
     assert "blocked by interlocking" in (here.report(wish).reason or "")
+
+
+def test_the_clock_of_a_relay_that_cannot_be_triggered_is_known(bench: Bench, tmp_path: Path) -> None:
+    offset_s = -7_200.0
+    scenario = scenario_of("rdre-readonly", always(Kind.CLOCK_OFFSET, offset_s))
+    with simulated(tmp_path / "relays", scenario) as served:
+        here = at(expecting(bench, served.document.ied(IED)), served)
+
+        def is_known() -> bool:
+            served.relay.update_metering(time.time_ns())  # sooner than it would be
+            return here.repository.ied(NAME).clock_offset_ns is not None
+
+        with here.session():
+            assert eventually(is_known)
+    ied = here.repository.ied(NAME)
+    assert ied.clock_offset_ns is not None
+    assert ied.clock_uncertainty_ns is not None
+    assert abs(ied.clock_offset_ns / 1e9 - offset_s) <= ied.clock_uncertainty_ns / 1e9 + 0.5
+    assert ied.clock_uncertainty_ns < 10e9
