@@ -1,5 +1,6 @@
 """The collector against simulated relays of every kind, and against what they do wrong, over real MMS."""
 
+import time
 from dataclasses import replace
 from math import sqrt
 from pathlib import Path
@@ -16,6 +17,8 @@ from service.plant.recognition import recognise
 from service.storage.states import EventReportState, LinkState, RecordingState
 from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated, text
 from tests.service.collector.conftest import MOTOR, Bench, eventually
+from tests.service.collector.expectations import at, expecting
+from tests.service.collector.scripted_relay import NAME
 
 RISES_S = 3.0
 """When the load does, since the relay's start."""
@@ -144,3 +147,22 @@ def stored_unasked(bench: Bench) -> Recording:
     assert bench.repository.event_reports(limit=10).items == ()
     assert entry.digest is not None
     return read(bench.store.find(entry.digest).entry)
+
+
+def test_the_clock_of_a_relay_that_cannot_be_triggered_is_known(bench: Bench, tmp_path: Path) -> None:
+    offset_s = -7_200.0
+    scenario = scenario_of("rdre-readonly", always(Kind.CLOCK_OFFSET, offset_s))
+    with simulated(tmp_path / "relays", scenario) as served:
+        here = at(expecting(bench, served.document.ied(IED)), served)
+
+        def is_known() -> bool:
+            served.relay.update_metering(time.time_ns())  # sooner than it would be
+            return here.repository.ied(NAME).clock_offset_ns is not None
+
+        with here.session():
+            assert eventually(is_known)
+    ied = here.repository.ied(NAME)
+    assert ied.clock_offset_ns is not None
+    assert ied.clock_uncertainty_ns is not None
+    assert abs(ied.clock_offset_ns / 1e9 - offset_s) <= ied.clock_uncertainty_ns / 1e9 + 0.5
+    assert ied.clock_uncertainty_ns < 10e9
