@@ -1,8 +1,9 @@
 """Connections to the database. SQLite is shared by two processes: the service and its collector."""
 
 import json
+import sqlite3
+import time
 from functools import partial
-from sqlite3 import Connection as SQLiteConnection
 
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
 from sqlalchemy.engine.interfaces import DBAPIConnection
@@ -12,6 +13,9 @@ from sqlalchemy.pool import ConnectionPoolEntry
 from service.storage.errors import StorageError
 
 BUSY_TIMEOUT_S = 30.0
+LOOK_S = 0.003
+"""Between looks whether SQLite's write lock is free."""
+
 WRITES = "statorwatch_writes"
 """Execution option of connections that will write."""
 
@@ -44,7 +48,7 @@ def connect(url: str) -> Engine:
 
 def _prepare_sqlite(connection: DBAPIConnection, entry: ConnectionPoolEntry) -> None:
     del entry
-    if not isinstance(connection, SQLiteConnection) and not hasattr(connection, "isolation_level"):
+    if not isinstance(connection, sqlite3.Connection) and not hasattr(connection, "isolation_level"):
         raise StorageError("database_url: expected Python's own SQLite driver")
     connection.isolation_level = (
         None  # transactions begin where _begin_sqlite says, not where the driver guesses
@@ -61,5 +65,33 @@ def _prepare_sqlite(connection: DBAPIConnection, entry: ConnectionPoolEntry) -> 
 def _begin_sqlite(connection: Connection) -> None:
     # A transaction that reads first and writes later would fail at once (no wait) when the other process
     # wrote in between; taking the write lock at BEGIN waits for BUSY_TIMEOUT_S instead.
-    writes = connection.get_execution_options().get(WRITES, False)
-    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+    if not connection.get_execution_options().get(WRITES, False):
+        connection.exec_driver_sql("BEGIN")
+    else:
+        _begin_writing(connection)
+
+
+def _begin_writing(connection: Connection) -> None:
+    """Waits for the write lock for BUSY_TIMEOUT_S. Raises sqlalchemy.exc.OperationalError.
+
+    SQLite itself soon looks every 100 ms only: beside a process whose threads write one after the other, that
+    is to come too late again and again. At most one thread of a process waits here (Sessions).
+    """
+    driver = connection.connection.driver_connection
+    assert isinstance(driver, sqlite3.Connection)  # noqa: S101 - _prepare_sqlite has looked
+    deadline_s = time.monotonic() + BUSY_TIMEOUT_S
+    driver.execute("PRAGMA busy_timeout = 0")
+    try:
+        while True:
+            try:
+                driver.execute("BEGIN IMMEDIATE")
+            except sqlite3.Error as error:
+                is_busy = error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY
+            else:
+                return
+            if not is_busy or time.monotonic() > deadline_s:
+                connection.exec_driver_sql("BEGIN IMMEDIATE")  # raises it as the callers know it
+                return
+            time.sleep(LOOK_S)
+    finally:
+        driver.execute(f"PRAGMA busy_timeout = {round(BUSY_TIMEOUT_S * 1000)}")

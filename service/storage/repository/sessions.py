@@ -50,7 +50,7 @@ class Sessions:
 
     @contextmanager
     def _own_turn(self) -> Iterator[None]:
-        """SQLite has one writer, and who waits for it looks again every 100 ms, whoever was there first.
+        """SQLite has one writer, and who waits for it looks again now and then, whoever was there first.
 
         So threads of a process take turns before: the next one goes on at once, and no renewal of a lease is
         passed by forty others. Raises sqlalchemy.exc.TimeoutError.

@@ -1,10 +1,16 @@
 """The service and its collector write the same SQLite file: two real processes, no write lost or refused."""
 
 import multiprocessing
+import sqlite3
+import statistics
+import time
+from contextlib import closing
 from multiprocessing.queues import Queue
+from threading import Thread
 
 from service.storage import Repository, connect
 from service.storage.records import RemoteRecord
+from service.storage.states import LinkState
 from tests.service.plants import NOW_NS, two_motor_plant
 
 ROUNDS = 60
@@ -41,3 +47,29 @@ def test_two_processes_write_at_once(database_url: str, repository: Repository) 
     counts = repository.counts()
     assert counts.event_reports == {"triggered": 2 * ROUNDS}
     assert counts.recordings == {"announced": ROUNDS}, "each record is announced once, whoever saw it first"
+
+
+def test_who_waits_for_the_writer_goes_on_as_soon_as_it_is_done(
+    database_url: str, repository: Repository
+) -> None:
+    """Looks 100 ms apart would take 50 ms on the average, and miss most gaps between the writes of another."""
+    repository.sync_plant(two_motor_plant())
+    delays_s = []
+    with closing(sqlite3.connect(database_url.removeprefix("sqlite:///"), isolation_level=None)) as other:
+        for number in range(9):
+            other.execute("BEGIN IMMEDIATE")
+            written_s: list[float] = []
+
+            def write(written_s: list[float] = written_s) -> None:
+                repository.set_link_state("A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
+                written_s.append(time.monotonic())
+
+            writer = Thread(target=write)
+            writer.start()
+            time.sleep(0.3 + number / 90)  # it has waited for a while
+            assert written_s == []
+            let_go_s = time.monotonic()
+            other.execute("ROLLBACK")
+            writer.join(30)
+            delays_s.append(written_s[0] - let_go_s)
+    assert statistics.median(delays_s) < 0.04, delays_s
