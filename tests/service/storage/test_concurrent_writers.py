@@ -52,7 +52,7 @@ def test_two_processes_write_at_once(database_url: str, repository: Repository) 
 def test_who_waits_for_the_writer_goes_on_as_soon_as_it_is_done(
     database_url: str, repository: Repository
 ) -> None:
-    """Looks 100 ms apart would take 50 ms on the average, and miss most gaps between the writes of another."""
+    """Looks 100 ms apart would take 50 ms on the average and miss most gaps of a busy process."""
     repository.sync_plant(two_motor_plant())
     delays_s = []
     with closing(sqlite3.connect(database_url.removeprefix("sqlite:///"), isolation_level=None)) as other:
