@@ -11,7 +11,7 @@ from structlog.testing import capture_logs
 from mms import Client, DataAccessError
 from service.collector.relay_session import RelaySession
 from service.recordings import Incoming
-from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
+from service.storage.states import EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
 
@@ -234,104 +234,6 @@ def test_a_record_that_grows_is_pulled_whole(bench: Bench, relay: ScriptedRelay)
     (recording,) = bench.recordings()
     assert recording.digest is not None
     assert (bench.store.find(recording.digest).directory / "HR_1.DAT").read_bytes() == b"x" * 7
-
-
-def test_a_relay_that_pauses_while_it_writes_is_waited_for(bench: Bench, relay: ScriptedRelay) -> None:
-    with bench.session():
-        assert eventually(lambda: bench.link() is LinkState.UP)
-        relay.write_file("HR_1.CFG", b"configuration")
-        for size in (1000, 2000, 3000):
-            relay.write_file("HR_1.DAT", b"x" * size)
-            time.sleep(0.5)  # longer than a record that was reported must stand still
-        assert eventually(lambda: bench.is_stored("HR_1"))
-    (recording,) = bench.recordings()
-    assert recording.size_bytes == 3000 + len(b"configuration")
-
-
-def test_a_file_that_comes_late_makes_no_second_recording(bench: Bench, relay: ScriptedRelay) -> None:
-    with bench.session():
-        assert eventually(lambda: bench.link() is LinkState.UP)
-        relay.write_record("HR_1")
-        assert eventually(lambda: bench.is_stored("HR_1"))
-        relay.write_file("HR_1.HDR", b"header")
-        relay.write_record("HR_2")
-        assert eventually(lambda: len(files_of(bench, "HR_1")) == 3)
-        assert eventually(lambda: bench.is_stored("HR_2"))
-    assert sorted(recording.name for recording in bench.recordings()) == ["HR_1", "HR_2"]
-    assert files_of(bench, "HR_1")["HR_1.HDR"] == b"header"
-
-
-def files_of(bench: Bench, name: str) -> dict[str, bytes]:
-    """As the database lists them and the store has them; none of a record that is announced only."""
-    recording = bench.recording(name)
-    if recording is None or recording.digest is None:
-        return {}
-    folder = bench.store.find(recording.digest).directory
-    listed = bench.repository.recording_files(recording.id)
-    return {file.name: (folder / file.name).read_bytes() for file in listed}
-
-
-def test_a_file_that_silences_the_relay_holds_up_no_other(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.record_directory.LINKS_ENDED", 1)
-    relay.stuck.add("HR_1")
-    relay.write_record("HR_1")
-    with bench.session():
-        assert eventually(lambda: bench.link() is LinkState.DOWN)
-        relay.write_record("HR_2")
-        assert eventually(lambda: bench.is_stored("HR_2"))
-        assert bench.alarms() == {AlarmKind.FILE_UNSTEADY: ["HR_1"]}
-        relay.stuck.clear()
-        assert eventually(lambda: bench.is_stored("HR_1"))
-        assert eventually(lambda: bench.alarms() == {})
-
-
-def test_a_file_that_cannot_be_opened_for_a_while_is_asked_for_again(
-    bench: Bench, relay: ScriptedRelay
-) -> None:
-    relay.denied.add("HR_1")
-    relay.write_record("HR_1")
-    with bench.session():
-        assert eventually(lambda: bench.recording("HR_1") is not None)
-        relay.write_record("HR_2")
-        assert eventually(lambda: bench.is_stored("HR_2"))
-        time.sleep(1.5)  # as long as a relay may take to close a file
-        relay.denied.clear()
-        assert eventually(lambda: bench.is_stored("HR_1"))
-
-
-def test_a_trigger_waits_until_what_is_there_is_taken(bench: Bench, relay: ScriptedRelay) -> None:
-    relay.busy = True
-    relay.write_record("HR_1")
-    with bench.session():
-        assert eventually(lambda: bench.recording("HR_1") is not None)
-        report_id = bench.request()
-        time.sleep(0.5)  # it is asked for at once where nothing is in the way
-        assert relay.edges == 0
-        relay.busy = False
-        assert bench.reaches(report_id, EventReportState.FETCHED)
-    made = bench.recording("HR_10001")
-    assert made is not None
-    assert bench.report(report_id).recording_id == made.id
-
-
-def test_where_a_relay_gives_no_times_a_name_may_come_again(bench: Bench, relay: ScriptedRelay) -> None:
-    with bench.session():
-        for data in (b"first", b"other"):
-            relay.write_record("HR_1", data, report=False)
-            for path in relay.events.iterdir():
-                os.utime(path, (0, 0))
-            relay.announce()
-            assert eventually(lambda: bench.is_stored("HR_1"))
-            assert eventually(lambda data=data: files_of(bench, "HR_1").get("HR_1.DAT") == data)  # type: ignore[misc]
-            for path in relay.events.iterdir():
-                path.unlink()
-            relay.write_record("HR_2")
-            assert eventually(lambda: bench.is_stored("HR_2"))
-            for path in relay.events.iterdir():
-                path.unlink()
-    assert sorted(recording.name for recording in bench.recordings()) == ["HR_1", "HR_1", "HR_2"]
 
 
 def test_a_record_too_large_is_rejected_with_its_event_report(bench: Bench, relay: ScriptedRelay) -> None:
