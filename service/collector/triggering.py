@@ -30,15 +30,13 @@ from service.collector.record_directory import Scan
 from service.plant import Acquisition, Relay, TriggerAction, promised
 from service.storage import Repository
 from service.storage.records import EventReport
-from service.storage.states import EventReportState
+from service.storage.states import IN_THE_RELAY, EventReportState
 
 log = structlog.get_logger(__name__)
 
 REFUSALS = (AccessDenied, ControlRefused, NotFound, ProtocolError, ValueError)
 """The relay answers, and the answer is no; ValueError: an override that is no reference. Link errors leave a
 report as it is, until its time limit."""
-
-IN_THE_RELAY = (EventReportState.TRIGGERED, EventReportState.RECORDED)
 
 HOLD_S = 0.05
 """How long the remote bit stays set: relays look at their equations every quarter cycle, some less often."""

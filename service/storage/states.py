@@ -49,6 +49,10 @@ class EventReportState(StrEnum):
     FAILED = "failed"
 
 
+IN_THE_RELAY = (EventReportState.TRIGGERED, EventReportState.RECORDED)
+"""Triggered, and the record not yet in the store: the relay owes it."""
+
+
 class RecordingState(StrEnum):
     """announced by the relay -> fetched (stored) -> diagnosed; rejected and failed carry a reason."""
 

@@ -10,9 +10,8 @@ from service.storage.models import EventReportRow, IedRow, MotorRow
 from service.storage.records import Cursor, EventReport, Page
 from service.storage.repository.leases import require_lease
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
-from service.storage.states import EventReportOrigin, EventReportState
+from service.storage.states import IN_THE_RELAY, EventReportOrigin, EventReportState
 
-IN_THE_RELAY = (EventReportState.TRIGGERED, EventReportState.RECORDED)
 OPEN = (EventReportState.REQUESTED, *IN_THE_RELAY)
 ENDED = (EventReportState.DIAGNOSED, EventReportState.FAILED)
 
