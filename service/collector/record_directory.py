@@ -57,8 +57,8 @@ many attempts take with their pauses."""
 ATTEMPTS_OF_A_NAME = 30
 """In all: a file that is of another size each time it is listed must not be asked for without end."""
 
-LINKS_ENDED = 5
-"""A record that has ended the visit this often is an alarm."""
+MANY_ATTEMPTS = 5
+"""A record that ends the visit, and was not to be had this often, is an alarm."""
 
 REFUSALS = (AccessDenied, FileServiceFailed, FileSizeMismatch, NotFound)
 """What one record can do wrong while the link is fine."""
@@ -168,7 +168,6 @@ class RecordDirectory:
         view = self._view = self._view_of(contents, contents.directory)
         listing, chosen, new = view.listing, view.chosen, view.new
         self._give_up_what_is_gone(chosen)
-        self._retries.keep(new)
         settled = self._settling.look(new, time.monotonic(), early=chosen.early, told=told)
         ready, unsteady = self._without_shape_shifters(settled)
         self._note_unsteady(unsteady)
@@ -271,7 +270,7 @@ class RecordDirectory:
                 f"{record.name}: expected files that stand still and are as long as listed, found others for "
                 f"{UNSTEADY_S:g} s or {ATTEMPTS_OF_A_NAME} attempts",
             )
-        harmful = {each.name for each in self._retries.failing_for(LINKS_ENDED)}
+        harmful = {each.name for each in self._retries.failing_for(MANY_ATTEMPTS)}
         self._alarms.keep(AlarmKind.FILE_UNSTEADY, harmful.union(record.name for record in unsteady))
 
     def _give_up_the_incomplete(
@@ -353,8 +352,9 @@ class RecordDirectory:
         self._allowance.charge(number_of_bytes, time.time_ns())
 
     def _note_lost_link(self, record: ListedRecord, reason: str) -> None:
-        if self._retries.failed(record, reason, time.monotonic()) >= LINKS_ENDED:
-            told = f"{record.name}: its transfer ended the connection {LINKS_ENDED} times, at last: {reason}"
+        attempts = self._retries.failed(record, reason, time.monotonic())
+        if attempts >= MANY_ATTEMPTS:
+            told = f"{record.name}: not fetched in {attempts} attempts, the latest ended the link: {reason}"
             self._alarms.raise_alarm(AlarmKind.FILE_UNSTEADY, record.name, told)
 
     def _note_failed_pull(self, record: ListedRecord, reason: str, owner: Owner) -> None:

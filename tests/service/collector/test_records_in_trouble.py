@@ -48,7 +48,7 @@ def files_of(bench: Bench, name: str) -> dict[str, bytes]:
 def test_a_file_that_silences_the_relay_holds_up_no_other(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.record_directory.LINKS_ENDED", 1)
+    monkeypatch.setattr("service.collector.record_directory.MANY_ATTEMPTS", 1)
     relay.stuck.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():
