@@ -234,7 +234,7 @@ class RelaySession:
         told = time.monotonic() < self._expecting_until_s
         scan = self._directory.scan(client, self._triggering.claim, told=told)
         triggered = self._triggering.follow(client, scan)
-        if scan.taken:
+        if scan.taken and not scan.waiting:
             self._expecting_until_s = 0.0
         expecting = bool(scan.waiting) or time.monotonic() < self._expecting_until_s
         if not expecting:

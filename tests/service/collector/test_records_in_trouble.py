@@ -22,6 +22,20 @@ def test_a_relay_that_pauses_while_it_writes_is_waited_for(bench: Bench, relay: 
     assert recording.size_bytes == 3000 + len(b"configuration")
 
 
+def test_two_records_reported_at_once_are_both_expected(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.record_directory.UNTOLD_SETTLE_S", 3600.0)
+    with bench.session():
+        assert eventually(lambda: bench.link() is LinkState.UP)
+        relay.write_record("HR_1", report=False)
+        relay.write_file("HR_2.CFG", b"configuration")
+        relay.announce()
+        assert eventually(lambda: bench.is_stored("HR_1"))
+        relay.write_file("HR_2.DAT", b"written after the other was taken")
+        assert eventually(lambda: bench.is_stored("HR_2"))
+
+
 def test_a_file_that_comes_late_makes_no_second_recording(bench: Bench, relay: ScriptedRelay) -> None:
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.UP)
