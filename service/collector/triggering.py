@@ -79,9 +79,13 @@ class Triggering:
         self._claimed = False
 
     def claim(self, record_name: str) -> str | None:
-        """The report a new record belongs to; it is that record's once both are written down together."""
+        """The report a new record belongs to; it is that record's once both are written down together.
+
+        Nobody's time runs while a relay gives records: with many of them one scan takes minutes.
+        """
         self.recall()
         self._claimed = True
+        self._since_s.clear()
         report = self._outstanding
         if report is None or record_name in self._listed_before:
             return None

@@ -43,7 +43,7 @@ class ScriptedRelay:
     """Writes a record at each rising edge of RB01, unless told to refuse or to stay silent.
 
     denied: files of these records cannot be opened.  stuck: asked for these, it answers nobody for STUCK_S.
-    listings: how often its directory was asked for.
+    listings: how often its directory was asked for.  opened: how many files.
     shifts: a file of SHIFTY is a byte longer whenever it is opened than it was when it was listed.
     clock_offset_s: it stamps changes of RB01 with a clock so far ahead; None: it stamps nothing.
     unreadable: what it answers for each of these data objects in place of values.
@@ -58,6 +58,7 @@ class ScriptedRelay:
     shifts: bool = False
     denied: set[str] = field(default_factory=set)
     stuck: set[str] = field(default_factory=set)
+    opening_s: float = 0.0
     clock_offset_s: float | None = None
     clock_quality: int = 0x0A
     unreadable: dict[str, DataAccessError] = field(default_factory=dict)
@@ -65,6 +66,7 @@ class ScriptedRelay:
     edges: int = 0
     records: int = 0
     listings: int = 0
+    opened: int = 0
     server: Server = field(init=False)
     is_set: bool = False
 
@@ -126,8 +128,10 @@ class ScriptedRelay:
                 file.write(b"+")
         if request.operation is not FileOperation.OPEN:
             return FileAnswer.SERVE
+        self.opened += 1
         if request.path.stem in self.stuck:
             time.sleep(STUCK_S)
+        time.sleep(self.opening_s)
         if request.path.stem in self.denied:
             return FileAnswer.DENIED
         return FileAnswer.BUSY if self.busy else FileAnswer.SERVE

@@ -1,0 +1,66 @@
+"""A relay that has much to give, and takes longer over it than an event report may take."""
+
+import os
+
+from service.storage.states import EventReportState, LinkState
+from tests.service.collector.conftest import Bench, eventually
+from tests.service.collector.scripted_relay import ScriptedRelay
+
+OPENING_S = 0.4
+"""Two files of four records take more than `record_timeout_s` of the bench, 2 s."""
+
+OLD_RECORDS = [f"HR_{number}" for number in range(1, 9)]
+
+
+def stored(bench: Bench) -> int:
+    return sum(bench.is_stored(name) for name in OLD_RECORDS)
+
+
+def test_a_record_that_comes_while_old_ones_are_fetched_again_is_not_missed(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    for name in OLD_RECORDS:
+        relay.write_record(name)
+    relay.silent = True
+    with bench.session():
+        assert eventually(lambda: stored(bench) == len(OLD_RECORDS))
+        report_id = bench.request()
+        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        relay.opening_s = OPENING_S
+        for path in relay.events.iterdir():
+            changed_s = path.stat().st_mtime - 3600
+            os.utime(path, (changed_s, changed_s))
+        opened = relay.opened
+        relay.announce()
+        assert eventually(lambda: relay.opened > opened)
+        relay.write_record("HR_10001")
+        assert eventually(lambda: bench.report(report_id).state is not EventReportState.TRIGGERED)
+        assert bench.reaches(report_id, EventReportState.FETCHED), bench.report(report_id).reason
+    made = bench.recording("HR_10001")
+    assert made is not None
+    assert bench.report(report_id).recording_id == made.id
+
+
+def test_wishes_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    for name in OLD_RECORDS:
+        relay.write_record(name)
+    relay.opening_s = OPENING_S
+    with bench.session():
+        assert eventually(lambda: stored(bench) == 1)
+        wishes = [bench.request() for _ in range(2)]
+        relay.stop()
+        assert eventually(lambda: bench.link() is LinkState.DOWN)
+        again = bench.start_relay()
+        again.opening_s = OPENING_S
+        assert eventually(lambda: stored(bench) >= 5)
+        again.stop()
+        assert eventually(lambda: bench.link() is LinkState.DOWN)
+        last = bench.start_relay()
+        try:
+            assert all(bench.reaches(wish, EventReportState.FETCHED) for wish in wishes), [
+                bench.report(wish).reason for wish in wishes
+            ]
+        finally:
+            last.stop()
