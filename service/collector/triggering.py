@@ -26,6 +26,7 @@ from mms import (
     ValueRefused,
 )
 from service.collector.clock import ClockWatch, reading, stamp_of
+from service.collector.patience import Patience
 from service.collector.record_directory import Scan
 from service.plant import Acquisition, Relay, TriggerAction, promised
 from service.storage import Repository
@@ -56,10 +57,7 @@ class Triggering:
         self._repository = repository
         self._clock = ClockWatch(relay.name, repository)
         self._gateway = gateway
-        self._timeout_s = record_timeout_s
-        # By a clock that only goes forward: one that is set must end no report's time. After a restart every
-        # report gets its time limit again: its record may wait in the relay.
-        self._since_s: dict[tuple[str, EventReportState], float] = {}
+        self._patience = Patience(record_timeout_s)
         self._outstanding: EventReport | None = None
         self._next: EventReport | None = None
         self._claimed = False
@@ -79,13 +77,10 @@ class Triggering:
         self._claimed = False
 
     def claim(self, record_name: str) -> str | None:
-        """The report a new record belongs to; it is that record's once both are written down together.
-
-        Nobody's time runs while a relay gives records: with many of them one scan takes minutes.
-        """
+        """The report a new record belongs to; it is that record's once both are written down together."""
         self.recall()
         self._claimed = True
-        self._since_s.clear()
+        self._patience.gave_a_record()
         report = self._outstanding
         if report is None or record_name in self._listed_before:
             return None
@@ -98,13 +93,8 @@ class Triggering:
         """
         if self._claimed:
             self.recall()
+        self._patience.answered(time.monotonic())
         report = self._outstanding
-        # The others wait for their turn, not for the relay: their time does not run while the link is fine.
-        self._since_s = {
-            key: since_s
-            for key, since_s in self._since_s.items()
-            if report is not None and key[0] == report.id
-        }
         if report is None:
             if self._next is not None:
                 return self._is_held_up(scan) or self._grant(client, self._next, scan)
@@ -120,29 +110,36 @@ class Triggering:
             )
             return False
         appeared = {*scan.waiting, *scan.failing} - self._listed_before
+        is_overdue = self._patience.ends_without_record(report, time.monotonic())
         if appeared and report.state is EventReportState.TRIGGERED:
             self._repository.mark_recorded(report.id, now_ns=time.time_ns())
-        elif self._is_overdue(report):
-            self._fail(report, self._why_overdue(scan, appeared))
+        elif (
+            is_overdue and not appeared - scan.failing.keys()
+        ):  # what the relay still writes has its own limits
+            self._fail(report, self._why_overdue(report, scan, appeared))
             return False
         return True
 
-    def _why_overdue(self, scan: Scan, appeared: Set[str]) -> str:
+    def _why_overdue(self, report: EventReport, scan: Scan, appeared: Set[str]) -> str:
+        within = f"within {self._patience.timeout_s:g} s"
         failing = sorted(appeared & scan.failing.keys())
         if failing:
+            return f"{self._relay.name}: its record could not be fetched {within}: {scan.failing[failing[0]]}"
+        if report.state is EventReportState.RECORDED:
             return (
-                f"{self._relay.name}: its record could not be fetched within {self._timeout_s:g} s: "
-                f"{scan.failing[failing[0]]}"
+                f"{self._relay.name}: its record was seen in the relay, but is gone, or still changes after "
+                f"{self._patience.timeout_s:g} s"
             )
         return (
-            f"{self._relay.name}: expected a record within {self._timeout_s:g} s of the trigger, "
+            f"{self._relay.name}: expected a record {within} of the trigger, "
             "found none; check the relay's event report settings (ER)"
         )
 
     def link_failed(self, reason: str) -> None:
         """The relay cannot be asked, `reason` says why: reports that waited for it long enough fail."""
+        now_s = time.monotonic()
         for report in self._repository.open_event_reports(self._relay.name):
-            if self._is_overdue(report):
+            if self._patience.ends_without_answer(report, now_s):
                 self._fail(report, f"{self._relay.name} {reason}")
 
     def _is_held_up(self, scan: Scan) -> bool:
@@ -156,7 +153,7 @@ class Triggering:
             return False
         if self._held_up_since_s is None:
             self._held_up_since_s = now_s
-        return now_s < self._held_up_since_s + self._timeout_s
+        return now_s < self._held_up_since_s + self._patience.timeout_s
 
     def _grant(self, client: Client, report: EventReport, scan: Scan) -> bool:
         """Trigger, unless there is nothing to trigger by or no way to have the record."""
@@ -198,11 +195,6 @@ class Triggering:
     def _fail(self, report: EventReport, reason: str) -> None:
         self._repository.fail_event_report(report.id, reason, now_ns=time.time_ns())
         log.warning("event report failed", relay=self._relay.name, event_report=report.id, reason=reason)
-
-    def _is_overdue(self, report: EventReport) -> bool:
-        """Whether it has been in its state for too long, since this was first asked."""
-        now_s = time.monotonic()
-        return now_s > self._since_s.setdefault((report.id, report.state), now_s) + self._timeout_s
 
 
 def _stamp_of(client: Client, control: str) -> Timestamp | None:

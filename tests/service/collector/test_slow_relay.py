@@ -1,6 +1,7 @@
 """A relay that has much to give, and takes longer over it than an event report may take."""
 
 import os
+import time
 
 from service.storage.states import EventReportState, LinkState
 from tests.service.collector.conftest import Bench, eventually
@@ -64,3 +65,18 @@ def test_wishes_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
             ]
         finally:
             last.stop()
+
+
+def test_a_record_that_takes_long_to_write_is_not_missed(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.silent = True
+    with bench.session():
+        report_id = bench.request()
+        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        relay.write_record("HR_10001", b"x")
+        began_s = time.monotonic()
+        while time.monotonic() < began_s + bench.settings.record_timeout_s + 1.0:
+            with (relay.events / "HR_10001.DAT").open("ab") as file:
+                file.write(b"x")
+            time.sleep(0.05)  # it never stands still for as long as it must
+        assert bench.report(report_id).state is EventReportState.RECORDED, bench.report(report_id).reason
+        assert bench.reaches(report_id, EventReportState.FETCHED)
