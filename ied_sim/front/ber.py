@@ -25,28 +25,34 @@ class Element:
 
 def decode(octets: bytes) -> Element:
     """The one element that `octets` are. Raises MalformedError."""
-    elements = list(_elements(octets, 0))
-    if len(elements) != 1:
-        raise MalformedError(f"{len(elements)} elements where one was expected")
-    return elements[0]
+    found = list(_elements(octets, 0, len(octets), 0))
+    if len(found) != 1:
+        raise MalformedError(f"{len(found)} elements where one was expected")
+    return found[0]
 
 
-def encode(element: Element) -> bytes:
-    content = element.content if element.parts is None else b"".join(map(encode, element.parts))
-    return element.tag + _length(len(content)) + content
+def encode(whole: Element) -> bytes:
+    return element(whole.tag, whole.content if whole.parts is None else b"".join(map(encode, whole.parts)))
 
 
-def _elements(octets: bytes, depth: int) -> Iterator[Element]:
-    if depth > _DEEPEST:
-        raise MalformedError(f"elements nested over {_DEEPEST} deep")
-    place = 0
-    while place < len(octets):
+def element(tag: bytes, content: bytes) -> bytes:
+    """Tag, length, content."""
+    return tag + _length(len(content)) + content
+
+
+def spans(octets: bytes, begin: int, end: int) -> Iterator[tuple[bytes, int, int, int]]:
+    """The elements in octets[begin:end], not looked into: tag, and where it, its content and the next begin.
+
+    Raises MalformedError.
+    """
+    place = begin
+    while place < end:
         begin = place
         place += 1
         if octets[begin] & 0x1F == 0x1F:
             place += 1
         tag = octets[begin:place]
-        if place >= len(octets):
+        if place >= end:
             raise MalformedError("an element without a length")
         length = octets[place]
         place += 1
@@ -54,14 +60,21 @@ def _elements(octets: bytes, depth: int) -> Iterator[Element]:
             count = length & 0x7F
             length = int.from_bytes(octets[place : place + count], "big")
             place += count
-        content = octets[place : place + length]
-        if len(content) != length:
-            raise MalformedError("an element longer than what holds it")
+        content = place
         place += length
+        if place > end:
+            raise MalformedError("an element longer than what holds it")
+        yield tag, begin, content, place
+
+
+def _elements(octets: bytes, begin: int, end: int, depth: int) -> Iterator[Element]:
+    if depth > _DEEPEST:
+        raise MalformedError(f"elements nested over {_DEEPEST} deep")
+    for tag, _, content, following in spans(octets, begin, end):
         if tag[0] & 0x20:
-            yield Element(tag, parts=list(_elements(content, depth + 1)))
+            yield Element(tag, parts=list(_elements(octets, content, following, depth + 1)))
         else:
-            yield Element(tag, content)
+            yield Element(tag, octets[content:following])
 
 
 def _length(length: int) -> bytes:

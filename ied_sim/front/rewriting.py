@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
-from ied_sim.front.ber import Element, MalformedError, decode, encode
+from ied_sim.front.ber import Element, MalformedError, decode, element, encode, spans
 from ied_sim.misbehaviour import Kind, Switchboard
 from ied_sim.profile import Files
 
@@ -43,45 +44,49 @@ class Rewriter:
 
     def request(self, user_data: bytes) -> bytes:
         """A client's message, file names made those the server knows."""
-        opened = _opened(user_data)
-        if opened is None or opened[1].tag != _CONFIRMED_REQUEST:
+        message = _opened(user_data)
+        if message is None or message.pdu_tag != _CONFIRMED_REQUEST:
             return user_data
-        whole, pdu = opened
-        service = pdu.parts[-1] if pdu.parts else Element(b"")
-        if service.tag == _FILE_DIRECTORY:
-            given = service.part(_FIRST)
-            self._directory = "" if given is None else _names(given)[0].strip("/\\").replace("\\", "/")
-            for names in service.parts or ():
-                self._rename(names, within=names.tag == _SECOND)
-        elif service.tag == _FILE_OPEN:
-            opened_name = service.part(_FIRST)
-            if opened_name is not None:
-                self._rename(opened_name, within=self._without_path)
-        else:
+        try:
+            if message.service_tag == _FILE_DIRECTORY:
+                service = decode(message.service)
+                given = service.part(_FIRST)
+                self._directory = "" if given is None else _names(given)[0].strip("/\\").replace("\\", "/")
+                for names in service.parts or ():
+                    self._rename(names, within=names.tag == _SECOND)
+            elif message.service_tag == _FILE_OPEN:
+                service = decode(message.service)
+                opened_name = service.part(_FIRST)
+                if opened_name is not None:
+                    self._rename(opened_name, within=self._without_path)
+            else:
+                return user_data
+        except MalformedError:
             return user_data
-        return _SESSION + encode(whole)
+        return message.with_service(encode(service))
 
     def response(self, user_data: bytes) -> Rewritten:
         """A server's message."""
-        opened = _opened(user_data)
-        if opened is None:
+        message = _opened(user_data)
+        if message is None:
             return Rewritten(user_data)
-        whole, pdu = opened
-        service = pdu.parts[-1] if pdu.parts else Element(b"")
-        if pdu.tag == _CONFIRMED_RESPONSE and service.tag == _FILE_READ:
-            data = service.part(_SIMPLE_FIRST)
-            return Rewritten(user_data, 0 if data is None else len(data.content))
-        if pdu.tag == _CONFIRMED_RESPONSE and service.tag == _FILE_DIRECTORY:
-            self._rewrite_listing(service)
-        elif not self._empties_report_ids:
+        try:
+            if message.pdu_tag == _CONFIRMED_RESPONSE and message.service_tag == _FILE_READ:
+                return Rewritten(user_data, _file_bytes(message.service))
+            if message.pdu_tag == _CONFIRMED_RESPONSE and message.service_tag == _FILE_DIRECTORY:
+                return Rewritten(message.with_service(_shown_listing(message.service, self._show)))
+            if not self._empties_report_ids:
+                return Rewritten(user_data)
+            service = decode(message.service)
+            if message.pdu_tag == _UNCONFIRMED:
+                self._name_after_block(service)
+            elif message.pdu_tag == _CONFIRMED_RESPONSE and message.service_tag == _READ:
+                _empty_report_ids(service)
+            else:
+                return Rewritten(user_data)
+        except MalformedError:
             return Rewritten(user_data)
-        elif pdu.tag == _UNCONFIRMED:
-            self._name_after_block(service)
-        elif pdu.tag == _CONFIRMED_RESPONSE and service.tag == _READ:
-            _empty_report_ids(service)
-        else:
-            return Rewritten(user_data)
-        return Rewritten(_SESSION + encode(whole))
+        return Rewritten(message.with_service(encode(service)))
 
     def _name_after_block(self, report: Element) -> None:
         """A report of a block without RptID has the block's reference in its place, its first value."""
@@ -106,43 +111,109 @@ class Rewriter:
                 name = self._directory.encode("latin-1") + b"/" + name
             part.content = name
 
-    def _rewrite_listing(self, service: Element) -> None:
-        entries = _entries(service)
-        if entries.parts is None:
-            return
+    @property
+    def _show(self) -> "_Show":
         most = self._switchboard.number(Kind.PARTIAL_LISTING)
         if most is None and self._files is not None:
             most = self._files.entries_per_listing
-        if most is not None and len(entries.parts) > most:
-            del entries.parts[int(most) :]
-            service.parts = [part for part in service.parts or () if part.tag != _SIMPLE_SECOND]
-            service.parts.append(Element(_SIMPLE_SECOND, b"\xff"))
         by_bytes = self._switchboard.number(Kind.WRONG_SIZE)
-        for entry in entries.parts:
-            self._show_names(entry)
-            if by_bytes is not None:
-                _change_size(entry, int(by_bytes))
-
-    def _show_names(self, entry: Element) -> None:
-        separator = b"/" if self._files is None else self._files.separator.encode()
-        names = entry.part(_FIRST)
-        for part in (names.parts or ()) if names is not None else ():
-            name = part.content.rpartition(b"/")[2] if self._without_path else part.content
-            part.content = name.replace(b"/", separator)
+        return _Show(
+            without_path=self._without_path,
+            separator="/" if self._files is None else self._files.separator,
+            most=None if most is None else int(most),
+            longer_by_bytes=None if by_bytes is None else int(by_bytes),
+        )
 
 
-def _opened(user_data: bytes) -> tuple[Element, Element] | None:
-    """The presentation's element and the MMS PDU in it; None for what is no data of an association."""
+@dataclass(frozen=True, slots=True)
+class _Show:
+    """How a listing is shown. most: entries of one answer, the rest follows."""
+
+    without_path: bool
+    separator: str
+    most: int | None
+    longer_by_bytes: int | None
+
+
+@lru_cache(maxsize=64)
+def _shown_listing(octets: bytes, show: _Show) -> bytes:
+    """A listing as the server gives it, made what the relay shows. Kept: clients list again and again.
+
+    Raises MalformedError.
+    """
+    service = decode(octets)
+    entries = _entries(service)
+    if entries.parts is None:
+        return octets
+    if show.most is not None and len(entries.parts) > show.most:
+        del entries.parts[show.most :]
+        service.parts = [part for part in service.parts or () if part.tag != _SIMPLE_SECOND]
+        service.parts.append(Element(_SIMPLE_SECOND, b"\xff"))
+    for entry in entries.parts:
+        _show_names(entry, show)
+        if show.longer_by_bytes is not None:
+            _change_size(entry, show.longer_by_bytes)
+    return encode(service)
+
+
+def _show_names(entry: Element, show: _Show) -> None:
+    names = entry.part(_FIRST)
+    for part in (names.parts or ()) if names is not None else ():
+        name = part.content.rpartition(b"/")[2] if show.without_path else part.content
+        part.content = name.replace(b"/", show.separator.encode())
+
+
+@dataclass(frozen=True, slots=True)
+class _Opened:
+    """A message of an association, looked into as far as its service.
+
+    context: before the PDU in the presentation's data.  head: before the service in the PDU, its invoke id.
+    """
+
+    presentation_tags: tuple[bytes, bytes, bytes]
+    context: bytes
+    pdu_tag: bytes
+    head: bytes
+    service_tag: bytes
+    service: bytes
+
+    def with_service(self, service: bytes) -> bytes:
+        """The message with another service, a whole element."""
+        outermost, values, value = self.presentation_tags
+        pdu = element(self.pdu_tag, self.head + service)
+        return _SESSION + element(outermost, element(values, self.context + element(value, pdu)))
+
+
+def _opened(user_data: bytes) -> _Opened | None:
+    """None for what is no data of an association, and for a PDU without a service."""
     if not user_data.startswith(_SESSION):
         return None
     try:
-        whole = decode(user_data[len(_SESSION) :])
-    except MalformedError:
+        (outermost, _, begin, end), *others = spans(user_data, len(_SESSION), len(user_data))
+        (values, _, begin, end), *more = spans(user_data, begin, end)
+        *before, (value, value_begin, begin, end) = spans(user_data, begin, end)
+        if others or more or value != _FIRST:
+            return None
+        context_begin = before[0][1] if before else value_begin
+        (pdu_tag, _, begin, end), *_ = spans(user_data, begin, end)
+        *_, (service_tag, service_begin, _, service_end) = spans(user_data, begin, end)
+    except (MalformedError, ValueError):
         return None
-    value = whole.parts[0].part(_FIRST) if whole.parts else None
-    if value is None or not value.parts:
-        return None
-    return whole, value.parts[0]
+    return _Opened(
+        (outermost, values, value),
+        user_data[context_begin:value_begin],
+        pdu_tag,
+        user_data[begin:service_begin],
+        service_tag,
+        user_data[service_begin:service_end],
+    )
+
+
+def _file_bytes(file_read: bytes) -> int:
+    """How much of a file the answer carries. Raises MalformedError."""
+    (_, _, begin, end), *_ = spans(file_read, 0, len(file_read))
+    parts = spans(file_read, begin, end)
+    return next((following - content for tag, _, content, following in parts if tag == _SIMPLE_FIRST), 0)
 
 
 def _names(names: Element) -> list[str]:
