@@ -107,14 +107,26 @@ def operate(connection: Connection, reference: str, *, value: bool, originator: 
         raise ValueError(f"originator {originator!r} is longer than {_LONGEST_ORIGINATOR} characters")
     lib = connection.lib
     with connection.exclusive(operation) as pointer:
-        control = lib.ControlObjectClient_create(object_name, pointer)
-        if not control:
-            raise _no_control(connection, operation, reference)
+        control = _create(connection, operation, reference, object_name, pointer)
         try:
             lib.ControlObjectClient_setOrigin(control, origin, _REMOTE_CONTROL)
             _Command(connection, operation, control).execute(value=value)
         finally:
             lib.ControlObjectClient_destroy(control)
+
+
+def _create(connection: Connection, operation: str, reference: str, object_name: bytes, pointer: int) -> int:
+    """The library's control object, which asks the relay for its description: again if that came too late."""
+    for _ in range(2):
+        began_s = time.monotonic()
+        control = connection.lib.ControlObjectClient_create(object_name, pointer)
+        if control:
+            return int(control)
+        is_late = time.monotonic() - began_s >= connection.request_timeout_s
+        why = _no_control(connection, operation, reference)
+        if not is_late or not isinstance(why, errors.ProtocolError):
+            raise why
+    raise errors.Timeout(connection.host, operation, 0, "no answer in time")
 
 
 def _no_control(connection: Connection, operation: str, reference: str) -> errors.MmsError:

@@ -2,14 +2,15 @@
 
 import asyncio
 import io
+import time
 from pathlib import Path
 from random import Random
 
 import pytest
 
-from mms import AssociationBroken, Client, FileSizeMismatch, ProtocolError, files
+from mms import AssociationBroken, Client, FileSizeMismatch, ProtocolError, Timeout, files
 from tests.hostile import bulk, crafted, spoiling
-from tests.hostile.dialogue import PRO, Dialogue, overheard, tlv
+from tests.hostile.dialogue import CON, PRO, Dialogue, overheard, tlv
 from tests.hostile.relay import HostileRelay, lying
 from tests.hostile.surroundings import Snapshot, strangers
 from tests.mms.relays import LOOPBACK
@@ -105,6 +106,37 @@ def test_a_member_that_is_none_is_an_error(dialogue: Dialogue) -> None:
         pytest.raises(ProtocolError, match="not a member of a data set: b'GGIO1_ST_Ind"),
     ):
         client.data_set_directory(f"{PRO}/LLN0.DSet01")
+
+
+def test_a_control_is_operated_though_its_description_came_too_late_at_first(dialogue: Dialogue) -> None:
+    asked = 0
+
+    def late(_number: int) -> bytes:
+        nonlocal asked
+        asked += 1
+        if asked == 1:
+            time.sleep(1.2)
+        return dialogue.latest[b"\xa6"]
+
+    with (
+        lying(dialogue, {b"\xa6": late}) as port,
+        Client.connect(LOOPBACK, port, request_timeout_s=1.0) as client,
+    ):
+        client.operate(f"{CON}/RBGGIO1.SPCSO02", value=True)
+    assert asked == 2
+
+
+def test_a_control_whose_description_never_comes_in_time_is_late_not_missing(dialogue: Dialogue) -> None:
+    def late(_number: int) -> bytes:
+        time.sleep(0.8)
+        return dialogue.latest[b"\xa6"]
+
+    with (
+        lying(dialogue, {b"\xa6": late}) as port,
+        Client.connect(LOOPBACK, port, request_timeout_s=0.5) as client,
+        pytest.raises(Timeout),
+    ):
+        client.operate(f"{CON}/RBGGIO1.SPCSO02", value=True)
 
 
 @pytest.mark.parametrize("lie", [b"\xa1\x00", b"\xa1\x02\x05\x00", b"\xa1\x02\x30\x00"])
