@@ -110,12 +110,11 @@ class Triggering:
             )
             return False
         appeared = {*scan.waiting, *scan.failing} - self._listed_before
+        still_written = appeared - scan.failing.keys()  # for as long as the directory's own limits allow
         is_overdue = self._patience.ends_without_record(report, time.monotonic())
         if appeared and report.state is EventReportState.TRIGGERED:
             self._repository.mark_recorded(report.id, now_ns=time.time_ns())
-        elif (
-            is_overdue and not appeared - scan.failing.keys()
-        ):  # what the relay still writes has its own limits
+        elif is_overdue and not still_written:
             self._fail(report, self._why_overdue(report, scan, appeared))
             return False
         return True
