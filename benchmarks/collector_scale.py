@@ -38,6 +38,9 @@ START_LIMIT_S = 300.0
 JUDGED_MINUTES = 10.0
 """In less the memory still warms up, and its slope says nothing."""
 
+MOST_TOLD = 20
+"""Missed polls that are told one by one."""
+
 MEMORY_LIMIT_MB_A_MINUTE = 1.0
 P95_LIMIT_S = 2.0
 LIMITS = (
@@ -49,10 +52,11 @@ UNDER_WAY = ("requested", "triggered", "recorded")
 
 @dataclass
 class Seen:
-    """memory: (minutes, MB) of all the service's processes.  delays_s: from made to stored, by recording."""
+    """memory: (minutes, MB) of all the service's processes.  delays_s: from made to stored, by recording.
+    missed: by relay and time of its last answer, the minute it was found and in words."""
 
     looks: int = 0
-    missed: set[tuple[str, str]] = field(default_factory=set)
+    missed: dict[tuple[str, str], str] = field(default_factory=dict)
     memory: list[tuple[float, float]] = field(default_factory=list)
     delays_s: dict[str, float] = field(default_factory=dict)
     asked: list[str] = field(default_factory=list)
@@ -129,9 +133,12 @@ def _watch(
 def _look(service: Service, client: ServiceClient, seen: Seen, minute: float) -> None:
     now_s = time.time()
     for ied in client.items("/ieds", limit="1000"):
-        heard = ied["last_success_time"]
-        if ied["link_state"] != "up" or now_s - _seconds(heard) > 2 * POLL_PERIOD_S:
-            seen.missed.add((str(ied["name"]), str(heard)))
+        name, state, heard = (str(ied[key]) for key in ("name", "link_state", "last_success_time"))
+        silent_s = now_s - _seconds(heard)
+        if state != "up" or silent_s > 2 * POLL_PERIOD_S:
+            seen.missed[name, heard] = (
+                f"minute {minute:.1f}: {name} is {state}, last heard of {silent_s:.1f} s ago"
+            )
     seen.memory.append((minute, sum(resident_mb(process_id) for process_id in _processes(service))))
 
 
@@ -155,6 +162,7 @@ def _open(client: ServiceClient, seen: Seen) -> list[str]:
 
 def _told(seen: Seen, minutes: float, spent_s: float, simulated_s: float) -> Iterator[str]:
     yield f"missed polls: {len(seen.missed)} (looked {seen.looks} times at every relay)"
+    yield from list(seen.missed.values())[:MOST_TOLD]
     begin = WARM_UP_SHARE * minutes
     slope = seen.memory_slope(begin)
     if slope is not None:
