@@ -2,6 +2,7 @@
 
 import ctypes
 import logging
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from typing import Final, Protocol
 from mms import errors
 from mms.callbacks import guarded
 from mms.connection import Connection
+from mms.pace import Pace
 from mms.prototypes import FileReadHandler
 
 log: Final = logging.getLogger("mms")
@@ -17,6 +19,9 @@ log: Final = logging.getLogger("mms")
 _MILLISECOND_NS: Final = 1_000_000
 _LISTING_LIMIT: Final = 100_000
 _LONGEST_NAME: Final = 255
+
+_LONGEST_LISTING_S: Final = 300.0
+"""Of waiting for the parts of one listing: some 5000 names over a serial line of 9600 baud."""
 
 
 class Sink(Protocol):
@@ -35,10 +40,14 @@ class FileEntry:
 
 
 def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
-    """Every file of a directory, "" for the root. Relays send long listings in parts: all are asked for."""
+    """Every file of a directory, "" for the root. Relays send long listings in parts: all are asked for.
+
+    Raises Timeout where that takes longer than five minutes, though each part comes in time.
+    """
     operation = f"list files of {directory or 'the root'!r}"
     entries: dict[str, FileEntry] = {}
     last: str | None = None
+    began_s = time.monotonic()
     while True:
         part, more = _listing(connection, operation, directory, last)
         known = len(entries)
@@ -48,6 +57,10 @@ def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
         if len(entries) == known or len(entries) > _LISTING_LIMIT:
             reason = f"the listing never ends ({len(entries)} names so far)"
             raise errors.ProtocolError(connection.host, operation, 0, reason)
+        if time.monotonic() - began_s > _LONGEST_LISTING_S:
+            received = f"received {len(entries)} names and more to come"
+            reason = f"expected the whole listing in {_LONGEST_LISTING_S:g} s, {received}"
+            raise errors.Timeout(connection.host, operation, 0, reason)
         last = part[-1].name
         if len(last) > _LONGEST_NAME:
             reason = f"the listing cannot be continued after a name of {len(last)} characters"
@@ -92,15 +105,19 @@ def download(connection: Connection, name: str, sink: Sink, expected_size: int |
 
     FileSizeMismatch unless the bytes are `expected_size`, the size listed. Without it the size announced at
     opening must do, which some relays also have for a directory: give the size wherever there is a listing.
+    Timeout also where the parts come in time and next to nothing with them (`mms.pace`).
     """
     operation = f"download {name!r}"
     with _open_file(connection, operation, name) as (handle, announced):
         expected = announced if expected_size is None else expected_size
         reader = _Reader(connection, operation, handle)
+        pace = Pace(connection.host, operation)
         received = 0
         more = True
         while more:
+            asked_s = time.monotonic()
             chunk, more = reader.read()
+            took_s = time.monotonic() - asked_s
             received += len(chunk)
             if received > expected:
                 break
@@ -109,6 +126,8 @@ def download(connection: Connection, name: str, sink: Sink, expected_size: int |
                 raise errors.ProtocolError(
                     connection.host, operation, 0, "the relay sends empty parts without end"
                 )
+            if more:
+                pace.note(len(chunk), took_s)
             if connection.closing:
                 raise errors.ConnectionLost(connection.host, operation, 0, "closed during the download")
     if received != expected:

@@ -1,0 +1,120 @@
+"""A relay that answers every request in time and gets nowhere holds nobody for long."""
+
+import io
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from threading import Timer
+
+import pytest
+
+from mms import Client, ConnectionLost, MmsError, Timeout, files, pace
+from service.collector.record_directory import LINK_FAILURES
+from service.storage.states import LinkState
+from tests.hostile import crafted
+from tests.hostile.dialogue import PRO, Dialogue, overheard, tlv
+from tests.hostile.relay import lying
+from tests.mms.relays import LOOPBACK
+from tests.service.collector.conftest import Bench, bench, eventually
+
+__all__ = ["bench"]
+
+PART_S = 0.05
+NAME = "EVENTS/HR_10001.DAT"
+
+pytestmark = pytest.mark.timeout(60)
+
+
+@pytest.fixture(scope="module")
+def dialogue() -> Dialogue:
+    return overheard()
+
+
+def parts_of(size: int) -> Callable[[int], bytes]:
+    """A file without end, in parts of `size` bytes, one each PART_S."""
+    content = tlv(0x80, bytes(size)) + tlv(0x81, b"\xff")
+
+    def part(_number: int) -> bytes:
+        time.sleep(PART_S)
+        return b"\xbf\x49" + tlv(0x30, content)[1:]
+
+    return part
+
+
+def names(number: int) -> bytes:
+    """A listing without end, of one name a part."""
+    time.sleep(PART_S)
+    entry = tlv(0x30, tlv(0xA0, tlv(0x19, b"HR_%09d.CFG" % number)) + tlv(0xA1, tlv(0x80, b"\x01")))
+    return crafted.FILE_DIRECTORY + tlv(0x30, tlv(0xA0, tlv(0x30, entry)) + tlv(0x81, b"\xff"))[1:]
+
+
+def test_a_file_of_a_byte_a_part_ends_in_words(dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pace, "WINDOW_S", 0.5)
+    began_s = time.monotonic()
+    with lying(dialogue, {crafted.FILE_READ: parts_of(1)}) as port, Client.connect(LOOPBACK, port) as client:
+        with pytest.raises(
+            Timeout, match=r"expected at least 100 bytes a second, received \d+ bytes in 0\.\d s"
+        ):
+            client.download(NAME, io.BytesIO(), expected_size=10_000)
+        assert time.monotonic() - began_s < 2.0
+        assert client.read_data_set(f"{PRO}/LLN0.DSet01"), "the association stands"
+
+
+def test_a_file_over_a_slow_line_is_not_given_up(dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch) -> None:
+    """48 bytes each twentieth of a second at most: a line of 9600 baud."""
+    monkeypatch.setattr(pace, "WINDOW_S", 0.2)
+    received = io.BytesIO()
+    with (
+        lying(dialogue, {crafted.FILE_READ: parts_of(48)}) as port,
+        Client.connect(LOOPBACK, port) as client,
+        pytest.raises(MmsError, match="expected 960 bytes, received 1008"),
+    ):
+        client.download(NAME, received, expected_size=960)
+    assert len(received.getvalue()) == 960
+
+
+def test_a_listing_of_a_name_a_part_ends_in_words(
+    dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(files, "_LONGEST_LISTING_S", 0.5)
+    with lying(dialogue, {crafted.FILE_DIRECTORY: names}) as port, Client.connect(LOOPBACK, port) as client:
+        with pytest.raises(Timeout, match=r"expected the whole listing in 0\.5 s, received \d+ names"):
+            client.files("EVENTS")
+        assert client.read_data_set(f"{PRO}/LLN0.DSet01"), "the association stands"
+
+
+@pytest.mark.parametrize("ending", ["close", "abandon"])
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda client: client.download(NAME, io.BytesIO(), expected_size=10_000),
+        lambda client: client.files("EVENTS"),
+    ],
+    ids=["download", "listing"],
+)
+def test_whoever_closes_waits_for_one_part_alone(
+    dialogue: Dialogue, ask: Callable[[Client], object], ending: str
+) -> None:
+    lies = {crafted.FILE_READ: parts_of(1), crafted.FILE_DIRECTORY: names}
+    with lying(dialogue, lies) as port, Client.connect(LOOPBACK, port) as client:
+        closing = Timer(0.3, getattr(client, ending))
+        closing.start()
+        began_s = time.monotonic()
+        with pytest.raises(ConnectionLost):
+            ask(client)
+        assert time.monotonic() - began_s < 1.5
+        closing.join()
+
+
+def test_a_session_puts_the_trickle_off_and_says_so(
+    dialogue: Dialogue, bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert Timeout in LINK_FAILURES
+    monkeypatch.setattr(pace, "WINDOW_S", 0.5)
+    with lying(dialogue, {crafted.FILE_READ: parts_of(1)}) as port:
+        bench.relay = replace(bench.relay, port=port)
+        with bench.session():
+            assert eventually(lambda: bench.link() is LinkState.DOWN, within_s=10)
+            reason = bench.repository.ied(bench.relay.name).link_reason
+    assert reason is not None
+    assert "expected at least 100 bytes a second" in reason
