@@ -13,7 +13,7 @@ from service.collector.supervisor import CollectorSupervisor
 from service.collector.visiting import visits_of
 from service.plant import Plant
 from service.settings import Settings
-from service.storage import Repository
+from service.storage import Repository, StorageError
 
 log = structlog.get_logger(__name__)
 
@@ -60,7 +60,7 @@ class Gateways:
                     self._repository,
                     first_pause_s=self._settings.quarantine_s,
                 )
-            except (SQLAlchemyError, OSError) as error:
+            except (SQLAlchemyError, StorageError, OSError) as error:
                 log.warning("nobody is set aside for the gateway's end", error=str(error))
             try:
                 self._repository.end_gateway(gateway, now_ns=time.time_ns())

@@ -11,11 +11,12 @@ the other PROBATION_S later. The next crash has at most half the suspects, until
 import signal
 import time
 from collections.abc import Collection
+from contextlib import suppress
 
 import structlog
 
 from service.collector.visiting import Visits
-from service.storage import Repository
+from service.storage import NotFoundError, Repository
 from service.storage.records import Quarantine
 
 log = structlog.get_logger(__name__)
@@ -36,10 +37,13 @@ CRASHES = frozenset({signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFP
 def after_end(visits: Visits, exit_code: int | None, repository: Repository, *, first_pause_s: float) -> None:
     """A gateway process has ended: if it crashed, blame whom it was busy with.
 
-    Raises SQLAlchemyError, OSError.
+    A mark of what is no relay, which nobody here has made, is passed over. Raises SQLAlchemyError, OSError.
     """
-    suspects = visits.suspects()
+    marked = visits.suspects()
     visits.forget()
+    suspects = _known(marked, repository)
+    if suspects != marked:
+        log.warning("marks of visits that name no relay are passed over", names=sorted(marked - suspects))
     if exit_code is None or -exit_code not in CRASHES or not suspects:
         return
     crash = signal.Signals(-exit_code).name
@@ -106,6 +110,14 @@ def _probation_s(quarantine: Quarantine | None) -> float | None:
     if quarantine is None:
         return None
     return max(PROBATION_S, (quarantine.until_ns - quarantine.since_ns) / 1e9)
+
+
+def _known(relays: frozenset[str], repository: Repository) -> frozenset[str]:
+    known = set()
+    for relay in relays:
+        with suppress(NotFoundError):
+            known.add(repository.ied(relay).name)
+    return frozenset(known)
 
 
 def _halves(relays: Collection[str]) -> tuple[list[str], list[str]]:

@@ -59,7 +59,8 @@ class Visits:
             path.unlink(missing_ok=True)
 
     def _paths(self) -> list[Path]:
-        return list(self._directory.iterdir()) if self._directory.is_dir() else []
+        found = self._directory.iterdir() if self._directory.is_dir() else ()
+        return [path for path in found if path.is_file()]
 
 
 def visits_of(data_directory: Path, number: int) -> Visits:

@@ -19,8 +19,10 @@ from mms import Server
 from scl import Address
 from scl.model_text import model_text
 from service.collector.gateway import Gateway, Identity
+from service.collector.gateways import running_gateways
 from service.collector.neighbours import Neighbours
 from service.collector.supervisor import CollectorSupervisor
+from service.collector.visiting import BUSY
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
 from service.plant import Plant, read_plant
@@ -222,6 +224,29 @@ def test_relays_of_a_frozen_host_are_taken_over_until_it_wakes(hall: Hall) -> No
         assert eventually(
             lambda: sorted(hall.shares().values()) == [3, 3] and hall.links() == {LinkState.UP}, 60
         )
+
+
+@pytest.mark.parametrize("stray", ["NOT-A-RELAY", "a folder"])
+def test_a_stray_file_among_the_marks_of_visits_keeps_no_gateway_from_coming_again(
+    hall: Hall, stray: str
+) -> None:
+    with running_gateways(hall.settings, hall.plant, hall.repository) as gateways:
+        assert eventually(hall.all_visited, 60)
+        (first,) = hall.repository.gateways()
+        marks = hall.settings.data_directory / "visiting" / "0"
+        if stray == "a folder":
+            (marks / stray).mkdir()
+        else:
+            (marks / stray).write_bytes(BUSY)
+        os.kill(first.process_id, signal.SIGSEGV)
+        assert eventually(
+            lambda: (
+                first.process_id not in (found := [each.process_id for each in hall.repository.gateways()])
+                and bool(found)
+            ),
+            60,
+        )
+        assert gateways.problem() is None
 
 
 def test_gateways_alone_share_the_relays_of_a_service_elsewhere(hall: Hall) -> None:

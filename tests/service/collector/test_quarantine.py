@@ -97,6 +97,14 @@ def test_a_crash_between_requests_makes_all_visited_suspects(repository: Reposit
     assert {each.ied for each in repository.quarantines()} == {A, B}
 
 
+def test_what_is_no_relay_is_not_blamed_and_hides_nobody(repository: Repository, tmp_path: Path) -> None:
+    visits = Visits(tmp_path / "visiting")
+    (tmp_path / "visiting" / "a folder").mkdir(parents=True)
+    with visits.mark("NOT-A-RELAY"), visits.mark(A):
+        after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
+    assert [(each.ied, each.times) for each in repository.quarantines()] == [(A, 1)]
+
+
 def test_a_relay_whose_name_is_a_path_is_marked_inside(tmp_path: Path) -> None:
     visits = Visits(tmp_path / "marks")
     with visits.mark("../../X"):
