@@ -19,7 +19,7 @@ from sqlalchemy.exc import OperationalError
 
 from service.api.app import create_app
 from service.api.context import ApiContext
-from service.collector.gateways import running_gateways
+from service.collector.gateways import Gateways, running_gateways
 from service.exclusive import exclusive
 from service.housekeeping import Housekeeping
 from service.installation import installation_id
@@ -32,6 +32,7 @@ from service.relay_access import clear_passwords
 from service.scheduling import Scheduler
 from service.settings import Settings
 from service.storage import Repository, connect, migrate
+from service.unvisited import Unvisited
 
 log = structlog.get_logger(__name__)
 
@@ -60,6 +61,7 @@ def serve(settings: Settings) -> None:
             _diagnosing(settings, plant, repository, store) as jobs,
             _scheduling(plant, repository) as schedules,
             _tidying(settings, repository),
+            _giving_up(settings, repository, collector),
         ):
             context = ApiContext(
                 settings,
@@ -179,6 +181,16 @@ def _tidying(settings: Settings, repository: Repository) -> Iterator[None]:
         yield
     finally:
         housekeeping.stop()
+
+
+@contextmanager
+def _giving_up(settings: Settings, repository: Repository, gateways: Gateways) -> Iterator[None]:
+    unvisited = Unvisited(settings, repository, problem=gateways.problem)
+    unvisited.start()
+    try:
+        yield
+    finally:
+        unvisited.stop()
 
 
 def _require_writable(directory: Path) -> None:

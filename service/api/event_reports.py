@@ -28,7 +28,7 @@ IdempotencyKey = Annotated[
 @router.post(
     "/motors/{name}/event-reports",
     status_code=HTTPStatus.ACCEPTED,
-    responses=problems(404)
+    responses=problems(404, 409)
     | {202: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The event report."}}}},
 )
 def request_event_report(

@@ -14,7 +14,7 @@ from starlette.exceptions import HTTPException
 from structlog.typing import FilteringBoundLogger
 
 from service.recordings import RecordingStoreError
-from service.storage.errors import NotFoundError, StateConflictError, UnusableBaselineError
+from service.storage.errors import NotFoundError, OutOfServiceError, StateConflictError, UnusableBaselineError
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
@@ -23,6 +23,7 @@ MEDIA_TYPE = "application/problem+json"
 STATUS_OF: dict[type[Exception], HTTPStatus] = {
     NotFoundError: HTTPStatus.NOT_FOUND,
     UnusableBaselineError: HTTPStatus.CONFLICT,
+    OutOfServiceError: HTTPStatus.CONFLICT,
     StateConflictError: HTTPStatus.CONFLICT,
 }
 """What the storage refuses, and how it is told."""

@@ -14,6 +14,18 @@ class NotFoundError(StorageError):
         super().__init__(f"there is no {kind} {name[:100]!r}")
 
 
+class OutOfServiceError(StorageError):
+    """What left the plant is remembered, and nothing more can be asked of it."""
+
+    def __init__(self, kind: str, name: str) -> None:
+        self.kind = kind
+        self.name = name
+        super().__init__(
+            f"{kind} {name} is out of service: it is not in the plant's files any more; put it back there "
+            "(settings scd and motors) and start the service again"
+        )
+
+
 class UnusableBaselineError(StorageError):
     """A recording that cannot stand for a motor's healthy condition."""
 

@@ -5,8 +5,8 @@ import uuid
 from sqlalchemy import exists, select
 from sqlalchemy.orm import Session
 
-from service.storage.errors import StateConflictError
-from service.storage.models import EventReportRow, IedRow, MotorRow
+from service.storage.errors import OutOfServiceError, StateConflictError
+from service.storage.models import EventReportRow, IedRow, LeaseRow, MotorRow
 from service.storage.records import Cursor, EventReport, Page
 from service.storage.repository.leases import require_lease
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
@@ -22,7 +22,7 @@ class EventReportRows(Sessions):
     ) -> EventReport:
         """A new wish for an event recording of a motor; the same key again gives the first one's report.
 
-        Raises NotFoundError.
+        Raises NotFoundError, OutOfServiceError for a motor that left the plant.
         """
         with self._write() as session:
             where = found(session, MotorRow, motor, "motor")
@@ -33,13 +33,15 @@ class EventReportRows(Sessions):
                 earlier = only(session, same)
                 if earlier is not None:
                     return event_report(earlier)
+            if not where.in_service:
+                raise OutOfServiceError("motor", motor)
             return _request(session, where, EventReportOrigin.REQUEST, idempotency_key, now_ns)
 
     def schedule_event_report(self, motor: str, *, due_ns: int, now_ns: int) -> EventReport | None:
         """The report a motor's schedule asks for at `due_ns`, however often that is told.
 
         None, and no report, while an earlier one waits for its record: triggers must not pile up at a relay
-        that makes none. Raises NotFoundError.
+        that makes none. Nor for a motor that left the plant. Raises NotFoundError.
         """
         key = f"schedule {due_ns}"
         of_motor = select(EventReportRow).where(EventReportRow.motor == motor)
@@ -48,7 +50,8 @@ class EventReportRows(Sessions):
             earlier = only(session, of_motor.where(EventReportRow.idempotency_key == key))
             if earlier is not None:
                 return event_report(earlier)
-            if only(session, of_motor.where(EventReportRow.state.in_(OPEN))) is not None:
+            is_open = of_motor.where(EventReportRow.state.in_(OPEN))
+            if not where.in_service or only(session, is_open) is not None:
                 return None
             return _request(session, where, EventReportOrigin.SCHEDULE, key, now_ns)
 
@@ -88,6 +91,27 @@ class EventReportRows(Sessions):
         )
         with self._read() as session:
             return tuple(event_report(row) for row in session.scalars(query))
+
+    def all_open_event_reports(self) -> tuple[EventReport, ...]:
+        """Of every relay, one that left the plant included."""
+        # By relay, which the index begins with: those long ended do not matter.
+        query = select(EventReportRow).where(
+            EventReportRow.ied.in_(select(IedRow.name)), EventReportRow.state.in_(OPEN)
+        )
+        with self._read() as session:
+            return tuple(event_report(row) for row in session.scalars(query))
+
+    def give_up_unvisited(self, report: EventReport, reason: str, *, now_ns: int) -> bool:
+        """Fails a report that is as it was seen. Raises NotFoundError.
+
+        False, and nothing is changed, where its state is another by now or a gateway holds its relay.
+        """
+        with self._write() as session:
+            row = found(session, EventReportRow, report.id, "event report")
+            if row.state is not report.state or session.get(LeaseRow, row.ied) is not None:
+                return False
+            fail_row(row, reason, now_ns)
+            return True
 
     def mark_triggered(self, report_id: str, *, now_ns: int, gateway: str | None = None) -> EventReport:
         """The relay is about to be triggered, by the gateway that holds its lease.

@@ -92,6 +92,16 @@ class LeaseRows(Sessions):
                 for row, relays in session.execute(query)
             )
 
+    def held_relays(self) -> frozenset[str]:
+        """The relays some gateway holds."""
+        with self._read() as session:
+            return frozenset(session.scalars(select(LeaseRow.ied)))
+
+    def beats(self) -> dict[str, int]:
+        """Every gateway's counter."""
+        with self._read() as session:
+            return {row.id: row.beats for row in session.scalars(select(GatewayRow))}
+
     def gateway_of(self, ied: str) -> str | None:
         """The gateway that holds a relay; None while none does."""
         with self._read() as session:

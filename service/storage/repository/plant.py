@@ -79,6 +79,11 @@ class PlantRows(Sessions):
         with self._read() as session:
             return _ied(found(session, IedRow, name, "IED"))
 
+    def is_in_service(self, ied: str) -> bool:
+        """Whether a relay is in the plant's files. Raises NotFoundError."""
+        with self._read() as session:
+            return found(session, IedRow, ied, "IED").in_service
+
     def motors(self, *, limit: int, after: Cursor | None = None) -> Page[MotorEntry]:
         with self._read() as session:
             query = select(MotorRow).where(MotorRow.in_service)

@@ -1,5 +1,6 @@
 import httpx
 
+from service.plant import Plant
 from service.storage import Repository
 from tests.service.plants import NOW_NS
 
@@ -32,3 +33,17 @@ def test_unknown_names(client: httpx.Client) -> None:
     assert client.post("/api/v1/motors/NOPE/event-reports").json()["detail"] == "there is no motor 'NOPE'"
     unknown = client.get("/api/v1/event-reports/00000000-0000-0000-0000-000000000000")
     assert unknown.status_code == 404
+
+
+def test_a_motor_that_left_the_plant_is_refused(client: httpx.Client, repository: Repository) -> None:
+    before = client.post(POST, headers={"Idempotency-Key": "a"}).json()
+    repository.sync_plant(Plant(sites=(), relays=(), motors=()))
+    refused = client.post(POST)
+    assert refused.status_code == 409
+    assert refused.headers["content-type"] == "application/problem+json"
+    assert refused.json()["detail"].startswith(
+        "motor PUMP-A1 is out of service: it is not in the plant's files"
+    )
+    assert client.post(POST, headers={"Idempotency-Key": "a"}).json() == before, "no new wish"
+    assert repository.schedule_event_report("PUMP-A1", due_ns=NOW_NS, now_ns=NOW_NS) is None
+    assert len(client.get("/api/v1/event-reports").json()["items"]) == 1

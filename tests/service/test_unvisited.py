@@ -1,0 +1,176 @@
+"""A report that no gateway sees to ends in words; whatever a gateway sees to is let alone."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from service.collector.gateways import Gateways
+from service.collector.supervisor import LONGEST_DELAY_S
+from service.plant import Plant
+from service.serve import _giving_up
+from service.settings import Settings
+from service.storage import Repository
+from service.storage.records import EventReport
+from service.storage.states import EventReportState
+from service.unvisited import RECORD_PATIENCE_S, Unvisited
+from tests.service.collector.conftest import eventually
+from tests.service.fixtures import database_url, engine, repository
+from tests.service.plants import NOW_NS, two_motor_plant
+
+__all__ = ["database_url", "engine", "repository"]
+
+MOTOR, RELAY, OTHER = "PUMP-A1", "A1_SEL710", "A2_SEL710"
+RECORD_S, LEASE_S = 20.0, 10.0
+PATIENCE_S = RECORD_S + LEASE_S + LONGEST_DELAY_S
+STEP_S = 2.0
+
+
+class Watch:
+    """The look-out, and a monotonic clock of its own."""
+
+    def __init__(self, repository: Repository, directory: Path) -> None:
+        self.repository = repository
+        self.problem: str | None = None
+        settings = Settings(data_directory=directory, record_timeout_s=RECORD_S, lease_s=LEASE_S)
+        self.unvisited = Unvisited(settings, repository, problem=lambda: self.problem)
+        self.now_s = 1000.0
+        self.beating: list[str] = []
+
+    def passes(self, seconds: float, *, step_s: float = STEP_S) -> None:
+        for _ in range(round(seconds / step_s)):
+            self.now_s += step_s
+            for gateway in self.beating:
+                self.repository.share_relays(gateway, [], most=0)
+            self.unvisited.look(self.now_s)
+
+    @contextmanager
+    def gateway(self, *relays: str) -> Iterator[None]:
+        """One that holds these and goes on beating."""
+        self.takes(*relays)
+        self.beating.append("g")
+        yield
+        self.beating.remove("g")
+        self.repository.end_gateway("g", now_ns=NOW_NS)
+
+    def takes(self, *relays: str) -> None:
+        self.repository.register_gateway("g", host="here", process_id=1, now_ns=NOW_NS)
+        self.repository.share_relays("g", relays, most=10)
+
+    def ask(self) -> str:
+        report = self.repository.request_event_report(MOTOR, now_ns=NOW_NS).id
+        self.unvisited.look(self.now_s)
+        return report
+
+    def report(self, report_id: str) -> EventReport:
+        return self.repository.event_report(report_id)
+
+    def state(self, report_id: str) -> EventReportState:
+        return self.report(report_id).state
+
+
+@pytest.fixture
+def watch(repository: Repository, tmp_path: Path) -> Watch:
+    return Watch(repository, tmp_path)
+
+
+def test_without_any_gateway_a_report_fails_in_words_and_the_schedule_goes_on(watch: Watch) -> None:
+    watch.problem = "1 of 1: the collector process is not running"
+    report = watch.ask()
+    watch.passes(PATIENCE_S)
+    assert watch.state(report) is EventReportState.REQUESTED
+    assert watch.repository.schedule_event_report(MOTOR, due_ns=NOW_NS, now_ns=NOW_NS) is None
+    watch.passes(2 * STEP_S)
+    ended = watch.report(report)
+    assert ended.state is EventReportState.FAILED
+    assert ended.reason is not None
+    assert f"{RELAY}: no gateway has visited the relay for 62 s: gateways do not run (1 of 1" in ended.reason
+    assert "log" in ended.reason
+    assert watch.repository.schedule_event_report(MOTOR, due_ns=NOW_NS, now_ns=NOW_NS) is not None
+
+
+def test_a_relay_no_gateway_has_room_for_is_told(watch: Watch) -> None:
+    with watch.gateway(OTHER):
+        report = watch.ask()
+        watch.passes(PATIENCE_S + 2 * STEP_S)
+    assert "relays_per_gateway" in (watch.report(report).reason or "")
+
+
+def test_a_relay_that_was_set_aside_is_told(watch: Watch) -> None:
+    watch.repository.set_aside(RELAY, "it bites", first_pause_s=9.0, longest_pause_s=9.0, now_ns=NOW_NS)
+    report = watch.ask()
+    watch.passes(PATIENCE_S + 2 * STEP_S)
+    assert f"it was set aside, it bites; see GET /api/v1/ieds/{RELAY}" in (watch.report(report).reason or "")
+
+
+def test_a_relay_that_left_the_plant_is_told(watch: Watch) -> None:
+    report = watch.ask()
+    watch.repository.sync_plant(Plant(sites=(), relays=(), motors=()))
+    watch.passes(PATIENCE_S + 2 * STEP_S)
+    assert "not in the plant's files any more" in (watch.report(report).reason or "")
+
+
+def test_what_a_gateway_holds_is_never_ended_here(watch: Watch) -> None:
+    """A long queue at a relay that answers, or a link that is down: the gateway sees to both."""
+    with watch.gateway(RELAY):
+        queue = [watch.ask() for _ in range(3)]
+        watch.passes(3 * PATIENCE_S)
+        assert {watch.state(each) for each in queue} == {EventReportState.REQUESTED}
+    watch.passes(PATIENCE_S)
+    assert {watch.state(each) for each in queue} == {EventReportState.REQUESTED}, "its time begins anew"
+
+
+def test_gateways_that_crash_again_and_again_do_not_keep_a_report_open(watch: Watch) -> None:
+    report = watch.ask()
+    for _ in range(10):
+        watch.passes(8.0)
+        with watch.gateway(RELAY):
+            watch.passes(4.0)
+    watch.passes(2 * STEP_S)
+    assert watch.state(report) is EventReportState.FAILED
+
+
+def test_the_leases_of_a_host_that_died_count_for_nothing(watch: Watch) -> None:
+    watch.takes(RELAY)
+    report = watch.ask()
+    watch.passes(LEASE_S + PATIENCE_S + 3 * STEP_S)
+    assert watch.state(report) is EventReportState.FAILED
+    assert watch.repository.gateways() == ()
+
+
+@pytest.mark.parametrize("state", [EventReportState.TRIGGERED, EventReportState.RECORDED])
+def test_a_report_that_was_triggered_is_kept_for_an_hour(watch: Watch, state: EventReportState) -> None:
+    report = watch.ask()
+    watch.repository.mark_triggered(report, now_ns=NOW_NS)
+    if state is EventReportState.RECORDED:
+        watch.repository.mark_recorded(report, now_ns=NOW_NS)
+    watch.passes(RECORD_PATIENCE_S, step_s=60.0)
+    assert watch.state(report) is state
+    watch.passes(2 * STEP_S)
+    ended = watch.report(report)
+    assert ended.state is EventReportState.FAILED
+    assert "it was triggered" in (ended.reason or "")
+
+
+def test_a_report_that_a_gateway_took_up_meanwhile_is_not_ended(watch: Watch) -> None:
+    seen = watch.report(watch.ask())
+    watch.takes(RELAY)
+    assert not watch.repository.give_up_unvisited(seen, "why", now_ns=NOW_NS)
+    watch.repository.end_gateway("g", now_ns=NOW_NS)
+    watch.repository.mark_triggered(seen.id, now_ns=NOW_NS)
+    assert not watch.repository.give_up_unvisited(seen, "why", now_ns=NOW_NS)
+    assert watch.state(seen.id) is EventReportState.TRIGGERED
+
+
+def test_the_service_looks_by_itself(
+    repository: Repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.unvisited.PERIOD_S", 0.05)
+    monkeypatch.setattr("service.unvisited.LONGEST_DELAY_S", 0.0)
+    settings = Settings(data_directory=tmp_path, record_timeout_s=0.1, lease_s=1.0)
+    report = repository.request_event_report(MOTOR, now_ns=time.time_ns()).id
+    with _giving_up(settings, repository, Gateways(settings, two_motor_plant(), repository)):
+        assert eventually(lambda: repository.event_report(report).state is EventReportState.FAILED)
+    assert "the collector process is not running" in (repository.event_report(report).reason or "")
