@@ -17,6 +17,9 @@ from mms.values import DataAccessError, Value, decode
 
 _DATA_OBJECT, _DATA_SET, _BUFFERED, _UNBUFFERED = range(4)  # the library's ACSIClass
 
+_LONGEST_DIRECTORY_S: Final = 30.0
+"""Of a logical node, whose data sets are told part by part: a thousand over a serial line of 9600 baud."""
+
 _ACCESS_ERRORS: Final[dict[DataAccessError, type[errors.MmsError]]] = {
     DataAccessError.ACCESS_DENIED: errors.AccessDenied,
     DataAccessError.ACCESS_UNSUPPORTED: errors.AccessDenied,
@@ -150,6 +153,7 @@ class Client:
                 lib.IedConnection_getLogicalNodeDirectory,
                 object_reference(node),
                 kind,
+                longest_s=_LONGEST_DIRECTORY_S,
             )
         )
 

@@ -11,7 +11,7 @@ import socket
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from enum import Enum
 from typing import Final, Protocol
 
@@ -21,7 +21,7 @@ from mms.credentials import Credentials
 from mms.library import library
 from mms.prototypes import ConnectionClosedHandler
 from mms.refusals import refused
-from mms.time_limit import between, limited
+from mms.time_limit import between, limited, present
 from mms.tls import TlsConfiguration
 
 log: Final = logging.getLogger("mms")
@@ -32,6 +32,13 @@ _TIMEOUT: Final = 20
 _LOSS_NOTICE_S: Final = 0.1
 _ATTEMPTS: Final = 5
 _PAUSE_BETWEEN_ATTEMPTS_S: Final = 0.02
+
+_ENDLESS: Final = -1
+_LONGEST_PROBE_S: Final = 300.0
+"""Of the first request, by which the library has the names of all the relay offers, part by part.
+
+Some 10 000 names over a serial line of 9600 baud; a motor relay has half of that.
+"""
 
 
 class _State(Enum):
@@ -124,6 +131,9 @@ class Connection:
         if code == _CONNECTION_LOST and self._credentials.tls is None:
             reason = "the relay ends every association at once: no session left?"
             return errors.ConnectFailed(self.host, "connect", code, reason)
+        if code == _ENDLESS:
+            reason = f"expected the names of all it offers in {_LONGEST_PROBE_S:g} s, and more follow"
+            return errors.ConnectFailed(self.host, "connect", 0, reason)
         if code not in (_CONNECTION_LOST, _REJECTED):
             found = errors.client_error(self.host, "connect", code)
             is_broken = isinstance(found, errors.ProtocolError)
@@ -170,6 +180,7 @@ class Connection:
     def _attempt(self, address: str, port: int, timeout_s: float) -> int:
         lib = self.lib
         self._pointer = self._credentials.new_connection()
+        self._peer, self._others = (address, port), present()
         notice = self._notice
 
         def closed(_parameter: int | None, _connection: int | None) -> None:
@@ -188,13 +199,20 @@ class Connection:
         with nullcontext() if unlimited else limited(between(peer=(address, port)), timeout_s):
             lib.IedConnection_connect(self._pointer, ctypes.byref(error), address.encode("ascii"), port)
         if error.value == 0:
-            names = lib.IedConnection_getLogicalDeviceList(self._pointer, ctypes.byref(error))
+            with self._limited(_LONGEST_PROBE_S) as over:
+                names = lib.IedConnection_getLogicalDeviceList(self._pointer, ctypes.byref(error))
             if names:
                 lib.LinkedList_destroy(names)
-            if error.value == _TIMEOUT and notice.event.wait(_LOSS_NOTICE_S):
+            if over.is_set():
+                error.value = _ENDLESS
+            elif error.value == _TIMEOUT and notice.event.wait(_LOSS_NOTICE_S):
                 error.value = _CONNECTION_LOST
         lib.IedConnection_setRequestTimeout(self._pointer, round(self.request_timeout_s * 1000))
         return error.value
+
+    def _limited(self, limit_s: float) -> AbstractContextManager[threading.Event]:
+        """End this connection when that is over; the event tells so."""
+        return limited(between(peer=self._peer), limit_s, before=self._others)
 
     @property
     def is_open(self) -> bool:
@@ -229,17 +247,24 @@ class Connection:
                 raise errors.ConnectionLost(self.host, operation, 0, "the connection is closed")
             yield self._pointer
 
-    def request(self, operation: str, function: ServiceFunction, *arguments: object) -> int | None:
+    def request(
+        self, operation: str, function: ServiceFunction, *arguments: object, longest_s: float | None = None
+    ) -> int | None:
         """One confirmed service; its pointer result (or None), or the typed error.
 
-        `function` takes the connection, the error cell and `arguments`.
+        `function` takes the connection, the error cell and `arguments`. longest_s: for one that asks for part
+        after part; the connection is ended, and Timeout raised, when that is over.
         """
         with self.exclusive(operation) as pointer:
             error = ctypes.c_int(0)
             sent_s = time.monotonic()
-            result = function(pointer, ctypes.byref(error), *arguments)
+            with nullcontext() if longest_s is None else self._limited(longest_s) as over:
+                result = function(pointer, ctypes.byref(error), *arguments)
             if error.value not in (_CONNECTION_LOST, _TIMEOUT):
                 self.round_trip_s = time.monotonic() - sent_s
+        if error.value and over is not None and over.is_set():
+            reason = f"expected all names in {longest_s:g} s, and more follow"
+            raise errors.Timeout(self.host, operation, 0, reason)
         if error.value:
             raise self.judged(errors.client_error(self.host, operation, error.value))
         return result if isinstance(result, int) else None

@@ -1,4 +1,5 @@
-"""An end for what the MMS library would wait for without one: a TLS handshake nobody answers.
+"""An end for what the MMS library would go on with for ever: a TLS handshake nobody answers, a list of names
+of which more follows each time.
 
 The library tries again and again, as fast as it can, and offers no way to stop it. What it does heed is the
 end of the TCP connection, which the operating system lets any part of this process bring about.
@@ -29,29 +30,39 @@ def between(*, own: tuple[str, int] | None = None, peer: tuple[str, int] | None 
 
 
 @contextmanager
-def limited(chosen: Chosen, limit_s: float) -> Iterator[None]:
+def limited(
+    chosen: Chosen, limit_s: float, *, before: frozenset[str] | None = None
+) -> Iterator[threading.Event]:
     """End those connections `chosen` that are made within the block and still stand when the limit is over.
 
-    One like them that another thread made meanwhile goes with them.
+    One like them that another thread made meanwhile goes with them. before: what `present` gave before they
+    were made, for those that are older than the block. The event tells that the limit was over.
     """
-    before = frozenset(_sockets().values())
+    older = present() if before is None else before
+    over = threading.Event()
 
     def end() -> None:
+        over.set()
         for descriptor, name in _sockets().items():
-            if name not in before:
+            if name not in older:
                 _end(descriptor, chosen)
 
     timer = threading.Timer(limit_s, end)
     timer.daemon = True
     timer.start()
     try:
-        yield
+        yield over
     finally:
         timer.cancel()
 
 
+def present() -> frozenset[str]:
+    """This process's sockets."""
+    return frozenset(_sockets().values())
+
+
 def _sockets() -> dict[int, str]:
-    """This process's sockets: descriptor and, as "socket:[inode]", the one it stands for."""
+    """Of this process: descriptor and, as "socket:[inode]", the one it stands for."""
     found = {}
     for entry in _DESCRIPTORS.iterdir():
         with suppress(OSError):  # closed meanwhile

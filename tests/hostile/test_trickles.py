@@ -8,12 +8,12 @@ from threading import Timer
 
 import pytest
 
-from mms import Client, ConnectionLost, MmsError, Timeout, files, pace
+from mms import Client, ConnectFailed, ConnectionLost, MmsError, Timeout, files, pace
 from service.collector.record_directory import LINK_FAILURES
 from service.storage.states import LinkState
 from tests.hostile import crafted
 from tests.hostile.dialogue import PRO, Dialogue, overheard, tlv
-from tests.hostile.relay import lying
+from tests.hostile.relay import LIST_OF_NAMES, lying
 from tests.mms.relays import LOOPBACK
 from tests.service.collector.conftest import Bench, bench, eventually
 
@@ -81,6 +81,44 @@ def test_a_listing_of_a_name_a_part_ends_in_words(
         with pytest.raises(Timeout, match=r"expected the whole listing in 0\.5 s, received \d+ names"):
             client.files("EVENTS")
         assert client.read_data_set(f"{PRO}/LLN0.DSet01"), "the association stands"
+
+
+def device(number: int) -> bytes:
+    """A list of names without end, of one name a part."""
+    time.sleep(PART_S)
+    return tlv(0xA1, tlv(0xA0, tlv(0x1A, b"DEVICE%06d" % number)) + tlv(0x81, b"\xff"))
+
+
+def test_a_relay_whose_names_never_end_is_no_association(
+    dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The library asks for part after part within one call."""
+    monkeypatch.setattr("mms.connection._LONGEST_PROBE_S", 0.4)
+    with (
+        lying(dialogue, {LIST_OF_NAMES: device}) as port,
+        pytest.raises(ConnectFailed, match=r"expected the names of all it offers in 0\.4 s, and more follow"),
+    ):
+        Client.connect(LOOPBACK, port)
+
+
+def test_data_sets_that_never_end_end_their_own_association(
+    dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("mms.client._LONGEST_DIRECTORY_S", 0.4)
+    at_connecting = [answer for answer in dialogue.answers.values() if answer[:1] == LIST_OF_NAMES][:3]
+
+    def later(number: int) -> bytes:
+        return at_connecting[number] if number < len(at_connecting) else device(number)
+
+    with (
+        lying(dialogue, {}) as port,
+        Client.connect(LOOPBACK, port) as other,
+        lying(dialogue, {LIST_OF_NAMES: later}) as port,
+        Client.connect(LOOPBACK, port) as client,
+    ):
+        with pytest.raises(Timeout, match=r"expected all names in 0\.4 s, and more follow"):
+            client.data_sets(f"{PRO}/LLN0")
+        assert other.read_data_set(f"{PRO}/LLN0.DSet01"), "nobody else's is ended"
 
 
 @pytest.mark.parametrize("ending", ["close", "abandon"])
