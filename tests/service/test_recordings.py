@@ -39,6 +39,39 @@ def test_many_at_once_store_one(store: RecordingStore) -> None:
     assert store.find(stored[0].digest) == stored[0]
 
 
+def test_all_is_on_disk_before_the_folder_has_its_name(
+    store: RecordingStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a power cut leaves cannot be seen here; the order of the system's calls can."""
+    calls: list[tuple[str, str, int]] = []
+    fsync, rename = os.fsync, os.rename
+
+    def syncing(descriptor: int) -> None:
+        found = os.fstat(descriptor)
+        path = Path(f"/proc/self/fd/{descriptor}").readlink()
+        calls.append(("fsync", str(path), 0 if path.is_dir() else found.st_size))
+        fsync(descriptor)
+
+    def renaming(source: Path, target: Path) -> None:
+        calls.append(("rename", f"{source} {target}", 0))
+        rename(source, target)
+
+    monkeypatch.setattr(os, "fsync", syncing)
+    monkeypatch.setattr(os, "rename", renaming)
+    stored = store.store(FILES)
+    (named,) = [number for number, call in enumerate(calls) if call[0] == "rename"]
+    incoming, target = calls[named][1].split(" ")
+    assert target == str(stored.directory)
+    assert {*calls[:named]} == {
+        ("fsync", f"{incoming}/C_0001.CFG", len(b"config")),
+        ("fsync", f"{incoming}/C_0001.DAT", len(b"samples")),
+        ("fsync", incoming, 0),
+        ("fsync", str(store.root), 0),
+    }
+    assert calls[named - 2][1] == incoming, "a folder after the files in it"
+    assert calls[named + 1 :] == [("fsync", str(stored.directory.parent), 0)]
+
+
 def test_what_is_not_kept_leaves_nothing(store: RecordingStore) -> None:
     def interrupted_pull() -> None:
         with store.incoming() as incoming, incoming.create("A.CFG") as sink:
