@@ -129,6 +129,8 @@ class Triggering:
                 f"{self._relay.name}: its record was seen in the relay, but is gone, or still changes after "
                 f"{self._patience.timeout_s:g} s"
             )
+        if scan.no_folder is not None:
+            return f"{self._relay.name}: expected a record {within} of the trigger; {scan.no_folder}"
         return (
             f"{self._relay.name}: expected a record {within} of the trigger, "
             "found none; check the relay's event report settings (ER)"
