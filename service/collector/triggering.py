@@ -80,7 +80,7 @@ class Triggering:
             self._take_over(self._outstanding)
 
     def _take_over(self, report: EventReport) -> None:
-        """Triggered by a gateway that is gone: what it had seen before and could not fetch is not that record."""
+        """Triggered by a gateway now gone: what it had seen before and could not fetch is another record."""
         self._operated_for = report.id
         self._listed_before = self._repository.unfetched_names(
             self._relay.name, seen_before_ns=report.triggered_ns or 0
