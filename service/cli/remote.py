@@ -88,12 +88,14 @@ def show_health(url: str, motor: str, *, as_json: bool) -> None:
 def release_relay(url: str, relay: str, *, as_json: bool) -> None:
     """Have a relay visited again that was set aside. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
+        before = service.get(f"/ieds/{segment(relay)}")
         service.release(relay)
         found = service.get(f"/ieds/{segment(relay)}")
     if as_json:
         print_document(found)
         return
-    results().print(Text(f"{relay}: released, visited again within seconds"), soft_wrap=True)
+    told = "was not set aside" if before["quarantine"] is None else "released, visited again within seconds"
+    results().print(Text(f"{relay}: {told}"), soft_wrap=True)
 
 
 def _health(service: ServiceClient, motor: str) -> Document:

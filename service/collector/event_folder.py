@@ -12,7 +12,15 @@ from itertools import islice
 
 import structlog
 
-from mms import AccessDenied, Client, FileEntry, NotFound, ProtocolError
+from mms import (
+    AccessDenied,
+    Client,
+    FileEntry,
+    FileServiceFailed,
+    NotFound,
+    ProtocolError,
+    TemporarilyUnavailable,
+)
 from service.collector.listing import is_of_a_record, last_component, printable
 
 log = structlog.get_logger(__name__)
@@ -43,7 +51,8 @@ class Contents:
 class EventFolder:
     """Of one relay. default: the folder to be tried first.  override: the only one to be tried.
 
-    `missing` says in words why there is no folder; `no_files`, that the relay has no file service at all.
+    `missing` says in words why there is no folder; `no_files`, that the relay has no file service at all;
+    `unread`, that recordings of the relay are not fetched, because they are in another folder than others.
     """
 
     def __init__(self, relay: str, default: str, override: str | None = None) -> None:
@@ -54,8 +63,10 @@ class EventFolder:
         self._meant = override or (None if default == USUAL[0] else default)
         self._candidates: list[str] = []
         self._is_sure = False
+        self._look_beside = False
         self._next_search_s = 0.0
         self.missing: str | None = None
+        self.unread: str | None = None
         self.no_files = False
 
     @property
@@ -66,12 +77,14 @@ class EventFolder:
     def begin(self) -> None:
         """A new connection: what was not there may be there now."""
         self._next_search_s = 0.0
+        self._look_beside = True
 
     def contents(self, client: Client) -> Contents:
         """The contents of the folder. Raises MmsError (the link, or a listing that cannot be right)."""
         found = [] if not self._candidates else self._look_into(client, self._candidates)
         if not found:
             self._is_sure = False
+            self._look_beside = True
             if time.monotonic() < self._next_search_s:
                 return Contents(None, ())
             found = self._search(client)
@@ -88,7 +101,33 @@ class EventFolder:
             log.info("events directory", relay=self._relay, directory=chosen.directory)
         others = [] if self._is_sure else [each.directory for each in found if each is not chosen]
         self._candidates = [each for each in (chosen.directory, *others) if each is not None]
+        if self._look_beside:
+            self._look_beside = not self._is_sure
+            self._note_unread(client, chosen)
         return chosen
+
+    def _note_unread(self, client: Client, chosen: Contents) -> None:
+        """Whether another folder of a usual name holds recordings too, unless one was meant."""
+        self.unread = None
+        if self._meant is not None or not _holds_records(chosen):
+            return
+        names = [
+            name for name in USUAL if name.casefold() != (chosen.directory or "").strip("/\\").casefold()
+        ]
+        try:
+            others = [each for each in self._look_into(client, names) if _holds_records(each)]
+        except (FileServiceFailed, ProtocolError, TemporarilyUnavailable):
+            return  # one more way to say that there is none
+        finally:
+            self.no_files = False
+        # Some relays list the same files whatever folder they are asked for.
+        beside = [each.directory or "" for each in others if each.entries != chosen.entries]
+        if beside:
+            self.unread = (
+                f"recordings in {', '.join(beside)} are not fetched, only those in {chosen.directory}; "
+                "events_directory in the motors file names the one to be read"
+            )
+            log.warning("another events directory", relay=self._relay, reason=self.unread)
 
     def _look_into(self, client: Client, directories: list[str]) -> list[Contents]:
         """Those that are there; no further than the first that holds recordings."""

@@ -78,6 +78,7 @@ class Scan:
     are to be tried again soon.  failing: why a pull of them failed, by names, of those that are tried again,
     soon or late.  held_back: ready ones that wait for another day.  ignored: files that are not taken, with
     the reason; `ignored_in_all` may be more.  unreachable: why no record could be had at all.
+    no_folder: why there is none at present; a relay may make it with its first record.
     """
 
     listed: frozenset[str]
@@ -88,6 +89,7 @@ class Scan:
     ignored: tuple[RefusedFile, ...] = ()
     ignored_in_all: int = 0
     unreachable: str | None = None
+    no_folder: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +166,7 @@ class RecordDirectory:
         self.listing_s = time.monotonic() - began_s
         if contents.directory is None:
             unreachable = self._folder.missing if self._folder.no_files else None
-            return Scan(frozenset(), (), (), (), unreachable=unreachable)
+            return Scan(frozenset(), (), (), (), unreachable=unreachable, no_folder=self._folder.missing)
         view = self._view = self._view_of(contents, contents.directory)
         listing, chosen, new = view.listing, view.chosen, view.new
         self._give_up_what_is_gone(chosen)

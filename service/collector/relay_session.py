@@ -100,17 +100,19 @@ class RelaySession:
         self._mark: Mark | None = None
         self._client: Client | None = None
         self._stopping = Event()
-        self._something_to_do = Event()
+        self._stirred = Event()
+        self._asked = Event()
         self._expecting_until_s = 0.0
 
     def wake(self) -> None:
         """Somebody asked for an event report."""
-        self._something_to_do.set()
+        self._asked.set()
+        self._stirred.set()
 
     def stop(self) -> None:
         """End after what is under way."""
         self._stopping.set()
-        self._something_to_do.set()
+        self.wake()
 
     def abandon(self) -> None:
         """End with the request under way: somebody else may visit the relay soon."""
@@ -173,7 +175,7 @@ class RelaySession:
             self._begin(client)
             log.info("connected", relay=self._relay.name, host=self._relay.host, port=self._relay.port)
             while not self._stopping.is_set():
-                self._something_to_do.clear()
+                self._asked.clear()
                 waiting = self._work(client)
                 self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
                 self._conduct.answered()
@@ -192,23 +194,37 @@ class RelaySession:
         self._folder.begin()
         if self._metering is not None:
             self._metering.begin(acquisition.measurands)
-        self._subscription.begin(client, Inbox(self._something_to_do), acquisition)
+        self._subscription.begin(client, Inbox(self._stirred), acquisition)
         self._link.connected()
 
     def _remarks(self) -> list[str]:
         """What of the relay cannot be had at present."""
-        return [words for words in (self._subscription.refusal, self._folder.missing) if words is not None]
+        told = (self._subscription.refusal, self._folder.missing, self._folder.unread)
+        return [words for words in told if words is not None]
 
     def _wait(self, client: Client, longest_s: float) -> None:
-        """Until there is something to do, or for so long; what is to be sampled meanwhile is."""
+        """Until there is something to do, or for so long; what is to be sampled meanwhile is.
+
+        Reports that tell of no record, of which a chattering input sends many, are heeded and change nothing.
+        """
         until_s = time.monotonic() + longest_s
-        while not self._something_to_do.is_set() and time.monotonic() < until_s:
+        while not self._asked.is_set() and time.monotonic() < until_s:
             due_in_s = math.inf if self._metering is None else self._metering.due_in_s()
             if self._metering is not None and due_in_s <= 0:
                 self._metering.sample(client)
                 continue
             with nullcontext() if self._mark is None else self._mark.waiting():
-                self._something_to_do.wait(min(due_in_s, until_s - time.monotonic()))
+                self._stirred.wait(min(due_in_s, until_s - time.monotonic()))
+            self._stirred.clear()
+            if self._heed_reports():
+                return
+
+    def _heed_reports(self) -> bool:
+        """Whether what has arrived tells of a record."""
+        tells = self._subscription.heed_all()
+        if tells:
+            self._expecting_until_s = time.monotonic() + self._settings.record_timeout_s
+        return tells
 
     def _note_failure(self, trouble: str, reason: str) -> None:
         self._link.failed(reason)
@@ -228,8 +244,7 @@ class RelaySession:
     def _work(self, client: Client) -> bool:
         """One round: reports, directory, event reports. Returns whether a record is on its way."""
         self._subscription.keep(client)
-        if self._subscription.heed_all():
-            self._expecting_until_s = time.monotonic() + self._settings.record_timeout_s
+        self._heed_reports()
         self._triggering.recall()
         told = time.monotonic() < self._expecting_until_s
         scan = self._directory.scan(client, self._triggering.claim, told=told)

@@ -61,6 +61,7 @@ class Triggering:
         self._outstanding: EventReport | None = None
         self._next: EventReport | None = None
         self._claimed = False
+        self._operated_for: str | None = None
         self._listed_before: frozenset[str] = frozenset()
         self._held_up_since_s: float | None = None
 
@@ -75,6 +76,15 @@ class Triggering:
         self._outstanding = next((each for each in reports if each.state in IN_THE_RELAY), None)
         self._next = next((each for each in reports if each.state is EventReportState.REQUESTED), None)
         self._claimed = False
+        if self._outstanding is not None and self._outstanding.id != self._operated_for:
+            self._take_over(self._outstanding)
+
+    def _take_over(self, report: EventReport) -> None:
+        """Triggered by a gateway now gone: what it had seen before and could not fetch is another record."""
+        self._operated_for = report.id
+        self._listed_before = self._repository.unfetched_names(
+            self._relay.name, seen_before_ns=report.triggered_ns or 0
+        )
 
     def claim(self, record_name: str) -> str | None:
         """The report a new record belongs to; it is that record's once both are written down together."""
@@ -129,6 +139,8 @@ class Triggering:
                 f"{self._relay.name}: its record was seen in the relay, but is gone, or still changes after "
                 f"{self._patience.timeout_s:g} s"
             )
+        if scan.no_folder is not None:
+            return f"{self._relay.name}: expected a record {within} of the trigger; {scan.no_folder}"
         return (
             f"{self._relay.name}: expected a record {within} of the trigger, "
             "found none; check the relay's event report settings (ER)"
@@ -171,7 +183,7 @@ class Triggering:
                 client.operate(control, False)  # noqa: FBT003 - the value of a control
             stamp_before = _stamp_of(client, control)
             self._repository.mark_triggered(report.id, now_ns=time.time_ns(), gateway=self._gateway)
-            self._listed_before = listed
+            self._operated_for, self._listed_before = report.id, listed
             asked_ns = time.time_ns()
             client.operate(control, True)  # noqa: FBT003
             answered_ns = time.time_ns()

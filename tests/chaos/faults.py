@@ -23,6 +23,7 @@ FILE_TIMES_JUMPS_S = (3600, -3600)
 CUT_AFTER_BYTES = (500, 4_000, 12_000)
 REQUEST_LIMIT_S = 3.0
 KEEP_FULL_PERIOD_S = 0.05
+LOCK_LIMIT_S = 30.0
 
 
 class Faults:
@@ -117,15 +118,29 @@ class Faults:
             time.sleep(KEEP_FULL_PERIOD_S)
 
     def _lock_database(self, action: Action) -> None:
-        database = sqlite3.connect(
-            self._service.data / "statorwatch.sqlite", timeout=30, isolation_level=None
-        )
+        database = self._locked_database(time.monotonic() + LOCK_LIMIT_S)
         try:
-            database.execute("BEGIN IMMEDIATE")
             time.sleep(action.length_s)
             database.execute("ROLLBACK")
         finally:
             database.close()
+
+    def _locked_database(self, until_s: float) -> sqlite3.Connection:
+        """Tried again where it fails: while the disk is full too, nobody can lock anything."""
+        while True:
+            database = sqlite3.connect(
+                self._service.data / "statorwatch.sqlite", timeout=LOCK_LIMIT_S, isolation_level=None
+            )
+            try:
+                database.execute("BEGIN IMMEDIATE")
+            except sqlite3.OperationalError as error:
+                database.close()
+                if time.monotonic() > until_s:
+                    raise
+                self._history.note(f"the database cannot be locked yet: {error}")
+                time.sleep(KEEP_FULL_PERIOD_S)
+            else:
+                return database
 
     def _jump_service_clock(self, action: Action) -> None:
         self._service.clock_offset.write_text(str(CLOCK_JUMPS_S[action.number % len(CLOCK_JUMPS_S)]))

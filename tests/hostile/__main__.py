@@ -15,6 +15,9 @@ from tests.hostile.relay import HostileRelay
 from tests.hostile.surroundings import Snapshot
 
 SERVED_CASES = 500
+LEAST_CASES = 10 * SERVED_CASES
+"""With fewer the service meets too few for every hostile relay to be set aside."""
+
 SERVED_LIMIT_S = 300.0
 MOST_MEMORY_MB = 400.0
 """Of a client or gateway process; one that is good needs 60 to 120."""
@@ -30,11 +33,12 @@ def main() -> int:
         "--processes", type=int, default=6, help="client processes; most of their time is waiting"
     )
     arguments = parser.parse_args()
+    if arguments.cases < LEAST_CASES:
+        parser.error(f"--cases: expected {LEAST_CASES} at least, found {arguments.cases}")
     dialogue = overheard()
-    through_service = min(SERVED_CASES, arguments.cases // 10)
     faults = [
-        *_in_bulk(dialogue, arguments.cases - through_service, arguments.seed, arguments.processes),
-        *_through_the_service(dialogue, through_service, arguments.seed),
+        *_in_bulk(dialogue, arguments.cases - SERVED_CASES, arguments.seed, arguments.processes),
+        *_through_the_service(dialogue, SERVED_CASES, arguments.seed),
     ]
     for fault in faults:
         _say(f"FAULT {fault}")

@@ -55,6 +55,20 @@ class RecordingRows(Sessions):
         with self._read() as session:
             return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
 
+    def unfetched_names(self, ied: str, *, seen_before_ns: int) -> frozenset[str]:
+        """Of records that were seen in a relay before that time and are neither stored nor refused yet."""
+        query = (
+            select(RemoteRecordRow.name)
+            .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
+            .where(
+                RemoteRecordRow.ied == ied,
+                RecordingRow.state == RecordingState.ANNOUNCED,
+                RecordingRow.announced_ns < seen_before_ns,
+            )
+        )
+        with self._read() as session:
+            return frozenset(session.scalars(query))
+
     def give_up_remote_record(self, ied: str, remote: RemoteRecord, reason: str) -> None:
         """Rejects an announced record that the relay does not list any more; it is new if it does again."""
         with self._write() as session:

@@ -80,6 +80,9 @@ def test_a_relay_is_released(
     )
     with serving(app) as client:
         assert main(["release", "A1_SEL710", "--url", str(client.base_url)]) == 0
+        assert main(["release", "A2_SEL710", "--url", str(client.base_url)]) == 0
         assert main(["release", "NOPE", "--url", str(client.base_url)]) == 1
-    assert "A1_SEL710: released" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "A1_SEL710: released" in shown
+    assert "A2_SEL710: was not set aside" in shown
     assert repository.quarantines() == ()

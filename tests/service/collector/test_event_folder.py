@@ -8,7 +8,7 @@ import pytest
 from mms import Client
 from service.collector.event_folder import Contents, EventFolder
 from service.plant import Overrides
-from service.storage.states import LinkState
+from service.storage.states import EventReportState, LinkState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.expectations import overriding
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
@@ -66,6 +66,39 @@ def test_the_setting_comes_first_and_an_override_alone(client: Client, relay: Sc
     assert found(client, nowhere).directory is None
     assert nowhere.missing == "no directory of event recordings: looked for FOURTH"
     assert not nowhere.no_files
+
+
+def test_recordings_in_a_second_folder_are_told(client: Client, relay: ScriptedRelay) -> None:
+    write(relay, "EVENTS/X.CEV")
+    folder = EventFolder(NAME, "EVENTS")
+    assert found(client, folder).directory == "EVENTS"
+    assert folder.unread is None
+    write(relay, "COMTRADE/X.CFG")
+    assert found(client, folder).directory == "EVENTS"
+    assert "recordings in COMTRADE are not fetched, only those in EVENTS" in (folder.unread or "")
+    meant = EventFolder(NAME, "EVENTS", "COMTRADE")
+    assert found(client, meant).directory == "COMTRADE"
+    assert meant.unread is None, "somebody has decided"
+
+
+def test_a_second_folder_is_told_of_the_relay(bench: Bench, relay: ScriptedRelay) -> None:
+    write(relay, "EVENTS/X.CEV", "COMTRADE/X.CFG")
+    with bench.session():
+        assert eventually(
+            lambda: "COMTRADE are not fetched" in (bench.repository.ied(NAME).link_reason or "")
+        )
+        assert bench.link() is LinkState.UP
+
+
+def test_a_trigger_without_a_folder_names_what_was_looked_for(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.silent = True
+    relay.events.rmdir()
+    report_id = bench.request()
+    with bench.session():
+        assert bench.reaches(report_id, EventReportState.FAILED)
+    reason = bench.report(report_id).reason or ""
+    assert "expected a record within 2 s of the trigger; no directory of event recordings" in reason
+    assert relay.edges == 1, "the folder may come with the first record"
 
 
 def test_of_empty_folders_the_one_that_gets_a_recording_is_it(client: Client, relay: ScriptedRelay) -> None:

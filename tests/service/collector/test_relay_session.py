@@ -260,6 +260,26 @@ def test_a_record_listed_before_the_trigger_is_not_the_triggered_one(
     assert set(recordings) == {"HR_1", "HR_10001"}
 
 
+def test_a_record_that_could_not_be_fetched_before_the_trigger_is_not_the_triggered_one_after_a_crash(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    relay.silent = True
+    relay.denied.add("HR_1")
+    relay.write_record("HR_1", b"a trip of its own")
+    bench = bench.with_settings(record_timeout_s=10.0)
+    with bench.session():
+        assert eventually(lambda: bench.recording("HR_1") is not None)
+        report_id = bench.request()
+        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+    relay.denied.clear()
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("HR_1"))
+        relay.write_record("HR_10001", b"what the trigger made")
+        assert bench.reaches(report_id, EventReportState.FETCHED)
+    recordings = {recording.name: recording.id for recording in bench.recordings()}
+    assert bench.report(report_id).recording_id == recordings["HR_10001"]
+
+
 def test_the_entry_id_is_saved_only_when_its_record_is_safe(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:

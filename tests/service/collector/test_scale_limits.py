@@ -14,7 +14,7 @@ PERIOD_MINUTES = 5.0
 def seen(slope: float = 0.5, delay_s: float = 1.0, missed: int = 0) -> Seen:
     """A run that keeps to all limits unless told otherwise; its memory grows fast while it warms up."""
     found = Seen(looks=round(MINUTES * 60 / LOOK_S))
-    found.missed = {("R1", str(number)) for number in range(missed)}
+    found.missed = {("R1", str(number)): f"R1, poll {number}" for number in range(missed)}
     minutes = [look * LOOK_S / 60 for look in range(found.looks)]
     found.memory = [(minute, 1_000.0 + slope * minute - 100.0 * (minute < 3)) for minute in minutes]
     # p95 stands below the slowest twentieth.

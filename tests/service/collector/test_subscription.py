@@ -1,5 +1,6 @@
 """Which report block tells of the records, and what happens where none can be had, over real MMS."""
 
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from queue import SimpleQueue
@@ -25,6 +26,7 @@ UNBUFFERED = f"{NODE}.RP.URep03"
 """Those that tell of a record, the best first."""
 
 OVERFLOWED = "the relay's report buffer had overflowed"
+CHATTER = 60
 
 
 @pytest.fixture
@@ -130,3 +132,16 @@ def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRel
         assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed)
         subscription.heed(report)
         assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed) + 1
+
+
+def test_a_chattering_input_lists_nothing(here: Bench, relay: ScriptedRelay) -> None:
+    with here.session():
+        assert eventually(lambda: here.link() is LinkState.UP)
+        before = relay.listings
+        for change in range(CHATTER):
+            relay.server.update_many({f"{NAME}PRO/TRIPPTRC1.Tr.general": change % 2 == 0})
+            time.sleep(0.02)  # a report each
+        relay.write_record("HR_7")
+        assert eventually(lambda: here.is_stored("HR_7"))
+        assert eventually(lambda: here.repository.link_figures(NAME).reports > CHATTER / 2)
+    assert relay.listings - before < CHATTER / 4, "the record alone was looked for"
