@@ -25,7 +25,8 @@ from mms import (
 from service.collector.alarms import RelayAlarms
 from service.collector.allowance import DAY_NS, DailyAllowance, beyond_its_end
 from service.collector.event_folder import Contents, EventFolder
-from service.collector.formats import Chosen, one_format_an_event, remote_of
+from service.collector.fates import Fates
+from service.collector.formats import Chosen, one_format_an_event
 from service.collector.link import Link
 from service.collector.listing import MOST_IGNORED, ListedRecord, Listing, RefusedFile, understand
 from service.collector.pulling import RecordTooLargeError, pull
@@ -35,7 +36,6 @@ from service.plant import Relay
 from service.recordings import RecordingStore, RecordingStoreError, StoredRecording
 from service.settings import Settings
 from service.storage import Repository
-from service.storage.records import RemoteRecord
 from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
@@ -94,12 +94,12 @@ class Scan:
 class _View:
     """What a listing comes to, for as long as neither it nor what is known of its records changes.
 
-    decided: how many records are known and hopeless; under one listing both only become more.  new: oldest
-    first.  names: of all records.
+    decided: how many records are stored, refused and hopeless; under one listing all only become more.
+    new: oldest first.  names: of all records.
     """
 
     contents: Contents
-    decided: tuple[int, int]
+    decided: tuple[int, int, int]
     listing: Listing
     chosen: Chosen
     new: tuple[ListedRecord, ...]
@@ -126,8 +126,6 @@ class RecordDirectory:
         allowance: DailyAllowance,
     ) -> None:
         self._relay = relay.name
-        self._motor = motor
-        self._repository = repository
         self._store = store
         self._folder = folder
         self._max_file_bytes = settings.max_file_bytes
@@ -145,10 +143,7 @@ class RecordDirectory:
         self._hopeless: set[ListedRecord] = set()
         self._view: _View | None = None
         self.listing_s = 0.0
-        # This session alone writes the relay's records: having asked once, it knows them.
-        self._asked = False
-        self._known: set[RemoteRecord] = set()
-        self._announced: set[RemoteRecord] = set()
+        self._fates = Fates(relay.name, motor, repository)
         self._attempts: Counter[str] = Counter()
         self._attempts_day = 0
 
@@ -158,7 +153,7 @@ class RecordDirectory:
         told: a report has just said that a record is made. Raises MmsError when the link fails, OSError when
         the disk does; what was stored until then stays.
         """
-        self._recall()
+        self._fates.recall()
         began_s = time.monotonic()
         contents = self._folder.contents(client)
         self.listing_s = time.monotonic() - began_s
@@ -167,25 +162,22 @@ class RecordDirectory:
             return Scan(frozenset(), (), (), (), unreachable=unreachable)
         view = self._view = self._view_of(contents, contents.directory)
         listing, chosen, new = view.listing, view.chosen, view.new
-        self._give_up_what_is_gone(chosen)
+        self._fates.give_up_all_but(chosen.records)
         settled = self._settling.look(new, time.monotonic(), early=chosen.early, told=told)
         ready, unsteady = self._without_shape_shifters(settled)
         self._note_unsteady(unsteady)
         self._give_up_the_incomplete(settled.incomplete, chosen, contents.directory, owner)
         held_back = self._take_all(client, self._retries.due(ready, time.monotonic()), owner)
+        self._retries.keep([record for record in new if not self._fates.is_decided(record)])
         patient = {record.name for record in unsteady}.union(
             held_back, self._retries.put_off(time.monotonic())
         )
-        self._retries.keep([record for record in new if remote_of(record) not in self._known])
+        to_come = frozenset(record for record in new if self._is_to_come(record, chosen))
         ignored = chosen.passed_over + listing.ignored
         return Scan(
             listed=view.names,
-            taken=tuple(record.name for record in new if remote_of(record) in self._known),
-            waiting=tuple(
-                record.name
-                for record in new
-                if remote_of(record) not in self._known and record.name not in patient
-            ),
+            taken=tuple(record.name for record in new if record not in to_come),
+            waiting=tuple(record.name for record in new if record in to_come and record.name not in patient),
             held_back=held_back,
             failing=self._retries.reasons(),
             ignored=ignored[:MOST_IGNORED],
@@ -201,29 +193,21 @@ class RecordDirectory:
             listing = understand(contents.entries, directory)
             self._note_refused_files(listing)
             self._hopeless.intersection_update(listing.records)
-            self._forget_the_untimed(listing)
-        decided = (len(self._known), len(self._hopeless))
+            self._fates.forget_the_untimed_but(listing.records)
+        decided = (len(self._fates.stored), len(self._fates.refused), len(self._hopeless))
         if before is not None and before.listing is listing and before.decided == decided:
             return before
-        chosen = one_format_an_event(listing.records, self._known, self._hopeless)
-        new = [record for record in chosen.records if remote_of(record) not in self._known]
+        chosen = one_format_an_event(listing.records, self._fates.stored, self._fates.refused, self._hopeless)
+        new = [record for record in chosen.records if not self._fates.is_decided(record)]
         new.sort(key=lambda record: (record.modified_ns, record.name))
         names = frozenset(record.name for record in listing.records)
         return _View(contents, decided, listing, chosen, tuple(new), names)
 
-    def _forget_the_untimed(self, listing: Listing) -> None:
-        """Where a relay gives no times, a new record may look like one that is gone."""
-        untimed = {remote for remote in self._known if not remote.modified_ns}
-        if untimed:
-            self._known -= untimed.difference(map(remote_of, listing.records))
-
-    def _recall(self) -> None:
-        """What became of the relay's records before; years of them, so not in the thread that starts all."""
-        if self._asked:
-            return
-        self._known.update(self._repository.known_remote_records(self._relay))
-        self._announced.update(self._repository.announced_remote_records(self._relay))
-        self._asked = True
+    def _is_to_come(self, record: ListedRecord, chosen: Chosen) -> bool:
+        """Whether its event is still to be had, in another format where the record itself is refused."""
+        if self._fates.is_refused(record):
+            return record in chosen.replaceable
+        return not self._fates.is_decided(record)
 
     def _take_all(self, client: Client, ready: tuple[ListedRecord, ...], owner: Owner) -> tuple[str, ...]:
         """Pull what is ready as far as the day's limit allows; the names of those that must wait."""
@@ -281,28 +265,15 @@ class RecordDirectory:
             reason = (
                 f"{record.name}: expected a {record.missing[0]} file in {directory or 'the root'}, found none"
             )
-            if record in chosen.replaceable and record not in self._hopeless:
+            if record in chosen.replaceable:
                 self._hopeless.add(record)
                 log.warning("another format is taken", relay=self._relay, record=record.name, reason=reason)
             else:
                 self._refuse(record, reason, owner)
 
-    def _give_up_what_is_gone(self, chosen: Chosen) -> None:
-        """A record that was seen, and that the relay replaced or discarded before it could be pulled."""
-        if not self._announced:
-            return
-        for remote in self._announced - {remote_of(record) for record in chosen.records}:
-            reason = f"{remote.name}: the relay discarded or changed it before it could be pulled"
-            self._repository.give_up_remote_record(self._relay, remote, reason)
-            self._announced.discard(remote)
-            log.warning("record gone", relay=self._relay, record=remote.name, reason=reason)
-
     def _take(self, client: Client, record: ListedRecord, owner: Owner) -> None:
         """Pull and store one record. Where that fails, refuse it or leave it for the next scan."""
-        remote = remote_of(record)
-        if remote not in self._announced:
-            self._repository.announce_recording(self._relay, self._motor, remote, now_ns=time.time_ns())
-            self._announced.add(remote)
+        self._fates.announce(record)
         try:
             stored = self._pull(client, record)
         except RecordTooLargeError as error:
@@ -322,22 +293,7 @@ class RecordDirectory:
         except LINK_FAILURES as error:
             self._note_lost_link(record, str(error))
             raise
-        added = self._repository.add_recording(
-            stored,
-            motor=self._motor,
-            now_ns=time.time_ns(),
-            ied=self._relay,
-            remote=remote,
-            event_report_id=owner(record.name),
-        )
-        self._settle(record)
-        log.info(
-            "record stored" if added.created else "record known already",
-            relay=self._relay,
-            record=record.name,
-            size_bytes=stored.size_bytes,
-            recording=added.recording.id,
-        )
+        self._fates.keep(record, stored, owner(record.name))
 
     def _pull(self, client: Client, record: ListedRecord) -> StoredRecording:
         stored = pull(
@@ -361,25 +317,13 @@ class RecordDirectory:
         log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
         self._attempts[record.name] += 1
         self._retries.failed(record, reason, time.monotonic())
-        attempts = self._repository.note_failed_pull(
-            self._relay, self._motor, remote_of(record), reason, now_ns=time.time_ns()
-        )
+        attempts = self._fates.note_failed_pull(record, reason)
         if attempts >= PULL_ATTEMPTS:
             self._refuse(record, reason, owner)
 
     def _refuse(self, record: ListedRecord, reason: str, owner: Owner) -> None:
-        self._repository.reject_remote_record(
-            self._relay,
-            self._motor,
-            remote_of(record),
-            reason,
-            now_ns=time.time_ns(),
-            event_report_id=owner(record.name),
-        )
-        self._settle(record)
-        log.warning("record refused", relay=self._relay, record=record.name, reason=reason)
-
-    def _settle(self, record: ListedRecord) -> None:
-        """This record's fate is written down."""
-        self._known.add(remote_of(record))
-        self._announced.discard(remote_of(record))
+        """The record is not pulled again; its event report fails only where no other format is left."""
+        has_another = self._view is not None and record in self._view.chosen.replaceable
+        self._fates.refuse(record, reason, None if has_another else owner(record.name))
+        told = "record refused, another format is taken" if has_another else "record refused"
+        log.warning(told, relay=self._relay, record=record.name, reason=reason)
