@@ -42,10 +42,12 @@ class Fates:
         self._announced.update(self._repository.announced_remote_records(self._relay))
         self._asked = True
 
+    def is_stored(self, record: ListedRecord) -> bool:
+        return remote_of(record) in self.stored
+
     def is_decided(self, record: ListedRecord) -> bool:
         """Whether it is stored, or refused."""
-        remote = remote_of(record)
-        return remote in self.stored or remote in self.refused
+        return self.is_stored(record) or self.is_refused(record)
 
     def is_refused(self, record: ListedRecord) -> bool:
         return remote_of(record) in self.refused
@@ -59,6 +61,7 @@ class Fates:
 
     def note_failed_pull(self, record: ListedRecord, reason: str) -> int:
         """Returns how often in all, also before a restart."""
+        log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
         return self._repository.note_failed_pull(
             self._relay, self._motor, remote_of(record), reason, now_ns=time.time_ns()
         )

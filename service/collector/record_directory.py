@@ -30,7 +30,7 @@ from service.collector.formats import Chosen, one_format_an_event
 from service.collector.link import Link
 from service.collector.listing import MOST_IGNORED, ListedRecord, Listing, RefusedFile, understand
 from service.collector.pulling import RecordTooLargeError, pull
-from service.collector.retrying import Retries
+from service.collector.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, Retries
 from service.collector.settling import Settled, Settling
 from service.plant import Relay
 from service.recordings import RecordingStore, RecordingStoreError, StoredRecording
@@ -51,16 +51,22 @@ UNSTEADY_S = 600.0
 """How long a record may go on changing before it is an alarm."""
 
 PULL_ATTEMPTS = 9
-"""A file may be refused, or not as long as listed, while the relay is at it; hardly for the minute that so
+"""A file may be missing, or not as long as listed, while the relay is at it; hardly for the minute that so
 many attempts take with their pauses."""
+
+DENIED_ATTEMPTS = 155
+"""About a day, with their pauses: a relay that opens no file for now says nothing about the record."""
 
 ATTEMPTS_OF_A_NAME = 30
 """In all: a file that is of another size each time it is listed must not be asked for without end."""
 
 MANY_ATTEMPTS = 5
-"""A record that ends the visit, and was not to be had this often, is an alarm."""
+"""A record that is denied, or ends the visit, and was not to be had this often, is an alarm."""
 
-REFUSALS = (AccessDenied, FileServiceFailed, FileSizeMismatch, NotFound)
+DENIALS = (AccessDenied, FileServiceFailed)
+"""What a relay may answer for a record that is fine: nobody may open files, it is out of memory."""
+
+VERDICTS = (FileSizeMismatch, NotFound)
 """What one record can do wrong while the link is fine."""
 
 LINK_FAILURES = (ConnectionLost, ProtocolError, Timeout)
@@ -165,7 +171,7 @@ class RecordDirectory:
         self._fates.give_up_all_but(chosen.records)
         settled = self._settling.look(new, time.monotonic(), early=chosen.early, told=told)
         ready, unsteady = self._without_shape_shifters(settled)
-        self._note_unsteady(unsteady)
+        self._note_unsteady(unsteady, chosen)
         self._give_up_the_incomplete(settled.incomplete, chosen, contents.directory, owner)
         held_back = self._take_all(client, self._retries.due(ready, time.monotonic()), owner)
         self._retries.keep([record for record in new if not self._fates.is_decided(record)])
@@ -246,7 +252,7 @@ class RecordDirectory:
             (trusted if self._attempts[record.name] < ATTEMPTS_OF_A_NAME else others).append(record)
         return tuple(trusted), tuple(others)
 
-    def _note_unsteady(self, unsteady: tuple[ListedRecord, ...]) -> None:
+    def _note_unsteady(self, unsteady: tuple[ListedRecord, ...], chosen: Chosen) -> None:
         for record in unsteady:
             self._alarms.raise_alarm(
                 AlarmKind.FILE_UNSTEADY,
@@ -254,8 +260,9 @@ class RecordDirectory:
                 f"{record.name}: expected files that stand still and are as long as listed, found others for "
                 f"{UNSTEADY_S:g} s or {ATTEMPTS_OF_A_NAME} attempts",
             )
-        harmful = {each.name for each in self._retries.failing_for(MANY_ATTEMPTS)}
-        self._alarms.keep(AlarmKind.FILE_UNSTEADY, harmful.union(record.name for record in unsteady))
+        if self._alarms.standing(AlarmKind.FILE_UNSTEADY):
+            lacking = {record.name for record in chosen.records if not self._fates.is_stored(record)}
+            self._alarms.keep(AlarmKind.FILE_UNSTEADY, lacking)
 
     def _give_up_the_incomplete(
         self, incomplete: tuple[ListedRecord, ...], chosen: Chosen, directory: str, owner: Owner
@@ -287,8 +294,11 @@ class RecordDirectory:
             self._retries.failed(record, str(error), time.monotonic())
             log.info("record busy", relay=self._relay, record=record.name, reason=str(error))
             return
-        except REFUSALS as error:
-            self._note_failed_pull(record, f"{record.name}: {error}", owner)
+        except DENIALS as error:
+            self._note_denial(record, f"{record.name}: {error}", owner)
+            return
+        except VERDICTS as error:
+            self._note_verdict(record, f"{record.name}: {error}", owner)
             return
         except LINK_FAILURES as error:
             self._note_lost_link(record, str(error))
@@ -313,12 +323,21 @@ class RecordDirectory:
             told = f"{record.name}: not fetched in {attempts} attempts, the latest ended the link: {reason}"
             self._alarms.raise_alarm(AlarmKind.FILE_UNSTEADY, record.name, told)
 
-    def _note_failed_pull(self, record: ListedRecord, reason: str, owner: Owner) -> None:
-        log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
-        self._attempts[record.name] += 1
-        self._retries.failed(record, reason, time.monotonic())
+    def _note_denial(self, record: ListedRecord, reason: str, owner: Owner) -> None:
+        self._retries.failed(record, reason, time.monotonic(), longest_s=LONGEST_PAUSE_OF_THE_DENIED_S)
         attempts = self._fates.note_failed_pull(record, reason)
-        if attempts >= PULL_ATTEMPTS:
+        if attempts >= MANY_ATTEMPTS:
+            told = f"{reason}, {attempts} times; it is asked for again, for about a day"
+            self._alarms.raise_alarm(AlarmKind.FILE_UNSTEADY, record.name, told)
+        if attempts >= DENIED_ATTEMPTS:
+            self._refuse(record, reason, owner)
+
+    def _note_verdict(self, record: ListedRecord, reason: str, owner: Owner) -> None:
+        """Counted since the start, because the count in the database holds denials too; that bounds it."""
+        self._attempts[record.name] += 1
+        self._retries.failed(record, reason, time.monotonic(), is_verdict=True)
+        attempts = self._fates.note_failed_pull(record, reason)
+        if self._retries.verdicts(record) >= PULL_ATTEMPTS or attempts >= DENIED_ATTEMPTS:
             self._refuse(record, reason, owner)
 
     def _refuse(self, record: ListedRecord, reason: str, owner: Owner) -> None:
