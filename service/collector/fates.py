@@ -20,7 +20,8 @@ log = structlog.get_logger(__name__)
 class Fates:
     """Of one relay's records. Used by that relay's session alone, which alone writes them.
 
-    stored: those whose files are in the store.  refused: those that are not pulled again.
+    stored: those whose files are in the store.  refused: those that are not pulled again.  doubted: those of
+    the stored ones that may be others by now.
     """
 
     def __init__(self, relay: str, motor: str, repository: Repository) -> None:
@@ -30,6 +31,7 @@ class Fates:
         self._asked = False
         self.stored: set[RemoteRecord] = set()
         self.refused: set[RemoteRecord] = set()
+        self.doubted: set[RemoteRecord] = set()
         self._announced: set[RemoteRecord] = set()
 
     def recall(self) -> None:
@@ -46,8 +48,11 @@ class Fates:
         return remote_of(record) in self.stored
 
     def is_decided(self, record: ListedRecord) -> bool:
-        """Whether it is stored, or refused."""
-        return self.is_stored(record) or self.is_refused(record)
+        """Whether it is stored beyond doubt, or refused."""
+        return self.is_refused(record) or (self.is_stored(record) and not self.is_doubted(record))
+
+    def is_doubted(self, record: ListedRecord) -> bool:
+        return remote_of(record) in self.doubted
 
     def is_refused(self, record: ListedRecord) -> bool:
         return remote_of(record) in self.refused
@@ -55,7 +60,7 @@ class Fates:
     def announce(self, record: ListedRecord) -> None:
         """It is seen, and about to be pulled."""
         remote = remote_of(record)
-        if remote not in self._announced:
+        if remote not in self._announced and remote not in self.stored:
             self._repository.announce_recording(self._relay, self._motor, remote, now_ns=time.time_ns())
             self._announced.add(remote)
 
@@ -78,6 +83,7 @@ class Fates:
             event_report_id=event_report_id,
         )
         self.stored.add(remote)
+        self.doubted.discard(remote)
         self._announced.discard(remote)
         log.info(
             "record stored" if added.created else "record known already",
@@ -99,6 +105,7 @@ class Fates:
             event_report_id=event_report_id,
         )
         self.refused.add(remote)
+        self.doubted.discard(remote)
         self._announced.discard(remote)
 
     def give_up_all_but(self, records: Iterable[ListedRecord]) -> None:
@@ -117,3 +124,8 @@ class Fates:
             untimed = {remote for remote in known if not remote.modified_ns}
             if untimed:
                 known -= untimed.difference(map(remote_of, records))
+        self.doubted &= self.stored
+
+    def doubt_the_untimed(self) -> None:
+        """Where a relay gives no times, a new record of the same name and size looks like the old one."""
+        self.doubted.update(remote for remote in self.stored if not remote.modified_ns)

@@ -100,8 +100,8 @@ class Scan:
 class _View:
     """What a listing comes to, for as long as neither it nor what is known of its records changes.
 
-    decided: how many records are stored, refused and hopeless; under one listing all only become more.
-    new: oldest first.  names: of all records.
+    decided: how many records are stored beyond doubt, refused and hopeless; under one listing all only become
+    more.  new: oldest first.  names: of all records.
     """
 
     contents: Contents
@@ -190,6 +190,14 @@ class RecordDirectory:
             ignored_in_all=len(chosen.passed_over) + listing.ignored_in_all,
         )
 
+    def doubt_the_untimed(self) -> None:
+        """A record was announced, and nothing new came: what has no time may be new, and is pulled again.
+
+        Contents that are known make no second recording.
+        """
+        self._fates.doubt_the_untimed()
+        self._view = None
+
     def _view_of(self, contents: Contents, directory: str) -> _View:
         """Relays list hundreds of records again and again; all but a few listings are as the one before."""
         before = self._view
@@ -200,12 +208,13 @@ class RecordDirectory:
             self._note_refused_files(listing)
             self._hopeless.intersection_update(listing.records)
             self._fates.forget_the_untimed_but(listing.records)
-        decided = (len(self._fates.stored), len(self._fates.refused), len(self._hopeless))
+        sure = len(self._fates.stored) - len(self._fates.doubted)
+        decided = (sure, len(self._fates.refused), len(self._hopeless))
         if before is not None and before.listing is listing and before.decided == decided:
             return before
         chosen = one_format_an_event(listing.records, self._fates.stored, self._fates.refused, self._hopeless)
         new = [record for record in chosen.records if not self._fates.is_decided(record)]
-        new.sort(key=lambda record: (record.modified_ns, record.name))
+        new.sort(key=lambda record: (self._fates.is_doubted(record), record.modified_ns, record.name))
         names = frozenset(record.name for record in listing.records)
         return _View(contents, decided, listing, chosen, tuple(new), names)
 

@@ -182,6 +182,34 @@ def test_a_trigger_waits_until_what_is_there_is_taken(bench: Bench, relay: Scrip
     assert bench.report(report_id).recording_id == made.id
 
 
+def untime(relay: ScriptedRelay) -> None:
+    for path in relay.events.iterdir():
+        os.utime(path, (0, 0))
+
+
+def test_a_record_that_looks_like_the_one_it_overwrites_is_pulled_once_announced(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    """Same name, same size, no times."""
+    relay.write_record("HR_1", b"first", report=False)
+    relay.write_record("HR_2", b"of long ago", report=False)
+    untime(relay)
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("HR_1") and bench.is_stored("HR_2"))
+        relay.write_file("HR_1.DAT", b"other")
+        untime(relay)
+        opened = relay.opened
+        relay.records += 1
+        relay.announce()
+        assert eventually(lambda: files_of(bench, "HR_1").get("HR_1.DAT") == b"other")
+        assert eventually(lambda: relay.opened >= opened + 4), "all are asked for again"
+        opened = relay.opened
+        time.sleep(bench.settings.record_timeout_s + 0.5)  # longer than what a report announces is expected
+        assert relay.opened == opened, "once"
+    stored = sorted(recording.name for recording in bench.recordings())
+    assert stored == ["HR_1", "HR_1", "HR_2"]
+
+
 def test_where_a_relay_gives_no_times_a_name_may_come_again(bench: Bench, relay: ScriptedRelay) -> None:
     with bench.session():
         for data in (b"first", b"other"):
