@@ -81,9 +81,10 @@ class Scan:
     """What one scan of the directory came to, by names of records.
 
     listed: all there are.  taken: newly stored or refused for good.  waiting: new ones that are not ready, or
-    are to be tried again soon.  failing: why a pull of them failed, by names, of those that are tried again,
-    soon or late.  held_back: ready ones that wait for another day.  ignored: files that are not taken, with
-    the reason; `ignored_in_all` may be more.  unreachable: why no record could be had at all.
+    are to be tried again soon, or are refused while their event is still to be had in another format.
+    failing: why a pull of them failed, by names, of those that are tried again, soon or late.  held_back:
+    ready ones that wait for another day.  ignored: files that are not taken, with the reason;
+    `ignored_in_all` may be more.  unreachable: why no record could be had at all.
     """
 
     listed: frozenset[str]
