@@ -19,8 +19,8 @@ _RAW = "CR_"
 class Chosen:
     """records: one for each event.  passed_over: files of the formats that are not taken, and why.
 
-    replaceable: those of `records` whose event is there in another format too.  early: those that are event
-    reports alone while the relay writes COMTRADE as well, which may be still to come.
+    replaceable: those of `records` whose event is there in another format too that may yet be taken.  early:
+    those that are event reports alone while the relay writes COMTRADE as well, which may be still to come.
     """
 
     records: tuple[ListedRecord, ...]
@@ -30,11 +30,15 @@ class Chosen:
 
 
 def one_format_an_event(
-    records: Iterable[ListedRecord], known: Collection[RemoteRecord], hopeless: Collection[ListedRecord]
+    records: Iterable[ListedRecord],
+    stored: Collection[RemoteRecord],
+    refused: Collection[RemoteRecord],
+    hopeless: Collection[ListedRecord],
 ) -> Chosen:
-    """COMTRADE before event reports, unless the event was taken otherwise before (known).
+    """COMTRADE before event reports, unless the event was taken otherwise before (stored).
 
-    hopeless: those that have proved incomplete; taken only where there is nothing else.
+    hopeless: those that have proved incomplete; taken only where there is nothing else.  refused: those that
+    are not pulled; they stand for their event only where each of its formats is refused.
     """
     events: dict[str, list[ListedRecord]] = {}
     for record in records:
@@ -42,20 +46,29 @@ def one_format_an_event(
     writes_comtrade = any(_rank(record) < _EVENT_REPORT for same in events.values() for record in same)
     chosen: list[ListedRecord] = []
     passed_over: list[RefusedFile] = []
+    replaceable: set[ListedRecord] = set()
     for same in events.values():
         best = min(
             same,
-            key=lambda each: (remote_of(each) not in known, each in hopeless, _rank(each), each.file_names),
+            key=lambda each: (
+                remote_of(each) not in stored,
+                remote_of(each) in refused,
+                each in hopeless,
+                _rank(each),
+                each.file_names,
+            ),
         )
         chosen.append(best)
-        for other in same:
-            if other is not best:
-                reason = f"the same event as {best.file_names}, which is taken"
-                passed_over.append(RefusedFile(other.file_names, reason))
+        others = [each for each in same if each is not best]
+        fate = "refused, as this is" if remote_of(best) in refused else "which is taken"
+        reason = f"the same event as {best.file_names}, {fate}"
+        passed_over.extend(RefusedFile(other.file_names, reason) for other in others)
+        if any(remote_of(other) not in refused and other not in hopeless for other in others):
+            replaceable.add(best)
     return Chosen(
         records=tuple(chosen),
         passed_over=tuple(passed_over),
-        replaceable=frozenset(record for record in chosen if len(events[_event(record)]) > 1),
+        replaceable=frozenset(replaceable),
         early=frozenset(record for record in chosen if writes_comtrade and _rank(record) >= _EVENT_REPORT),
     )
 

@@ -25,17 +25,17 @@ from mms import (
 from service.collector.alarms import RelayAlarms
 from service.collector.allowance import DAY_NS, DailyAllowance, beyond_its_end
 from service.collector.event_folder import Contents, EventFolder
-from service.collector.formats import Chosen, one_format_an_event, remote_of
+from service.collector.fates import Fates
+from service.collector.formats import Chosen, one_format_an_event
 from service.collector.link import Link
 from service.collector.listing import MOST_IGNORED, ListedRecord, Listing, RefusedFile, understand
 from service.collector.pulling import RecordTooLargeError, pull
-from service.collector.retrying import Retries
+from service.collector.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, Retries
 from service.collector.settling import Settled, Settling
 from service.plant import Relay
 from service.recordings import RecordingStore, RecordingStoreError, StoredRecording
 from service.settings import Settings
 from service.storage import Repository
-from service.storage.records import RemoteRecord
 from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
@@ -51,16 +51,25 @@ UNSTEADY_S = 600.0
 """How long a record may go on changing before it is an alarm."""
 
 PULL_ATTEMPTS = 9
-"""A file may be refused, or not as long as listed, while the relay is at it; hardly for the minute that so
+"""A file may be missing, or not as long as listed, while the relay is at it; hardly for the minute that so
 many attempts take with their pauses."""
+
+DENIED_ATTEMPTS = 155
+"""About a day, with their pauses: a relay that opens no file for now says nothing about the record."""
 
 ATTEMPTS_OF_A_NAME = 30
 """In all: a file that is of another size each time it is listed must not be asked for without end."""
 
 MANY_ATTEMPTS = 5
-"""A record that ends the visit, and was not to be had this often, is an alarm."""
+"""A record that is denied, or ends the visit, and was not to be had this often, is an alarm."""
 
-REFUSALS = (AccessDenied, FileServiceFailed, FileSizeMismatch, NotFound)
+BREAKS_OF_THE_PROTOCOL = 2
+"""By a record whose PULL_ATTEMPTS are over; the count of these holds denials too."""
+
+DENIALS = (AccessDenied, FileServiceFailed)
+"""What a relay may answer for a record that is fine: nobody may open files, it is out of memory."""
+
+VERDICTS = (FileSizeMismatch, NotFound)
 """What one record can do wrong while the link is fine."""
 
 LINK_FAILURES = (ConnectionLost, ProtocolError, Timeout)
@@ -75,10 +84,11 @@ class Scan:
     """What one scan of the directory came to, by names of records.
 
     listed: all there are.  taken: newly stored or refused for good.  waiting: new ones that are not ready, or
-    are to be tried again soon.  failing: why a pull of them failed, by names, of those that are tried again,
-    soon or late.  held_back: ready ones that wait for another day.  ignored: files that are not taken, with
-    the reason; `ignored_in_all` may be more.  unreachable: why no record could be had at all.
-    no_folder: why there is none at present; a relay may make it with its first record.
+    are to be tried again soon, or are refused while their event is still to be had in another format.
+    failing: why a pull of them failed, by names, of those that are tried again, soon or late.  held_back:
+    ready ones that wait for another day.  ignored: files that are not taken, with the reason;
+    `ignored_in_all` may be more.  unreachable: why no record could be had at all.  no_folder: why there is
+    none at present; a relay may make it with its first record.
     """
 
     listed: frozenset[str]
@@ -96,12 +106,12 @@ class Scan:
 class _View:
     """What a listing comes to, for as long as neither it nor what is known of its records changes.
 
-    decided: how many records are known and hopeless; under one listing both only become more.  new: oldest
-    first.  names: of all records.
+    decided: how many records are stored beyond doubt, refused and hopeless; under one listing all only become
+    more.  new: oldest first.  names: of all records.
     """
 
     contents: Contents
-    decided: tuple[int, int]
+    decided: tuple[int, int, int]
     listing: Listing
     chosen: Chosen
     new: tuple[ListedRecord, ...]
@@ -128,8 +138,6 @@ class RecordDirectory:
         allowance: DailyAllowance,
     ) -> None:
         self._relay = relay.name
-        self._motor = motor
-        self._repository = repository
         self._store = store
         self._folder = folder
         self._max_file_bytes = settings.max_file_bytes
@@ -147,10 +155,7 @@ class RecordDirectory:
         self._hopeless: set[ListedRecord] = set()
         self._view: _View | None = None
         self.listing_s = 0.0
-        # This session alone writes the relay's records: having asked once, it knows them.
-        self._asked = False
-        self._known: set[RemoteRecord] = set()
-        self._announced: set[RemoteRecord] = set()
+        self._fates = Fates(relay.name, motor, repository)
         self._attempts: Counter[str] = Counter()
         self._attempts_day = 0
 
@@ -160,7 +165,7 @@ class RecordDirectory:
         told: a report has just said that a record is made. Raises MmsError when the link fails, OSError when
         the disk does; what was stored until then stays.
         """
-        self._recall()
+        self._fates.recall()
         began_s = time.monotonic()
         contents = self._folder.contents(client)
         self.listing_s = time.monotonic() - began_s
@@ -169,30 +174,35 @@ class RecordDirectory:
             return Scan(frozenset(), (), (), (), unreachable=unreachable, no_folder=self._folder.missing)
         view = self._view = self._view_of(contents, contents.directory)
         listing, chosen, new = view.listing, view.chosen, view.new
-        self._give_up_what_is_gone(chosen)
+        self._fates.give_up_all_but(chosen.records)
         settled = self._settling.look(new, time.monotonic(), early=chosen.early, told=told)
         ready, unsteady = self._without_shape_shifters(settled)
-        self._note_unsteady(unsteady)
+        self._note_unsteady(unsteady, chosen)
         self._give_up_the_incomplete(settled.incomplete, chosen, contents.directory, owner)
         held_back = self._take_all(client, self._retries.due(ready, time.monotonic()), owner)
+        self._retries.keep([record for record in new if not self._fates.is_decided(record)])
         patient = {record.name for record in unsteady}.union(
             held_back, self._retries.put_off(time.monotonic())
         )
-        self._retries.keep([record for record in new if remote_of(record) not in self._known])
+        to_come = frozenset(record for record in new if self._is_to_come(record, chosen))
         ignored = chosen.passed_over + listing.ignored
         return Scan(
             listed=view.names,
-            taken=tuple(record.name for record in new if remote_of(record) in self._known),
-            waiting=tuple(
-                record.name
-                for record in new
-                if remote_of(record) not in self._known and record.name not in patient
-            ),
+            taken=tuple(record.name for record in new if record not in to_come),
+            waiting=tuple(record.name for record in new if record in to_come and record.name not in patient),
             held_back=held_back,
             failing=self._retries.reasons(),
             ignored=ignored[:MOST_IGNORED],
             ignored_in_all=len(chosen.passed_over) + listing.ignored_in_all,
         )
+
+    def doubt_the_untimed(self) -> None:
+        """A record was announced, and nothing new came: what has no time may be new, and is pulled again.
+
+        Contents that are known make no second recording.
+        """
+        self._fates.doubt_the_untimed()
+        self._view = None
 
     def _view_of(self, contents: Contents, directory: str) -> _View:
         """Relays list hundreds of records again and again; all but a few listings are as the one before."""
@@ -203,29 +213,22 @@ class RecordDirectory:
             listing = understand(contents.entries, directory)
             self._note_refused_files(listing)
             self._hopeless.intersection_update(listing.records)
-            self._forget_the_untimed(listing)
-        decided = (len(self._known), len(self._hopeless))
+            self._fates.forget_the_untimed_but(listing.records)
+        sure = len(self._fates.stored) - len(self._fates.doubted)
+        decided = (sure, len(self._fates.refused), len(self._hopeless))
         if before is not None and before.listing is listing and before.decided == decided:
             return before
-        chosen = one_format_an_event(listing.records, self._known, self._hopeless)
-        new = [record for record in chosen.records if remote_of(record) not in self._known]
-        new.sort(key=lambda record: (record.modified_ns, record.name))
+        chosen = one_format_an_event(listing.records, self._fates.stored, self._fates.refused, self._hopeless)
+        new = [record for record in chosen.records if not self._fates.is_decided(record)]
+        new.sort(key=lambda record: (self._fates.is_doubted(record), record.modified_ns, record.name))
         names = frozenset(record.name for record in listing.records)
         return _View(contents, decided, listing, chosen, tuple(new), names)
 
-    def _forget_the_untimed(self, listing: Listing) -> None:
-        """Where a relay gives no times, a new record may look like one that is gone."""
-        untimed = {remote for remote in self._known if not remote.modified_ns}
-        if untimed:
-            self._known -= untimed.difference(map(remote_of, listing.records))
-
-    def _recall(self) -> None:
-        """What became of the relay's records before; years of them, so not in the thread that starts all."""
-        if self._asked:
-            return
-        self._known.update(self._repository.known_remote_records(self._relay))
-        self._announced.update(self._repository.announced_remote_records(self._relay))
-        self._asked = True
+    def _is_to_come(self, record: ListedRecord, chosen: Chosen) -> bool:
+        """Whether its event is still to be had, in another format where the record itself is refused."""
+        if self._fates.is_refused(record):
+            return record in chosen.replaceable
+        return not self._fates.is_decided(record)
 
     def _take_all(self, client: Client, ready: tuple[ListedRecord, ...], owner: Owner) -> tuple[str, ...]:
         """Pull what is ready as far as the day's limit allows; the names of those that must wait."""
@@ -264,7 +267,7 @@ class RecordDirectory:
             (trusted if self._attempts[record.name] < ATTEMPTS_OF_A_NAME else others).append(record)
         return tuple(trusted), tuple(others)
 
-    def _note_unsteady(self, unsteady: tuple[ListedRecord, ...]) -> None:
+    def _note_unsteady(self, unsteady: tuple[ListedRecord, ...], chosen: Chosen) -> None:
         for record in unsteady:
             self._alarms.raise_alarm(
                 AlarmKind.FILE_UNSTEADY,
@@ -272,8 +275,9 @@ class RecordDirectory:
                 f"{record.name}: expected files that stand still and are as long as listed, found others for "
                 f"{UNSTEADY_S:g} s or {ATTEMPTS_OF_A_NAME} attempts",
             )
-        harmful = {each.name for each in self._retries.failing_for(MANY_ATTEMPTS)}
-        self._alarms.keep(AlarmKind.FILE_UNSTEADY, harmful.union(record.name for record in unsteady))
+        if self._alarms.standing(AlarmKind.FILE_UNSTEADY):
+            lacking = {record.name for record in chosen.records if not self._fates.is_stored(record)}
+            self._alarms.keep(AlarmKind.FILE_UNSTEADY, lacking)
 
     def _give_up_the_incomplete(
         self, incomplete: tuple[ListedRecord, ...], chosen: Chosen, directory: str, owner: Owner
@@ -283,28 +287,15 @@ class RecordDirectory:
             reason = (
                 f"{record.name}: expected a {record.missing[0]} file in {directory or 'the root'}, found none"
             )
-            if record in chosen.replaceable and record not in self._hopeless:
+            if record in chosen.replaceable:
                 self._hopeless.add(record)
                 log.warning("another format is taken", relay=self._relay, record=record.name, reason=reason)
             else:
                 self._refuse(record, reason, owner)
 
-    def _give_up_what_is_gone(self, chosen: Chosen) -> None:
-        """A record that was seen, and that the relay replaced or discarded before it could be pulled."""
-        if not self._announced:
-            return
-        for remote in self._announced - {remote_of(record) for record in chosen.records}:
-            reason = f"{remote.name}: the relay discarded or changed it before it could be pulled"
-            self._repository.give_up_remote_record(self._relay, remote, reason)
-            self._announced.discard(remote)
-            log.warning("record gone", relay=self._relay, record=remote.name, reason=reason)
-
     def _take(self, client: Client, record: ListedRecord, owner: Owner) -> None:
         """Pull and store one record. Where that fails, refuse it or leave it for the next scan."""
-        remote = remote_of(record)
-        if remote not in self._announced:
-            self._repository.announce_recording(self._relay, self._motor, remote, now_ns=time.time_ns())
-            self._announced.add(remote)
+        self._fates.announce(record)
         try:
             stored = self._pull(client, record)
         except RecordTooLargeError as error:
@@ -318,28 +309,18 @@ class RecordDirectory:
             self._retries.failed(record, str(error), time.monotonic())
             log.info("record busy", relay=self._relay, record=record.name, reason=str(error))
             return
-        except REFUSALS as error:
-            self._note_failed_pull(record, f"{record.name}: {error}", owner)
+        except DENIALS as error:
+            self._note_denial(record, f"{record.name}: {error}", owner)
+            return
+        except VERDICTS as error:
+            self._note_verdict(record, f"{record.name}: {error}", owner)
             return
         except LINK_FAILURES as error:
             self._note_lost_link(record, str(error))
+            if isinstance(error, ProtocolError):
+                self._note_broken_protocol(record, f"{record.name}: {error}", owner)
             raise
-        added = self._repository.add_recording(
-            stored,
-            motor=self._motor,
-            now_ns=time.time_ns(),
-            ied=self._relay,
-            remote=remote,
-            event_report_id=owner(record.name),
-        )
-        self._settle(record)
-        log.info(
-            "record stored" if added.created else "record known already",
-            relay=self._relay,
-            record=record.name,
-            size_bytes=stored.size_bytes,
-            recording=added.recording.id,
-        )
+        self._fates.keep(record, stored, owner(record.name))
 
     def _pull(self, client: Client, record: ListedRecord) -> StoredRecording:
         stored = pull(
@@ -359,29 +340,32 @@ class RecordDirectory:
             told = f"{record.name}: not fetched in {attempts} attempts, the latest ended the link: {reason}"
             self._alarms.raise_alarm(AlarmKind.FILE_UNSTEADY, record.name, told)
 
-    def _note_failed_pull(self, record: ListedRecord, reason: str, owner: Owner) -> None:
-        log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
+    def _note_broken_protocol(self, record: ListedRecord, reason: str, owner: Owner) -> None:
+        """One record that a relay cannot give must not set aside the relay for ever longer."""
+        attempts = self._fates.note_failed_pull(record, reason)
+        if attempts >= PULL_ATTEMPTS and self._retries.number(record) >= BREAKS_OF_THE_PROTOCOL:
+            self._refuse(record, reason, owner)
+
+    def _note_denial(self, record: ListedRecord, reason: str, owner: Owner) -> None:
+        self._retries.failed(record, reason, time.monotonic(), longest_s=LONGEST_PAUSE_OF_THE_DENIED_S)
+        attempts = self._fates.note_failed_pull(record, reason)
+        if attempts >= MANY_ATTEMPTS:
+            told = f"{reason}, {attempts} times; it is asked for again, for about a day"
+            self._alarms.raise_alarm(AlarmKind.FILE_UNSTEADY, record.name, told)
+        if attempts >= DENIED_ATTEMPTS:
+            self._refuse(record, reason, owner)
+
+    def _note_verdict(self, record: ListedRecord, reason: str, owner: Owner) -> None:
+        """Counted since the start, because the count in the database holds denials too; that bounds it."""
         self._attempts[record.name] += 1
-        self._retries.failed(record, reason, time.monotonic())
-        attempts = self._repository.note_failed_pull(
-            self._relay, self._motor, remote_of(record), reason, now_ns=time.time_ns()
-        )
-        if attempts >= PULL_ATTEMPTS:
+        self._retries.failed(record, reason, time.monotonic(), is_verdict=True)
+        attempts = self._fates.note_failed_pull(record, reason)
+        if self._retries.verdicts(record) >= PULL_ATTEMPTS or attempts >= DENIED_ATTEMPTS:
             self._refuse(record, reason, owner)
 
     def _refuse(self, record: ListedRecord, reason: str, owner: Owner) -> None:
-        self._repository.reject_remote_record(
-            self._relay,
-            self._motor,
-            remote_of(record),
-            reason,
-            now_ns=time.time_ns(),
-            event_report_id=owner(record.name),
-        )
-        self._settle(record)
-        log.warning("record refused", relay=self._relay, record=record.name, reason=reason)
-
-    def _settle(self, record: ListedRecord) -> None:
-        """This record's fate is written down."""
-        self._known.add(remote_of(record))
-        self._announced.discard(remote_of(record))
+        """The record is not pulled again; its event report fails only where no other format is left."""
+        has_another = self._view is not None and record in self._view.chosen.replaceable
+        self._fates.refuse(record, reason, None if has_another else owner(record.name))
+        told = "record refused, another format is taken" if has_another else "record refused"
+        log.warning(told, relay=self._relay, record=record.name, reason=reason)

@@ -247,6 +247,9 @@ class RelaySession:
         self._heed_reports()
         self._triggering.recall()
         told = time.monotonic() < self._expecting_until_s
+        if self._expecting_until_s and not told:
+            self._directory.doubt_the_untimed()
+            self._expecting_until_s = 0.0
         scan = self._directory.scan(client, self._triggering.claim, told=told)
         triggered = self._triggering.follow(client, scan)
         if scan.taken and not scan.waiting:

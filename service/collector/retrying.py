@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from service.collector.listing import ListedRecord
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.2, 60.0
+LONGEST_PAUSE_OF_THE_DENIED_S = 600.0
+"""A relay that lets nobody have its files for now may do so for hours."""
 
 SOON_S = 2.0
 """A pause no longer than this is waited for in a hurry."""
@@ -18,6 +20,7 @@ class _Failure:
     number: int
     due_s: float
     reason: str
+    verdicts: int
 
 
 class Retries:
@@ -26,11 +29,20 @@ class Retries:
     def __init__(self) -> None:
         self._failures: dict[ListedRecord, _Failure] = {}
 
-    def failed(self, record: ListedRecord, reason: str, now_s: float) -> int:
-        """One more time; returns how often in all."""
+    def failed(
+        self,
+        record: ListedRecord,
+        reason: str,
+        now_s: float,
+        *,
+        is_verdict: bool = False,
+        longest_s: float = LONGEST_PAUSE_S,
+    ) -> int:
+        """One more time; returns how often in all. is_verdict: what failed is due to the record itself."""
         number = self.number(record) + 1
-        pause_s = min(FIRST_PAUSE_S * 2 ** min(number - 1, _MOST_DOUBLINGS), LONGEST_PAUSE_S)
-        self._failures[record] = _Failure(number, now_s + pause_s, reason)
+        pause_s = min(FIRST_PAUSE_S * 2 ** min(number - 1, _MOST_DOUBLINGS), longest_s)
+        verdicts = self.verdicts(record) + is_verdict
+        self._failures[record] = _Failure(number, now_s + pause_s, reason, verdicts)
         return number
 
     def number(self, record: ListedRecord) -> int:
@@ -38,9 +50,10 @@ class Retries:
         failure = self._failures.get(record)
         return 0 if failure is None else failure.number
 
-    def failing_for(self, times: int) -> tuple[ListedRecord, ...]:
-        """Those that have failed so often, or more."""
-        return tuple(each for each, failure in self._failures.items() if failure.number >= times)
+    def verdicts(self, record: ListedRecord) -> int:
+        """How often the record itself was what failed."""
+        failure = self._failures.get(record)
+        return 0 if failure is None else failure.verdicts
 
     def due(self, records: Iterable[ListedRecord], now_s: float) -> tuple[ListedRecord, ...]:
         """Those that may be asked for now; last the one that failed most, which may end the visit again."""

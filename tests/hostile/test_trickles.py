@@ -10,7 +10,7 @@ import pytest
 
 from mms import Client, ConnectFailed, ConnectionLost, MmsError, Timeout, files, pace
 from service.collector.record_directory import LINK_FAILURES
-from service.storage.states import LinkState
+from service.storage.states import LinkState, RecordingState
 from tests.hostile import crafted
 from tests.hostile.dialogue import PRO, Dialogue, overheard, tlv
 from tests.hostile.relay import LIST_OF_NAMES, lying
@@ -156,3 +156,25 @@ def test_a_session_puts_the_trickle_off_and_says_so(
             reason = bench.repository.ied(bench.relay.name).link_reason
     assert reason is not None
     assert "expected at least 100 bytes a second" in reason
+
+
+def test_a_file_that_breaks_the_protocol_is_refused_at_last_and_the_relay_visited(
+    bench: Bench, dialogue: Dialogue
+) -> None:
+    empty = b"\xbf\x49" + tlv(0x30, tlv(0x80, b"") + tlv(0x81, b"\xff"))[1:]
+    with lying(dialogue, {crafted.FILE_READ: lambda _number: empty}) as port:
+        bench = replace(bench, relay=replace(bench.relay, port=port))
+        with bench.session():
+            assert eventually(lambda: bench.link() is LinkState.QUARANTINED)
+        assert state(bench) is RecordingState.ANNOUNCED
+        with bench.session():  # the pause is over
+            assert eventually(lambda: state(bench) is RecordingState.REJECTED)
+            assert eventually(lambda: bench.link() is LinkState.UP)
+    refused = bench.recording("HR_10001")
+    assert refused is not None
+    assert "empty parts without end" in (refused.reason or "")
+
+
+def state(bench: Bench) -> RecordingState | None:
+    recording = bench.recording("HR_10001")
+    return None if recording is None else recording.state

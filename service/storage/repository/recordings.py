@@ -45,6 +45,20 @@ class RecordingRows(Sessions):
         with self._read() as session:
             return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
 
+    def refused_remote_records(self, ied: str) -> frozenset[RemoteRecord]:
+        """Those of the known ones that never came into the store."""
+        query = (
+            select(RemoteRecordRow)
+            .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
+            .where(
+                RemoteRecordRow.ied == ied,
+                RecordingRow.state != RecordingState.ANNOUNCED,
+                RecordingRow.digest.is_(None),
+            )
+        )
+        with self._read() as session:
+            return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
+
     def announced_remote_records(self, ied: str) -> frozenset[RemoteRecord]:
         """Records of a relay that were seen and are neither stored nor refused."""
         query = (

@@ -42,7 +42,8 @@ _SERVE = -1
 class ScriptedRelay:
     """Writes a record at each rising edge of RB01, unless told to refuse or to stay silent.
 
-    denied: files of these records cannot be opened.  stuck: asked for these, it answers nobody for STUCK_S.
+    denied: files of these records cannot be opened.  absent: those of these are listed, and not found.
+    stuck: asked for these, it answers nobody for STUCK_S.
     listings: how often its directory was asked for.  opened: how many files.
     shifts: a file of SHIFTY is a byte longer whenever it is opened than it was when it was listed.
     clock_offset_s: it stamps changes of RB01 with a clock so far ahead; None: it stamps nothing.
@@ -57,6 +58,7 @@ class ScriptedRelay:
     busy: bool = False
     shifts: bool = False
     denied: set[str] = field(default_factory=set)
+    absent: set[str] = field(default_factory=set)
     stuck: set[str] = field(default_factory=set)
     opening_s: float = 0.0
     clock_offset_s: float | None = None
@@ -134,6 +136,8 @@ class ScriptedRelay:
         time.sleep(self.opening_s)
         if request.path.stem in self.denied:
             return FileAnswer.DENIED
+        if request.path.stem in self.absent:
+            return FileAnswer.ABSENT
         return FileAnswer.BUSY if self.busy else FileAnswer.SERVE
 
     def _operated(self, action: ControlAction) -> "bool | AddCause":

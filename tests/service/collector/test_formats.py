@@ -8,7 +8,8 @@ import pytest
 from core.recordings import read
 from service.collector.formats import one_format_an_event, remote_of
 from service.collector.listing import ListedRecord, understand
-from service.storage.states import EventReportState, RecordingState
+from service.collector.record_directory import PULL_ATTEMPTS
+from service.storage.states import AlarmKind, EventReportState, RecordingState
 from tests.ied_sim.simulating import IED, scenario_of, simulated
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.expectations import at, expecting
@@ -21,7 +22,7 @@ def records(*names: str) -> tuple[ListedRecord, ...]:
 
 
 def chosen(*names: str) -> list[str]:
-    return [record.file_names for record in one_format_an_event(records(*names), (), ()).records]
+    return [record.file_names for record in one_format_an_event(records(*names), (), (), ()).records]
 
 
 @pytest.mark.parametrize(
@@ -44,11 +45,25 @@ def test_one_format_of_each_event_is_taken(names: list[str], taken: list[str]) -
 def test_what_was_taken_stays_taken() -> None:
     both = records("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
     (report,) = (record for record in both if record.suffixes == {".CEV"})
-    kept = one_format_an_event(both, {remote_of(report)}, ())
+    kept = one_format_an_event(both, {remote_of(report)}, (), ())
     assert kept.records == (report,)
     assert [(file.name, file.reason) for file in kept.passed_over] == [
         ("HR_10007.CFG, HR_10007.DAT", "the same event as CR_10007.CEV, which is taken")
     ]
+
+
+def test_a_refused_format_comes_last() -> None:
+    both = records("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
+    report, comtrade = sorted(both, key=lambda record: record.name)
+    without = one_format_an_event(both, (), {remote_of(comtrade)}, {report})
+    assert without.records == (report,)
+    assert without.replaceable == frozenset(), "the other one is refused"
+    neither = one_format_an_event(both, (), {remote_of(comtrade), remote_of(report)}, ())
+    assert neither.records == (comtrade,)
+    assert [file.reason for file in neither.passed_over] == [
+        "the same event as HR_10007.CFG, HR_10007.DAT, refused, as this is"
+    ]
+    assert one_format_an_event(both, (), (), ()).replaceable == {comtrade}
 
 
 def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
@@ -102,6 +117,76 @@ def test_an_event_report_stands_in_for_a_comtrade_without_its_data(
     with bench.session():
         assert eventually(lambda: bench.is_stored("CR_10001"))
     assert [recording.state for recording in bench.recordings()] == [RecordingState.FETCHED]
+
+
+def states(bench: Bench) -> dict[str, RecordingState]:
+    return {recording.name: recording.state for recording in bench.recordings()}
+
+
+def test_an_event_report_stands_in_for_a_comtrade_too_large(bench: Bench, relay: ScriptedRelay) -> None:
+    """The wish for the record gets it, and is not failed by the refusal before."""
+    relay.silent = True
+    wish = bench.request()
+    with bench.session():
+        assert bench.reaches(wish, EventReportState.TRIGGERED)
+        relay.write_file("CR_10007.CEV", b"event report of the same event")
+        relay.write_record("HR_10007", b"x" * 200_000)  # larger than max_file_bytes
+        assert bench.reaches(wish, EventReportState.FETCHED), bench.report(wish).reason
+        assert bench.alarms() == {AlarmKind.FILE_TOO_LARGE: ["HR_10007"]}
+        taken = {"HR_10007.CFG, HR_10007.DAT": "the same event as CR_10007.CEV, which is taken"}
+        assert eventually(lambda: ignored(bench) == taken)
+    assert states(bench) == {"CR_10007": RecordingState.FETCHED, "HR_10007": RecordingState.REJECTED}
+    report = bench.recording("CR_10007")
+    assert report is not None
+    assert bench.report(wish).recording_id == report.id
+    refused = bench.recording("HR_10007")
+    assert refused is not None
+    assert "(setting max_file_bytes), found 200000" in (refused.reason or "")
+    with bench.session():  # nor is any of it asked for again after a restart
+        relay.write_record("HR_10008")
+        assert eventually(lambda: bench.is_stored("HR_10008"))
+    assert len(bench.recordings()) == 3
+
+
+def test_a_refusal_of_the_past_hides_no_other_format(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.write_record("HR_10007", b"x" * 200_000)
+    with bench.session():
+        assert eventually(lambda: states(bench) == {"HR_10007": RecordingState.REJECTED})
+    relay.write_file("CR_10007.CEV", b"event report of the same event")
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("CR_10007"))
+
+
+def test_a_wish_fails_where_each_format_is_refused(bench: Bench, relay: ScriptedRelay) -> None:
+    relay.silent = True
+    wish = bench.request()
+    with bench.session():
+        assert bench.reaches(wish, EventReportState.TRIGGERED)
+        relay.write_file("CR_10007.CEV", b"x" * 150_000)
+        relay.write_record("HR_10007", b"x" * 200_000)
+        assert bench.reaches(wish, EventReportState.FAILED)
+        assert "CR_10007.CEV: expected at most 100000 bytes" in (bench.report(wish).reason or "")
+        listings = relay.listings
+        assert eventually(lambda: relay.listings > listings + 3)
+    refused = {"CR_10007": RecordingState.REJECTED, "HR_10007": RecordingState.REJECTED}
+    assert states(bench) == refused
+    assert len(bench.recordings()) == 2
+    assert relay.opened == 0
+
+
+def test_an_event_report_stands_in_for_a_comtrade_that_is_listed_only(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.002)
+    relay.absent = {"HR_10007"}
+    relay.write_record("HR_10007")
+    relay.write_file("CR_10007.CEV", b"event report of the same event")
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("CR_10007"))
+    refused = bench.recording("HR_10007")
+    assert refused is not None
+    assert (refused.state, refused.attempts) == (RecordingState.REJECTED, PULL_ATTEMPTS)
+    assert "EVENTS/HR_10007.CFG" in (refused.reason or "")
 
 
 def test_files_that_are_no_recording_are_told(bench: Bench, relay: ScriptedRelay) -> None:

@@ -5,7 +5,8 @@ import time
 
 import pytest
 
-from service.storage.states import AlarmKind, EventReportState, LinkState
+from service.collector.record_directory import MANY_ATTEMPTS, PULL_ATTEMPTS
+from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import ScriptedRelay
 
@@ -89,6 +90,83 @@ def test_a_file_that_cannot_be_opened_for_a_while_is_asked_for_again(
         assert eventually(lambda: bench.is_stored("HR_1"))
 
 
+def attempts(bench: Bench, name: str) -> int:
+    recording = bench.recording(name)
+    return 0 if recording is None else recording.attempts
+
+
+def states(bench: Bench) -> list[RecordingState]:
+    return [recording.state for recording in bench.recordings()]
+
+
+def test_a_relay_that_denies_its_files_for_long_loses_none(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.0001)
+    monkeypatch.setattr("service.collector.record_directory.ATTEMPTS_OF_A_NAME", PULL_ATTEMPTS)
+    relay.denied.add("HR_1")
+    relay.write_record("HR_1")
+    with bench.session():
+        assert eventually(lambda: attempts(bench, "HR_1") > PULL_ATTEMPTS + 1)
+    with bench.session():  # a restart neither forgives nor forgets
+        before = attempts(bench, "HR_1")
+        assert eventually(lambda: attempts(bench, "HR_1") > before)
+        assert bench.alarms() == {AlarmKind.FILE_UNSTEADY: ["HR_1"]}
+        recording = bench.recording("HR_1")
+        assert recording is not None
+        assert recording.state is RecordingState.ANNOUNCED
+        relay.denied.clear()
+        assert eventually(lambda: bench.is_stored("HR_1"))
+        assert eventually(lambda: bench.alarms() == {})
+    (alarm,) = bench.repository.alarms(limit=10).items
+    assert "EVENTS/HR_1.CFG': file access denied" in alarm.reason
+    assert f", {MANY_ATTEMPTS} times" in alarm.reason
+
+
+def test_a_denied_record_that_is_then_not_found_is_no_worse_than_others(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.000001)
+    relay.denied.add("HR_1")
+    relay.write_record("HR_1")
+    with bench.session():
+        assert eventually(lambda: attempts(bench, "HR_1") > PULL_ATTEMPTS)
+        denied = attempts(bench, "HR_1")
+        relay.absent.add("HR_1")
+        relay.denied.clear()
+        assert eventually(lambda: states(bench) == [RecordingState.REJECTED])
+    assert attempts(bench, "HR_1") >= denied + PULL_ATTEMPTS
+
+
+def test_a_record_denied_for_a_day_is_refused_and_stays_an_alarm(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.0001)
+    monkeypatch.setattr("service.collector.record_directory.DENIED_ATTEMPTS", PULL_ATTEMPTS + 2)
+    relay.denied.add("HR_1")
+    relay.write_record("HR_1")
+    with bench.session():
+        assert eventually(lambda: states(bench) == [RecordingState.REJECTED])
+        listings = relay.listings
+        assert eventually(lambda: relay.listings > listings + 2)
+        assert attempts(bench, "HR_1") == PULL_ATTEMPTS + 2
+        assert bench.alarms() == {AlarmKind.FILE_UNSTEADY: ["HR_1"]}
+        for path in relay.events.iterdir():
+            path.unlink()
+        assert eventually(lambda: bench.alarms() == {})
+
+
+def test_a_wish_for_a_record_that_is_denied_fails_in_time_with_the_reason(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    relay.denied.add("HR_10001")
+    wish = bench.request()
+    with bench.session():
+        assert bench.reaches(wish, EventReportState.FAILED)
+        assert "its record could not be fetched within 2 s" in (bench.report(wish).reason or "")
+        assert "file access denied" in (bench.report(wish).reason or "")
+
+
 def test_a_trigger_waits_until_what_is_there_is_taken(bench: Bench, relay: ScriptedRelay) -> None:
     relay.busy = True
     relay.write_record("HR_1")
@@ -102,6 +180,34 @@ def test_a_trigger_waits_until_what_is_there_is_taken(bench: Bench, relay: Scrip
     made = bench.recording("HR_10001")
     assert made is not None
     assert bench.report(report_id).recording_id == made.id
+
+
+def untime(relay: ScriptedRelay) -> None:
+    for path in relay.events.iterdir():
+        os.utime(path, (0, 0))
+
+
+def test_a_record_that_looks_like_the_one_it_overwrites_is_pulled_once_announced(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
+    """Same name, same size, no times."""
+    relay.write_record("HR_1", b"first", report=False)
+    relay.write_record("HR_2", b"of long ago", report=False)
+    untime(relay)
+    with bench.session():
+        assert eventually(lambda: bench.is_stored("HR_1") and bench.is_stored("HR_2"))
+        relay.write_file("HR_1.DAT", b"other")
+        untime(relay)
+        opened = relay.opened
+        relay.records += 1
+        relay.announce()
+        assert eventually(lambda: files_of(bench, "HR_1").get("HR_1.DAT") == b"other")
+        assert eventually(lambda: relay.opened >= opened + 4), "all are asked for again"
+        opened = relay.opened
+        time.sleep(bench.settings.record_timeout_s + 0.5)  # longer than what a report announces is expected
+        assert relay.opened == opened, "once"
+    stored = sorted(recording.name for recording in bench.recordings())
+    assert stored == ["HR_1", "HR_1", "HR_2"]
 
 
 def test_where_a_relay_gives_no_times_a_name_may_come_again(bench: Bench, relay: ScriptedRelay) -> None:

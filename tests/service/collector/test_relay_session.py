@@ -11,7 +11,7 @@ from structlog.testing import capture_logs
 from mms import Client, DataAccessError
 from service.collector.relay_session import RelaySession
 from service.recordings import Incoming
-from service.storage.states import EventReportState, LinkState, RecordingState
+from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
 
@@ -318,7 +318,7 @@ def test_without_the_report_control_block_the_directory_is_polled(bench: Bench, 
             assert eventually(lambda: len(bench.recordings()) == 1)
 
 
-def test_a_link_out_of_the_events_folder_is_refused(
+def test_a_link_out_of_the_events_folder_is_not_followed(
     bench: Bench, relay: ScriptedRelay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     secret = tmp_path / "secret"
@@ -327,7 +327,12 @@ def test_a_link_out_of_the_events_folder_is_refused(
     (relay.events / "HR_1.DAT").symlink_to(secret)
     relay.write_file("HR_1.CFG", b"configuration")
     with bench.session():
-        assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.REJECTED])
+        assert eventually(lambda: bench.alarms() == {AlarmKind.FILE_UNSTEADY: ["HR_1"]})
+    (recording,) = bench.recordings()
+    assert recording.state is RecordingState.ANNOUNCED
+    assert "file access denied" in (recording.reason or "")
+    stored = [path.read_bytes() for path in bench.store.root.rglob("*") if path.is_file()]
+    assert secret.read_bytes() not in stored
 
 
 def test_a_busy_relay_is_asked_again(bench: Bench, relay: ScriptedRelay) -> None:

@@ -6,8 +6,8 @@ import pytest
 
 from mms import errors
 from service.collector.listing import ListedRecord
-from service.collector.record_directory import PULL_ATTEMPTS
-from service.collector.retrying import LONGEST_PAUSE_S, Retries
+from service.collector.record_directory import DENIED_ATTEMPTS, PULL_ATTEMPTS
+from service.collector.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, LONGEST_PAUSE_S, Retries
 
 OLD, NEW = ListedRecord("HR_1", ()), ListedRecord("HR_2", ())
 
@@ -30,6 +30,26 @@ def test_pauses_grow_and_have_a_limit() -> None:
     assert 30 < times_s[PULL_ATTEMPTS - 1] < 90, "a record is refused after about a minute"
 
 
+def test_a_denied_one_is_asked_for_again_for_a_day() -> None:
+    retries = Retries()
+    now_s = 0.0
+    for number in range(1, DENIED_ATTEMPTS):
+        assert retries.failed(OLD, "denied", now_s, longest_s=LONGEST_PAUSE_OF_THE_DENIED_S) == number
+        now_s = next_due_s(retries, OLD, now_s)
+        if number == PULL_ATTEMPTS:
+            assert now_s < 120, "soon at first"
+    assert 23 < now_s / 3600 < 25
+
+
+def test_verdicts_are_counted_apart() -> None:
+    retries = Retries()
+    for number in range(1, 4):
+        retries.failed(OLD, "denied", 0.0)
+        retries.failed(OLD, "not found", 0.0, is_verdict=True)
+        assert (retries.number(OLD), retries.verdicts(OLD)) == (2 * number, number)
+    assert retries.verdicts(NEW) == 0
+
+
 def test_one_that_failed_comes_last() -> None:
     retries = Retries()
     assert retries.due([OLD, NEW], 0.0) == (OLD, NEW)
@@ -46,8 +66,6 @@ def test_what_is_put_off_and_why() -> None:
         retries.failed(OLD, "last", 0.0)
     assert retries.put_off(0.0) == {"HR_1"}
     assert retries.reasons() == {"HR_1": "last"}
-    assert retries.failing_for(9) == (OLD,)
-    assert retries.failing_for(10) == ()
     retries.keep([NEW])
     assert (retries.number(OLD), retries.reasons()) == (0, {})
 

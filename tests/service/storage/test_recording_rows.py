@@ -34,6 +34,7 @@ def test_a_pulled_record_is_stored_and_queued_with_its_event_report(
     assert added.created
     assert (added.recording.id, added.recording.state) == (announced.id, RecordingState.FETCHED)
     assert repository.known_remote_records("A1_SEL710") == {REMOTE}
+    assert repository.refused_remote_records("A1_SEL710") == frozenset()
     assert repository.event_report(report.id).state is EventReportState.FETCHED
     assert repository.event_report(report.id).recording_id == announced.id
     files = [(f.name, f.size_bytes, f.sha256) for f in repository.recording_files(announced.id)]
@@ -131,6 +132,7 @@ def test_a_refused_record_is_not_pulled_again(repository: Repository) -> None:
     )
     assert (refused.state, refused.reason) == (RecordingState.REJECTED, "larger than 64 MB")
     assert repository.known_remote_records("A1_SEL710") == {REMOTE}
+    assert repository.refused_remote_records("A1_SEL710") == {REMOTE}
     assert repository.event_report(report.id).reason == "larger than 64 MB"
     rejected = repository.recordings(limit=10, state=RecordingState.REJECTED)
     assert [r.id for r in rejected.items] == [refused.id]
