@@ -85,6 +85,7 @@ class EventFolder:
         if not found:
             self._is_sure = False
             self._look_beside = True
+            self.unread = None
             if time.monotonic() < self._next_search_s:
                 return Contents(None, ())
             found = self._search(client)

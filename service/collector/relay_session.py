@@ -208,7 +208,7 @@ class RelaySession:
         Reports that tell of no record, of which a chattering input sends many, are heeded and change nothing.
         """
         until_s = time.monotonic() + longest_s
-        while not self._asked.is_set() and time.monotonic() < until_s:
+        while not (self._asked.is_set() or self._stopping.is_set()) and time.monotonic() < until_s:
             due_in_s = math.inf if self._metering is None else self._metering.due_in_s()
             if self._metering is not None and due_in_s <= 0:
                 self._metering.sample(client)

@@ -76,6 +76,13 @@ def test_recordings_in_a_second_folder_are_told(client: Client, relay: ScriptedR
     write(relay, "COMTRADE/X.CFG")
     assert found(client, folder).directory == "EVENTS"
     assert "recordings in COMTRADE are not fetched, only those in EVENTS" in (folder.unread or "")
+    (relay.root / "COMTRADE" / "X.CFG").unlink()
+    (relay.root / "EVENTS" / "X.CEV").unlink()
+    (relay.root / "COMTRADE").rmdir()
+    (relay.root / "EVENTS").rmdir()
+    assert found(client, folder).directory is None
+    assert folder.unread is None
+    write(relay, "COMTRADE/X.CFG")
     meant = EventFolder(NAME, "EVENTS", "COMTRADE")
     assert found(client, meant).directory == "COMTRADE"
     assert meant.unread is None, "somebody has decided"
