@@ -52,11 +52,11 @@ PREAMBLE = """\
 Written by `python -m benchmarks.accuracy`; each section names the command that repeats it. Every figure
 stands as it was found, those that fall short of what is expected included.
 
-**Records** come from physics the estimator shares no code with: the simulator's windings in phase variables,
-integrated in time (`ied_sim/windings.py`), and for the thesis's model an additional shorted winding made of
-the same coils (`benchmarks/accuracy_records.py`). Speed ripple, star point and fault loop are part of both.
-The motor is the thesis's (800 W, 380 V, 50 Hz, star) unless said otherwise; the diagnosis always uses its
-nameplate's parameters.
+**Records** come from physics the estimator shares no code with: the simulator's windings in phase
+variables, integrated in time (`ied_sim/motor/windings.py`), and for the thesis's model an additional
+shorted winding made of the same coils (`benchmarks/accuracy_records.py`). Speed ripple, star point and
+fault loop are part of both. The motor is the thesis's (800 W, 380 V, 50 Hz, star) unless said otherwise;
+the diagnosis always uses its nameplate's parameters.
 
 **The bound** is Cramér's and Rao's, from an independent phasor model differentiated numerically
 (`benchmarks/accuracy_bound.py`): mu_f, load and time offset unknown; with noise on the voltages, both of

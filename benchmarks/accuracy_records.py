@@ -14,12 +14,12 @@ from scipy.interpolate import CubicSpline
 from benchmarks.accuracy_phasors import Condition, FaultModel
 from core.machines.parameters import MachineParameters, Motor
 from core.recordings import Channel, Quantity, Recording
-from ied_sim.fault import FaultCourse
-from ied_sim.load import Load
-from ied_sim.plant import STEP_RATE_HZ, MotorPlant, rated_current
-from ied_sim.sensors import Sensors
-from ied_sim.supply import Harmonic, Supply
-from ied_sim.windings import PHASE_AXES, WindingCircuit, winding_circuit
+from ied_sim.motor.fault import FaultCourse
+from ied_sim.motor.load import Load
+from ied_sim.motor.plant import STEP_RATE_HZ, MotorPlant, rated_current
+from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.supply import Harmonic, Supply
+from ied_sim.motor.windings import PHASE_AXES, WindingCircuit, winding_circuit
 
 Array = NDArray[np.float64]
 

@@ -12,9 +12,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from ied_sim.misbehaviour import Kind, Misbehaviour
-from ied_sim.profile import shipped
-from ied_sim.scenario import RelayScenario
+from ied_sim.front.misbehaviour import Kind, Misbehaviour
+from ied_sim.profiles.profile import shipped
+from ied_sim.scenario.scenario import RelayScenario
 from mms import Client, Report
 from tests.ied_sim.simulating import IED, Simulated, fetch, scenario_of, simulated, text
 

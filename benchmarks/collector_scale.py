@@ -25,9 +25,9 @@ from lxml import etree
 from benchmarks.simulated_plant import cpu_s, plant_of, resident_mb
 from scl.document import Document
 from scl.instantiation import write
+from service.client.rest_client import ServiceClient, ServiceError
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
-from service.rest_client import ServiceClient, ServiceError
 from tests.integration import processes
 from tests.integration.processes import Service, descendants, eventually
 

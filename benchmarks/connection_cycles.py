@@ -16,10 +16,10 @@ from threading import Thread
 import structlog
 
 from mms import Client, MmsError
-from service.collector.relay_session import RelaySession
+from service.collector.session.relay_session import RelaySession
+from service.configuration.settings import Settings
 from service.plant import Relay
-from service.recordings import RecordingStore
-from service.settings import Settings
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.states import LinkState
 from tests.mms.relays import LOOPBACK, Relaying, RelayProcess, eventually, mute_server

@@ -12,9 +12,9 @@ from benchmarks.interoperability.peers import PeerError, linked
 from mms import Client, TlsConfiguration
 from mms.library import shared_library
 from mms.library_noise import keep_tls_notes_off_stderr
-from service.collector.listing import understand
-from service.collector.pulling import pull
-from service.recordings import RecordingStore
+from service.collector.records.listing import understand
+from service.collector.records.pull import pull
+from service.recording_store.store import RecordingStore
 from tests.mms.pki import Pki
 from tests.mms.relays import LOOPBACK, RelayProcess
 from tests.service.api.comtrade_files import CFG

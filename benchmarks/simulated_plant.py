@@ -14,7 +14,7 @@ from pathlib import Path
 from lxml import etree
 
 from ied_sim import warm_up
-from ied_sim.scenario import healthy_reference
+from ied_sim.scenario.scenario import healthy_reference
 from mms import Client
 from scl import SEL710_ICD, Address, read
 from scl.document import Document

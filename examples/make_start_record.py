@@ -15,10 +15,10 @@ import numpy as np
 
 from core.machines.motor_file import read_motor
 from core.recordings import Channel, Quantity, Recording, comtrade
-from ied_sim.load import Load
-from ied_sim.plant import MotorPlant
-from ied_sim.sensors import Sensors
-from ied_sim.supply import Supply
+from ied_sim.motor.load import Load
+from ied_sim.motor.plant import MotorPlant
+from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.supply import Supply
 
 HERE = Path(__file__).parent
 SAMPLE_RATE_HZ = 5_000.0

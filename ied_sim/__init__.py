@@ -3,7 +3,9 @@
 
 def warm_up() -> None:
     """Compile the motor's equations, or load them from the cache of an earlier run."""
-    from ied_sim.scenario import healthy_reference  # compilation costs what an import of the package must not
+    from ied_sim.scenario.scenario import (
+        healthy_reference,  # compilation costs what an import of the package must not
+    )
 
     healthy_reference("warm-up").plant.operation(0.0, 0.002, 10_000.0, settling_s=0.0)
 

@@ -14,10 +14,10 @@ import typer
 import scl
 from ied_sim import warm_up
 from ied_sim.errors import ScenarioError, SimulatorError, TableError
-from ied_sim.profile import DEFAULT, read_profile, shipped
-from ied_sim.scenario import RelayScenario, healthy_reference, read_scenario
+from ied_sim.profiles.profile import DEFAULT, read_profile, shipped
+from ied_sim.scenario.scenario import RelayScenario, healthy_reference, read_scenario
+from ied_sim.scenario.standalone import IED_NAME, standalone
 from ied_sim.simulator import Simulator
-from ied_sim.standalone import IED_NAME, standalone
 from mms.library_noise import keep_tls_notes_off_stderr
 from scl import Address
 

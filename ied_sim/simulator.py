@@ -9,8 +9,8 @@ from typing import Self
 
 from ied_sim.errors import SimulatorError
 from ied_sim.front import FrontDoors
-from ied_sim.relay import Relay
-from ied_sim.scenario import RelayScenario, healthy_reference
+from ied_sim.relay.relay import Relay
+from ied_sim.scenario.scenario import RelayScenario, healthy_reference
 from mms import ServerPump, ServerStartFailed
 from scl import Address, Scl
 

@@ -5,8 +5,10 @@ Server      one simulated IED made from a model text
 ServerPump  one thread that drives many servers
 """
 
-from mms.client import Client, DataSetMember
-from mms.controls import AddCause, ControlModel
+from mms.client.client import Client, DataSetMember
+from mms.client.controls import AddCause, ControlModel
+from mms.client.files import FileEntry
+from mms.client.reports import Reason, Report, ReportMember
 from mms.errors import (
     AccessDenied,
     AssociationBroken,
@@ -32,12 +34,10 @@ from mms.errors import (
     TlsRequired,
     ValueRefused,
 )
-from mms.file_access import FileAnswer, FileOperation, FileRequest
-from mms.files import FileEntry
-from mms.pump import ServerPump
 from mms.references import FunctionalConstraint
-from mms.reports import Reason, Report, ReportMember
-from mms.server import MOST_CONNECTIONS, ControlAction, Server
+from mms.server.file_access import FileAnswer, FileOperation, FileRequest
+from mms.server.pump import ServerPump
+from mms.server.server import MOST_CONNECTIONS, ControlAction, Server
 from mms.tls import TlsConfiguration, TlsVersion
 from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Validity, Value
 

@@ -11,7 +11,7 @@ import scl
 from benchmarks.interoperability.peers import Result, Tree, c_server
 from mms import Client, ConnectFailed, FunctionalConstraint, Report
 from scl import Address
-from service.rest_client import ServiceClient
+from service.client.rest_client import ServiceClient
 from tests.integration import processes
 from tests.integration.processes import RELAYS, all_recordings, eventually, running_service
 from tests.mms.relays import LOOPBACK, free_port

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import scl
 from benchmarks.interoperability.peers import TOOL_LIMIT_S, Result, Tree, output
-from ied_sim.profile import Profile, shipped
+from ied_sim.profiles.profile import Profile, shipped
 from mms import Client, ControlAction, FunctionalConstraint, Server
 from scl.model_text import model_text
 from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from ied_sim.front.ber import Element, MalformedError, decode, element, encode, spans
-from ied_sim.misbehaviour import Kind, Switchboard
-from ied_sim.profile import Files
+from ied_sim.front.misbehaviour import Kind, Switchboard
+from ied_sim.profiles.profile import Files
 
 _SESSION = bytes([1, 0, 1, 0])
 """Give tokens and data transfer (ISO 8327-1), before every message of an association."""

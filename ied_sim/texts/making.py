@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 from typing import Final
 
-from ied_sim.profile import Text
+from ied_sim.profiles.profile import Text
 from ied_sim.texts import history, load_profile, motor_reports, sequence
 from ied_sim.texts.story import Story
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from ied_sim.journal import NotedStart
+from ied_sim.relay.journal import NotedStart
 from ied_sim.texts.story import Story
 
 

@@ -6,8 +6,8 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
-from service.recordings import RecordingStore
-from service.settings import Settings
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository
 
 Problem = Callable[[], str | None]

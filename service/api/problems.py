@@ -13,7 +13,7 @@ from sqlalchemy.exc import OperationalError, TimeoutError  # noqa: A004 - that o
 from starlette.exceptions import HTTPException
 from structlog.typing import FilteringBoundLogger
 
-from service.recordings import RecordingStoreError
+from service.recording_store.store import RecordingStoreError
 from service.storage.errors import NotFoundError, OutOfServiceError, StateConflictError, UnusableBaselineError
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)

@@ -19,7 +19,7 @@ from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, pa
 from service.api.problems import FieldError, ProblemError, problems
 from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile, Waveform
 from service.api.waveform import waveform_of
-from service.recordings import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
+from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
 from service.storage.records import RecordingEntry
 from service.storage.states import RecordingState
 

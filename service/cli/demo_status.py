@@ -6,12 +6,12 @@ from rich.text import Text
 
 import scl
 from service.cli.output import failing_clearly, one_line, print_document, results
+from service.client.rest_client import ServiceClient, ServiceError
+from service.client.verdicts import level, verdict_text
 from service.demo import SCENARIO
 from service.demo.results import truth_text
 from service.demo.status import MotorStatus, ask_status
 from service.demo.truth import TruthError, ask_simulator
-from service.rest_client import ServiceClient, ServiceError
-from service.verdicts import level, verdict_text
 
 
 def show_demo(url: str, *, as_json: bool) -> None:

@@ -12,6 +12,7 @@ from rich.text import Text
 
 from scl import SclError
 from service.cli.output import CommandError, as_json, failing_clearly, failure_document, progress, results
+from service.client.rest_client import ServiceClient, ServiceError
 from service.demo.interruption import Interruption, interruptible
 from service.demo.plant import (
     DemoPlant,
@@ -24,7 +25,6 @@ from service.demo.processes import ProgramError
 from service.demo.results import DemoMotor, document, slowest, table
 from service.demo.rounds import STATES, play_round
 from service.demo.truth import TruthError, ask_simulator
-from service.rest_client import ServiceClient, ServiceError
 
 ROUNDS = 2
 REST_S = 60.0

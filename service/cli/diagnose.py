@@ -13,7 +13,7 @@ from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file import MotorFileError, read_motor
 from core.recordings import RecordingError, read
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
-from service.verdicts import level, verdict_text
+from service.client.verdicts import level, verdict_text
 
 
 def diagnose_recording(

@@ -6,7 +6,7 @@ from rich.table import Table
 from rich.text import Text
 
 from service.cli.output import failing_clearly, one_line, print_document, results
-from service.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 
 _USED = (
     ("trigger", "trigger"),

@@ -9,8 +9,8 @@ from rich.table import Table
 from rich.text import Text
 
 from service.cli.output import CommandError, failing_clearly, one_line, print_document, progress, results
-from service.rest_client import Document, ServiceClient, ServiceError, segment
-from service.verdicts import level, to_the_second, verdict_text
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.verdicts import level, to_the_second, verdict_text
 
 ENDED = ("diagnosed", "failed")
 POLL_PERIOD_S = 0.25

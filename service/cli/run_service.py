@@ -5,11 +5,11 @@ from pathlib import Path
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.cli.output import failing_clearly
-from service.exclusive import AlreadyRunningError
-from service.logs import configure_logging
+from service.configuration.settings import Settings, SettingsError
 from service.plant import PlantError
-from service.serve import ServeError, collect, serve
-from service.settings import Settings, SettingsError
+from service.process.logs import configure_logging
+from service.process.serve import ServeError, collect, serve
+from service.process.single_instance import AlreadyRunningError
 from service.storage import StorageError
 
 TROUBLES = (SettingsError, PlantError, StorageError, AlreadyRunningError, ServeError, OSError)

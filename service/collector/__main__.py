@@ -1,6 +1,6 @@
 """`python -m service.collector`: started by the service, not by people."""
 
-from service.collector.process import main
+from service.collector.gateway.process import main
 
 if __name__ == "__main__":
     main()

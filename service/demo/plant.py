@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import scl
+from service.client.rest_client import ServiceClient
 from service.demo import MOTORS, SCENARIO
 from service.demo.addresses import LOOPBACK, addressed_scd, free_port
 from service.demo.processes import Program, ProgramError
-from service.rest_client import ServiceClient
 
 START_LIMIT_S = 90.0
 POLL_PERIOD_S = 0.1

@@ -7,9 +7,9 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
+from service.client.rest_client import Document
+from service.client.verdicts import verdict_text
 from service.demo.truth import Truth
-from service.rest_client import Document
-from service.verdicts import verdict_text
 
 FOOTNOTE = "the interval is the record's own scatter; see docs/diagnosis.md"
 

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.demo.results import DemoDiagnosis, DemoMotor
-from service.rest_client import Document, ServiceClient, ServiceError, segment
 
 LIMIT_S = 40.0
 POLL_PERIOD_S = 0.1

@@ -20,7 +20,7 @@ import structlog
 
 import scl
 from scl import Address, SclError
-from service.logs import configure_logging
+from service.process.logs import configure_logging
 
 log = structlog.get_logger(__name__)
 

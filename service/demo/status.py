@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from service.client.rest_client import Document, ServiceClient, segment
 from service.demo.truth import Truth
-from service.rest_client import Document, ServiceClient, segment
 
 CONDITION = ("verdict", "phase", "mu_f", "mu_f_ci95", "load_level", "recorded_time")
 LINK = ("link_state", "link_reason")

@@ -17,7 +17,7 @@ from core.machines.parameters import Motor
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import WorkerPool, WorkersEndedError
 from service.jobs.worker_process import follow_service
-from service.recordings import RecordingStore, RecordingStoreError
+from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage.records import ClaimedJob
 from service.storage.repository import Repository
 

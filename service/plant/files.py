@@ -12,6 +12,8 @@ from pathlib import Path
 import scl
 from core.machines.motor_file import MotorFileError, motor_from_table
 from core.machines.parameters import Motor
+from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
+from service.configuration.settings import Settings, SettingsError
 from service.plant.errors import PlantError
 from service.plant.metering import measurands
 from service.plant.model import Plant, PlantMotor, Relay, Site
@@ -19,8 +21,6 @@ from service.plant.offer import promised_by
 from service.plant.overrides import OverrideError, Overrides, overrides_from_table
 from service.plant.recognition import recognise
 from service.plant.schedule import Schedule
-from service.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
-from service.settings import Settings, SettingsError
 
 
 def read_plant(settings: Settings) -> Plant:

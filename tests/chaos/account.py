@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
-from service.rest_client import ServiceClient
+from service.client.rest_client import ServiceClient
 from tests.chaos.ledger import File
 
 ENDED = ("diagnosed", "failed")

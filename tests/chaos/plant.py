@@ -12,7 +12,7 @@ from pathlib import Path
 from lxml import etree
 
 import scl
-from ied_sim.profile import Profile, read_profile
+from ied_sim.profiles.profile import Profile, read_profile
 from scl import Address
 from scl.document import Document
 from scl.instantiation import rename_ied, set_address, write

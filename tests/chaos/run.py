@@ -8,8 +8,8 @@ from contextlib import ExitStack
 from pathlib import Path
 from subprocess import CalledProcessError
 
+from service.client.rest_client import ServiceClient
 from service.demo.addresses import free_ports
-from service.rest_client import ServiceClient
 from tests.chaos import account
 from tests.chaos.disk import Disk, SmallDisk, WritingLimit
 from tests.chaos.evidence import Evidence, growth

@@ -11,7 +11,7 @@ from pathlib import Path
 from threading import Event, Thread
 from typing import IO
 
-from service.rest_client import ServiceClient
+from service.client.rest_client import ServiceClient
 from tests.chaos.history import History
 from tests.integration.processes import descendants, eventually, is_alive, service_environment
 

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 
-from service.rest_client import ServiceClient, ServiceError
+from service.client.rest_client import ServiceClient, ServiceError
 from tests.chaos import account
 from tests.chaos.ledger import Ledger
 from tests.chaos.plant import ChaosPlant

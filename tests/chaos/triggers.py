@@ -10,7 +10,7 @@ from threading import Event, Lock, Timer
 import httpx
 
 from mms import Client, MmsError
-from service.rest_client import API
+from service.client.rest_client import API
 from tests.chaos.history import History
 from tests.chaos.plant import ChaosPlant
 from tests.chaos.schedule import Action

@@ -21,8 +21,8 @@ from tempfile import TemporaryDirectory
 
 import yaml
 
+from service.client.rest_client import ServiceClient, ServiceError
 from service.demo.addresses import free_ports
-from service.rest_client import ServiceClient, ServiceError
 from tests.deployment.composing import BUILD_LIMIT_S, ROOT, Compose, ComposeError
 from tests.deployment.documented import blocks
 from tests.deployment.long_outage import (
@@ -73,7 +73,7 @@ print("source", digest.hexdigest())
 
 OLDER_DATABASE = """
 from alembic import command
-from service.settings import Settings
+from service.configuration.settings import Settings
 from service.storage import connect
 from service.storage.migrations import config
 with connect(Settings.load(None).database_url).begin() as connection:

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import httpx
 
-from ied_sim.scenario import read_scenario
+from ied_sim.scenario.scenario import read_scenario
 from service.demo import SCENARIO
 from tests.deployment.observed import START_LIMIT_S, Enterprise
 

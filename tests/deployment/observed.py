@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Mapping
 
-from service.rest_client import ServiceClient, ServiceError
+from service.client.rest_client import ServiceClient, ServiceError
 from tests.deployment.composing import Compose
 from tests.deployment.transfers import Transfer, require_once_each, transfers
 from tests.integration.processes import MOTOR_NAMES, link_states

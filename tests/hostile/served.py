@@ -7,7 +7,7 @@ from pathlib import Path
 
 import scl
 from scl import Address
-from service.rest_client import ServiceClient, ServiceError
+from service.client.rest_client import ServiceClient, ServiceError
 from tests.hostile.bulk import resident_MB
 from tests.hostile.dialogue import Dialogue
 from tests.hostile.relay import HostileRelay, serving

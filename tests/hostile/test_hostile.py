@@ -8,7 +8,8 @@ from random import Random
 
 import pytest
 
-from mms import AssociationBroken, Client, FileSizeMismatch, ProtocolError, Timeout, files
+from mms import AssociationBroken, Client, FileSizeMismatch, ProtocolError, Timeout
+from mms.client import files
 from tests.hostile import bulk, crafted, spoiling
 from tests.hostile.dialogue import CON, PRO, Dialogue, overheard, tlv
 from tests.hostile.relay import HostileRelay, lying

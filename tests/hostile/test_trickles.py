@@ -8,8 +8,9 @@ from threading import Timer
 
 import pytest
 
-from mms import Client, ConnectFailed, ConnectionLost, MmsError, Timeout, files, pace
-from service.collector.record_directory import LINK_FAILURES
+from mms import Client, ConnectFailed, ConnectionLost, MmsError, Timeout
+from mms.client import files, pace
+from service.collector.records.directory import LINK_FAILURES
 from service.storage.states import LinkState, RecordingState
 from tests.hostile import crafted
 from tests.hostile.dialogue import PRO, Dialogue, overheard, tlv
@@ -93,7 +94,7 @@ def test_a_relay_whose_names_never_end_is_no_association(
     dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The library asks for part after part within one call."""
-    monkeypatch.setattr("mms.connection._LONGEST_PROBE_S", 0.4)
+    monkeypatch.setattr("mms.client.connection._LONGEST_PROBE_S", 0.4)
     with (
         lying(dialogue, {LIST_OF_NAMES: device}) as port,
         pytest.raises(ConnectFailed, match=r"expected the names of all it offers in 0\.4 s, and more follow"),
@@ -104,7 +105,7 @@ def test_a_relay_whose_names_never_end_is_no_association(
 def test_data_sets_that_never_end_end_their_own_association(
     dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("mms.client._LONGEST_DIRECTORY_S", 0.4)
+    monkeypatch.setattr("mms.client.client._LONGEST_DIRECTORY_S", 0.4)
     at_connecting = [answer for answer in dialogue.answers.values() if answer[:1] == LIST_OF_NAMES][:3]
 
     def later(number: int) -> bytes:

@@ -18,12 +18,11 @@ from mms import (
     FunctionalConstraint,
     MmsError,
     Report,
-    connection,
-    controls,
 )
-from service.collector.listing import understand
-from service.collector.pulling import pull
-from service.recordings import RecordingStore, RecordingStoreError
+from mms.client import connection, controls
+from service.collector.records.listing import understand
+from service.collector.records.pull import pull
+from service.recording_store.store import RecordingStore, RecordingStoreError
 from tests.hostile.dialogue import CON, PRO
 from tests.mms.relays import LOOPBACK
 

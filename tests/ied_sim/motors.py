@@ -3,11 +3,11 @@
 from math import sqrt
 
 from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
-from ied_sim.fault import FaultCourse
-from ied_sim.load import Load
-from ied_sim.plant import MotorPlant
-from ied_sim.sensors import Sensors
-from ied_sim.supply import Supply
+from ied_sim.motor.fault import FaultCourse
+from ied_sim.motor.load import Load
+from ied_sim.motor.plant import MotorPlant
+from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.supply import Supply
 
 REFERENCE = Motor(
     "reference", Nameplate(800, 380, 50, 2), MachineParameters(8.4, 8.2, 0.0328, 0.0328, 0.4377, 0.0229)

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import scl
-from ied_sim.event_recorder import RecorderSettings
-from ied_sim.relay import Relay
-from ied_sim.scenario import healthy_reference
+from ied_sim.relay.event_recorder import RecorderSettings
+from ied_sim.relay.relay import Relay
+from ied_sim.scenario.scenario import healthy_reference
 from mms import MOST_CONNECTIONS, Client, Report, ServerPump, ServerStartFailed, Value
 from scl import Address
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 from core.recordings import Recording, read
 from ied_sim.errors import SimulatorError
-from ied_sim.event_recorder import RecorderSettings
-from ied_sim.misbehaviour import Misbehaviour
-from ied_sim.relay import Relay
-from ied_sim.scenario import RelayScenario, healthy_reference
+from ied_sim.front.misbehaviour import Misbehaviour
+from ied_sim.relay.event_recorder import RecorderSettings
+from ied_sim.relay.relay import Relay
+from ied_sim.scenario.scenario import RelayScenario, healthy_reference
+from ied_sim.scenario.standalone import standalone
 from ied_sim.simulator import Simulator
-from ied_sim.standalone import standalone
 from mms import Client
 from scl import Address, Scl
 from tests.ied_sim.serving import free_port

@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 import scl
 from ied_sim.cli import app
 from ied_sim.errors import SimulatorError
-from ied_sim.profile import shipped
-from ied_sim.scenario import healthy_reference
+from ied_sim.profiles.profile import shipped
+from ied_sim.scenario.scenario import healthy_reference
 from ied_sim.simulator import Simulator
 from mms import Client
 from scl import Address
@@ -140,8 +140,8 @@ def test_a_directory_that_cannot_be_made_is_named(plant: Path, tmp_path: Path) -
 def test_meters_are_updated_while_serving(
     plant: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("ied_sim.relay.METERING_PERIOD_S", 0.05)
-    monkeypatch.setattr("ied_sim.relay_values.METERING_REFRESH_S", 0.05)
+    monkeypatch.setattr("ied_sim.relay.relay.METERING_PERIOD_S", 0.05)
+    monkeypatch.setattr("ied_sim.relay.values.METERING_REFRESH_S", 0.05)
     scenarios = {"A1_SEL710": healthy_reference("A1_SEL710")}
     with Simulator(scl.read(plant), scenarios, files=tmp_path, ieds=["A1_SEL710"]) as simulator:
         server = simulator.relays["A1_SEL710"].server

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from core.machines.parameters import Connection, Motor
-from ied_sim.fault import NEGLIGIBLE_LEVEL, TurnFault
-from ied_sim.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant, rated_current
-from ied_sim.supply import Harmonic, Supply
-from ied_sim.windings import highest_fault_resistance, winding_circuit
+from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, TurnFault
+from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant, rated_current
+from ied_sim.motor.supply import Harmonic, Supply
+from ied_sim.motor.windings import highest_fault_resistance, winding_circuit
 from tests.ied_sim.motors import DELTA, REFERENCE, SMALL, plant, short
 
 Array = NDArray[np.float64]

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from ied_sim.errors import ProfileError, SimulatorError
-from ied_sim.profile import Profile, RecordFormat, Triggers, read_profile, shipped
-from ied_sim.scenario import RelayScenario
+from ied_sim.profiles.profile import Profile, RecordFormat, Triggers, read_profile, shipped
+from ied_sim.scenario.scenario import RelayScenario
 from mms import Client, FunctionalConstraint, MmsError, NotFound, Report, Value
 from scl import Scl
 from tests.ied_sim.serving import wait_until

@@ -11,8 +11,8 @@ import pytest
 
 from core.recordings import Quantity, Recording, read
 from ied_sim.errors import SimulatorError
-from ied_sim.relay import Relay
-from ied_sim.scenario import healthy_reference
+from ied_sim.relay.relay import Relay
+from ied_sim.scenario.scenario import healthy_reference
 from mms import FunctionalConstraint, Timestamp
 from scl import DEMO_PLANT_SCD, Address
 from scl import read as read_scl

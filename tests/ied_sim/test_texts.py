@@ -9,10 +9,10 @@ import pytest
 
 from core.recordings.compressed_ascii import rows
 from core.recordings.repairs import Repairs
-from ied_sim.contactor import Contactor
-from ied_sim.profile import Triggers
-from ied_sim.protection import DefiniteTime, ProtectionSettings, ThermalOverload
-from ied_sim.scenario import RelayScenario
+from ied_sim.motor.contactor import Contactor
+from ied_sim.profiles.profile import Triggers
+from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
+from ied_sim.scenario.scenario import RelayScenario
 from mms import Client, FunctionalConstraint
 from tests.ied_sim.serving import wait_until
 from tests.ied_sim.simulating import IED, Simulated, fetch, names, recordings, scenario_of, simulated, text

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import scl
 from scl import Address
+from service.client.rest_client import ServiceClient, ServiceError
 from service.demo import MOTORS, SCENARIO
 from service.demo.addresses import free_ports
-from service.rest_client import ServiceClient, ServiceError
 
 RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")
 MOTOR_NAMES = ("PUMP-A1", "FAN-A2", "MILL-A3", "CONVEYOR-B1", "COMPRESSOR-B2", "PUMP-B3")

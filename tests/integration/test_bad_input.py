@@ -14,7 +14,7 @@ import pytest
 from core.recordings import Quantity, comtrade, read
 from mms import Client
 from service.cli import main
-from service.rest_client import ServiceClient
+from service.client.rest_client import ServiceClient
 from tests.integration.listeners import listening_addresses
 from tests.integration.processes import (
     Service,

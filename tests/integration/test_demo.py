@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
+from service.client.rest_client import ServiceClient
 from service.demo.addresses import free_ports
 from service.demo.plant import SERVICE_PORT, running_plant
-from service.exclusive import exclusive
-from service.rest_client import ServiceClient
+from service.process.single_instance import exclusive
 from tests.integration.processes import MOTOR_NAMES, descendants, eventually, is_alive
 
 pytestmark = pytest.mark.timeout(300)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from service.rest_client import ServiceClient
-from service.settings import sqlite_url
+from service.client.rest_client import ServiceClient
+from service.configuration.settings import sqlite_url
 from service.storage import Repository, connect
 from service.storage.states import EventReportState
 from tests.integration.processes import (

@@ -10,7 +10,7 @@ import pytest
 import scl
 from scl import Address
 from service.cli.app import main
-from service.rest_client import ServiceClient
+from service.client.rest_client import ServiceClient
 from tests.integration.processes import RELAYS, Service, descendants, eventually, running_service
 from tests.mms.relays import LOOPBACK, free_port, mute_server
 

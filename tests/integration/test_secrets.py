@@ -11,8 +11,8 @@ from pathlib import Path
 import httpx
 import pytest
 
-from service.relay_access import PASSWORD_VARIABLE
-from service.rest_client import ServiceClient
+from service.client.rest_client import ServiceClient
+from service.configuration.relay_access import PASSWORD_VARIABLE
 from tests.integration.processes import (
     Service,
     all_recordings,

@@ -18,8 +18,8 @@ from mms import (
     ProtocolError,
     Server,
     Timeout,
-    controls,
 )
+from mms.client import controls
 from tests.mms.relays import LOOPBACK
 
 OBJECT = "T1CON/RBGGIO1.SPCSO0{}"

@@ -22,9 +22,9 @@ from mms import (
     TemporarilyUnavailable,
     Timeout,
 )
-from mms import files as files_module
-from mms.file_access import FileGuard
-from mms.files import FileEntry
+from mms.client import files as files_module
+from mms.client.files import FileEntry
+from mms.server.file_access import FileGuard
 from tests.mms.relays import LOOPBACK, RelayProcess, start_relay
 
 CONTENT = bytes(range(256)) * 1000

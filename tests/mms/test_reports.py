@@ -23,7 +23,7 @@ from mms import (
     Timestamp,
     Validity,
 )
-from mms.reports import Subscriptions, _Field
+from mms.client.reports import Subscriptions, _Field
 from tests.mms.relays import LOOPBACK, RelayProcess, start_relay
 
 BUFFERED = "T1PRO/LLN0.BR.BRep01"

@@ -231,7 +231,7 @@ def test_a_relay_frozen_after_the_handshake_is_noticed(pki: Pki, file_root: Path
 def test_a_mute_client_holds_a_server_up_no_longer_than_a_handshake_may_last(
     pki: Pki, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("mms.server._LONGEST_HANDSHAKE_S", 0.5)
+    monkeypatch.setattr("mms.server.server._LONGEST_HANDSHAKE_S", 0.5)
     with start_relay(tls=pki.of_relay()) as relay, socket.create_connection((LOOPBACK, relay.port)) as mute:
         with Client.connect(LOOPBACK, relay.port, connect_timeout_s=10.0, tls=pki.of_client()) as client:
             assert reads(client)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import mms
-from mms.connection import Connection
+from mms.client.connection import Connection
 
 NAMESPACE = "{http://www.iec.ch/61850/2003/SCL}"
 BLOCKS = {"BR", "RP", "LG", "GO", "MS", "US"}

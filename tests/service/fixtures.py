@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Engine
 
-from service.recordings import RecordingStore
-from service.settings import sqlite_url
+from service.configuration.settings import sqlite_url
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from tests.service.plants import two_motor_plant
 

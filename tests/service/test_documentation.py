@@ -5,9 +5,9 @@ from dataclasses import fields
 from pathlib import Path
 
 from service.api import ApiContext, create_app
+from service.configuration.settings import Settings
 from service.plant import Overrides
-from service.recordings import RecordingStore
-from service.settings import Settings
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 
 DOCS = Path(__file__).parents[2] / "docs"

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from service.exclusive import AlreadyRunningError, exclusive
+from service.process.single_instance import AlreadyRunningError, exclusive
 
 HOLDER = """
 import sys, time
 from pathlib import Path
-from service.exclusive import exclusive
+from service.process.single_instance import exclusive
 with exclusive(Path(sys.argv[1]), wait=False):
     print("held", flush=True)
     time.sleep(60)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from service.installation import installation_id
+from service.process.installation import installation_id
 
 
 def test_the_name_stays(tmp_path: Path) -> None:

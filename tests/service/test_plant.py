@@ -3,8 +3,8 @@ from pathlib import Path
 import pytest
 
 import scl
+from service.configuration.settings import Settings, SettingsError
 from service.plant import Overrides, PlantError, Schedule, read_plant
-from service.settings import Settings, SettingsError
 
 DEMO_MOTORS = Path(__file__).parents[2] / "service" / "demo" / "motors.toml"
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.recordings import RecordingStore, RecordingStoreError, safe_name
+from service.recording_store.store import RecordingStore, RecordingStoreError, safe_name
 from tests.service.fixtures import store
 
 __all__ = ["store"]

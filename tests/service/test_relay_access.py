@@ -5,9 +5,15 @@ from pathlib import Path
 import pytest
 
 import scl
+from service.configuration.relay_access import (
+    PASSWORD_VARIABLE,
+    RelayAccess,
+    RelayTls,
+    clear_passwords,
+    credentials,
+)
+from service.configuration.settings import Settings, SettingsError
 from service.plant import read_plant
-from service.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls, clear_passwords, credentials
-from service.settings import Settings, SettingsError
 from tests.service.test_plant import DEMO_MOTORS
 
 TLS = RelayTls(certificate=Path("c"), key=Path("k"), pinned=(Path("p"),))

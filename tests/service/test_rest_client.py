@@ -8,7 +8,7 @@ from threading import Thread
 
 import pytest
 
-from service.rest_client import ServiceClient, ServiceError
+from service.client.rest_client import ServiceClient, ServiceError
 
 ANSWERS = {
     "/api/v1/text": (200, "text/plain", "hello"),

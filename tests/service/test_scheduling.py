@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from service.background.scheduling import LATEST_NS, Scheduler
 from service.plant import Schedule
-from service.scheduling import LATEST_NS, Scheduler
 from service.storage import Repository
 from service.storage.records import EventReport
 from tests.service.collector.conftest import eventually
@@ -98,7 +98,7 @@ def test_a_clock_that_jumps_back_repeats_nothing(repository: Repository) -> None
 
 
 def test_the_thread_looks_by_itself(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.scheduling.PERIOD_S", 0.01)
+    monkeypatch.setattr("service.background.scheduling.PERIOD_S", 0.01)
     scheduled = scheduler(repository)
     assert scheduled.problem() == "the scheduler is not running"
     scheduled._looked_ns = time.time_ns() - MINUTE_NS

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from mms import Client, RelayNotTrusted, Server, TlsConfiguration
-from service.relay_access import credentials
-from service.settings import Settings
+from service.configuration.relay_access import credentials
+from service.configuration.settings import Settings
 from tests.mms.relays import LOOPBACK, start_relay
 
 PAGE = (Path(__file__).parents[2] / "docs" / "security.md").read_text(encoding="utf-8")

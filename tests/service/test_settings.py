@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from service.settings import Settings, SettingsError
+from service.configuration.settings import Settings, SettingsError
 
 
 @pytest.fixture(autouse=True)

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from service.collector.gateways import Gateways
-from service.collector.supervisor import LONGEST_DELAY_S
+from service.background.orphaned_requests import RECORD_PATIENCE_S, Unvisited
+from service.collector.supervision.gateway_processes import Gateways
+from service.collector.supervision.supervisor import LONGEST_DELAY_S
+from service.configuration.settings import Settings
 from service.plant import Plant
-from service.serve import _giving_up
-from service.settings import Settings
+from service.process.serve import _giving_up
 from service.storage import Repository
 from service.storage.records import EventReport
 from service.storage.states import EventReportState
-from service.unvisited import RECORD_PATIENCE_S, Unvisited
 from tests.service.collector.conftest import eventually
 from tests.service.fixtures import database_url, engine, repository
 from tests.service.plants import NOW_NS, two_motor_plant
@@ -167,8 +167,8 @@ def test_a_report_that_a_gateway_took_up_meanwhile_is_not_ended(watch: Watch) ->
 def test_the_service_looks_by_itself(
     repository: Repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.unvisited.PERIOD_S", 0.05)
-    monkeypatch.setattr("service.unvisited.LONGEST_DELAY_S", 0.0)
+    monkeypatch.setattr("service.background.orphaned_requests.PERIOD_S", 0.05)
+    monkeypatch.setattr("service.background.orphaned_requests.LONGEST_DELAY_S", 0.0)
     settings = Settings(data_directory=tmp_path, record_timeout_s=0.1, lease_s=1.0)
     report = repository.request_event_report(MOTOR, now_ns=time.time_ns()).id
     with _giving_up(settings, repository, Gateways(settings, two_motor_plant(), repository)):

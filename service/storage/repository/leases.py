@@ -2,7 +2,8 @@
 
 No clock is compared with another. A gateway bumps its counter; whoever has seen a counter stand still for the
 time of a lease, by a clock of its own that only goes forward, may declare that gateway dead. A gateway that
-cannot bump its counter for less than that ends its visits by itself (service/collector/fence.py).
+cannot bump its counter for less than that ends its visits by itself
+(service/collector/gateway/lease_watchdog.py).
 """
 
 from collections.abc import Collection

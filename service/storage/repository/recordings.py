@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from sqlalchemy import ColumnElement, delete, func, select
 from sqlalchemy.orm import Session
 
-from service.recordings import StoredRecording
+from service.recording_store.store import StoredRecording
 from service.storage.models import (
     EventReportRow,
     IedRow,

@@ -11,10 +11,10 @@ from scipy.interpolate import CubicSpline
 from core.machines.motor_file import Plate
 from core.machines.parameters import ChannelNames, Limits, MachineParameters, Motor
 from core.recordings import Channel, Quantity, Recording
-from ied_sim.load import Load
-from ied_sim.plant import MotorPlant
-from ied_sim.sensors import Sensors
-from ied_sim.supply import Supply
+from ied_sim.motor.load import Load
+from ied_sim.motor.plant import MotorPlant
+from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.supply import Supply
 
 Array = NDArray[np.float64]
 

@@ -14,10 +14,10 @@ from core.machines.candidates import LoadLaw
 from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
 from core.recordings import Recording, RecordingError
 from core.signals.clarke import clarke, inverse_clarke
-from ied_sim.load import Load
-from ied_sim.plant import MotorPlant
-from ied_sim.sensors import Sensors
-from ied_sim.supply import Supply
+from ied_sim.motor.load import Load
+from ied_sim.motor.plant import MotorPlant
+from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.supply import Supply
 from tests.core.commissioning.starts import StartRecord, plate_of, with_parameters
 from tests.core.motors import LARGE, MEDIUM, REFERENCE
 from tests.core.page_equations import integrate

@@ -9,10 +9,10 @@ from core.machines.candidates import LoadLaw
 from core.machines.starting import StartCandidates, StartPlayback, start_candidate
 from core.machines.supply import Supply, supply
 from core.signals.clarke import clarke
-from ied_sim.load import Load
-from ied_sim.plant import MotorPlant
-from ied_sim.sensors import Sensors
-from ied_sim.supply import Supply as Busbar
+from ied_sim.motor.load import Load
+from ied_sim.motor.plant import MotorPlant
+from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.supply import Supply as Busbar
 from tests.core.motors import MEDIUM, REFERENCE
 
 W_S = 2.0 * np.pi * 50.0

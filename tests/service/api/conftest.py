@@ -7,8 +7,8 @@ import pytest
 import structlog
 
 from service.api import ApiContext, create_app
-from service.recordings import RecordingStore
-from service.settings import Settings
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository, store

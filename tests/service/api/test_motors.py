@@ -1,7 +1,7 @@
 import httpx
 import pytest
 
-from service.recordings import RecordingStore
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 

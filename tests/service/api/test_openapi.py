@@ -12,8 +12,8 @@ from schemathesis.core.result import Ok
 from schemathesis.specs.openapi.checks import positive_data_acceptance
 
 from service.api import ApiContext, create_app
-from service.recordings import RecordingStore
-from service.settings import Settings, sqlite_url
+from service.configuration.settings import Settings, sqlite_url
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.records import Sample
 from service.storage.states import AlarmKind, LinkState

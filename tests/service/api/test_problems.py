@@ -10,8 +10,8 @@ import pytest
 from sqlalchemy import Engine
 
 from service.api import ApiContext, create_app
-from service.recordings import RecordingStore
-from service.settings import Settings
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from tests.service.api.serving import serving
 from tests.service.plants import two_motor_plant

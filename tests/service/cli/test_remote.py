@@ -7,8 +7,8 @@ import pytest
 
 from service.api import ApiContext, create_app
 from service.cli.app import main
-from service.recordings import RecordingStore
-from service.settings import Settings
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import LinkState

@@ -11,10 +11,10 @@ from threading import Thread
 import pytest
 
 from core.machines.parameters import MachineParameters, Motor, Nameplate
-from service.collector.relay_session import RelaySession
+from service.collector.session.relay_session import RelaySession
+from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
-from service.recordings import RecordingStore
-from service.settings import Settings
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.records import EventReport, RecordingEntry
 from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState

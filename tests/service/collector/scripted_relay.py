@@ -18,7 +18,7 @@ from mms import (
     Timestamp,
     Value,
 )
-from mms.model import Node
+from mms.server.model import Node
 from scl.model_text import model_text
 
 NAME = "A1_SEL710"

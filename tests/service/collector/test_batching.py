@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from service.collector.batching import Batches
+from service.collector.gateway.batch_writer import Batches
 from service.storage import Repository, connect
 from service.storage.records import LinkNote, LinkTraffic, Sample
 from service.storage.states import LinkState

@@ -10,7 +10,7 @@ import pytest
 
 import scl
 from mms import Client, DataAccessError, Timestamp
-from service.collector.clock import ClockWatch, reading
+from service.collector.session.clock import ClockWatch, reading
 from service.plant.metering import measurands
 from service.storage.states import ClockQuality, EventReportState
 from tests.service.collector.conftest import Bench, eventually

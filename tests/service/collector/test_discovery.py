@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 import scl
-from ied_sim.profile import read_profile
-from ied_sim.standalone import standalone
+from ied_sim.profiles.profile import read_profile
+from ied_sim.scenario.standalone import standalone
 from mms import Client
 from scl import Address
 from scl.data_model import Ied
-from service.collector.browsing import browse
+from service.collector.session.browsing import browse
 from service.plant import Overrides, TriggerAction, differences
 from service.plant.offer import node_class, promised_by
 from service.storage.states import AlarmKind, EventReportState, LinkState

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from mms import Client
-from service.collector.event_folder import Contents, EventFolder
+from service.collector.records.event_folder import Contents, EventFolder
 from service.plant import Overrides
 from service.storage.states import EventReportState, LinkState
 from tests.service.collector.conftest import Bench, eventually
@@ -121,7 +121,7 @@ def test_of_empty_folders_the_one_that_gets_a_recording_is_it(client: Client, re
 def test_a_folder_that_goes_and_comes(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.event_folder.SEARCH_PERIOD_S", 0.1)
+    monkeypatch.setattr("service.collector.records.event_folder.SEARCH_PERIOD_S", 0.1)
     relay.events.rmdir()
     with bench.session():
         assert eventually(lambda: "looked for" in (bench.repository.ied(NAME).link_reason or ""))

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from core.recordings import read
-from service.collector.formats import one_format_an_event, remote_of
-from service.collector.listing import ListedRecord, understand
-from service.collector.record_directory import PULL_ATTEMPTS
+from service.collector.records.directory import PULL_ATTEMPTS
+from service.collector.records.formats import one_format_an_event, remote_of
+from service.collector.records.listing import ListedRecord, understand
 from service.storage.states import AlarmKind, EventReportState, RecordingState
 from tests.ied_sim.simulating import IED, scenario_of, simulated
 from tests.service.collector.conftest import Bench, eventually
@@ -177,7 +177,7 @@ def test_a_wish_fails_where_each_format_is_refused(bench: Bench, relay: Scripted
 def test_an_event_report_stands_in_for_a_comtrade_that_is_listed_only(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.002)
+    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.002)
     relay.absent = {"HR_10007"}
     relay.write_record("HR_10007")
     relay.write_file("CR_10007.CEV", b"event report of the same event")

@@ -18,16 +18,16 @@ import scl
 from mms import Server
 from scl import Address
 from scl.model_text import model_text
-from service.collector.gateway import Gateway, Identity
-from service.collector.gateways import running_gateways
-from service.collector.neighbours import Neighbours
-from service.collector.supervisor import CollectorSupervisor
-from service.collector.visiting import BUSY
+from service.collector.gateway.gateway import Gateway, Identity
+from service.collector.gateway.peer_liveness import Neighbours
+from service.collector.session.visit_marks import BUSY
+from service.collector.supervision.gateway_processes import running_gateways
+from service.collector.supervision.supervisor import CollectorSupervisor
+from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
 from service.plant import Plant, read_plant
-from service.recordings import RecordingStore
-from service.settings import Settings
+from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository, connect, migrate
 from service.storage.states import LinkState
 from tests.service.collector.conftest import eventually

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from mms.prototypes import PROTOTYPES
-from service.collector.alarms import AND_MORE, RelayAlarms
-from service.collector.allowance import BLOCK_BYTES, DAY_NS, DailyAllowance
+from service.collector.records.allowance import BLOCK_BYTES, DAY_NS, DailyAllowance
+from service.collector.session.alarms import AND_MORE, RelayAlarms
 from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
@@ -94,7 +94,7 @@ def test_a_name_that_cannot_be_trusted_is_an_alarm_while_it_is_listed(
 def test_a_record_that_grows_for_ever_is_an_alarm_until_it_stops(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.record_directory.UNSTEADY_S", 0.5)
+    monkeypatch.setattr("service.collector.records.directory.UNSTEADY_S", 0.5)
     relay.write_file("HR_1.CFG", b"configuration")
     size = 0
     with bench.session():
@@ -119,7 +119,7 @@ def shifty(bench: Bench) -> list[RecordingState]:
 def test_a_record_of_another_size_at_each_look_is_asked_for_a_few_times_only(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.record_directory.ATTEMPTS_OF_A_NAME", 3)
+    monkeypatch.setattr("service.collector.records.directory.ATTEMPTS_OF_A_NAME", 3)
     relay.shifts = True
     relay.write_record("SHIFTY")
     with bench.session():
@@ -169,7 +169,7 @@ def test_nothing_is_deleted_on_a_relay(bench: Bench, relay: ScriptedRelay) -> No
 def test_a_million_bad_names_are_a_thousand_alarms_and_one(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.alarms.MOST_OF_A_KIND", 3)
+    monkeypatch.setattr("service.collector.session.alarms.MOST_OF_A_KIND", 3)
     alarms = RelayAlarms(NAME, bench.repository)
     for number in range(50):
         alarms.raise_alarm(AlarmKind.FILE_REFUSED, f"bad {number}", "outside")

@@ -3,7 +3,7 @@
 import pytest
 
 from mms import Reason, Report, ReportMember
-from service.collector.continuity import Continuity
+from service.collector.session.report_continuity import Continuity
 from service.storage.states import LinkState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import FAULT_NUMBER, NAME, RECORD_MADE, ScriptedRelay

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.collector.listing import ListedRecord, understand
-from service.collector.settling import Settling
+from service.collector.records.listing import ListedRecord, understand
+from service.collector.records.settling import Settling
 
 
 @dataclass(frozen=True)

@@ -10,9 +10,9 @@ import pytest
 import scl
 from mms import Client, DataAccessError, FunctionalConstraint, ProtocolError, Server, Value
 from scl.model_text import model_text
-from service.collector.browsing import browse
-from service.collector.metering import Metering
-from service.collector.relay_session import RelaySession
+from service.collector.session.browsing import browse
+from service.collector.session.metering import Metering
+from service.collector.session.relay_session import RelaySession
 from service.plant import Measurand, MeteredQuantity, Relay
 from service.plant.metering import measurands, measurands_offered
 from service.storage.records import Sample

@@ -4,7 +4,7 @@ from dataclasses import replace
 from threading import Thread
 
 import scl
-from service.collector.relay_session import RelaySession
+from service.collector.session.relay_session import RelaySession
 from service.plant.metering import measurands
 from service.storage.records import Sample
 from service.storage.states import EventReportState, LinkState

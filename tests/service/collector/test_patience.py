@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from service.collector.patience import Patience
+from service.collector.triggers.deadlines import Patience
 from service.storage.records import EventReport
 from service.storage.states import EventReportOrigin, EventReportState
 

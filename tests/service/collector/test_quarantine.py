@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from service.collector import relay_session
-from service.collector.quarantine import FAULTS_IN_A_ROW, PROBATION_S, Conduct, after_end
-from service.collector.visiting import Visits
+from service.collector.session import relay_session
+from service.collector.session.protocol_faults import FAULTS_IN_A_ROW, PROBATION_S, Conduct, after_end
+from service.collector.session.visit_marks import Visits
 from service.storage import Repository
 from service.storage.records import Quarantine
 from service.storage.states import AlarmKind, LinkState
@@ -41,7 +41,7 @@ def crash_in(directory: Path, *, busy: tuple[str, ...], waiting: tuple[str, ...]
 import os, signal
 from contextlib import ExitStack
 from pathlib import Path
-from service.collector.visiting import Visits
+from service.collector.session.visit_marks import Visits
 with ExitStack() as stack:
     visits = Visits(Path({str(directory)!r}))
     marks = {{relay: stack.enter_context(visits.mark(relay)) for relay in {busy + waiting!r}}}

@@ -7,7 +7,7 @@ from threading import Event, Thread
 
 import pytest
 
-from service.collector.gateway import Gateway, Identity
+from service.collector.gateway.gateway import Gateway, Identity
 from service.plant import Plant, PlantMotor, Site
 from service.storage.states import EventReportState, LinkState
 from tests.service.collector.conftest import MOTOR, Bench, eventually

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from service.collector.record_directory import MANY_ATTEMPTS, PULL_ATTEMPTS
+from service.collector.records.directory import MANY_ATTEMPTS, PULL_ATTEMPTS
 from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import ScriptedRelay
@@ -26,7 +26,7 @@ def test_a_relay_that_pauses_while_it_writes_is_waited_for(bench: Bench, relay: 
 def test_two_records_reported_at_once_are_both_expected(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.record_directory.UNTOLD_SETTLE_S", 3600.0)
+    monkeypatch.setattr("service.collector.records.directory.UNTOLD_SETTLE_S", 3600.0)
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.UP)
         relay.write_record("HR_1", report=False)
@@ -63,7 +63,7 @@ def files_of(bench: Bench, name: str) -> dict[str, bytes]:
 def test_a_file_that_silences_the_relay_holds_up_no_other(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.record_directory.MANY_ATTEMPTS", 1)
+    monkeypatch.setattr("service.collector.records.directory.MANY_ATTEMPTS", 1)
     relay.stuck.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():
@@ -102,8 +102,8 @@ def states(bench: Bench) -> list[RecordingState]:
 def test_a_relay_that_denies_its_files_for_long_loses_none(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.0001)
-    monkeypatch.setattr("service.collector.record_directory.ATTEMPTS_OF_A_NAME", PULL_ATTEMPTS)
+    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.0001)
+    monkeypatch.setattr("service.collector.records.directory.ATTEMPTS_OF_A_NAME", PULL_ATTEMPTS)
     relay.denied.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():
@@ -126,7 +126,7 @@ def test_a_relay_that_denies_its_files_for_long_loses_none(
 def test_a_denied_record_that_is_then_not_found_is_no_worse_than_others(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.000001)
+    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.000001)
     relay.denied.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():
@@ -141,8 +141,8 @@ def test_a_denied_record_that_is_then_not_found_is_no_worse_than_others(
 def test_a_record_denied_for_a_day_is_refused_and_stays_an_alarm(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.0001)
-    monkeypatch.setattr("service.collector.record_directory.DENIED_ATTEMPTS", PULL_ATTEMPTS + 2)
+    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.0001)
+    monkeypatch.setattr("service.collector.records.directory.DENIED_ATTEMPTS", PULL_ATTEMPTS + 2)
     relay.denied.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():

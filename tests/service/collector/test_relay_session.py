@@ -9,8 +9,8 @@ import pytest
 from structlog.testing import capture_logs
 
 from mms import Client, DataAccessError
-from service.collector.relay_session import RelaySession
-from service.recordings import Incoming
+from service.collector.session.relay_session import RelaySession
+from service.recording_store.store import Incoming
 from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
 from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
@@ -323,7 +323,7 @@ def test_a_link_out_of_the_events_folder_is_not_followed(
 ) -> None:
     secret = tmp_path / "secret"
     secret.write_bytes(b"not the relay's to give")
-    monkeypatch.setattr("service.collector.retrying.FIRST_PAUSE_S", 0.01)
+    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.01)
     (relay.events / "HR_1.DAT").symlink_to(secret)
     relay.write_file("HR_1.CFG", b"configuration")
     with bench.session():
@@ -363,7 +363,7 @@ def test_a_relay_that_forgot_the_last_report_is_subscribed_anew(bench: Bench, re
 
 
 def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.collector.relay_session.FIRST_RETRY_S", 0.05)
+    monkeypatch.setattr("service.collector.session.relay_session.FIRST_RETRY_S", 0.05)
     failures: list[str] = []
     note_failure = RelaySession._note_failure
 
@@ -380,7 +380,7 @@ def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytes
 def test_a_relay_that_stays_down_is_mentioned_now_and_then(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.relay_session.FIRST_RETRY_S", 0.05)
-    monkeypatch.setattr("service.collector.link.REMIND_AFTER_S", 0.0)
+    monkeypatch.setattr("service.collector.session.relay_session.FIRST_RETRY_S", 0.05)
+    monkeypatch.setattr("service.collector.session.link.REMIND_AFTER_S", 0.0)
     with capture_logs() as logs, bench.session():
         assert eventually(lambda: [entry["event"] for entry in logs].count("link down") >= 2)

@@ -5,9 +5,9 @@ from itertools import pairwise
 import pytest
 
 from mms import errors
-from service.collector.listing import ListedRecord
-from service.collector.record_directory import DENIED_ATTEMPTS, PULL_ATTEMPTS
-from service.collector.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, LONGEST_PAUSE_S, Retries
+from service.collector.records.directory import DENIED_ATTEMPTS, PULL_ATTEMPTS
+from service.collector.records.listing import ListedRecord
+from service.collector.records.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, LONGEST_PAUSE_S, Retries
 
 OLD, NEW = ListedRecord("HR_1", ()), ListedRecord("HR_2", ())
 

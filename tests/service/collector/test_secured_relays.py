@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from ied_sim.access import Access
+from ied_sim.scenario.access import Access
 from mms import TlsConfiguration
-from service.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
+from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
 from service.storage.states import EventReportState, LinkState
 from tests.ied_sim.simulating import Simulated, scenario_of, simulated
 from tests.mms.pki import Pki

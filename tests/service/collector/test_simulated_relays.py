@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from core.recordings import Recording, read
-from ied_sim.load import Load, LoadCycle
-from ied_sim.misbehaviour import Kind, Misbehaviour
-from ied_sim.plant import rated_current
-from ied_sim.profile import Triggers
+from ied_sim.front.misbehaviour import Kind, Misbehaviour
+from ied_sim.motor.load import Load, LoadCycle
+from ied_sim.motor.plant import rated_current
+from ied_sim.profiles.profile import Triggers
 from service.plant.recognition import recognise
 from service.storage.states import EventReportState, LinkState, RecordingState
 from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated, text

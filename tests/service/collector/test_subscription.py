@@ -11,9 +11,9 @@ from structlog.testing import capture_logs
 
 import scl
 from mms import Client, Report
-from service.collector.allowance import DailyAllowance
-from service.collector.link import Link
-from service.collector.subscription import Inbox, Subscription
+from service.collector.records.allowance import DailyAllowance
+from service.collector.session.link import Link
+from service.collector.session.reports import Inbox, Subscription
 from service.plant import promised
 from service.storage.states import LinkState
 from tests.service.collector.conftest import Bench, eventually
@@ -70,7 +70,7 @@ def test_the_best_block_that_is_free_tells_of_the_records(
 def test_with_all_blocks_taken_the_directory_is_polled_until_one_is_free(
     here: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.subscription.RETRY_S", 0.5)
+    monkeypatch.setattr("service.collector.session.reports.RETRY_S", 0.5)
     here.with_settings(poll_period_s=0.2)
     with ExitStack() as others:
         others.enter_context(taken(relay, *BUFFERED, UNBUFFERED))

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from service.cli import main
+from service.client.rest_client import Document
 from service.demo.status import MotorStatus
 from service.demo.truth import Truth
-from service.rest_client import Document
 from tests.integration.processes import MOTOR_NAMES, running_service, simulated_plant
 
 FAULT_B = Truth(mu_f=0.05, theta_f=1, load_level=0.65)

@@ -14,7 +14,7 @@ from sqlalchemy import Engine
 from service.jobs import JobRunner
 from service.jobs.runner import JobLimits
 from service.jobs.worker_process import follow_service
-from service.recordings import RecordingStore
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.states import EventReportState, JobState, RecordingState
 from tests.service.jobs.stand_ins import GO, act_as_told, fail_to_start, prepare_when_told

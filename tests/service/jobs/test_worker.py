@@ -12,7 +12,7 @@ from core.recordings.comtrade_writer import write
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Rejected
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
-from service.recordings import RecordingStore
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from tests.core.motors import REFERENCE
 from tests.core.phase_circuits import recording as waveforms

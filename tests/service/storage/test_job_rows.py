@@ -3,7 +3,7 @@ from dataclasses import replace
 import pytest
 from sqlalchemy.exc import StatementError
 
-from service.recordings import RecordingStore
+from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository, StateConflictError
 from service.storage.records import ClaimedJob, RemoteRecord
 from service.storage.states import EventReportState, JobState, RecordingState

@@ -6,9 +6,9 @@ from statistics import fmean
 
 import pytest
 
-from service.housekeeping import Housekeeping
+from service.background.housekeeping import Housekeeping
+from service.configuration.settings import Settings
 from service.plant import MeteredQuantity
-from service.settings import Settings
 from service.storage import NotFoundError, Repository
 from service.storage.models import MeasurementRow
 from service.storage.records import Measurement, Sample

@@ -6,7 +6,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import Engine, inspect, text
 
-from service.recordings import RecordingStore
+from service.recording_store.store import RecordingStore
 from service.storage import Repository, StorageError, connect, migrate
 from service.storage.migrations import config
 from service.storage.models import Base

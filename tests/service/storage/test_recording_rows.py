@@ -1,6 +1,6 @@
 import pytest
 
-from service.recordings import RecordingStore, StoredRecording
+from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import NotFoundError, Repository
 from service.storage.records import ClockReading, RecordingEntry, RemoteRecord
 from service.storage.states import ClockQuality, EventReportState, RecordingState

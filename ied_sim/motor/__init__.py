@@ -1,0 +1,1 @@
+"""The simulated motor: supply, contactor, windings, load, sensors."""

@@ -1,0 +1,142 @@
+"""Motion of the winding circuit in time: classical Runge-Kutta of fourth order, compiled.
+
+The state is the loop fluxes [V s], the rotor's speed [rad/s] and its electrical angle [rad]. Voltages and
+load torque are known functions of time, handed in at the middle of the steps too.
+"""
+
+from math import cos, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ied_sim.motor.compiled import compiled
+
+Array = NDArray[np.float64]
+
+
+@compiled
+def _solve_symmetric(matrix: Array, x: Array) -> None:
+    """Solve matrix y = x into x, Cholesky in place: for so few loops a call of LAPACK costs more."""
+    m = x.size
+    for j in range(m):
+        pivot = matrix[j, j]
+        for k in range(j):
+            pivot -= matrix[j, k] * matrix[j, k]
+        pivot = sqrt(pivot)
+        matrix[j, j] = pivot
+        for i in range(j + 1, m):
+            entry = matrix[i, j]
+            for k in range(j):
+                entry -= matrix[i, k] * matrix[j, k]
+            matrix[i, j] = entry / pivot
+    for i in range(m):
+        value = x[i]
+        for k in range(i):
+            value -= matrix[i, k] * x[k]
+        x[i] = value / matrix[i, i]
+    for i in range(m - 1, -1, -1):
+        value = x[i]
+        for k in range(i + 1, m):
+            value -= matrix[k, i] * x[k]
+        x[i] = value / matrix[i, i]
+
+
+@compiled
+def _loop_currents(A: Array, B: Array, D: Array, state: Array, work: Array, q: Array) -> None:
+    """q with L(theta) q = flux."""
+    m = q.size
+    c, s = cos(state[m + 1]), sin(state[m + 1])
+    for i in range(m):
+        q[i] = state[i]
+        for j in range(i + 1):
+            work[i, j] = A[i, j] + B[i, j] * c + D[i, j] * s
+    _solve_symmetric(work, q)
+
+
+@compiled
+def _derivative(
+    A: Array,
+    B: Array,
+    D: Array,
+    R: Array,
+    pole_pairs: int,
+    inertia: float,
+    drive: Array,
+    load_torque: float,
+    state: Array,
+    work: Array,
+    q: Array,
+    rate: Array,
+) -> None:
+    """d(flux)/dt = e - R q;  J dw_m/dt = p q' (dL/dtheta) q / 2 - T_load;  dtheta/dt = p w_m."""
+    m = q.size
+    _loop_currents(A, B, D, state, work, q)
+    c, s = cos(state[m + 1]), sin(state[m + 1])
+    torque = 0.0
+    for i in range(m):
+        drop = 0.0
+        turn = 0.0
+        for j in range(m):
+            drop += R[i, j] * q[j]
+            turn += (D[i, j] * c - B[i, j] * s) * q[j]
+        rate[i] = drive[i] - drop
+        torque += q[i] * turn
+    rate[m] = (0.5 * pole_pairs * torque - load_torque) / inertia
+    rate[m + 1] = pole_pairs * state[m]
+
+
+@compiled
+def integrate(
+    A: Array,
+    B: Array,
+    D: Array,
+    R: Array,
+    pole_pairs: int,
+    inertia: float,
+    drive: Array,
+    load_torque: Array,
+    step: float,
+    steps_per_sample: int,
+    state: Array,
+) -> tuple[Array, Array]:
+    """Loop currents and speed at every `steps_per_sample`-th step, the initial state included.
+
+    A, B, D, R: shape (m, m), see `windings`. drive: voltage around each loop [V], shape (2 n + 1, m), at
+    every half step. load_torque: [N m], shape (2 n + 1,). step: [s]. state: initial (m fluxes, speed, angle);
+    holds the final one afterwards. Returns currents, shape (n / steps_per_sample + 1, m) [A], and mechanical
+    speed [rad/s].
+    """
+    m = state.size - 2
+    steps = (load_torque.size - 1) // 2
+    samples = steps // steps_per_sample + 1
+    currents = np.empty((samples, m))
+    speed = np.empty(samples)
+    work = np.empty((m, m))
+    q = np.empty(m)
+    trial = np.empty(m + 2)
+    k1, k2, k3, k4 = np.empty(m + 2), np.empty(m + 2), np.empty(m + 2), np.empty(m + 2)
+
+    _loop_currents(A, B, D, state, work, q)
+    currents[0] = q
+    speed[0] = state[m]
+    for n in range(samples - 1):
+        for k in range(steps_per_sample):
+            now = 2 * (n * steps_per_sample + k)
+            e0, e1, e2 = drive[now], drive[now + 1], drive[now + 2]
+            T0, T1, T2 = load_torque[now], load_torque[now + 1], load_torque[now + 2]
+            _derivative(A, B, D, R, pole_pairs, inertia, e0, T0, state, work, q, k1)
+            for i in range(m + 2):
+                trial[i] = state[i] + 0.5 * step * k1[i]
+            _derivative(A, B, D, R, pole_pairs, inertia, e1, T1, trial, work, q, k2)
+            for i in range(m + 2):
+                trial[i] = state[i] + 0.5 * step * k2[i]
+            _derivative(A, B, D, R, pole_pairs, inertia, e1, T1, trial, work, q, k3)
+            for i in range(m + 2):
+                trial[i] = state[i] + step * k3[i]
+            _derivative(A, B, D, R, pole_pairs, inertia, e2, T2, trial, work, q, k4)
+            for i in range(m + 2):
+                state[i] += step / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i])
+        _loop_currents(A, B, D, state, work, q)
+        currents[n + 1] = q
+        speed[n + 1] = state[m]
+    return currents, speed

@@ -1,0 +1,249 @@
+"""A motor on its busbar with its load and its sensors, simulated on demand.
+
+Nothing runs between windows: a window is simulated from a little before its start, long enough for the motor
+to settle. Supply, load and fault are functions of the time since the simulator's start, so that windows of
+one plant are consistent with each other and the same every time.
+"""
+
+from dataclasses import dataclass
+from math import ceil, inf, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.machines.parameters import Connection, Motor
+from ied_sim.motor.contactor import Closure, Contactor
+from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
+from ied_sim.motor.integration import integrate
+from ied_sim.motor.load import Load
+from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.supply import Supply
+from ied_sim.motor.warming import Warming
+from ied_sim.motor.windings import WindingCircuit, winding_circuit
+
+Array = NDArray[np.float64]
+
+STEP_RATE_HZ = 20_000.0
+METERING_STEP_RATE_HZ = 4_000.0
+HIGHEST_STEP_RATE_HZ = 200_000.0
+RATE_PER_STEP = 2.0
+"""Fastest decay, in decays a step: RK4 is stable to 2.78, and such a mode follows its drive."""
+SETTLING_S = 1.0
+DISTURBANCE_MEMORY_S = 2.0
+"""How long after a supply event a window is simulated from before it."""
+START_MEMORY_S = 10.0
+"""How long after the contactor closed a window is simulated from rest."""
+RATED_POWER_FACTOR_TIMES_EFFICIENCY = 0.7
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """What truly happens: line currents and phase voltages, shape (3, n), and speed, shape (n,)."""
+
+    currents_A: Array
+    voltages_V: Array
+    speed_rad_s: Array
+
+
+@dataclass(frozen=True, slots=True)
+class MotorPlant:
+    """One motor with everything around it. `fault` None means a healthy motor; `seed` that of the noise.
+
+    warming None: the windings have the parameters' resistance throughout.  broken_bars: share of the cage's.
+    contactor: connects the motor; None where it always runs. A motor that is connected starts from rest.
+    """
+
+    motor: Motor
+    supply: Supply
+    load: Load
+    sensors: Sensors
+    fault: FaultCourse | None = None
+    seed: int = 0
+    warming: Warming | None = None
+    broken_bars: float = 0.0
+    contactor: Contactor | None = None
+
+    def window(
+        self, start_s: float, duration_s: float, sample_rate_hz: float, *, step_rate_hz: float = STEP_RATE_HZ
+    ) -> Array:
+        """Measured samples of IA IB IC [A], VA VB VC [V], shape (6, n), from `start_s` since the start on.
+
+        The motor is integrated in steps of 1 / step_rate_hz, or finer ones where its fault needs them.
+        """
+        true = self.operation(
+            start_s,
+            duration_s,
+            sample_rate_hz,
+            current_delay_s=self.sensors.current_delay_s,
+            step_rate_hz=step_rate_hz,
+        )
+        random = np.random.default_rng([self.seed, round(start_s * 1e6) % 2**63])
+        return self.sensors.measure(np.vstack((true.currents_A, true.voltages_V)), self.rated_values, random)
+
+    @property
+    def rated_values(self) -> Array:
+        """Rated line current and phase voltage of the six channels, rms, shape (6,): the current a guess."""
+        return np.repeat([rated_current(self.motor), self.motor.nameplate.rated_voltage_V / sqrt(3)], 3)
+
+    def operation(
+        self,
+        start_s: float,
+        duration_s: float,
+        sample_rate_hz: float,
+        *,
+        settling_s: float = SETTLING_S,
+        current_delay_s: float = 0.0,
+        step_rate_hz: float = STEP_RATE_HZ,
+    ) -> Operation:
+        """Running operation, simulated from `settling_s` before the window.
+
+        With `current_delay_s` the currents are those of so much earlier than the voltages beside them.
+        """
+        begin_s = start_s - current_delay_s
+        samples = round(duration_s * sample_rate_hz)
+        end_s = begin_s + samples / sample_rate_hz
+        always = (Closure(),)
+        closures = always if self.contactor is None else self.contactor.closures(begin_s, end_s)
+        currents, speed = np.zeros((3, samples)), np.zeros(samples)
+        for closure in closures:
+            here = self._connected(closure, begin_s, samples, sample_rate_hz, settling_s, step_rate_hz)
+            first, line_currents, turning = here
+            currents[:, first : first + turning.size] = line_currents
+            speed[first : first + turning.size] = turning
+        times = start_s + np.arange(samples) / sample_rate_hz
+        return Operation(currents, self.supply.phase_voltages(times), speed)
+
+    def _connected(
+        self,
+        closure: Closure,
+        begin_s: float,
+        samples: int,
+        sample_rate_hz: float,
+        settling_s: float,
+        step_rate_hz: float,
+    ) -> tuple[int, Array, Array]:
+        """First sample, line currents and speed while connected, of `samples` from `begin_s` on."""
+        last = samples
+        if closure.opened_s < inf:
+            last = min(samples, ceil((closure.opened_s - begin_s) * sample_rate_hz))
+        if begin_s - closure.closed_s > START_MEMORY_S:
+            circuit = self.circuit(begin_s)
+            from_s = self.supply.disturbed_since(begin_s, DISTURBANCE_MEMORY_S) - settling_s
+            settling = ceil((begin_s - from_s) * sample_rate_hz)
+            from_s = begin_s - settling / sample_rate_hz
+            state = self._running_state(circuit, from_s)
+            currents, speed = self._simulate(
+                circuit, state, from_s, settling + last, sample_rate_hz, step_rate_hz
+            )
+            return 0, currents[:, settling:], speed[settling:]
+        return self._from_rest(closure.closed_s, begin_s, last, sample_rate_hz, step_rate_hz)
+
+    def _from_rest(
+        self, closed_s: float, begin_s: float, last: int, sample_rate_hz: float, step_rate_hz: float
+    ) -> tuple[int, Array, Array]:
+        """As `_connected`, of a motor at rest until `closed_s`; samples lie on the grid of `begin_s`."""
+        first = ceil((closed_s - begin_s) * sample_rate_hz)
+        if last <= first:
+            return 0, np.zeros((3, 0)), np.zeros(0)
+        circuit = self.circuit(closed_s)
+        first_s = begin_s + first / sample_rate_hz
+        state = np.zeros(circuit.loops + 2)
+        if first_s > closed_s:
+            # The contactor does not wait for a sample: the time up to the first one is simulated apart.
+            self._simulate(circuit, state, closed_s, 2, 1 / (first_s - closed_s), step_rate_hz)
+        currents, speed = self._simulate(circuit, state, first_s, last - first, sample_rate_hz, step_rate_hz)
+        seen = max(0, -first)
+        return max(0, first), currents[:, seen:], speed[seen:]
+
+    def start_up(self, start_s: float, duration_s: float, sample_rate_hz: float) -> Operation:
+        """Direct start from rest: the voltage comes at `start_s`."""
+        circuit = self.circuit(start_s)
+        samples = round(duration_s * sample_rate_hz)
+        rest = np.zeros(circuit.loops + 2)
+        currents, speed = self._simulate(circuit, rest, start_s, samples, sample_rate_hz, STEP_RATE_HZ)
+        times = start_s + np.arange(samples) / sample_rate_hz
+        return Operation(currents, self.supply.phase_voltages(times), speed)
+
+    def fault_at(self, time_s: float) -> TurnFault | None:
+        """The fault at one moment, None where the motor is as good as healthy."""
+        if self.fault is None:
+            return None
+        fault = self.fault.at(time_s)
+        level = fault.equivalent_level(self.motor.parameters.stator_resistance_ohm)
+        return fault if level > NEGLIGIBLE_LEVEL else None
+
+    def circuit(self, time_s: float) -> WindingCircuit:
+        """The winding circuit at one moment; a window has that of its start."""
+        return winding_circuit(
+            self.motor.parameters,
+            self.motor.nameplate.connection,
+            self.fault_at(time_s),
+            resistance_factor=1.0 if self.warming is None else self.warming.resistance_factor(time_s),
+            broken_bars=self.broken_bars,
+        )
+
+    def _simulate(
+        self,
+        circuit: WindingCircuit,
+        state: Array,
+        first_s: float,
+        samples: int,
+        sample_rate_hz: float,
+        step_rate_hz: float,
+    ) -> tuple[Array, Array]:
+        """Line currents, shape (3, samples), and speed from `first_s` on."""
+        needed_hz = max(step_rate_hz, circuit.fastest_rate() / RATE_PER_STEP)
+        steps_per_sample = max(1, ceil(needed_hz / sample_rate_hz))
+        step = 1 / (sample_rate_hz * steps_per_sample)
+        half_steps = np.arange(2 * (samples - 1) * steps_per_sample + 1, dtype=np.float64)
+        times = first_s + half_steps * (step / 2)
+        nameplate = self.motor.nameplate
+        load_torque = self.supply.direction * nameplate.rated_torque_Nm * self.load.levels(times)
+        drive = self.supply.phase_voltages(times).T @ circuit.drive.T
+        currents, speed = integrate(
+            circuit.constant,
+            circuit.cosine,
+            circuit.sine,
+            circuit.resistance,
+            nameplate.pole_pairs,
+            self.motor.parameters.inertia_kgm2,
+            np.ascontiguousarray(drive),
+            load_torque,
+            step,
+            steps_per_sample,
+            state,
+        )
+        return circuit.line_currents(currents), speed
+
+    def _running_state(self, circuit: WindingCircuit, time_s: float) -> Array:
+        """A guess close enough to settle from: no-load fluxes, and slip in proportion to torque."""
+        nameplate = self.motor.nameplate
+        w = 2 * np.pi * self.supply.frequency(time_s)
+        quarter_cycle_ago = np.array([time_s - np.pi / 2 / w])
+        flux = circuit.drive @ self.supply.phase_voltages(quarter_cycle_ago)[:, 0] / w
+        stator = np.flatnonzero(circuit.drive.any(axis=1))
+        inductance = circuit.inductance(0.0)
+        currents = np.zeros(circuit.loops)
+        currents[stator] = np.linalg.solve(inductance[np.ix_(stator, stator)], flux[stator])
+
+        pull = (
+            3
+            * nameplate.pole_pairs
+            * self._winding_voltage() ** 2
+            / (w * self.motor.parameters.rotor_resistance_ohm)
+        )
+        slip = self.load.level_at(time_s) * nameplate.rated_torque_Nm / pull
+        speed = self.supply.direction * (1 - slip) * w / nameplate.pole_pairs
+        return np.concatenate((inductance @ currents, [speed, 0.0]))
+
+    def _winding_voltage(self) -> float:
+        star = self.motor.nameplate.connection is Connection.STAR
+        return self.supply.line_voltage_V / sqrt(3) if star else self.supply.line_voltage_V
+
+
+def rated_current(motor: Motor) -> float:
+    """Line current at rated power [A rms], as a nameplate without it lets one guess."""
+    nameplate = motor.nameplate
+    return nameplate.rated_power_W / (
+        sqrt(3) * nameplate.rated_voltage_V * RATED_POWER_FACTOR_TIMES_EFFICIENCY
+    )

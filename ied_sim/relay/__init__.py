@@ -1,0 +1,1 @@
+"""The simulated relay: recorder, protection, metering, and the server that offers them."""

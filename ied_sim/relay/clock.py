@@ -1,0 +1,28 @@
+"""The relay's own clock: UTC, less right than it should be where the scenario says so."""
+
+import time
+
+from ied_sim.front.misbehaviour import Kind, Switchboard
+
+
+class RelayClock:
+    """Times inside the simulator are true UTC; these are what the relay makes of them."""
+
+    def __init__(self, switchboard: Switchboard) -> None:
+        self._switchboard = switchboard
+
+    @staticmethod
+    def now_ns() -> int:
+        """True UTC."""
+        return time.time_ns()
+
+    def stamped(self, time_ns: int) -> int:
+        """As time stamps of data attributes have it: UTC by the relay's clock."""
+        return time_ns + self._offset_ns(Kind.CLOCK_OFFSET)
+
+    def written(self, time_ns: int) -> int:
+        """As records and reports have it: perhaps in local time."""
+        return self.stamped(time_ns) + self._offset_ns(Kind.LOCAL_TIME)
+
+    def _offset_ns(self, kind: Kind) -> int:
+        return round((self._switchboard.number(kind) or 0.0) * 1e9)

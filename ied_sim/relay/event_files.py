@@ -1,0 +1,132 @@
+"""The relay's folder of numbered event records, the oldest discarded for the newest."""
+
+import re
+import threading
+from collections.abc import Sequence
+from pathlib import Path
+
+from core.recordings import Recording
+from core.recordings.cev_writer import EventSummary, write_cev
+from core.recordings.comtrade_writer import write as write_comtrade
+from ied_sim.profiles.profile import RecordFormat
+
+FIRST_NUMBER = 10000
+# What tells that a record is complete comes last into the folder and leaves it first.
+_SUFFIXES_IN_ORDER = (".DAT", ".HDR", ".CFG", ".CFF", ".CEV")
+
+
+class EventFiles:
+    """Records in `folder`, at most `capacity` of them, named `prefix` and number, each in all `formats`.
+
+    They are written under `staging`, which no client sees, and renamed when complete; both directories must
+    be on one file system. Numbers go on after those found there, so a restarted relay uses none twice.
+    Raises OSError where the directories cannot be made or read.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        staging: Path,
+        *,
+        capacity: int,
+        prefix: str = "HR_",
+        formats: Sequence[RecordFormat] = (RecordFormat("COMTRADE", 1999, "BINARY"),),
+    ) -> None:
+        self._folder = folder
+        self._staging = staging
+        self._capacity = capacity
+        self._prefix = prefix
+        self._formats = tuple(formats)
+        self._name = re.compile(re.escape(prefix) + r"(\d{5,})\.(CFG|CFF|CEV)")
+        self._stopping = threading.Event()
+        self._folder.mkdir(parents=True, exist_ok=True)
+        self._staging.mkdir(parents=True, exist_ok=True)
+        self.last_number = max(self.numbers(), default=None)
+
+    def numbers(self) -> list[int]:
+        """Numbers of the complete records, oldest first."""
+        names = (self._name.fullmatch(entry.name) for entry in self._folder.iterdir())
+        return sorted({int(name[1]) for name in names if name})
+
+    def store(
+        self,
+        recording: Recording,
+        header: str,
+        summary: EventSummary,
+        *,
+        utc_offset_min: int = 0,
+        grow_s: float = 0.0,
+    ) -> int:
+        """Write one record completely, discard what is too old, and return the record's number.
+
+        utc_offset_min: of the clock that the recording's times are of, for formats that can tell it [min].
+        With `grow_s` the largest of its files appears half at first and grows to its size in that time.
+        """
+        number = FIRST_NUMBER if self.last_number is None else self.last_number + 1
+        stem = f"{self._prefix}{number:05d}"
+        for written in self._formats:
+            self._write(written, stem, recording, header, summary, utc_offset_min)
+        files = [self._staging / f"{stem}{suffix}" for suffix in _SUFFIXES_IN_ORDER]
+        files = [file for file in files if file.exists()]
+        growing = max(files, key=lambda file: file.stat().st_size) if grow_s else None
+        rest = b"" if growing is None else _halve(growing)
+        for file in files:
+            file.rename(self._folder / file.name)
+        self.last_number = number
+        if growing is not None:
+            _grow(self._folder / growing.name, rest, grow_s, self._stopping)
+        for old in self.numbers()[: -self._capacity]:
+            self._discard(old)
+        return number
+
+    def clear(self) -> None:
+        """Discard all records; numbers go on."""
+        for number in self.numbers():
+            self._discard(number)
+
+    def stop(self) -> None:
+        """Let no file grow any longer."""
+        self._stopping.set()
+
+    def _write(
+        self,
+        written: RecordFormat,
+        stem: str,
+        recording: Recording,
+        header: str,
+        summary: EventSummary,
+        utc_offset_min: int,
+    ) -> None:
+        if written.kind == "CEV":
+            write_cev(self._staging / f"{stem}.CEV", recording, summary)
+            return
+        suffix = ".CFF" if written.kind == "CFF" else ".CFG"
+        write_comtrade(
+            self._staging / f"{stem}{suffix}",
+            recording,
+            header_text=header,
+            revision=written.revision,
+            data_format=written.data_format,
+            utc_offset_min=utc_offset_min,
+        )
+
+    def _discard(self, number: int) -> None:
+        for suffix in reversed(_SUFFIXES_IN_ORDER):
+            (self._folder / f"{self._prefix}{number:05d}{suffix}").unlink(missing_ok=True)
+
+
+def _halve(file: Path) -> bytes:
+    """Cut a file to half and return what was cut off."""
+    content = file.read_bytes()
+    file.write_bytes(content[: len(content) // 2])
+    return content[len(content) // 2 :]
+
+
+def _grow(file: Path, rest: bytes, grow_s: float, stopping: threading.Event) -> None:
+    parts = 20
+    for k in range(parts):
+        stopping.wait(grow_s / parts)
+        if not file.exists():
+            return
+        with file.open("ab") as growing:
+            growing.write(rest[k * len(rest) // parts : (k + 1) * len(rest) // parts])

@@ -1,0 +1,123 @@
+"""What the motor and its relay did: events, starts, load profile, running hours. Reports are made of it."""
+
+import threading
+from collections import Counter, deque
+from dataclasses import dataclass, field
+
+from ied_sim.relay.metering import Metering
+from ied_sim.relay.motor_watch import Start
+
+STARTS_KEPT = 5
+LOAD_ROWS_KEPT = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A stored event report. kind: what made it, as the relay calls it; targets: elements that tripped."""
+
+    number: int
+    time_ns: int
+    kind: str
+    seen: Metering
+    targets: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class LoadRow:
+    """One row of the load profile. thermal_capacity: 1 is the trip."""
+
+    time_ns: int
+    seen: Metering
+    thermal_capacity: float
+
+
+@dataclass(frozen=True, slots=True)
+class NotedStart:
+    """A motor start, with the UTC of its closing."""
+
+    time_ns: int
+    start: Start
+
+
+@dataclass(slots=True)
+class Statistics:
+    """Since `since_ns`: times [s], sums over the time between starts (`loaded_s`), extremes, trips."""
+
+    since_ns: int
+    running_s: float = 0.0
+    loaded_s: float = 0.0
+    stopped_s: float = 0.0
+    current_time_As: float = 0.0
+    highest_current_A: float = 0.0
+    highest_start_current_A: float = 0.0
+    longest_start_s: float = 0.0
+    starts: int = 0
+    trips: Counter[str] = field(default_factory=Counter)
+
+
+class Journal:
+    """Safe to use from several threads. capacity: events kept, as many as the relay has records."""
+
+    def __init__(self, capacity: int, *, since_ns: int, profile_every_s: float) -> None:
+        self._lock = threading.Lock()
+        self._events: deque[Event] = deque(maxlen=capacity)
+        self._starts: deque[NotedStart] = deque(maxlen=STARTS_KEPT)
+        self._load: deque[LoadRow] = deque(maxlen=LOAD_ROWS_KEPT)
+        self._every_ns = round(profile_every_s * 1e9)
+        self.statistics = Statistics(since_ns)
+
+    def note_event(self, event: Event) -> None:
+        with self._lock:
+            self._events.append(event)
+
+    def forget_events(self) -> None:
+        with self._lock:
+            self._events.clear()
+
+    def note_start(self, time_ns: int, start: Start) -> None:
+        with self._lock:
+            self._starts.append(NotedStart(time_ns, start))
+            statistics = self.statistics
+            peak_A = float(start.current_A.max())
+            statistics.starts += 1
+            statistics.highest_start_current_A = max(statistics.highest_start_current_A, peak_A)
+            statistics.longest_start_s = max(statistics.longest_start_s, start.duration_s or 0.0)
+
+    def note_trip(self, element: str) -> None:
+        with self._lock:
+            self.statistics.trips[element] += 1
+
+    def note_load(self, time_ns: int, seen: Metering, thermal_capacity: float) -> None:
+        """A row of the load profile, where one is due."""
+        with self._lock:
+            if not self._load or time_ns - self._load[-1].time_ns >= self._every_ns:
+                self._load.append(LoadRow(time_ns, seen, thermal_capacity))
+
+    def note_operation(self, duration_s: float, seen: Metering, *, running: bool, starting: bool) -> None:
+        """The motor has run, or stood, for so long; the current of a start is not one of running."""
+        with self._lock:
+            if not running:
+                self.statistics.stopped_s += duration_s
+                return
+            statistics, current_A = self.statistics, seen.current_A
+            statistics.running_s += duration_s
+            if starting:
+                return
+            statistics.loaded_s += duration_s
+            statistics.current_time_As += current_A * duration_s
+            statistics.highest_current_A = max(statistics.highest_current_A, current_A)
+
+    def events(self) -> tuple[Event, ...]:
+        """Newest first, as relays list them."""
+        with self._lock:
+            return tuple(reversed(self._events))
+
+    def starts(self) -> tuple[NotedStart, ...]:
+        """Newest first."""
+        with self._lock:
+            return tuple(reversed(self._starts))
+
+    def load(self) -> tuple[LoadRow, ...]:
+        """Oldest first."""
+        with self._lock:
+            return tuple(self._load)

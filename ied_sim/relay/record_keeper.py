@@ -1,0 +1,122 @@
+"""From a capture to what the relay offers of it: files, an entry in its journal, the record's number."""
+
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+
+import numpy as np
+
+from core.recordings import Recording
+from core.recordings.cev_writer import EventSummary
+from core.recordings.waveform import Digitals
+from ied_sim.front.misbehaviour import Kind, Switchboard
+from ied_sim.relay.clock import RelayClock
+from ied_sim.relay.event_files import FIRST_NUMBER, EventFiles
+from ied_sim.relay.event_recorder import Capture
+from ied_sim.relay.journal import Event, Journal
+from ied_sim.relay.metering import METERING_CYCLES, Metering, metered
+from ied_sim.relay.word import BITS, RelayWord
+
+WORDS_PER_CYCLE = 4
+TARGET_BITS = ("50P1T", "49T", "46UBT")
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """What every record says of its relay. direction: +1 for abc, -1 for acb."""
+
+    relay: str
+    firmware: str
+    direction: int
+    settings: tuple[tuple[str, str], ...]
+
+
+class RecordKeeper:
+    """Keeps the captures of one relay, one at a time. Without `files` it only counts."""
+
+    def __init__(
+        self,
+        identity: Identity,
+        files: EventFiles | None,
+        journal: Journal,
+        word: RelayWord,
+        clock: RelayClock,
+        switchboard: Switchboard,
+    ) -> None:
+        self._identity = identity
+        self._files = files
+        self._journal = journal
+        self._word = word
+        self._clock = clock
+        self._switchboard = switchboard
+        self.last_number = None if files is None else files.last_number
+
+    def keep(self, capture: Capture) -> int:
+        """Store a capture and return its number. Raises OSError where it cannot be written."""
+        seen = _at_trigger(capture.recording, self._identity.direction)
+        record = self._complete(capture.recording)
+        targets = " ".join(bit for bit in TARGET_BITS if self._word[bit])
+        if self._files is None:
+            number = FIRST_NUMBER if self.last_number is None else self.last_number + 1
+        else:
+            number = self._files.store(
+                record,
+                self._header(record, capture.kind, seen),
+                self._summary(record, capture.kind, targets, seen),
+                utc_offset_min=round((self._switchboard.number(Kind.LOCAL_TIME) or 0.0) / 60),
+                grow_s=self._switchboard.number(Kind.GROWING_FILE) or 0.0,
+            )
+        self.last_number = number
+        self._journal.note_event(Event(number, capture.time_ns, capture.kind, seen, targets))
+        return number
+
+    def clear(self) -> None:
+        """Forget all records."""
+        if self._files is not None:
+            self._files.clear()
+        self._journal.forget_events()
+
+    def _complete(self, recording: Recording) -> Recording:
+        """With the relay word beside the samples, and in the relay's own time."""
+        times_ns = recording.start_time_ns + np.rint(recording.time_s * 1e9).astype(np.int64)
+        return replace(
+            recording,
+            device=self._identity.firmware,
+            digitals=Digitals.of(BITS, self._word.states(times_ns)),
+            start_time_ns=self._clock.written(recording.start_time_ns),
+        )
+
+    def _header(self, record: Recording, kind: str, seen: Metering) -> str:
+        """The .HDR file: what a relay's event summary tells, in plain text."""
+        seconds, nanoseconds = divmod(record.trigger_time_ns, 1_000_000_000)
+        trigger = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S")
+        zone = "local" if self._switchboard.is_on(Kind.LOCAL_TIME) else "UTC"
+        return (
+            f"RELAY     {self._identity.relay}\r\n"
+            f"FID       {self._identity.firmware}\r\n"
+            f"EVENT     {kind}\r\n"
+            f"TRIGGER   {trigger}.{nanoseconds:09d} {zone}\r\n"
+            f"FREQ      {seen.frequency_Hz:.2f} Hz\r\n"
+            f"SAMPLES   {record.samples.shape[1]} at {record.sample_rate_hz:g} Hz\r\n"
+        )
+
+    def _summary(self, record: Recording, kind: str, targets: str, seen: Metering) -> EventSummary:
+        per_cycle = max(1, round(record.sample_rate_hz / (record.nominal_frequency_hz or 50.0)))
+        currents, voltages = np.abs(seen.currents_A), np.abs(seen.phase_voltages_V)
+        names = [f"{quantity}{phase}" for quantity in "IV" for phase in "ABC"]
+        return EventSummary(
+            samples_per_cycle=per_cycle,
+            digital_samples_per_cycle=next(n for n in (WORDS_PER_CYCLE, 2, 1) if per_cycle % n == 0),
+            event=kind,
+            targets=targets,
+            figures=dict(zip(names, np.round([*currents, *voltages], 3).tolist(), strict=True)),
+            settings="\r\n".join(f"{name} := {value}" for name, value in self._identity.settings),
+        )
+
+
+def _at_trigger(recording: Recording, direction: int) -> Metering:
+    """The phasors of the first cycles after the trigger, of as many as there are."""
+    frequency_Hz = recording.nominal_frequency_hz or 50.0
+    span = round(METERING_CYCLES / frequency_Hz * recording.sample_rate_hz)
+    first = min(recording.trigger_index or 0, max(0, recording.samples.shape[1] - span))
+    samples = recording.samples[:, first : first + span]
+    return metered(samples, frequency_Hz, recording.sample_rate_hz, direction)

@@ -1,0 +1,388 @@
+"""One simulated relay: its model served over MMS, its controls, its event recorder, its view of the motor."""
+
+import logging
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+from ied_sim.errors import SimulatorError
+from ied_sim.front import FrontDoors
+from ied_sim.front.misbehaviour import ON_THE_WIRE, Kind, Switchboard
+from ied_sim.motor.contactor import Closure
+from ied_sim.motor.plant import rated_current
+from ied_sim.relay.clock import RelayClock
+from ied_sim.relay.event_files import EventFiles
+from ied_sim.relay.event_recorder import Capture, EventRecorder
+from ied_sim.relay.journal import Journal
+from ied_sim.relay.metering import Metering
+from ied_sim.relay.misbehaviour import RelayMisbehaviour
+from ied_sim.relay.motor_watch import MotorWatch
+from ied_sim.relay.points import RelayPoints
+from ied_sim.relay.protection import Protection
+from ied_sim.relay.record_keeper import Identity, RecordKeeper
+from ied_sim.relay.server import RelayServer
+from ied_sim.relay.settings import relay_settings
+from ied_sim.relay.values import RelayValues
+from ied_sim.relay.word import RelayWord
+from ied_sim.scenario.scenario import RelayScenario
+from ied_sim.texts import Maker, Story, texts
+from mms import MOST_CONNECTIONS, AddCause, ControlAction, Server
+from scl import Address, Scl
+from scl.model_text import model_text
+
+log = logging.getLogger(__name__)
+
+METERING_PERIOD_S = 1.0
+WATCHFUL_PERIOD_S = 0.1
+"""Between looks while something is about to happen: a start, a trip."""
+
+OPENING_NS = 40_000_000
+"""From the command to open until a contactor's current has ended."""
+
+_STAGING = ".staging"
+_TRIP_BITS = {"overcurrent": "50P1T", "thermal": "49T", "unbalance": "46UBT"}
+_TRIP_KINDS = {"overcurrent": "PHASE 50 TRIP", "thermal": "THERMAL TRIP", "unbalance": "UNBALANCE TRIP"}
+
+
+class Relay:
+    """The relay `ied_name` of an SCD file, of the kind and protecting what its scenario says.
+
+    address: where clients find it.  files: the simulator's directory; the relay's own files are in
+    files/<IED>.  epoch_ns: UTC of the plant's time zero.  doors: where it gets a front if it needs one.
+    Raises SimulatorError where the data model is not that of its profile; SclError, ModelError, OSError.
+    """
+
+    def __init__(
+        self,
+        document: Scl,
+        ied_name: str,
+        scenario: RelayScenario,
+        *,
+        address: Address,
+        files: Path,
+        epoch_ns: int,
+        doors: FrontDoors | None = None,
+    ) -> None:
+        profile = scenario.profile
+        self.name = ied_name
+        self._scenario = scenario
+        self._epoch_ns = epoch_ns
+        self._rated_A = rated_current(scenario.plant.motor)
+        self._points = RelayPoints(document.ied(ied_name), profile, str(document.path))
+        self.switchboard = Switchboard(scenario.misbehaviour, lambda: self._seconds(RelayClock.now_ns()))
+        self._check_switches()
+        self._clock = RelayClock(self.switchboard)
+        self._word = RelayWord()
+        self._bits = dict.fromkeys(self._points.controls, False)
+        self._journal = Journal(
+            scenario.recorder.capacity, since_ns=epoch_ns, profile_every_s=scenario.load_profile_s
+        )
+        self._watch = MotorWatch(scenario.plant, self._rated_A)
+        self._protection = Protection(scenario.protection, self._rated_A)
+        self._closure: Closure | None = None
+        self._start_noted = True
+        self._load_is_above = False
+        self._looked_ns = epoch_ns
+        self.hurries = False
+        """Something has happened that the next look should not be late for."""
+        self._timers: list[threading.Timer] = []
+        self._settings = relay_settings(ied_name, scenario)
+        self._offered: dict[str, Maker] = {}
+        root, staging = files / ied_name, files / _STAGING / ied_name
+        self._event_files = self._make_event_files(root, staging)
+        identity = Identity(ied_name, profile.firmware, scenario.plant.supply.direction, self._settings)
+        self._keeper = RecordKeeper(
+            identity, self._event_files, self._journal, self._word, self._clock, self.switchboard
+        )
+        self._recorder = EventRecorder(
+            ied_name, scenario.plant, scenario.recorder, epoch_ns=epoch_ns, keep=self._keep
+        )
+        self._relay_server = RelayServer(
+            ied_name,
+            model_text(document, ied_name),
+            self._points,
+            profile,
+            self._clock,
+            address=self._listening_at(address, doors),
+            root=root,
+            staging=staging,
+            operated=self._operate,
+            texts={path: self._text(maker) for path, maker in self._offered.items()},
+            access=scenario.access,
+        )
+        self._values = RelayValues(
+            self._relay_server, self._points, profile.points.metering, profile.points.sequence
+        )
+        self._misbehaviour = RelayMisbehaviour(
+            self.switchboard, self._relay_server, self._points, profile.report_buffer_bytes
+        )
+        self._begin(RelayClock.now_ns())
+
+    @property
+    def server(self) -> Server:
+        return self._relay_server.server
+
+    @property
+    def serves_itself(self) -> bool:
+        """Whether its server has a thread of its own.
+
+        One that restarts cannot share a pump, and one that shakes hands over TLS would hold the others up.
+        """
+        return Kind.RESTART in self.switchboard.kinds or self._scenario.access.tls is not None
+
+    def stop(self) -> None:
+        """Abandon a capture under way; the server itself belongs to its pump."""
+        for timer in self._timers:
+            timer.cancel()
+            timer.join()
+        if self._event_files is not None:
+            self._event_files.stop()
+        self._recorder.stop()
+        self._misbehaviour.stop()
+        self._relay_server.close_annex()
+
+    def look(self, time_ns: int) -> float:
+        """Look at the motor at UTC `time_ns`: meter, protect, keep the journal. Used by one thread.
+
+        Returns when it wants to look again [s].
+        """
+        time_s = self._seconds(time_ns)
+        self.hurries = False
+        self._misbehaviour.look()
+        seen = self._watch.look(time_s)
+        self._values.refresh_metering(seen, time_ns)
+        closure = self._watch.closure(time_s)
+        self._follow_start(closure, time_s)
+        self._journal.note_operation(
+            max(0.0, (time_ns - self._looked_ns) * 1e-9),
+            seen,
+            running=closure is not None,
+            starting=not self._start_noted,
+        )
+        self._looked_ns = time_ns
+        tripped = self._protection.look(seen, time_s)
+        if closure is not None and tripped:
+            self._trip(tripped, time_ns)
+        self._journal.note_load(time_ns, seen, self._protection.thermal_capacity)
+        self._watch_load(seen, time_ns)
+        return METERING_PERIOD_S if self._start_noted and not self._is_watchful else WATCHFUL_PERIOD_S
+
+    def update_metering(self, time_ns: int) -> None:
+        """Meter the motor at UTC `time_ns` and publish the values."""
+        self._values.metering(self._watch.look(self._seconds(time_ns)), time_ns)
+
+    @property
+    def _is_watchful(self) -> bool:
+        protection = self._scenario.protection
+        return bool(self.switchboard.kinds or protection.overcurrent or protection.unbalance)
+
+    def _seconds(self, time_ns: int) -> float:
+        return (time_ns - self._epoch_ns) * 1e-9
+
+    # what happens
+
+    def _operate(self, action: ControlAction) -> bool | AddCause:
+        """Set or clear a control, unless it is but a test; runs in the pump's thread."""
+        switches = self._switches.get(action.reference)
+        if self.switchboard.is_on(Kind.REFUSED_CONTROL) and switches is None:
+            return AddCause.BLOCKED_BY_INTERLOCKING
+        if action.test:
+            return True
+        now_ns = RelayClock.now_ns()
+        value = bool(action.value)
+        rises = value and not self._bits[action.reference]
+        self._set_control(action.reference, now_ns, value=value)
+        if switches is not None:
+            self.switchboard.switch(switches, on=value)
+        if rises:
+            self._on_rise(action.reference, now_ns)
+            if action.reference in self._points.pulsed:
+                quarter_s = 0.25 / self._scenario.plant.supply.frequency(self._seconds(now_ns))
+                self._later(
+                    quarter_s, lambda: self._set_control(action.reference, RelayClock.now_ns(), value=False)
+                )
+        return True
+
+    def _set_control(self, reference: str, time_ns: int, *, value: bool) -> None:
+        self._bits[reference] = value
+        number = self._points.remote_bit(reference)
+        if number is not None:
+            together = (each for each in self._bits if self._points.remote_bit(each) == number)
+            self._word.set(f"RB{number}", any(self._bits[each] for each in together), time_ns)
+        self._values.controls({reference: value}, time_ns)
+
+    def _on_rise(self, reference: str, now_ns: int) -> None:
+        if reference in self._points.triggers:
+            number = self._points.remote_bit(reference)
+            self._trigger(now_ns, "ER TRIG (RCDTRG)" if number is None else f"ER TRIG (RB{number})")
+        elif reference == self._points.control("start"):
+            self._start_motor(now_ns)
+        elif reference == self._points.control("stop"):
+            self._stop_motor(now_ns)
+        elif reference == self._points.control("clear"):
+            self._keeper.clear()
+
+    def _start_motor(self, now_ns: int) -> None:
+        contactor = self._scenario.plant.contactor
+        closed_s = None if contactor is None else contactor.close(self._seconds(now_ns))
+        if closed_s is None:
+            return
+        closed_ns = self._epoch_ns + round(closed_s * 1e9)
+        log.info("%s: the motor is started", self.name)
+        self.hurries = True
+        for bit in ("TRIP", *_TRIP_BITS.values(), "STOPPED"):
+            self._word.set(bit, False, closed_ns)  # noqa: FBT003
+        self._word.set("STARTING", True, closed_ns)  # noqa: FBT003
+        self._values.status(dict.fromkeys(("trip", *_TRIP_BITS), False), now_ns)
+        if self._scenario.triggers.motor_start:
+            self._trigger(now_ns, "ER MOTOR START")
+
+    def _stop_motor(self, now_ns: int) -> None:
+        contactor = self._scenario.plant.contactor
+        open_ns = now_ns + OPENING_NS
+        if contactor is None or not contactor.open(self._seconds(open_ns)):
+            return
+        log.info("%s: the motor is stopped", self.name)
+        self._word.set("STARTING", False, open_ns)  # noqa: FBT003
+        self._word.set("RUNNING", False, open_ns)  # noqa: FBT003
+        self._word.set("STOPPED", True, open_ns)  # noqa: FBT003
+
+    def _trip(self, elements: list[str], now_ns: int) -> None:
+        log.info("%s: trip: %s", self.name, ", ".join(elements))
+        self._word.set("TRIP", True, now_ns)  # noqa: FBT003
+        for element in elements:
+            self._journal.note_trip(element)
+            self._word.set(_TRIP_BITS[element], True, now_ns)  # noqa: FBT003
+        self._values.status(dict.fromkeys(("trip", *elements), True), now_ns)
+        self._stop_motor(now_ns)
+        if self._scenario.triggers.trip:
+            self._trigger(now_ns, _TRIP_KINDS[elements[0]])
+
+    def _watch_load(self, seen: Metering, now_ns: int) -> None:
+        level = self._scenario.triggers.load_above
+        above = level is not None and self._start_noted and seen.current_A > level * self._rated_A
+        if above and not self._load_is_above:
+            self._trigger(now_ns, "ER LOAD")
+        self._load_is_above = above
+
+    def _follow_start(self, closure: Closure | None, time_s: float) -> None:
+        """Note a start in the journal once it has ended."""
+        if closure != self._closure and closure is not None and closure.closed_s >= 0:
+            self._start_noted = False
+        self._closure = closure
+        if self._start_noted or closure is None:
+            self._start_noted = True
+            return
+        start = self._watch.start(closure)
+        lasted_s = float(start.time_s[-1]) if start.duration_s is None else start.duration_s
+        if time_s >= closure.closed_s + lasted_s:
+            self._start_noted = True
+            self._journal.note_start(self._epoch_ns + round(closure.closed_s * 1e9), start)
+            end_ns = self._epoch_ns + round((closure.closed_s + lasted_s) * 1e9)
+            self._word.set("STARTING", False, end_ns)  # noqa: FBT003
+            self._word.set("RUNNING", True, end_ns)  # noqa: FBT003
+
+    def _trigger(self, now_ns: int, kind: str) -> None:
+        def tell() -> None:
+            self._word.pulse("ER", now_ns, 5_000_000)
+            self._values.status({"record_made": False, "record_started": True}, now_ns)
+
+        self._recorder.trigger(now_ns, kind, tell=tell)
+
+    def _keep(self, capture: Capture) -> None:
+        """Store a record and tell the clients of it; runs in the capture's thread."""
+        number = self._keeper.keep(capture)
+        log.info("%s: event record %d is complete", self.name, number)
+        self._values.status(
+            {"record_number": number, "record_made": True, "record_started": False}, RelayClock.now_ns()
+        )
+
+    def _later(self, delay_s: float, action: Callable[[], None]) -> None:
+        timer = threading.Timer(delay_s, action)
+        timer.daemon = True
+        self._timers = [each for each in self._timers if each.is_alive()] + [timer]
+        timer.start()
+
+    def _begin(self, now_ns: int) -> None:
+        """What clients see before anything has happened; the first look, within a second, meters."""
+        self._values.controls(self._bits, now_ns)
+        fallen = dict.fromkeys(("record_made", "record_started", "trip", *_TRIP_BITS), False)
+        self._values.status({**fallen, "record_number": self._keeper.last_number or 0}, now_ns)
+        self._closure = self._watch.closure(self._seconds(now_ns))
+        self._word.set("STOPPED" if self._closure is None else "RUNNING", True, now_ns)  # noqa: FBT003
+        self._looked_ns = now_ns
+
+    # what it is made of
+
+    def _make_event_files(self, root: Path, staging: Path) -> EventFiles | None:
+        profile = self._scenario.profile
+        staging.mkdir(parents=True, exist_ok=True)
+        root.mkdir(parents=True, exist_ok=True)
+        if profile.files is None:
+            return None
+        self._offered = texts(profile.files.reports, settings=profile.files.settings)
+        return EventFiles(
+            root / profile.files.folder,
+            staging,
+            capacity=self._scenario.recorder.capacity,
+            prefix=profile.files.name,
+            formats=profile.record.written(),
+        )
+
+    def _listening_at(self, address: Address, doors: FrontDoors | None) -> Address:
+        """Where the server listens: behind a front if clients must see what the server cannot do."""
+        files = self._scenario.profile.files
+        rewritten = bool(self.switchboard.kinds & ON_THE_WIRE) or (
+            files is not None
+            and (files.separator != "/" or files.listed != "path" or files.entries_per_listing is not None)
+        )
+        sessions = self._scenario.profile.sessions
+        encrypted = self._scenario.access.tls is not None
+        if encrypted and rewritten:
+            raise SimulatorError(
+                f"{self.name}: its profile or scenario needs a front between relay and clients, which could "
+                "not read TLS; take another profile (sel-710-ed2, say), or leave out tls or the misbehaviour"
+            )
+        if encrypted or not (rewritten or sessions > MOST_CONNECTIONS):
+            return address
+        if doors is None:
+            raise SimulatorError(
+                f"{self.name}: its profile or scenario needs a front, and it has no place for one"
+            )
+        return doors.add(
+            address,
+            files,
+            self.switchboard,
+            self._points.report_ids(),
+            sessions=sessions,
+            annex=lambda: self._relay_server.open_annex(),
+        )
+
+    def _text(self, maker: Maker) -> Callable[[], bytes]:
+        return lambda: maker(self._story(RelayClock.now_ns()))
+
+    def _story(self, now_ns: int) -> Story:
+        return Story(
+            relay=self.name,
+            firmware=self._scenario.profile.firmware,
+            motor=self._scenario.plant.motor,
+            rated_current_A=self._rated_A,
+            journal=self._journal,
+            word=self._word,
+            settings=self._settings,
+            now_ns=now_ns,
+            offset_ns=self._clock.written(now_ns) - now_ns,
+        )
+
+    def _check_switches(self) -> None:
+        self._switches = {self._points.reference(each): each for each in self.switchboard.switches()}
+        for unknown in sorted(self._switches.keys() - set(self._points.controls)):
+            raise SimulatorError(
+                f"{self.name}: the misbehaviour's switch {unknown} is no control of this relay"
+            )
+        own = self._points.triggers | {self._points.control(key) for key in ("start", "stop", "clear")}
+        for meant in sorted(self._switches.keys() & own):
+            raise SimulatorError(
+                f"{self.name}: the misbehaviour's switch {meant} has a meaning of its own (points of its "
+                "profile): choose a free control"
+            )

@@ -1,0 +1,175 @@
+"""The MMS side of a simulated relay: its model served, its values with quality and time, its files."""
+
+import sys
+import threading
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from ied_sim.front.loopback import ReservedAddress
+from ied_sim.profiles.profile import Profile
+from ied_sim.relay.clock import RelayClock
+from ied_sim.relay.points import RelayPoints
+from ied_sim.scenario.access import Access
+from mms import (
+    GOOD,
+    MOST_CONNECTIONS,
+    AddCause,
+    ControlAction,
+    FileAnswer,
+    FileOperation,
+    FileRequest,
+    Quality,
+    Server,
+    Timestamp,
+    Value,
+)
+from scl import Address
+
+_ANY_NAME = "RELAY"
+
+Operated = Callable[[ControlAction], "bool | AddCause"]
+TextMaker = Callable[[], bytes]
+
+
+class RelayServer:
+    """Serves the model text of the IED `name` at one address.
+
+    It keeps the values, so that it can begin anew as after a restart, and so that a second server of the
+    library, the annex, can tell the same to clients beyond the library's most. The annex has report blocks of
+    its own: one that is taken in the server is free there.
+    root: the folder clients see.  staging: where files are made before they appear in it.  texts: files made
+    at each request, by path under the root.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        model: str,
+        points: RelayPoints,
+        profile: Profile,
+        clock: RelayClock,
+        *,
+        address: Address,
+        root: Path,
+        staging: Path,
+        operated: Operated,
+        texts: Mapping[str, TextMaker],
+        access: Access,
+    ) -> None:
+        # Under one name for all: relays of one kind then have one text, which is checked once.
+        self._model = sys.intern(model.replace(f"MODEL({name}){{", f"MODEL({_ANY_NAME}){{", 1))
+        self._name = name
+        self._points = points
+        self._profile = profile
+        self._clock = clock
+        self._address = address
+        self._root = root
+        self._staging = staging
+        self._operated = operated
+        self._texts = texts
+        self._access = access
+        self._values: dict[str, Value | Quality] = {}
+        self._stamps: dict[str, tuple[str | None, str | None]] = {}
+        self._lock = threading.Lock()
+        self._down = False
+        self._changes = 0
+        self._annex: Server | None = None
+        self._annex_address: ReservedAddress | None = None
+        for folder in {Path(path).parent for path in texts}:
+            (root / folder).mkdir(parents=True, exist_ok=True)
+        self.server = self._build(address, min(profile.sessions, MOST_CONNECTIONS))
+
+    def publish(self, values: Mapping[str, Value], time_ns: int, quality: Quality = GOOD) -> None:
+        """Update attributes as one change, with quality and time of their data objects."""
+        changes: dict[str, Value | Quality] = dict(values)
+        stamp = Timestamp(self._clock.stamped(time_ns))
+        for reference in values:
+            if reference not in self._stamps:
+                self._stamps[reference] = self._points.stamps(reference)
+            of_quality, of_time = self._stamps[reference]
+            if of_quality is not None:
+                changes[of_quality] = quality
+            if of_time is not None:
+                changes[of_time] = stamp
+        self._values |= changes
+        self._changes += 1
+        if self._down:
+            return
+        annex = self._annex
+        for server in (self.server,) if annex is None else (self.server, annex):
+            try:
+                server.update_many(changes)
+            except RuntimeError:
+                # It went down in between; no lock could be held here that a handler may also want.
+                if not self._down and server in (self.server, self._annex):
+                    raise
+
+    def go_down(self) -> None:
+        """End every connection; what clients had not yet been told is forgotten."""
+        self._down = True
+        self.server.stop()
+        self.close_annex()
+
+    def come_up(self) -> None:
+        """Serve again, with the values as they are, on a thread of its own. Raises ServerStartFailed."""
+        self.server = self._build(self._address, min(self._profile.sessions, MOST_CONNECTIONS))
+        self.server.start()
+        self._down = False
+
+    def open_annex(self) -> Address | None:
+        """Where clients are served for whom the server has no session left; None while it is down.
+
+        Raises ServerStartFailed. Used by one thread at a time.
+        """
+        if self._down:
+            return None
+        if self._annex is None:
+            self._annex_address = self._annex_address or ReservedAddress()
+            annex = self._build(self._annex_address.address, self._profile.sessions - MOST_CONNECTIONS)
+            self._annex = annex
+            known = -1
+            while known != self._changes:  # what was published meanwhile may have been overtaken
+                known = self._changes
+                annex.update_many(dict(self._values))
+            annex.start()
+        return Address(self._annex.address, self._annex.port)
+
+    def close_annex(self) -> None:
+        annex, self._annex = self._annex, None
+        if annex is not None:
+            annex.stop()
+        address, self._annex_address = self._annex_address, None
+        if address is not None:
+            address.release()
+
+    def _build(self, address: Address, sessions: int) -> Server:
+        served = self._profile.files is not None
+        server = Server(
+            self._model,
+            ied_name=self._name if self._model.startswith(f"MODEL({_ANY_NAME})") else None,
+            address=address.host,
+            port=address.port,
+            max_connections=sessions,
+            report_buffer_bytes=self._profile.report_buffer_bytes,
+            file_root=self._root if served else None,
+            on_file_request=self._make_texts if served else None,
+            tls=self._access.tls,
+            passwords=self._access.passwords,
+        )
+        for reference in self._points.controls:
+            server.on_operate(reference, self._operated)
+        if self._values:
+            server.update_many(self._values)
+        return server
+
+    def _make_texts(self, request: FileRequest) -> FileAnswer:
+        """Write the texts a client lists or opens, as they are now."""
+        asked = request.path.relative_to(self._root.resolve()).as_posix()
+        for path, make in self._texts.items():
+            listed = request.operation is FileOperation.LIST and asked in (".", Path(path).parent.as_posix())
+            if listed or asked == path:
+                with self._lock:
+                    made = self._staging / Path(path).name
+                    made.write_bytes(make())
+                    made.replace(self._root / path)
+        return FileAnswer.SERVE

@@ -1,0 +1,64 @@
+"""A relay's values as its clients see them: statuses by their key in the profile, and what it meters."""
+
+import cmath
+from math import degrees
+
+import numpy as np
+
+from ied_sim.relay.metering import Metering, metered_values
+from ied_sim.relay.points import RelayPoints
+from ied_sim.relay.server import RelayServer
+from mms import Value
+
+METERING_REFRESH_S = 30.0
+"""Metered values that have not changed are published so often."""
+
+
+class RelayValues:
+    """Publishes on one relay's server. metering, sequence: the profile's logical nodes, None for none."""
+
+    def __init__(
+        self, server: RelayServer, points: RelayPoints, metering: str | None, sequence: str | None
+    ) -> None:
+        self._server = server
+        self._points = points
+        self._nodes = metering, sequence
+        nothing = Metering(0.0, np.zeros(3, complex), np.zeros(3, complex), 1)
+        self._measured = [name for name in self._measurements(nothing) if points.has(name)]
+        self._published, self._published_ns = nothing, 0
+
+    def status(self, values: dict[str, Value], time_ns: int) -> None:
+        """Publish statuses by their key; those the profile does not name are left out."""
+        named = {self._points.value_of(key): value for key, value in values.items()}
+        found = {reference: value for reference, value in named.items() if reference is not None}
+        if found:
+            self._server.publish(found, time_ns)
+
+    def controls(self, values: dict[str, bool], time_ns: int) -> None:
+        """Publish the state of controls by their reference."""
+        self._server.publish({f"{reference}.stVal": value for reference, value in values.items()}, time_ns)
+
+    def metering(self, seen: Metering, time_ns: int) -> None:
+        """Publish all that is metered."""
+        self._published, self._published_ns = seen, time_ns
+        values = self._measurements(seen)
+        self._server.publish({name: values[name] for name in self._measured}, time_ns)
+
+    def refresh_metering(self, seen: Metering, time_ns: int) -> None:
+        """Publish what has changed; what has not, now and then."""
+        if seen is not self._published or time_ns - self._published_ns >= METERING_REFRESH_S * 1e9:
+            self.metering(seen, time_ns)
+
+    def _measurements(self, seen: Metering) -> dict[str, Value]:
+        """Every attribute a metering data object may have, by reference."""
+        attributes: dict[str, Value] = {}
+        for inst_reference, value in metered_values(seen, *self._nodes).items():
+            reference = self._points.reference(inst_reference)
+            if isinstance(value, complex):
+                for vector in ("instCVal", "cVal"):
+                    attributes[f"{reference}.{vector}.mag.f"] = abs(value)
+                    attributes[f"{reference}.{vector}.ang.f"] = degrees(cmath.phase(value))
+            else:
+                for magnitude in ("instMag", "mag"):
+                    attributes[f"{reference}.{magnitude}.f"] = value
+        return attributes

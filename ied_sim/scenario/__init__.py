@@ -1,0 +1,1 @@
+"""Scenario files: which motors and relays are simulated, and what happens to them."""

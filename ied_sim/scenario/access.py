@@ -1,0 +1,61 @@
+"""Who may connect to a simulated relay: anybody, or who has a pinned certificate, a password, or both."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from ied_sim.scenario.toml_errors import Table
+from mms import CredentialFileError, TlsConfiguration, TlsVersion
+from mms.credential_files import read_secret
+from mms.passwords import EXPECTED, is_password
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """What a client must show; nothing by default."""
+
+    tls: TlsConfiguration | None = None
+    passwords: tuple[str, ...] = field(default=(), repr=False)
+
+
+class TlsTable(Table):
+    """Files as the scenario names them, relative to it."""
+
+    certificate: str
+    key: str
+    pinned: Annotated[tuple[str, ...], Field(min_length=1)]
+    ca: str | None = None
+    maximum_version: Literal["1.2", "1.3"] = "1.3"
+
+
+class AccessTable(Table):
+    """[motor.access] of a scenario."""
+
+    tls: TlsTable | None = None
+    password_file: str | None = None
+
+    def access(self, folder: Path) -> Access:
+        """With the files read and found good. Raises CredentialFileError."""
+        tls = None
+        if self.tls is not None:
+            newest = {"1.2": TlsVersion.TLS_1_2, "1.3": TlsVersion.TLS_1_3}[self.tls.maximum_version]
+            tls = TlsConfiguration(
+                certificate=folder / self.tls.certificate,
+                key=folder / self.tls.key,
+                pinned=tuple(folder / path for path in self.tls.pinned),
+                ca=None if self.tls.ca is None else folder / self.tls.ca,
+                maximum_version=newest,
+            )
+            tls.check()
+        passwords = () if self.password_file is None else _passwords(folder / self.password_file)
+        return Access(tls, passwords)
+
+
+def _passwords(path: Path) -> tuple[str, ...]:
+    """One a line."""
+    lines = tuple(read_secret(path).decode("latin-1").splitlines())
+    if not lines or not all(map(is_password, lines)):
+        raise CredentialFileError(path, f"on each line {EXPECTED}", "something else")
+    return lines

@@ -1,0 +1,230 @@
+"""The scenario: which motor stands behind each relay, in what condition, on what supply, under what load.
+
+One TOML file, explained in docs/scenario.md.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from core.machines.motor_file import MotorFileError, motor_from_table
+from core.machines.parameters import MachineParameters, Motor, Nameplate
+from ied_sim.errors import ScenarioError
+from ied_sim.front.misbehaviour import Misbehaviour
+from ied_sim.motor.contactor import Contactor
+from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant
+from ied_sim.motor.windings import highest_fault_resistance
+from ied_sim.profiles.profile import DEFAULT, Profile, Record, Triggers, read_profile
+from ied_sim.relay.event_recorder import RecorderSettings
+from ied_sim.relay.protection import ProtectionSettings
+from ied_sim.scenario.access import Access
+from ied_sim.scenario.tables import (
+    FileTable,
+    LoadTable,
+    MotorTable,
+    RecorderTable,
+    SensorsTable,
+    SupplyTable,
+    TriggersTable,
+)
+from ied_sim.scenario.toml_errors import first_error, read_table
+from mms import CredentialFileError
+
+LOAD_PROFILE_S = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class RelayScenario:
+    """What one relay protects, what kind of relay it is, how it records, what it does wrong, whom it lets in.
+
+    load_profile_s: time between rows of the load profile.
+    """
+
+    plant: MotorPlant
+    profile: Profile
+    recorder: RecorderSettings
+    triggers: Triggers = field(default_factory=Triggers)
+    protection: ProtectionSettings = field(default_factory=ProtectionSettings)
+    misbehaviour: tuple[Misbehaviour, ...] = ()
+    load_profile_s: float = LOAD_PROFILE_S
+    access: Access = field(default_factory=Access)
+
+    def truth(self, time_s: float) -> dict[str, float | int | None]:
+        """The true condition at a time since the start: mu_f (the equivalent level), theta_f, load_level."""
+        plant = self.plant
+        parameters = plant.motor.parameters
+        fault = None if plant.fault is None else plant.fault.at(time_s)
+        level = 0.0 if fault is None else fault.equivalent_level(parameters.stator_resistance_ohm)
+        return {
+            "mu_f": level,
+            "theta_f": fault.phase if fault is not None and level > 0 else None,
+            "load_level": plant.load.level_at(time_s),
+        }
+
+
+def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayScenario]:
+    """Scenario of each IED by its name; `profile` for those that name none.
+
+    Raises ScenarioError, ProfileError.
+    """
+    table = read_table(path, ScenarioError)
+    try:
+        motors = FileTable.model_validate(table).motor
+    except ValidationError as error:
+        raise first_error(path, _place(table, error), error, ScenarioError) from error
+    scenarios: dict[str, RelayScenario] = {}
+    for motor in motors:
+        if motor.ied in scenarios:
+            raise ScenarioError(
+                path, f"[motor {motor.ied}] ied", expected="each IED once", found="a second motor"
+            )
+        scenarios[motor.ied] = _relay_scenario(path, motor, profile)
+    return scenarios
+
+
+def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayScenario:
+    """A healthy 800 W motor (thesis Table 3.2) at half load: what a relay protects that no scenario names.
+
+    Raises ProfileError where there is no such profile.
+    """
+    motor = _reference_motor(ied)
+    kind = read_profile(profile)
+    return RelayScenario(
+        MotorPlant(
+            motor=motor,
+            supply=SupplyTable().supply(motor.nameplate),
+            load=LoadTable().load(),
+            sensors=SensorsTable(noise=0.002).sensors(motor),
+            contactor=Contactor(),
+        ),
+        profile=kind,
+        recorder=_recorder(kind.record, RecorderTable(), motor.nameplate.rated_frequency_Hz),
+        triggers=kind.triggers,
+    )
+
+
+def _reference_motor(name: str) -> Motor:
+    return Motor(
+        name=name,
+        nameplate=Nameplate(rated_power_W=800, rated_voltage_V=380, rated_frequency_Hz=50, pole_pairs=2),
+        parameters=MachineParameters(
+            stator_resistance_ohm=8.4,
+            rotor_resistance_ohm=8.2,
+            stator_leakage_H=0.0328,
+            rotor_leakage_H=0.0328,
+            stator_self_inductance_H=0.4377,
+            inertia_kgm2=0.0229,
+        ),
+    )
+
+
+def _motor(path: Path, section: MotorTable) -> Motor:
+    """The motor of the tables nameplate and parameters; the reference motor where neither is given."""
+    if section.nameplate is None and section.parameters is None:
+        return _reference_motor(section.ied)
+    table = {"nameplate": section.nameplate, "parameters": section.parameters}
+    given = {name: part for name, part in table.items() if part is not None}
+    try:
+        return motor_from_table(given, name=section.ied, source=path)
+    except MotorFileError as error:
+        raise ScenarioError(
+            path, f"[motor {section.ied}] {error.field}", expected=error.expected, found=error.found
+        ) from error
+
+
+def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> RelayScenario:
+    where = f"[motor {section.ied}]"
+    motor = _motor(path, section)
+    course = None if section.fault is None else section.fault.course()
+    if course is not None:
+        highest_ohm = highest_fault_resistance(motor.parameters, HIGHEST_STEP_RATE_HZ * RATE_PER_STEP)
+        if course.resistance_ohm > highest_ohm:
+            raise ScenarioError(
+                path,
+                f"{where} fault.resistance_ohm",
+                expected=f"at most {highest_ohm:.3g}, above which the shorted loop is too fast to simulate",
+                found=f"{course.resistance_ohm:g}",
+            )
+    profile = _profile(path, section, profile_name)
+    return RelayScenario(
+        plant=MotorPlant(
+            motor=motor,
+            supply=section.supply.supply(motor.nameplate),
+            load=section.load.load(),
+            sensors=section.sensors.sensors(motor),
+            fault=course,
+            seed=section.seed,
+            warming=None if section.warming is None else section.warming.warming(),
+            broken_bars=section.broken_bars,
+            contactor=Contactor(open_at_first=section.stopped),
+        ),
+        profile=profile,
+        recorder=_recorder(profile.record, section.recorder, motor.nameplate.rated_frequency_Hz),
+        triggers=_triggers(profile.triggers, section.triggers),
+        protection=section.protection.settings(),
+        misbehaviour=tuple(each.misbehaviour() for each in section.misbehaviour),
+        load_profile_s=section.recorder.load_profile_s,
+        access=_access(path, section),
+    )
+
+
+def _access(path: Path, section: MotorTable) -> Access:
+    try:
+        return section.access.access(path.parent)
+    except CredentialFileError as error:
+        raise ScenarioError(
+            path,
+            f"[motor {section.ied}] access: {error.path}",
+            expected=error.expected,
+            found=error.found,
+        ) from error
+
+
+def _profile(path: Path, section: MotorTable, default: str) -> Profile:
+    """The motor's relay profile, with the record formats of the scenario where it names some."""
+    profile = (
+        read_profile(default)
+        if section.profile is None
+        else read_profile(section.profile, beside=path.parent)
+    )
+    if section.recorder.formats is None:
+        return profile
+    try:
+        record = Record.model_validate(profile.record.model_dump() | {"formats": section.recorder.formats})
+    except ValidationError as error:
+        place = f"[motor {section.ied}] recorder.formats"
+        raise first_error(path, place, error, ScenarioError) from error
+    return profile.model_copy(update={"record": record})
+
+
+def _recorder(record: Record, section: RecorderTable, frequency_Hz: float) -> RecorderSettings:
+    """The profile's record at this line frequency, with what the scenario puts in its place."""
+    per_cycle = record.samples_per_cycle
+    rate_Hz = record.sample_rate_Hz if per_cycle is None else per_cycle * frequency_Hz
+    before_s = record.pre_trigger_cycles / frequency_Hz
+    after_s = (record.cycles - record.pre_trigger_cycles) / frequency_Hz
+    return RecorderSettings(
+        sample_rate_hz=section.sample_rate_Hz or rate_Hz or 0.0,
+        pre_trigger_s=before_s if section.pre_trigger_s is None else section.pre_trigger_s,
+        post_trigger_s=section.post_trigger_s or after_s,
+        capacity=section.capacity or record.capacity,
+    )
+
+
+def _triggers(of_profile: Triggers, section: TriggersTable) -> Triggers:
+    given = {key: value for key, value in section.model_dump().items() if value is not None}
+    return of_profile.model_copy(update=given)
+
+
+def _place(table: Mapping[str, object], error: ValidationError) -> str:
+    """Where the first error is, with the motor called by its IED where it has one."""
+    location = list(error.errors()[0]["loc"])
+    if len(location) < 2 or not isinstance(location[1], int):
+        return ".".join(str(part) for part in location)
+    motors = table.get("motor")
+    motor = motors[location[1]] if isinstance(motors, list) else None
+    name = motor.get("ied") if isinstance(motor, dict) else None
+    field = ".".join(str(part) for part in location[2:])
+    return f"[motor {name if isinstance(name, str) else location[1] + 1}] {field}".rstrip()

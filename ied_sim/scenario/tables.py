@@ -1,0 +1,273 @@
+"""Tables of a scenario file, as docs/scenario.md explains them: what may stand in each, and what it means."""
+
+from math import inf, radians, sqrt
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from core.machines.parameters import Motor, Nameplate
+from ied_sim.front.misbehaviour import PARAMETERS, Kind, Misbehaviour
+from ied_sim.motor.fault import FaultCourse
+from ied_sim.motor.load import Load, LoadCycle
+from ied_sim.motor.plant import rated_current
+from ied_sim.motor.sensors import Sensors
+from ied_sim.motor.supply import Harmonic, Supply, SupplyEvent
+from ied_sim.motor.warming import Warming
+from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
+from ied_sim.scenario.access import AccessTable
+from ied_sim.scenario.toml_errors import Table
+
+CURRENT_HEADROOM = 12
+"""Full scale of the current channels over the rated current's peak: a start-up current must fit."""
+VOLTAGE_HEADROOM = 2
+
+Share = Annotated[float, Field(ge=-0.5, le=0.5)]
+SixShares = tuple[Share, Share, Share, Share, Share, Share]
+Turns = Annotated[float, Field(ge=0, le=0.5)]
+Level = Annotated[float, Field(ge=0, le=1.5)]
+Duration = Annotated[float, Field(gt=0)]
+
+
+class HarmonicTable(Table):
+    order: Annotated[int, Field(ge=2, le=50)]
+    fraction: Annotated[float, Field(ge=0, le=0.5)]
+    angle_deg: float = 0.0
+
+    @model_validator(mode="after")
+    def _has_a_sequence(self) -> Self:
+        if self.order % 3 == 0:
+            raise ValueError(f"order {self.order} has no sequence and drives no current into three wires")
+        return self
+
+
+class SupplyEventTable(Table):
+    at_s: float
+    duration_s: Duration
+    factor: Annotated[float, Field(ge=0, le=1.5)]
+    phases: Annotated[str, Field(pattern="^[abc]{1,3}$")] = "abc"
+    every_s: Duration | None = None
+
+    @model_validator(mode="after")
+    def _ends_before_it_comes_again(self) -> Self:
+        if self.every_s is not None and self.duration_s >= self.every_s:
+            raise ValueError("duration_s must be less than every_s")
+        return self
+
+    def event(self) -> SupplyEvent:
+        phases = tuple(sorted({"abc".index(phase) for phase in self.phases}))
+        return SupplyEvent(self.at_s, self.duration_s, self.factor, phases, self.every_s)
+
+
+class SupplyTable(Table):
+    line_voltage_V: Duration | None = None
+    frequency_Hz: Annotated[float, Field(gt=10, lt=500)] | None = None
+    frequency_drift_Hz: Annotated[float, Field(ge=0, le=2)] = 0.0
+    drift_period_s: Annotated[float, Field(ge=10)] = 300.0
+    unbalance: Annotated[float, Field(ge=0, le=0.3)] = 0.0
+    unbalance_angle_deg: float = 0.0
+    harmonics: tuple[HarmonicTable, ...] = ()
+    sequence: Literal["abc", "acb"] = "abc"
+    events: tuple[SupplyEventTable, ...] = ()
+
+    def supply(self, nameplate: Nameplate) -> Supply:
+        return Supply(
+            line_voltage_V=self.line_voltage_V or nameplate.rated_voltage_V,
+            frequency_Hz=self.frequency_Hz or nameplate.rated_frequency_Hz,
+            frequency_drift_Hz=self.frequency_drift_Hz,
+            drift_period_s=self.drift_period_s,
+            unbalance=self.unbalance,
+            unbalance_angle_rad=radians(self.unbalance_angle_deg),
+            harmonics=tuple(Harmonic(h.order, h.fraction, radians(h.angle_deg)) for h in self.harmonics),
+            sequence=self.sequence,
+            events=tuple(event.event() for event in self.events),
+        )
+
+
+class CyclePointTable(Table):
+    at_s: Annotated[float, Field(ge=0)]
+    level: Level
+
+
+class LoadTable(Table):
+    level: Level = 0.5
+    swing: Annotated[float, Field(ge=0, le=0.5)] = 0.0
+    swing_period_s: Annotated[float, Field(ge=0.1)] = 20.0
+    cycle: Annotated[tuple[CyclePointTable, ...], Field(min_length=2)] | None = None
+    cycle_period_s: Duration | None = None
+
+    @model_validator(mode="after")
+    def _is_a_cycle(self) -> Self:
+        if (self.cycle is None) != (self.cycle_period_s is None):
+            raise ValueError("cycle and cycle_period_s belong together")
+        if self.cycle is not None and self.cycle_period_s is not None:
+            _rising([point.at_s for point in self.cycle], "cycle")
+            if self.cycle[0].at_s != 0 or self.cycle[-1].at_s >= self.cycle_period_s:
+                raise ValueError("cycle begins at 0 and its last point lies before cycle_period_s")
+        return self
+
+    def load(self) -> Load:
+        cycle = None
+        if self.cycle is not None and self.cycle_period_s is not None:
+            cycle = LoadCycle(tuple((point.at_s, point.level) for point in self.cycle), self.cycle_period_s)
+        return Load(self.level, self.swing, self.swing_period_s, cycle)
+
+
+class TimelinePointTable(Table):
+    at_s: float
+    level: Turns
+
+
+class FaultTable(Table):
+    phase: Literal["a", "b", "c"]
+    level: Turns | None = None
+    timeline: Annotated[tuple[TimelinePointTable, ...], Field(min_length=1)] | None = None
+    resistance_ohm: Annotated[float, Field(ge=0)] = 0.0
+
+    @model_validator(mode="after")
+    def _is_one_course_in_time(self) -> Self:
+        if (self.level is None) == (self.timeline is None):
+            raise ValueError("give either level or timeline")
+        _rising([point.at_s for point in self.timeline or ()], "timeline")
+        return self
+
+    def course(self) -> FaultCourse:
+        constant = ((0.0, self.level or 0.0),)
+        points = tuple((p.at_s, p.level) for p in self.timeline) if self.timeline else constant
+        return FaultCourse("abc".index(self.phase), points, self.resistance_ohm)
+
+
+class WarmingTable(Table):
+    rise_K: Annotated[float, Field(ge=0, le=300)]
+    time_constant_s: Duration = 1800.0
+    begin_s: float = 0.0
+
+    def warming(self) -> Warming:
+        return Warming(self.rise_K, self.time_constant_s, self.begin_s)
+
+
+class SensorsTable(Table):
+    gain_errors: SixShares = (0.0,) * 6
+    offsets: SixShares = (0.0,) * 6
+    current_delay_us: Annotated[float, Field(ge=0, le=20_000)] = 0.0
+    noise: Annotated[float, Field(ge=0, le=0.5)] = 0.0
+    full_scale_A: Duration | None = None
+    full_scale_V: Duration | None = None
+
+    def sensors(self, motor: Motor) -> Sensors:
+        phase_peak_V = sqrt(2 / 3) * motor.nameplate.rated_voltage_V
+        return Sensors(
+            full_scale_A=self.full_scale_A or CURRENT_HEADROOM * sqrt(2) * rated_current(motor),
+            full_scale_V=self.full_scale_V or VOLTAGE_HEADROOM * phase_peak_V,
+            gain_errors=self.gain_errors,
+            offsets=self.offsets,
+            current_delay_s=self.current_delay_us * 1e-6,
+            noise=self.noise,
+        )
+
+
+class RecorderTable(Table):
+    """What is given here takes the place of the profile's."""
+
+    formats: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
+    sample_rate_Hz: Annotated[float, Field(ge=500, le=100_000)] | None = None
+    pre_trigger_s: Annotated[float, Field(ge=0, le=10)] | None = None
+    post_trigger_s: Annotated[float, Field(gt=0, le=30)] | None = None
+    capacity: Annotated[int, Field(ge=1, le=10_000)] | None = None
+    load_profile_s: Annotated[float, Field(ge=1)] = 60.0
+
+
+class TriggersTable(Table):
+    """What is given here takes the place of the profile's."""
+
+    trip: bool | None = None
+    motor_start: bool | None = None
+    load_above: Duration | None = None
+
+
+class DefiniteTimeTable(Table):
+    pickup: Duration
+    delay_s: Annotated[float, Field(ge=0)] = 0.0
+
+    def element(self) -> DefiniteTime:
+        return DefiniteTime(self.pickup, self.delay_s)
+
+
+class ThermalTable(Table):
+    service_factor: Annotated[float, Field(ge=1, le=2)] = 1.15
+    time_constant_s: Duration = 600.0
+
+    def element(self) -> ThermalOverload:
+        return ThermalOverload(self.service_factor, self.time_constant_s)
+
+
+class ProtectionTable(Table):
+    overcurrent: DefiniteTimeTable | None = None
+    unbalance: DefiniteTimeTable | None = None
+    thermal: ThermalTable | None = None
+
+    def settings(self) -> ProtectionSettings:
+        overcurrent, unbalance, thermal = self.overcurrent, self.unbalance, self.thermal
+        return ProtectionSettings(
+            overcurrent=None if overcurrent is None else overcurrent.element(),
+            unbalance=None if unbalance is None else unbalance.element(),
+            thermal=None if thermal is None else thermal.element(),
+        )
+
+
+class MisbehaviourTable(Table):
+    kind: Kind
+    at_s: Annotated[float, Field(ge=0)] | None = None
+    for_s: Duration = inf
+    switch: Annotated[str, Field(pattern=r"^\w+/\w+\.\w+$")] | None = None
+    delay_s: Duration | None = None
+    after_bytes: Annotated[int, Field(ge=0)] | None = None
+    grow_s: Duration | None = None
+    entries: Annotated[int, Field(ge=1)] | None = None
+    by_bytes: int | None = None
+    offset_s: float | None = None
+    sessions: Annotated[int, Field(ge=0)] | None = None
+
+    @model_validator(mode="after")
+    def _has_the_number_of_its_kind(self) -> Self:
+        own = PARAMETERS.get(self.kind, ("", 0.0))[0]
+        for name in {name for name, _ in PARAMETERS.values()} - {own}:
+            if getattr(self, name) is not None:
+                raise ValueError(f"{self.kind} has no {name}")
+        return self
+
+    def misbehaviour(self) -> Misbehaviour:
+        """On from the start where neither at_s nor switch says otherwise."""
+        name, default = PARAMETERS.get(self.kind, ("kind", 0.0))
+        given = None if self.kind not in PARAMETERS else getattr(self, name)
+        at_s = 0.0 if self.at_s is None and self.switch is None else self.at_s
+        number = default if given is None else float(given)
+        return Misbehaviour(self.kind, number, at_s, self.for_s, self.switch)
+
+
+class MotorTable(Table):
+    ied: Annotated[str, Field(min_length=1)]
+    profile: str | None = None
+    seed: Annotated[int, Field(ge=0)] = 0
+    stopped: bool = False
+    broken_bars: Annotated[float, Field(ge=0, le=0.3)] = 0.0
+    nameplate: dict[str, object] | None = None
+    parameters: dict[str, object] | None = None
+    supply: SupplyTable = SupplyTable()
+    load: LoadTable = LoadTable()
+    fault: FaultTable | None = None
+    warming: WarmingTable | None = None
+    sensors: SensorsTable = SensorsTable()
+    recorder: RecorderTable = RecorderTable()
+    triggers: TriggersTable = TriggersTable()
+    protection: ProtectionTable = ProtectionTable()
+    misbehaviour: tuple[MisbehaviourTable, ...] = ()
+    access: AccessTable = AccessTable()
+
+
+class FileTable(Table):
+    motor: tuple[MotorTable, ...]
+
+
+def _rising(times: list[float], field: str) -> None:
+    if times != sorted(set(times)):
+        raise ValueError(f"at_s must rise from each point of {field} to the next")

@@ -1,0 +1,326 @@
+"""The owner of one MMS association on the client side (IEC 61850-7-2 clause 8, Associate, Release, Abort).
+
+One lock, one state, the C object destroyed exactly once. One request at a time: real relays get confused by
+parallel ones. What the other modules do with the association goes through `request` and `exclusive`.
+"""
+
+import atexit
+import ctypes
+import logging
+import socket
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from enum import Enum
+from typing import Final, Protocol
+
+from mms import errors
+from mms.callbacks import guarded, inside_callback
+from mms.client.credentials import Credentials
+from mms.client.refusals import refused
+from mms.library import library
+from mms.prototypes import ConnectionClosedHandler
+from mms.time_limit import between, limited, present
+from mms.tls import TlsConfiguration
+
+log: Final = logging.getLogger("mms")
+
+_CONNECTION_LOST: Final = 3
+_REJECTED: Final = 5
+_TIMEOUT: Final = 20
+_LOSS_NOTICE_S: Final = 0.1
+_ATTEMPTS: Final = 5
+_PAUSE_BETWEEN_ATTEMPTS_S: Final = 0.02
+
+_ENDLESS: Final = -1
+_LONGEST_PROBE_S: Final = 300.0
+"""Of the first request, by which the library has the names of all the relay offers, part by part.
+
+Some 10 000 names over a serial line of 9600 baud; a motor relay has half of that.
+"""
+
+
+class _State(Enum):
+    OPEN = "open"
+    CLOSING = "closing"
+    CLOSED = "closed"
+
+
+class ServiceFunction(Protocol):
+    """A function of the library whose first arguments are the connection and a cell for the error number."""
+
+    def __call__(self, connection: int, error: object, *arguments: object) -> object: ...
+
+
+class _ClosedNotice:
+    """Tells once that an association ended: an event for those who wait, then the callback."""
+
+    def __init__(self, callback: Callable[[], None] | None) -> None:
+        self.event = threading.Event()
+        self._callback = callback
+        self._lock = threading.Lock()
+        self._armed = False
+
+    def arm(self) -> bool:
+        """From now on call the callback; False if the association has ended already."""
+        with self._lock:
+            self._armed = not self.event.is_set()
+            return self._armed
+
+    def give(self) -> None:
+        with self._lock:
+            first = self._armed
+            self._armed = False
+            self.event.set()
+        if first and self._callback is not None:
+            guarded(self._callback, None)()
+
+
+class Connection:
+    """An open association with one relay."""
+
+    def __init__(
+        self, host: str, port: int, *, connect_timeout_s: float, request_timeout_s: float,
+        on_closed: Callable[[], None] | None = None, tls: TlsConfiguration | None = None,
+        password: str | None = None,
+    ) -> None:  # fmt: skip
+        """Associate with the MMS server at `host` (a name or IPv4 address) and `port`.
+
+        A name may have several addresses, dead ones among them: each is tried in its share of the time.
+        Raises ConnectFailed and its kinds, CredentialFileError; ValueError for a password that cannot be
+        sent. The library may report success and then lose the association at the first
+        request: a probe follows every connect, and the whole is tried again when just that happens.
+        """
+        self.host: Final = f"{host}:{port}"
+        self.request_timeout_s: Final = request_timeout_s
+        self.lib: Final = library()
+        self._lock = threading.RLock()
+        self._pointer = 0
+        self.round_trip_s: float | None = None
+        self._handlers: list[object] = []  # C holds them until they are uninstalled or all is destroyed
+        addresses = self._resolve(host, port)
+        self._credentials = Credentials(self.lib, tls, password)
+        try:
+            self._reach(addresses, port, time.monotonic() + connect_timeout_s, on_closed)
+        except BaseException:
+            self._credentials.destroy()
+            raise
+        self._state = _State.OPEN
+        _open_connections.add(self)
+
+    def _reach(
+        self, addresses: tuple[str, ...], port: int, deadline: float, on_closed: Callable[[], None] | None
+    ) -> None:
+        """Associate with the first address that lets us. Raises ConnectFailed and its kinds."""
+        for turn, address in enumerate(addresses, 1):
+            now = time.monotonic()
+            end = now + (deadline - now) / (len(addresses) - turn + 1)
+            code = self._associate(address, port, end, on_closed)
+            if code == 0:
+                return
+            if turn < len(addresses):
+                continue
+            error = self._refused(code, (address, port), deadline)
+            if len(addresses) > 1:
+                reason = f"{error.message} (the last of its addresses {', '.join(addresses)})"
+                error = type(error)(self.host, "connect", code, reason)
+            raise error
+
+    def _refused(self, code: int, address: tuple[str, int], deadline: float) -> errors.MmsError:
+        if code == _CONNECTION_LOST and self._credentials.tls is None:
+            reason = "the relay ends every association at once: no session left?"
+            return errors.ConnectFailed(self.host, "connect", code, reason)
+        if code == _ENDLESS:
+            reason = f"expected the names of all it offers in {_LONGEST_PROBE_S:g} s, and more follow"
+            return errors.ConnectFailed(self.host, "connect", 0, reason)
+        if code not in (_CONNECTION_LOST, _REJECTED):
+            found = errors.client_error(self.host, "connect", code)
+            is_broken = isinstance(found, errors.ProtocolError)
+            kind = errors.AssociationBroken if is_broken else errors.ConnectFailed
+            return kind(self.host, "connect", code, found.message)
+        return refused(
+            self.host,
+            address,
+            self._credentials.tls,
+            password=self._credentials.has_password,
+            deadline=deadline,
+        )
+
+    def _resolve(self, host: str, port: int) -> tuple[str, ...]:
+        if not 0 < port < 65536:
+            raise errors.ConnectFailed(self.host, "connect", 0, f"not a TCP port: {port}")
+        try:
+            found = socket.getaddrinfo(host, port, socket.AF_INET, socket.SOCK_STREAM)
+        except (OSError, UnicodeError) as error:
+            raise errors.ConnectFailed(
+                self.host, "connect", 0, f"cannot resolve the name: {error}"
+            ) from error
+        return tuple(dict.fromkeys(str(address[0]) for *_, address in found))
+
+    def _associate(
+        self, address: str, port: int, deadline: float, on_closed: Callable[[], None] | None
+    ) -> int:
+        """Returns 0 when the association stands, _CONNECTION_LOST when it was lost at once each time."""
+        for attempt in range(1, _ATTEMPTS + 1):
+            remaining_s = deadline - time.monotonic()
+            if remaining_s <= 0 and attempt > 1:
+                break
+            self._notice = _ClosedNotice(on_closed)
+            code = self._attempt(address, port, max(remaining_s, 0.001))
+            if code == 0 and self._notice.arm():
+                return 0
+            self._destroy()
+            if code not in (0, _CONNECTION_LOST):
+                return code
+            log.debug("%s: the association was lost at once, attempt %d of %d", self.host, attempt, _ATTEMPTS)
+            time.sleep(_PAUSE_BETWEEN_ATTEMPTS_S)
+        return _CONNECTION_LOST
+
+    def _attempt(self, address: str, port: int, timeout_s: float) -> int:
+        lib = self.lib
+        self._pointer = self._credentials.new_connection()
+        self._peer, self._others = (address, port), present()
+        notice = self._notice
+
+        def closed(_parameter: int | None, _connection: int | None) -> None:
+            notice.give()
+
+        handler = ConnectionClosedHandler(guarded(closed, None))
+        self._handlers = [handler]
+        lib.IedConnection_installConnectionClosedHandler(self._pointer, handler, None)
+        timeout_ms = max(1, round(timeout_s * 1000))
+        lib.IedConnection_setConnectTimeout(self._pointer, timeout_ms)  # TCP's part
+        lib.IedConnection_setRequestTimeout(
+            self._pointer, timeout_ms
+        )  # the association's part, and the probe's
+        error = ctypes.c_int(0)
+        unlimited = self._credentials.tls is None
+        with nullcontext() if unlimited else limited(between(peer=(address, port)), timeout_s):
+            lib.IedConnection_connect(self._pointer, ctypes.byref(error), address.encode("ascii"), port)
+        if error.value == 0:
+            with self._limited(_LONGEST_PROBE_S) as over:
+                names = lib.IedConnection_getLogicalDeviceList(self._pointer, ctypes.byref(error))
+            if names:
+                lib.LinkedList_destroy(names)
+            if over.is_set():
+                error.value = _ENDLESS
+            elif error.value == _TIMEOUT and notice.event.wait(_LOSS_NOTICE_S):
+                error.value = _CONNECTION_LOST
+        lib.IedConnection_setRequestTimeout(self._pointer, round(self.request_timeout_s * 1000))
+        return error.value
+
+    def _limited(self, limit_s: float) -> AbstractContextManager[threading.Event]:
+        """End this connection when that is over; the event tells so."""
+        return limited(between(peer=self._peer), limit_s, before=self._others)
+
+    @property
+    def is_open(self) -> bool:
+        return self._state is _State.OPEN and not self._notice.event.is_set()
+
+    @property
+    def closing(self) -> bool:
+        return self._state is not _State.OPEN
+
+    def wait_closed(self, timeout_s: float | None) -> bool:
+        return self._notice.event.wait(timeout_s)
+
+    def keep(self, handler: object) -> None:
+        """Hold a callback for as long as C may call it."""
+        with self._lock:
+            self._handlers.append(handler)
+
+    def release(self, handler: object) -> None:
+        """Let go of a callback that was kept, once C cannot call it any more."""
+        with self._lock:
+            self._handlers.remove(handler)
+
+    @contextmanager
+    def exclusive(self, operation: str) -> Iterator[int]:
+        """The connection's pointer, alone: nobody else sends a request and nobody closes meanwhile."""
+        if inside_callback():
+            raise RuntimeError(
+                f"{operation}: no requests from a callback of the MMS library; hand over to a thread"
+            )
+        with self._lock:
+            if not self.is_open:
+                raise errors.ConnectionLost(self.host, operation, 0, "the connection is closed")
+            yield self._pointer
+
+    def request(
+        self, operation: str, function: ServiceFunction, *arguments: object, longest_s: float | None = None
+    ) -> int | None:
+        """One confirmed service; its pointer result (or None), or the typed error.
+
+        `function` takes the connection, the error cell and `arguments`. longest_s: for one that asks for part
+        after part; the connection is ended, and Timeout raised, when that is over.
+        """
+        with self.exclusive(operation) as pointer:
+            error = ctypes.c_int(0)
+            sent_s = time.monotonic()
+            with nullcontext() if longest_s is None else self._limited(longest_s) as over:
+                result = function(pointer, ctypes.byref(error), *arguments)
+            if error.value not in (_CONNECTION_LOST, _TIMEOUT):
+                self.round_trip_s = time.monotonic() - sent_s
+        if error.value and over is not None and over.is_set():
+            reason = f"expected all names in {longest_s:g} s, and more follow"
+            raise errors.Timeout(self.host, operation, 0, reason)
+        if error.value:
+            raise self.judged(errors.client_error(self.host, operation, error.value))
+        return result if isinstance(result, int) else None
+
+    def judged(self, error: errors.MmsError) -> errors.MmsError:
+        """The error as it is: the library ends a request with a time-out when the association is lost."""
+        if isinstance(error, errors.Timeout) and self._notice.event.wait(_LOSS_NOTICE_S):
+            return errors.ConnectionLost(self.host, error.operation, error.code, "the connection was lost")
+        return error
+
+    def abandon(self) -> None:
+        """Let no further request begin; waits for none. The connection is still to be closed."""
+        if self._state is _State.OPEN:
+            self._state = _State.CLOSING
+
+    def close(self) -> None:
+        """Release the association and free it; waits for a request under way, at most its time-out."""
+        if inside_callback():
+            raise RuntimeError("close: not from a callback of the MMS library; hand over to a thread")
+        if self._state is _State.OPEN:
+            self._state = _State.CLOSING
+        with self._lock:
+            if self._state is _State.CLOSED:
+                return
+            self._state = _State.CLOSED
+            self._destroy()
+            self._credentials.destroy()
+        self._notice.give()
+        _open_connections.discard(self)
+
+    def _destroy(self) -> None:
+        pointer, self._pointer = self._pointer, 0
+        if pointer:
+            self.lib.IedConnection_destroy(pointer)
+        self._handlers.clear()
+
+    def strings(self, linked_list: int | None) -> list[str]:
+        """The names in a LinkedList of C strings, which is freed."""
+        if linked_list is None:
+            return []
+        names = [(ctypes.string_at(data)).decode("latin-1") for data in self.items(linked_list)]
+        self.lib.LinkedList_destroy(linked_list)
+        return names
+
+    def items(self, linked_list: int) -> Iterator[int]:
+        element = self.lib.LinkedList_getNext(linked_list)
+        while element:
+            yield self.lib.LinkedList_getData(element)
+            element = self.lib.LinkedList_getNext(element)
+
+
+_open_connections: Final[set[Connection]] = set()
+"""Strong references: a connection forgotten open keeps its callbacks alive as long as C may call them."""
+
+
+@atexit.register
+def _close_all() -> None:
+    for connection in list(_open_connections):
+        connection.close()

@@ -1,0 +1,197 @@
+"""Listing and fetching a relay's files (IEC 61850-7-2 clause 23, ISO 9506-2 FileOpen, Read, Close)."""
+
+import ctypes
+import logging
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+from mms import errors
+from mms.callbacks import guarded
+from mms.client.connection import Connection
+from mms.client.pace import Pace
+from mms.prototypes import FileReadHandler
+
+log: Final = logging.getLogger("mms")
+
+_MILLISECOND_NS: Final = 1_000_000
+_LISTING_LIMIT: Final = 100_000
+_LONGEST_NAME: Final = 255
+
+_LONGEST_LISTING_S: Final = 300.0
+"""Of waiting for the parts of one listing: some 5000 names over a serial line of 9600 baud."""
+
+
+class Sink(Protocol):
+    """Where a downloaded file's bytes go, in order: a binary file, a hash."""
+
+    def write(self, chunk: bytes, /) -> object: ...
+
+
+@dataclass(frozen=True, slots=True)
+class FileEntry:
+    """One file of a relay's listing: name as the relay gives it, size [bytes], last change [ns UTC]."""
+
+    name: str
+    size: int
+    modified_ns: int
+
+
+def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
+    """Every file of a directory, "" for the root. Relays send long listings in parts: all are asked for.
+
+    Raises Timeout where that takes longer than five minutes, though each part comes in time.
+    """
+    operation = f"list files of {directory or 'the root'!r}"
+    entries: dict[str, FileEntry] = {}
+    last: str | None = None
+    began_s = time.monotonic()
+    while True:
+        part, more = _listing(connection, operation, directory, last)
+        known = len(entries)
+        entries.update((entry.name, entry) for entry in part)
+        if not more:
+            return tuple(entries.values())
+        if len(entries) == known or len(entries) > _LISTING_LIMIT:
+            reason = f"the listing never ends ({len(entries)} names so far)"
+            raise errors.ProtocolError(connection.host, operation, 0, reason)
+        if time.monotonic() - began_s > _LONGEST_LISTING_S:
+            received = f"received {len(entries)} names and more to come"
+            reason = f"expected the whole listing in {_LONGEST_LISTING_S:g} s, {received}"
+            raise errors.Timeout(connection.host, operation, 0, reason)
+        last = part[-1].name
+        if len(last) > _LONGEST_NAME:
+            reason = f"the listing cannot be continued after a name of {len(last)} characters"
+            raise errors.ProtocolError(connection.host, operation, 0, reason)
+
+
+def _listing(
+    connection: Connection, operation: str, directory: str, after: str | None
+) -> tuple[list[FileEntry], bool]:
+    """One part of a listing and whether more follows."""
+    lib = connection.lib
+    more = ctypes.c_bool()
+    found = connection.request(
+        operation,
+        lib.IedConnection_getFileDirectoryEx,
+        file_name(directory) or None,
+        None if after is None else file_name(after),
+        ctypes.byref(more),
+    )
+    if found is None:
+        raise errors.ProtocolError(connection.host, operation, 0, "no listing came")
+    entries = []
+    for item in connection.items(found):
+        name = lib.FileDirectoryEntry_getFileName(item).decode("latin-1")
+        changed_ns = int(lib.FileDirectoryEntry_getLastModified(item)) * _MILLISECOND_NS
+        entries.append(FileEntry(name, int(lib.FileDirectoryEntry_getFileSize(item)), changed_ns))
+        lib.FileDirectoryEntry_destroy(item)
+    lib.LinkedList_destroyStatic(found)
+    return entries, more.value
+
+
+def file_name(name: str) -> bytes:
+    """A file name for C: the bytes the relay gave, which listings read as Latin-1."""
+    octets = name.encode("latin-1")
+    if b"\0" in octets or len(octets) > _LONGEST_NAME:
+        raise ValueError(f"not a file name: {name!r}")
+    return octets
+
+
+def download(connection: Connection, name: str, sink: Sink, expected_size: int | None) -> int:
+    """Stream one file to `sink` in chunks of about 65 kB; the number of bytes.
+
+    FileSizeMismatch unless the bytes are `expected_size`, the size listed. Without it the size announced at
+    opening must do, which some relays also have for a directory: give the size wherever there is a listing.
+    Timeout also where the parts come in time and next to nothing with them (`mms.client.pace`).
+    """
+    operation = f"download {name!r}"
+    with _open_file(connection, operation, name) as (handle, announced):
+        expected = announced if expected_size is None else expected_size
+        reader = _Reader(connection, operation, handle)
+        pace = Pace(connection.host, operation)
+        received = 0
+        more = True
+        while more:
+            asked_s = time.monotonic()
+            chunk, more = reader.read()
+            took_s = time.monotonic() - asked_s
+            received += len(chunk)
+            if received > expected:
+                break
+            sink.write(chunk)
+            if more and not chunk:
+                raise errors.ProtocolError(
+                    connection.host, operation, 0, "the relay sends empty parts without end"
+                )
+            if more:
+                pace.note(len(chunk), took_s)
+            if connection.closing:
+                raise errors.ConnectionLost(connection.host, operation, 0, "closed during the download")
+    if received != expected:
+        found = f"{received} bytes or more" if more else f"{received} bytes"
+        raise errors.FileSizeMismatch(
+            connection.host, operation, 0, f"expected {expected} bytes, received {found}", expected, received
+        )
+    return received
+
+
+@contextmanager
+def _open_file(connection: Connection, operation: str, name: str) -> Iterator[tuple[int, int]]:
+    lib = connection.lib
+    size = ctypes.c_uint32(0)
+    error = ctypes.c_int(0)
+    with connection.exclusive(operation) as pointer:
+        mms = lib.IedConnection_getMmsConnection(pointer)
+        handle = lib.MmsConnection_fileOpen(
+            mms, ctypes.byref(error), file_name(name), 0, ctypes.byref(size), None
+        )
+    if error.value:
+        raise connection.judged(errors.file_error(connection.host, operation, error.value))
+    try:
+        yield handle, size.value
+    finally:
+        _close_file(connection, operation, handle)
+
+
+def _close_file(connection: Connection, operation: str, handle: int) -> None:
+    """Give the file back: a relay has few handles. A lost connection, told elsewhere, holds none."""
+    error = ctypes.c_int(0)
+    try:
+        with connection.exclusive(operation) as pointer:
+            mms = connection.lib.IedConnection_getMmsConnection(pointer)
+            connection.lib.MmsConnection_fileClose(mms, ctypes.byref(error), handle)
+    except errors.ConnectionLost:
+        return
+    if error.value:
+        log.warning("%s", errors.file_error(connection.host, f"{operation}: close the file", error.value))
+
+
+class _Reader:
+    """Reads one open file, part by part, through one callback for all of them."""
+
+    def __init__(self, connection: Connection, operation: str, handle: int) -> None:
+        self._connection = connection
+        self._operation = operation
+        self._file = handle
+        self._parts: list[bytes] = []
+        self._handler = FileReadHandler(guarded(self._receive, None))
+
+    def _receive(self, _parameter: int | None, _handle: int, buffer: object, size: int) -> None:
+        self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
+
+    def read(self) -> tuple[bytes, bool]:
+        """One FileRead: the bytes and whether more follow."""
+        lib = self._connection.lib
+        error = ctypes.c_int(0)
+        self._parts.clear()
+        with self._connection.exclusive(self._operation) as pointer:
+            mms = lib.IedConnection_getMmsConnection(pointer)
+            more = lib.MmsConnection_fileRead(mms, ctypes.byref(error), self._file, self._handler, None)
+        if error.value:
+            raise self._connection.judged(
+                errors.file_error(self._connection.host, self._operation, error.value)
+            )
+        return b"".join(self._parts), bool(more)

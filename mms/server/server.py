@@ -1,0 +1,371 @@
+"""An MMS server with an IEC 61850 data model: the relay's side (IEC 61850-7-2, mapped by IEC 61850-8-1).
+
+The library serves without threads of its own; a ServerPump drives any number of servers from one thread.
+"""
+
+import ctypes
+import math
+import threading
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import nullcontext
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Final, Self
+
+from mms.callbacks import guarded
+from mms.client.controls import AddCause, ControlModel
+from mms.errors import ModelError, ServerStartFailed
+from mms.library import library
+from mms.passwords import authenticator
+from mms.prototypes import ControlHandler, FileAccessHandler, WaitForExecutionHandler
+from mms.references import FunctionalConstraint
+from mms.server.file_access import FileAnswer, FileGuard, FileHook
+from mms.server.model import Model, Node
+from mms.time_limit import between, limited
+from mms.tls import TlsConfiguration, TlsContext
+from mms.values import Quality, Value, decode
+
+if TYPE_CHECKING:
+    from mms.server.pump import ServerPump
+
+_DENY: Final = 1  # AccessPolicy
+_FAILED, _OK = 0, 1  # ControlHandlerResult
+_PATIENCE_AFTER_REQUEST_S: Final = 0.01  # only enabling a block or an interrogation makes reports
+_LONGEST_HANDSHAKE_S: Final = 5.0
+MOST_CONNECTIONS: Final = 5
+"""Clients of one server; compiled into the wheel's library."""
+
+
+class _State(Enum):
+    CREATED = "created"
+    RUNNING = "running"
+    STOPPED = "stopped"
+
+
+@dataclass(frozen=True, slots=True)
+class ControlAction:
+    """A client's Operate: the object, the value, and who asks (IEC 61850-7-2 clause 20)."""
+
+    reference: str
+    value: Value
+    test: bool
+    originator: str
+    originator_category: int
+    control_number: int
+
+
+OperateHandler = Callable[[ControlAction], "bool | AddCause"]
+
+
+class Server:
+    """One simulated IED.
+
+    Handlers run on the pump's thread, one at a time, with the server locked: they may update this server,
+    should return at once, and must not take a lock that another thread holds while it updates. A handler that
+    raises is logged and counts as a refusal.
+    """
+
+    def __init__(
+        self, model_text: str, *, port: int, ied_name: str | None = None, address: str = "127.0.0.1",
+        file_root: Path | None = None, max_connections: int = MOST_CONNECTIONS,
+        report_buffer_bytes: int = 65_536, on_file_request: FileHook | None = None,
+        tls: TlsConfiguration | None = None, passwords: Iterable[str] = (),
+    ) -> None:  # fmt: skip
+        """Build the model and the server; `start` or a ServerPump makes it listen.
+
+        `model_text` is the library's configuration text, `ied_name` replaces the model's name. At most
+        `max_connections` clients connect; the library's own limit is 5. `report_buffer_bytes` is the buffer
+        of each report control block. `file_root` is the folder whose files are served (none: no file
+        service), read only; `on_file_request` is asked first. Replace files by renaming: one that shrinks
+        while it is sent is filled up with whatever the memory holds. With `tls` only clients with a pinned
+        certificate are served, with `passwords` only those that know one of them.
+        ModelError if the text is wrong in any way, also where the library would not mind;
+        CredentialFileError for the files of `tls`; ValueError for a password that cannot be sent.
+        """
+        if not 0 < port < 65536:
+            raise ValueError(f"not a TCP port: {port} (the library cannot choose one)")
+        if not 0 < max_connections <= MOST_CONNECTIONS:
+            raise ValueError(f"max_connections is {max_connections}: expected 1 to {MOST_CONNECTIONS}")
+        self.address: Final = address
+        self.port: Final = port
+        self._lib: Final = library()
+        self._lock = threading.RLock()
+        self._state = _State.CREATED
+        self._patience_s = 0.0
+        self._library_holds_model = False
+        self._handlers: list[object] = []
+        self._pump: ServerPump | None = None
+        authenticate = authenticator(self._lib, passwords)
+        self._tls = None if tls is None else TlsContext(self._lib, tls)
+        try:
+            self._model = Model(self._lib, model_text, ied_name)
+            self._server = self._build_server(file_root, max_connections, report_buffer_bytes)
+        except BaseException:
+            self._destroy_tls()
+            raise
+        if authenticate is not None:
+            self._handlers.append(authenticate)
+            self._lib.IedServer_setAuthenticator(self._server, authenticate, None)
+        self._refuse_writes()
+        if file_root is not None:
+            self._guard_files(FileGuard(file_root, on_file_request))
+
+    def _build_server(self, file_root: Path | None, max_connections: int, report_buffer_bytes: int) -> int:
+        lib = self._lib
+        config = lib.IedServerConfig_create()
+        lib.IedServerConfig_setMaxMmsConnections(config, max_connections)
+        lib.IedServerConfig_setReportBufferSize(config, report_buffer_bytes)
+        lib.IedServerConfig_setReportBufferSizeForURCBs(config, report_buffer_bytes)
+        lib.IedServerConfig_enableFileService(config, file_root is not None)
+        if file_root is not None:
+            lib.IedServerConfig_setFileServiceBasePath(config, f"{file_root.resolve()}/".encode())
+        off, on = False, True
+        lib.IedServerConfig_enableDynamicDataSetService(config, off)
+        lib.IedServerConfig_enableLogService(config, on)  # lists log control blocks, keeps no logs
+        lib.IedServerConfig_useIntegratedGoosePublisher(config, off)
+        tls = None if self._tls is None else self._tls.pointer
+        server = lib.IedServer_createWithConfig(self._model.pointer, tls, config)
+        lib.IedServerConfig_destroy(config)
+        if not server:
+            self._model.destroy()
+            raise ModelError("the model text", "a model the MMS library can serve", "it refuses the model")
+        lib.IedServer_setLocalIpAddress(server, self.address.encode("ascii"))
+        return int(server)
+
+    def _refuse_writes(self) -> None:
+        for constraint in (FunctionalConstraint.SP, FunctionalConstraint.SV, FunctionalConstraint.SE):
+            self._lib.IedServer_setWriteAccessPolicy(self._server, int(constraint), _DENY)
+
+    def _guard_files(self, guard: FileGuard) -> None:
+        def answer(
+            _parameter: int | None,
+            _connection: int | None,
+            service: int,
+            name: bytes | None,
+            _other: bytes | None,
+        ) -> int:
+            return int(guard.answer(service, name))
+
+        handler = FileAccessHandler(guarded(answer, int(FileAnswer.DENIED)))
+        self._handlers.append(handler)
+        mms_server = self._lib.IedServer_getMmsServer(self._server)
+        self._lib.MmsServer_installFileAccessHandler(mms_server, handler, None)
+
+    # life
+
+    @property
+    def is_running(self) -> bool:
+        return self._state is _State.RUNNING
+
+    @property
+    def connections(self) -> int:
+        """How many clients are connected."""
+        with self._lock:
+            return int(self._lib.IedServer_getNumberOfOpenConnections(self._server)) if self.is_running else 0
+
+    def start(self) -> None:
+        """Listen and serve on a thread of its own; ServerStartFailed if address and port cannot be had."""
+        from mms.server.pump import ServerPump
+
+        pump = ServerPump([self])
+        pump.start()
+        self._pump = pump
+
+    def stop(self) -> None:
+        """Close every connection and free the server, for good; harmless when stopped."""
+        pump, self._pump = self._pump, None
+        if pump is not None:
+            pump.stop()
+        self.close()
+
+    def __enter__(self) -> Self:
+        if self._state is _State.CREATED:
+            self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    # data
+
+    def update(self, reference: str, value: Value | Quality) -> None:
+        """Set one data attribute "LD/LN.DO.DA" (the LD with the IED's name), reporting it if it triggers.
+
+        ModelError if there is no such attribute or the value does not fit its type.
+        """
+        self.update_many({reference: value})
+
+    def update_many(self, values: Mapping[str, Value | Quality]) -> None:
+        """Set several attributes as one change: a reader or a report sees all of them or none.
+
+        Either every value fits or nothing is changed. Times go first, so that an event carries its own.
+        """
+        lib = self._lib
+        with self._lock:
+            self._require_alive("update")
+            prepared: list[tuple[int, int]] = []
+            try:
+                for reference in sorted(values, key=lambda name: not name.endswith(".t")):
+                    node = self._model.node(reference, Node.DATA_ATTRIBUTE)
+                    new = lib.MmsValue_clone(lib.IedServer_getAttributeValue(self._server, node))
+                    prepared.append((node, new))
+                    self._model.assign(reference, node, new, values[reference])
+                self._apply(prepared)
+            finally:
+                for _, new in prepared:
+                    lib.MmsValue_delete(new)
+
+    def _apply(self, prepared: list[tuple[int, int]]) -> None:
+        lib = self._lib
+        lock_model = not self._library_holds_model
+        if lock_model:
+            lib.IedServer_lockDataModel(self._server)
+        for node, new in prepared:
+            lib.IedServer_updateAttributeValue(self._server, node, new)
+        if lock_model:
+            lib.IedServer_unlockDataModel(self._server)
+        self._patience_s = 0.0
+
+    def read(self, reference: str) -> Value:
+        """The present value of one of this server's own data attributes."""
+        with self._lock:
+            self._require_alive("read")
+            node = self._model.node(reference, Node.DATA_ATTRIBUTE)
+            return decode(self._lib, self._lib.IedServer_getAttributeValue(self._server, node))
+
+    # controls
+
+    def on_operate(self, reference: str, handler: OperateHandler) -> None:
+        """Call `handler` for each Operate of the controllable object "LD/LN.DO".
+
+        True lets it pass; False or an AddCause refuses it: with normal security by a negative response, with
+        enhanced security by a negative CommandTermination. The handler itself updates stVal.
+        """
+
+        def operated(action: int, _parameter: int | None, value: int, test: bool) -> int:
+            return self._operated(reference, handler, action, value, test=test)
+
+        def checked_dynamically(
+            action: int, _parameter: int | None, value: int, test: bool, _synchro_check: bool
+        ) -> int:  # fmt: skip
+            return self._operated(reference, handler, action, value, test=test)
+
+        with self._lock:
+            self._require_alive("on_operate")
+            node = self._model.node(reference, Node.DATA_OBJECT)
+            model = self.read(f"{reference}.ctlModel")
+            if model in (ControlModel.DIRECT_ENHANCED, ControlModel.SBO_ENHANCED):
+                execute = ControlHandler(guarded(operated, _FAILED))
+                self._handlers.append(execute)
+                self._lib.IedServer_setControlHandler(self._server, node, execute, None)
+            else:
+                check = WaitForExecutionHandler(guarded(checked_dynamically, _FAILED))
+                self._handlers.append(check)
+                self._lib.IedServer_setWaitForExecutionHandler(self._server, node, check, None)
+
+    def _operated(
+        self, reference: str, handler: OperateHandler, action: int, value: int, *, test: bool
+    ) -> int:
+        lib = self._lib
+        lib.ControlAction_setAddCause(action, int(AddCause.BLOCKED_BY_PROCESS))
+        size = ctypes.c_int(0)
+        identity = lib.ControlAction_getOrIdent(action, ctypes.byref(size))
+        originator = (
+            ctypes.string_at(identity, size.value).decode("latin-1") if identity and size.value > 0 else ""
+        )
+        request = ControlAction(
+            reference, decode(lib, value), test, originator, int(lib.ControlAction_getOrCat(action)),
+            int(lib.ControlAction_getCtlNum(action)),
+        )  # fmt: skip
+        self._library_holds_model = True
+        try:
+            verdict = handler(request)
+        finally:
+            self._library_holds_model = False
+        if verdict is True:
+            return _OK
+        if isinstance(verdict, AddCause):
+            lib.ControlAction_setAddCause(action, int(verdict))
+        return _FAILED
+
+    # the pump's side
+
+    def listen(self) -> None:
+        """Open the port. For ServerPump, which then serves."""
+        with self._lock:
+            where = f"{self.address}:{self.port}"
+            if self._state is not _State.CREATED:
+                raise ServerStartFailed(where, "start the server", 0, f"the server is {self._state.value}")
+            self._lib.IedServer_startThreadless(self._server, self.port)
+            if not self._lib.IedServer_isRunning(self._server):
+                self._lib.IedServer_stopThreadless(
+                    self._server
+                )  # or the library ends a thread it never began
+                reason = "cannot listen there: the port is taken, or the address is not this machine's"
+                raise ServerStartFailed(where, "start the server", 0, reason)
+            self._state = _State.RUNNING
+
+    def serve_ready(self) -> bool:
+        """Serve what clients have sent; False if nothing had come. For ServerPump."""
+        with self._lock:
+            if self._state is not _State.RUNNING or self._lib.IedServer_waitReady(self._server, 0) <= 0:
+                return False
+            self._process_incoming()
+            self._lib.IedServer_performPeriodicTasks(self._server)
+            self._patience_s = min(self._patience_s, _PATIENCE_AFTER_REQUEST_S)
+            return True
+
+    def take_turn(self) -> bool:
+        """Do what time brings and send waiting reports; True if that waited a millisecond. For ServerPump.
+
+        The library sends reports only while it looks for data, and there it waits 1 ms for some to come.
+        """
+        with self._lock:
+            self._patience_s = math.inf
+            if self._state is not _State.RUNNING:
+                return False
+            self._lib.IedServer_performPeriodicTasks(self._server)
+            if self._lib.IedServer_getNumberOfOpenConnections(self._server) == 0:
+                return False
+            self._process_incoming()
+            return True
+
+    def _process_incoming(self) -> None:
+        """Accept, read and answer. A handshake of TLS is waited for, with everything else at a stand."""
+        ours = between(own=(self.address, self.port))
+        with nullcontext() if self._tls is None else limited(ours, _LONGEST_HANDSHAKE_S):
+            self._lib.IedServer_processIncomingData(self._server)
+
+    @property
+    def patience_s(self) -> float:
+        """How long the next turn may wait [s]: not at all after an update, for ever if nothing happened.
+
+        For ServerPump.
+        """
+        return self._patience_s
+
+    def close(self) -> None:
+        """Free the server once no pump drives it: stop, destroy the server, then its model."""
+        with self._lock:
+            if self._state is _State.STOPPED:
+                return
+            if self._state is _State.RUNNING:
+                self._lib.IedServer_stopThreadless(self._server)
+            self._state = _State.STOPPED
+            self._lib.IedServer_destroy(self._server)
+            self._server = 0
+            self._destroy_tls()
+            self._model.destroy()
+            self._handlers.clear()
+
+    def _destroy_tls(self) -> None:
+        if self._tls is not None:
+            self._tls.destroy()
+
+    def _require_alive(self, operation: str) -> None:
+        if self._state is _State.STOPPED:
+            raise RuntimeError(f"{operation}: the server {self.address}:{self.port} is stopped")

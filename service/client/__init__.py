@@ -1,0 +1,1 @@
+"""The REST API seen from a client: requests, and answers in words."""

@@ -1,0 +1,1 @@
+"""One gateway process: which relays it holds, and one session for each."""

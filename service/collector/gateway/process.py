@@ -1,0 +1,84 @@
+"""A gateway process: a session for every relay it holds a lease of.
+
+It is started by the service, which hands it the settings as one line of JSON on standard input and keeps that
+pipe open. When the pipe closes the service is gone, however it went, and the gateway ends with it.
+"""
+
+import os
+import signal
+import socket
+import sys
+from threading import Event, Thread
+from typing import BinaryIO, NoReturn
+
+import structlog
+
+from mms.library_noise import keep_tls_notes_off_stderr
+from service.collector.gateway.gateway import Gateway, Identity
+from service.collector.session.visit_marks import visits_of
+from service.configuration.settings import Settings
+from service.plant import read_plant
+from service.process.installation import installation_id
+from service.process.logs import configure_logging
+from service.process.single_instance import exclusive
+from service.recording_store.store import RecordingStore
+from service.storage import Repository, connect
+
+log = structlog.get_logger(__name__)
+
+FENCED_OFF = 3
+"""Exit code of a gateway that could not renew its leases."""
+
+
+def gateway_id(settings: Settings, number: int) -> str:
+    """The id of one of an installation's gateways."""
+    return f"{installation_id(settings.data_directory)}/{number}"
+
+
+def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
+    """Read the settings, collect until the pipe closes, end the process. The argument is its number."""
+    # Ctrl-C reaches every process of the terminal; this one ends when the service says so.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    settings = Settings.model_validate_json(settings_pipe.readline())
+    number = int(sys.argv[1])
+    if any(access.tls is not None for access in settings.relays.values()):
+        keep_tls_notes_off_stderr()
+    configure_logging("collector")
+    service_gone = Event()
+    Thread(target=_watch, args=(settings_pipe, service_gone), name="parent-watch", daemon=True).start()
+    # The same gateway of a killed service may be about to end: holding its lock, we know that it is dead.
+    with exclusive(settings.data_directory / f"gateway-{number}.lock", wait=True):
+        left_over = _collect(settings, number, service_gone)
+        if left_over:
+            # A thread inside the C library must neither keep the process nor see it torn down around itself.
+            log.warning("ended with requests under way", sessions=left_over)
+            os._exit(0)
+
+
+def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
+    name = gateway_id(settings, number)
+    store = RecordingStore(settings.recordings_directory, name.replace("/", "-"))
+    store.discard_incoming()
+    visits = visits_of(settings.data_directory, number)
+    visits.forget()  # of a gateway whose service ended with it
+    gateway = Gateway(
+        Identity(name, socket.gethostname(), os.getpid()),
+        read_plant(settings),
+        Repository(connect(settings.database_url)),
+        store,
+        settings,
+        visits=visits,
+        on_end=_fenced_off,
+    )
+    log.info("collecting", gateway=number)
+    return gateway.run(stop)
+
+
+def _fenced_off() -> NoReturn:
+    log.error("the leases could not be renewed: ending before others take the relays over")
+    os._exit(FENCED_OFF)
+
+
+def _watch(pipe: BinaryIO, service_gone: Event) -> None:
+    pipe.read()
+    service_gone.set()

@@ -1,0 +1,1 @@
+"""One relay's records: listed, judged, pulled."""

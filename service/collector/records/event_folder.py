@@ -1,0 +1,192 @@
+"""Where a relay keeps its event recordings: found by looking, unless somebody has said.
+
+Relays name the folder EVENTS or COMTRADE, in capitals or not, with a slash or backslash before or behind,
+and some do not list it at the root. A folder that was once seen to hold recordings is the one; until then all
+that exist are looked into.
+"""
+
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+import structlog
+
+from mms import (
+    AccessDenied,
+    Client,
+    FileEntry,
+    FileServiceFailed,
+    NotFound,
+    ProtocolError,
+    TemporarilyUnavailable,
+)
+from service.collector.records.listing import is_of_a_record, last_component, printable
+
+log = structlog.get_logger(__name__)
+
+USUAL = ("EVENTS", "COMTRADE")
+SPELLINGS = ("/{}", "{}/", "{}\\", "\\{}")
+"""Tried where neither the plain name nor the root's listing leads anywhere."""
+
+ROOT = ""
+SEARCH_PERIOD_S, NO_FILES_PERIOD_S = 10.0, 60.0
+"""Between searches for a folder that was not there, and at a relay that seems to have no file service."""
+
+MOST_FOLDERS = 16
+"""Looked into, of those the root lists."""
+
+NO_SERVICE_CODES = (4, 98, 99)
+"""Of the library's: service not supported, not implemented, and what it makes of a reject."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What a folder lists. `directory` None: there is none at present."""
+
+    directory: str | None
+    entries: tuple[FileEntry, ...]
+
+
+class EventFolder:
+    """Of one relay. default: the folder to be tried first.  override: the only one to be tried.
+
+    `missing` says in words why there is no folder; `no_files`, that the relay has no file service at all;
+    `unread`, that recordings of the relay are not fetched, because they are in another folder than others.
+    """
+
+    def __init__(self, relay: str, default: str, override: str | None = None) -> None:
+        self._relay = relay
+        self._default = default
+        self._override = override
+        # Whoever has set another folder than the usual one means it, empty or not, where the relay has it.
+        self._meant = override or (None if default == USUAL[0] else default)
+        self._candidates: list[str] = []
+        self._is_sure = False
+        self._look_beside = False
+        self._next_search_s = 0.0
+        self.missing: str | None = None
+        self.unread: str | None = None
+        self.no_files = False
+
+    @property
+    def directory(self) -> str | None:
+        """The folder in use, None while there is none."""
+        return self._candidates[0] if self._candidates else None
+
+    def begin(self) -> None:
+        """A new connection: what was not there may be there now."""
+        self._next_search_s = 0.0
+        self._look_beside = True
+
+    def contents(self, client: Client) -> Contents:
+        """The contents of the folder. Raises MmsError (the link, or a listing that cannot be right)."""
+        found = [] if not self._candidates else self._look_into(client, self._candidates)
+        if not found:
+            self._is_sure = False
+            self._look_beside = True
+            self.unread = None
+            if time.monotonic() < self._next_search_s:
+                return Contents(None, ())
+            found = self._search(client)
+        if not found:
+            period_s = NO_FILES_PERIOD_S if self.no_files else SEARCH_PERIOD_S
+            self._next_search_s = time.monotonic() + period_s
+            return Contents(None, ())
+        self.missing, self.no_files = None, False
+        meant = [each for each in found if each.directory == self._meant]
+        chosen = next(filter(_holds_records, meant or found), (meant or found)[0])
+        if _holds_records(chosen) or meant:
+            self._is_sure = True
+        if chosen.directory != self.directory:
+            log.info("events directory", relay=self._relay, directory=chosen.directory)
+        others = [] if self._is_sure else [each.directory for each in found if each is not chosen]
+        self._candidates = [each for each in (chosen.directory, *others) if each is not None]
+        if self._look_beside:
+            self._look_beside = not self._is_sure
+            self._note_unread(client, chosen)
+        return chosen
+
+    def _note_unread(self, client: Client, chosen: Contents) -> None:
+        """Whether another folder of a usual name holds recordings too, unless one was meant."""
+        self.unread = None
+        if self._meant is not None or not _holds_records(chosen):
+            return
+        names = [
+            name for name in USUAL if name.casefold() != (chosen.directory or "").strip("/\\").casefold()
+        ]
+        try:
+            others = [each for each in self._look_into(client, names) if _holds_records(each)]
+        except (FileServiceFailed, ProtocolError, TemporarilyUnavailable):
+            return  # one more way to say that there is none
+        finally:
+            self.no_files = False
+        # Some relays list the same files whatever folder they are asked for.
+        beside = [each.directory or "" for each in others if each.entries != chosen.entries]
+        if beside:
+            self.unread = (
+                f"recordings in {', '.join(beside)} are not fetched, only those in {chosen.directory}; "
+                "events_directory in the motors file names the one to be read"
+            )
+            log.warning("another events directory", relay=self._relay, reason=self.unread)
+
+    def _look_into(self, client: Client, directories: list[str]) -> list[Contents]:
+        """Those that are there; no further than the first that holds recordings."""
+        found: list[Contents] = []
+        for directory in directories:
+            try:
+                contents = Contents(directory, client.files(directory))
+            except (NotFound, AccessDenied):
+                continue
+            except ProtocolError as error:
+                # A folder that was listed before fails for another reason, which ends the visit.
+                if directory in self._candidates or error.code not in NO_SERVICE_CODES:
+                    raise
+                self.no_files = True
+                continue
+            found.append(contents)
+            if directory == self._meant or _holds_records(contents):
+                break
+        return found
+
+    def _search(self, client: Client) -> list[Contents]:
+        self._candidates = []
+        self.no_files = False
+        names = [self._override] if self._override is not None else [*dict.fromkeys((self._default, *USUAL))]
+        found = self._look_into(client, names)
+        is_settled = any(each.directory == self._meant or _holds_records(each) for each in found)
+        if self._override is None and not self.no_files and not is_settled:
+            known = {contents.directory for contents in found}
+            found += self._look_into(client, [name for name in self._at_root(client) if name not in known])
+        if self._override is None and not self.no_files and not found:
+            found = self._look_into(client, [form.format(name) for name in names for form in SPELLINGS])
+        looked_for = f"looked for {', '.join(names)}"
+        self.missing = (
+            f"the relay offers no files: no recording can be fetched ({looked_for})"
+            if self.no_files
+            else f"no directory of event recordings: {looked_for}"
+        )
+        return found
+
+    def _at_root(self, client: Client) -> Iterator[str]:
+        """Folders that hold recordings as the root lists them, or are called as usual; the root itself."""
+        try:
+            entries = client.files(ROOT)
+        except (NotFound, AccessDenied):
+            return
+        usual = {name.casefold() for name in (self._default, *USUAL)}
+        folders: dict[str, None] = {}
+        for entry in entries:
+            if printable(entry.name) != entry.name:
+                continue
+            parent = entry.name[: len(entry.name) - len(last_component(entry.name))].rstrip("/\\")
+            plain = entry.name.strip("/\\")
+            if is_of_a_record(entry.name):
+                folders[parent] = None
+            elif plain.casefold() in usual:
+                folders[plain] = None
+        yield from islice(folders, MOST_FOLDERS)
+
+
+def _holds_records(contents: Contents) -> bool:
+    return any(is_of_a_record(entry.name) for entry in contents.entries)

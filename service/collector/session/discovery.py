@@ -1,0 +1,123 @@
+"""What a relay is, found by asking it at each connection; its SCL is what was expected.
+
+What differs is written down and, where the service uses it, an alarm. Nothing of it ends a connection.
+"""
+
+import time
+from collections.abc import Sequence
+from dataclasses import asdict
+
+import structlog
+
+from mms import Client
+from service.collector.records.event_folder import ROOT
+from service.collector.records.listing import RefusedFile
+from service.collector.session.alarms import RelayAlarms
+from service.collector.session.browsing import browse, control_model
+from service.plant import Acquisition, Difference, Relay, differences, offered, promised
+from service.storage import Repository
+from service.storage.records import RelayFindings
+from service.storage.states import AlarmKind
+
+log = structlog.get_logger(__name__)
+
+NOT_ASKED = "the relay does not tell what it offers: its SCL is taken at its word"
+
+
+class Discovery:
+    """Of one relay. Used by that relay's session alone."""
+
+    def __init__(self, relay: Relay, repository: Repository, alarms: RelayAlarms) -> None:
+        self._relay = relay
+        self._repository = repository
+        self._alarms = alarms
+        self._acquisition = promised(relay)
+        self._control_model: str | None = None
+        self._differences: list[dict[str, object]] = []
+        self._asked_ns = 0
+        self._written: RelayFindings | None = None
+
+    def look(self, client: Client) -> Acquisition:
+        """Browse the relay: what is to be used of it. Raises MmsError (the link)."""
+        offer = browse(client, self._relay.expected)
+        self._asked_ns = time.time_ns()
+        self._differences = []
+        if offer is None:
+            self._acquisition = promised(self._relay)
+        else:
+            self._acquisition = offered(
+                self._relay, offer, lambda control: bool(control_model(client, control))
+            )
+            if self._relay.expected is not None:
+                self._differences = [_document(each) for each in differences(self._relay.expected, offer)]
+        trigger = self._acquisition.trigger
+        model = None if trigger is None else control_model(client, trigger)
+        self._control_model = None if model is None else model.words
+        self._raise_alarms()
+        return self._acquisition
+
+    def note(
+        self,
+        *,
+        report_control: str | None,
+        directory: str | None,
+        remarks: Sequence[str],
+        ignored: Sequence[RefusedFile],
+        ignored_in_all: int,
+    ) -> None:
+        """Write down what is used and what is not taken, where that has changed.
+
+        Raises SQLAlchemyError; then it is written the next time.
+        """
+        findings = RelayFindings(
+            ied=self._relay.name,
+            found_ns=self._asked_ns,
+            acquisition=self._used(report_control, directory, remarks),
+            differences=self._differences,
+            ignored_files=[asdict(each) for each in ignored],
+            ignored_in_all=ignored_in_all,
+        )
+        if findings != self._written:
+            self._repository.note_findings(findings)
+            self._written = findings
+
+    def _used(
+        self, report_control: str | None, directory: str | None, remarks: Sequence[str]
+    ) -> dict[str, object]:
+        found = self._acquisition
+        overrides = self._relay.overrides
+        return {
+            "asked": found.asked,
+            "trigger": found.trigger,
+            "trigger_action": None if found.trigger is None else str(found.trigger_action),
+            "control_model": self._control_model,
+            "record_made": found.record_made,
+            "record_number": found.record_number,
+            "records_told_by": _told_by(report_control),
+            "report_control": report_control,
+            "events_directory": "/" if directory == ROOT else directory,
+            "overridden": [name for name, value in asdict(overrides).items() if value is not None],
+            "remarks": [
+                *([] if found.asked else [NOT_ASKED]),
+                *remarks,
+                *(each.reason for each in found.deviations),
+            ],
+        }
+
+    def _raise_alarms(self) -> None:
+        deviations = self._acquisition.deviations
+        for each in deviations:
+            self._alarms.raise_alarm(AlarmKind.RELAY_DIFFERS, each.subject, each.reason)
+        self._alarms.keep(AlarmKind.RELAY_DIFFERS, {each.subject for each in deviations})
+        if self._differences:
+            log.info("the relay differs from its SCL", relay=self._relay.name, number=len(self._differences))
+
+
+def _told_by(report_control: str | None) -> str:
+    if report_control is None:
+        return "polling"
+    return "buffered-report" if ".BR." in report_control else "unbuffered-report"
+
+
+def _document(difference: Difference) -> dict[str, object]:
+    return {"kind": str(difference.kind), "expected": difference.expected, "found": difference.found}

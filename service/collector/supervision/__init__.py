@@ -1,0 +1,1 @@
+"""Keeps the gateway processes running, and finds which relay brought one down."""

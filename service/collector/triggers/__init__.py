@@ -1,0 +1,1 @@
+"""Recordings that somebody asked for."""

@@ -1,0 +1,1 @@
+"""Settings of the service, and what is shown to relays."""

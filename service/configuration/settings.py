@@ -1,0 +1,148 @@
+"""Settings of the service: built-in values, a TOML file, the environment (MCC_...), command line options.
+
+The later one wins. Every setting is explained in docs/settings.md; a test fails when one is missing there.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from ipaddress import IPv4Address, IPv6Address
+from pathlib import Path
+from typing import Self
+
+from pydantic import Field, ValidationError
+from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDict
+from pydantic_settings import SettingsError as UnreadableEnvironment
+
+from service.configuration.relay_access import AbsolutePath, RelayAccess
+
+PATHS = ("data_directory", "recordings_directory", "scd", "motors")
+RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
+
+
+class SettingsError(ValueError):
+    """A setting cannot be used: which one, where it came from, what was expected and what was found."""
+
+    def __init__(self, source: str, field: str, *, expected: str, found: str) -> None:
+        self.source = source
+        self.field = field
+        self.expected = expected
+        self.found = found
+        super().__init__(f"{source}: {field}: expected {expected}, found {found}")
+
+
+def sqlite_url(data_directory: Path) -> str:
+    """SQLAlchemy URL of the SQLite file in a data directory."""
+    return f"sqlite:///{data_directory / 'statorwatch.sqlite'}"
+
+
+class Settings(BaseSettings):
+    """All settings, validated. Times are in seconds, sizes in bytes."""
+
+    model_config = SettingsConfigDict(env_prefix="MCC_", extra="forbid", frozen=True)
+
+    data_directory: AbsolutePath = Field(default=Path("data"), validate_default=True)
+    scd: AbsolutePath | None = None
+    motors: AbsolutePath | None = None
+    subnetwork: str | None = None
+
+    bind_address: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
+    port: int = Field(default=8710, ge=0, le=65535)
+    allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "::1")
+    max_upload_bytes: int = Field(default=64 * 1024**2, gt=0)
+
+    recordings_directory: AbsolutePath = Field(
+        default_factory=lambda known: known["data_directory"] / "recordings"
+    )
+    database_url: str = Field(default_factory=lambda known: sqlite_url(known["data_directory"]), repr=False)
+
+    workers: int = Field(default=2, ge=1, le=256)
+    job_timeout_s: float = Field(default=60.0, gt=0, le=3600)
+    job_attempts: int = Field(default=3, ge=1, le=20)
+    job_retry_delay_s: float = Field(default=2.0, ge=0)
+
+    relays: dict[str, RelayAccess] = Field(default_factory=dict)
+    relays_per_gateway: int = Field(default=100, ge=1, le=1000)
+    lease_s: float = Field(default=30.0, ge=1, le=600)
+    events_directory: str = "EVENTS"
+    connect_timeout_s: float = Field(default=5.0, gt=0)
+    request_timeout_s: float = Field(default=5.0, gt=0)
+    record_timeout_s: float = Field(default=30.0, gt=0)
+    poll_period_s: float = Field(default=5.0, gt=0)
+    quarantine_s: float = Field(default=60.0, gt=0, le=86_400)
+    metering_period_s: float = Field(default=10.0, ge=0)
+    metering_sample_days: float = Field(default=1.0, gt=0)
+    metering_minute_days: float = Field(default=31.0, gt=0)
+    metering_quarter_hour_days: float = Field(default=3650.0, gt=0)
+    max_file_bytes: int = Field(default=64 * 1024**2, gt=0)
+    max_relay_bytes_per_day: int = Field(default=1024**3, gt=0)
+
+    @classmethod
+    def load(cls, config: Path | None = None, options: Mapping[str, object] | None = None) -> Self:
+        """Settings from a TOML file (may be None), the environment and `options` of the command line.
+
+        Relative paths in the file are meant from the file's own folder. Options that are None were not given.
+        Raises SettingsError.
+        """
+        table = {} if config is None else _read_table(config)
+
+        given = {name: value for name, value in (options or {}).items() if value is not None}
+        try:
+            return cls.model_validate({**table, **EnvSettingsSource(cls)(), **given})
+        except UnreadableEnvironment as error:
+            raise SettingsError(
+                "environment",
+                "MCC_...",
+                expected='lists and tables as JSON, such as ["mcc"]',
+                found=str(error),
+            ) from error
+        except ValidationError as error:
+            raise _first_problem(error, config) from error
+
+
+def _read_table(config: Path) -> dict[str, object]:
+    try:
+        table: dict[str, object] = tomllib.loads(config.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise SettingsError(str(config), "file", expected="a TOML file", found="no file") from error
+    except OSError as error:
+        raise SettingsError(str(config), "file", expected="a readable file", found=str(error)) from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise SettingsError(str(config), "file", expected="valid TOML in UTF-8", found=str(error)) from error
+    for name in PATHS:
+        value = table.get(name)
+        if isinstance(value, str):
+            table[name] = config.absolute().parent / value
+    relays = table.get("relays")
+    if isinstance(relays, dict):
+        table["relays"] = {name: _anchored(relay, config.absolute().parent) for name, relay in relays.items()}
+    return table
+
+
+def _anchored(table: object, folder: Path) -> object:
+    """A relay's table, with its relative paths meant from `folder`."""
+    if not isinstance(table, dict):
+        return table
+    return {
+        name: _paths(value, folder) if name in RELAY_PATHS else _anchored(value, folder)
+        for name, value in table.items()
+    }
+
+
+def _paths(value: object, folder: Path) -> object:
+    if isinstance(value, list):
+        return [_paths(each, folder) for each in value]
+    return folder / value if isinstance(value, str) else value
+
+
+def _first_problem(error: ValidationError, config: Path | None) -> SettingsError:
+    problem = error.errors(include_url=False)[0]
+    source = "settings" if config is None else f"settings ({config}, environment, options)"
+    depth = None if problem["loc"][:1] == ("relays",) else 1
+    field = ".".join(str(part) for part in problem["loc"][:depth])
+    if problem["type"] == "extra_forbidden":
+        return SettingsError(
+            source, field, expected="a setting named in docs/settings.md", found="another name"
+        )
+    if problem["type"] == "missing":
+        return SettingsError(source, field, expected="this setting", found="none")
+    return SettingsError(source, field, expected=problem["msg"], found=repr(problem["input"]))

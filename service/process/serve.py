@@ -1,0 +1,228 @@
+"""The service as a whole: gateways, diagnosis workers, REST API, on one data directory; or gateways alone."""
+
+import os
+import signal
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ipaddress import IPv6Address
+from pathlib import Path
+from tempfile import TemporaryFile
+from threading import Event
+from types import FrameType
+
+import structlog
+import uvicorn
+from sqlalchemy import make_url
+from sqlalchemy.exc import OperationalError
+
+from service.api.app import create_app
+from service.api.context import ApiContext
+from service.background.housekeeping import Housekeeping
+from service.background.orphaned_requests import Unvisited
+from service.background.scheduling import Scheduler
+from service.collector.supervision.gateway_processes import Gateways, running_gateways
+from service.configuration.relay_access import clear_passwords
+from service.configuration.settings import Settings
+from service.jobs import JobRunner
+from service.jobs.runner import JobLimits
+from service.jobs.worker import diagnose_recording, prepare_worker
+from service.plant import Plant, read_plant
+from service.process.installation import installation_id
+from service.process.single_instance import exclusive
+from service.recording_store.store import RecordingStore
+from service.storage import Repository, connect, migrate
+
+log = structlog.get_logger(__name__)
+
+LAST_REQUESTS_S = 3
+"""How long the requests under way get when the service stops."""
+
+
+class ServeError(RuntimeError):
+    """The service cannot listen, or keep its data, where it should."""
+
+
+def serve(settings: Settings) -> None:
+    """Run until SIGTERM or SIGINT; every process of the service has ended afterwards.
+
+    Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError.
+    """
+    signal.signal(signal.SIGTERM, _stop)
+    plant = _plant(settings)
+    _require_writable(settings.data_directory)
+    with exclusive(settings.data_directory / "service.lock", wait=False), _listener(settings) as listener:
+        repository = _prepared(settings, plant)
+        store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
+        store.discard_incoming()
+        with (
+            running_gateways(settings, plant, repository) as collector,
+            _diagnosing(settings, plant, repository, store) as jobs,
+            _scheduling(plant, repository) as schedules,
+            _tidying(settings, repository),
+            _giving_up(settings, repository, collector),
+        ):
+            context = ApiContext(
+                settings,
+                repository,
+                store,
+                readiness={
+                    "collector": collector.problem,
+                    "jobs": jobs.problem,
+                    "schedules": schedules.problem,
+                },
+                on_new_job=jobs.wake,
+            )
+            host, port = listener.getsockname()[:2]
+            log.info("serving", host=host, port=port, motors=len(plant.motors))
+            _answer(context, listener)
+    log.info("service ended")
+
+
+def _prepared(settings: Settings, plant: Plant) -> Repository:
+    """The database, brought up to date. Raises StorageError, ServeError."""
+    try:
+        migrate(settings.database_url)
+        repository = Repository(connect(settings.database_url))
+        repository.sync_plant(plant)
+        repository.reset_links(now_ns=time.time_ns())
+    except OperationalError as error:
+        url = make_url(settings.database_url).render_as_string(hide_password=True)
+        raise ServeError(
+            f"{url}: expected a database that can be read and written (setting database_url), found: "
+            f"{error.orig}; is its disk full, or its server down?"
+        ) from error
+    return repository
+
+
+def collect(settings: Settings) -> None:
+    """Run gateways alone, which share the relays of a service elsewhere, until SIGTERM or SIGINT.
+
+    Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError,
+    sqlalchemy.exc.SQLAlchemyError (that service's database does not answer).
+    """
+    end = Event()
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, lambda _number, _frame: end.set())
+    plant = _plant(settings)
+    _require_writable(settings.data_directory)
+    with exclusive(settings.data_directory / "service.lock", wait=False):
+        repository = Repository(connect(settings.database_url))
+        repository.check()
+        with running_gateways(settings, plant, repository):
+            log.info("collecting for a service elsewhere", relays=len(plant.relays))
+            end.wait()
+    log.info("collecting ended")
+
+
+def _plant(settings: Settings) -> Plant:
+    """Raises PlantError, SettingsError."""
+    plant = read_plant(settings)
+    for relay in clear_passwords(settings.relays, [relay.name for relay in plant.relays]):
+        log.warning("the relay's password goes over the network in clear: configure TLS for it", relay=relay)
+    return plant
+
+
+def _answer(context: ApiContext, listener: socket.socket) -> None:
+    """Answer requests until a signal comes."""
+    configuration = uvicorn.Config(
+        create_app(context),
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=LAST_REQUESTS_S,
+    )
+    try:
+        uvicorn.Server(configuration).run(sockets=[listener])
+    except KeyboardInterrupt:
+        log.info("interrupted")
+
+
+@contextmanager
+def _diagnosing(
+    settings: Settings, plant: Plant, repository: Repository, store: RecordingStore
+) -> Iterator[JobRunner]:
+    jobs = JobRunner(
+        repository,
+        store,
+        {motor.name: motor.motor for motor in plant.motors},
+        diagnose_recording,
+        limits=JobLimits(
+            workers=settings.workers,
+            job_timeout_s=settings.job_timeout_s,
+            attempts=settings.job_attempts,
+            retry_delay_s=settings.job_retry_delay_s,
+        ),
+        prepare_worker=prepare_worker,
+    )
+    jobs.start()
+    try:
+        yield jobs
+    finally:
+        jobs.stop()
+
+
+@contextmanager
+def _scheduling(plant: Plant, repository: Repository) -> Iterator[Scheduler]:
+    schedules = Scheduler(plant.motors, repository)
+    schedules.start()
+    try:
+        yield schedules
+    finally:
+        schedules.stop()
+
+
+@contextmanager
+def _tidying(settings: Settings, repository: Repository) -> Iterator[None]:
+    housekeeping = Housekeeping(settings, repository)
+    housekeeping.start()
+    try:
+        yield
+    finally:
+        housekeeping.stop()
+
+
+@contextmanager
+def _giving_up(settings: Settings, repository: Repository, gateways: Gateways) -> Iterator[None]:
+    unvisited = Unvisited(settings, repository, problem=gateways.problem)
+    unvisited.start()
+    try:
+        yield
+    finally:
+        unvisited.stop()
+
+
+def _require_writable(directory: Path) -> None:
+    """Raises ServeError where nothing can be kept."""
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        with TemporaryFile(dir=directory):
+            pass
+    except OSError as error:
+        raise ServeError(
+            f"{directory}: expected a directory that user {os.getuid()} may write to "
+            f"(setting data_directory), found: {error.strerror}"
+        ) from error
+
+
+@contextmanager
+def _listener(settings: Settings) -> Iterator[socket.socket]:
+    """The API's socket, taken before anything is started that a busy port would only have to stop again."""
+    address = settings.bind_address
+    family = socket.AF_INET6 if isinstance(address, IPv6Address) else socket.AF_INET
+    try:
+        listener = socket.create_server((str(address), settings.port), family=family)
+    except OSError as error:
+        raise ServeError(
+            f"{address}:{settings.port}: expected a free port on an address of this machine "
+            f"(settings bind_address, port), found: {error.strerror}"
+        ) from error
+    with listener:
+        yield listener
+
+
+def _stop(_number: int, _frame: FrameType | None) -> None:
+    """SIGTERM is the ordinary end: leave every block in order, on the way up as well as in service."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    raise SystemExit(0)
