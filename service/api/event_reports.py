@@ -39,7 +39,7 @@ def request_event_report(
     idempotency_key: IdempotencyKey = None,
 ) -> EventReport:
     """Asks the motor's relay for an event recording. Follow the event report until diagnosed or failed."""
-    report = context.repository.request_event_report(
+    report = context.repository.request_recording(
         name, now_ns=time.time_ns(), idempotency_key=idempotency_key
     )
     response.headers["Location"] = request.url_for("get_event_report", report_id=report.id).path
@@ -54,11 +54,11 @@ def list_event_reports(
     cursor: CursorText = None,
 ) -> Page[EventReport]:
     """Event reports, of one motor or of all, latest first."""
-    reports = context.repository.event_reports(motor=motor, limit=limit, after=decode(cursor, int, str))
+    reports = context.repository.recording_requests(motor=motor, limit=limit, after=decode(cursor, int, str))
     return page(reports, EventReport.model_validate)
 
 
 @router.get("/event-reports/{report_id}", responses=problems(404))
 def get_event_report(context: Context, report_id: UUID) -> EventReport:
     """One event report."""
-    return EventReport.model_validate(context.repository.event_report(str(report_id)))
+    return EventReport.model_validate(context.repository.recording_request(str(report_id)))

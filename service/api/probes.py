@@ -73,7 +73,7 @@ class _StateCollector(Collector):
         counts = self._repository.counts()
         families: Mapping[str, Mapping[str, int]] = {
             "links": {str(state): count for state, count in counts.links.items()},
-            "event_reports": {str(state): count for state, count in counts.event_reports.items()},
+            "event_reports": {str(state): count for state, count in counts.recording_requests.items()},
             "recordings": {str(state): count for state, count in counts.recordings.items()},
             "jobs": {str(state): count for state, count in counts.jobs.items()},
         }

@@ -14,10 +14,10 @@ from service.api.document import Document
 from service.api.relay_schemas import RelayClock
 from service.api.times import Time
 from service.storage.states import (
-    EventReportOrigin,
-    EventReportState,
     JobState,
     LinkState,
+    RecordingRequestOrigin,
+    RecordingRequestState,
     RecordingSource,
     RecordingState,
 )
@@ -115,8 +115,8 @@ class EventReport(Document):
     id: str
     motor: str
     ied: str
-    origin: EventReportOrigin
-    state: EventReportState
+    origin: RecordingRequestOrigin
+    state: RecordingRequestState
     reason: str | None
     recording_id: str | None
     requested_time: Time = Field(validation_alias="requested_ns")

@@ -59,7 +59,7 @@ class Scheduler:
                 due_ns = self._next_ns[motor] = schedule.next_after(self._looked_ns)
             if due_ns > now_ns:
                 continue
-            report = self._repository.schedule_event_report(motor, due_ns=due_ns, now_ns=now_ns)
+            report = self._repository.schedule_recording(motor, due_ns=due_ns, now_ns=now_ns)
             if report is None:
                 log.warning("not scheduled: the one before is not done", motor=motor)
             del self._next_ns[motor]

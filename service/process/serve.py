@@ -20,9 +20,9 @@ from sqlalchemy.exc import OperationalError
 from service.api.app import create_app
 from service.api.context import ApiContext
 from service.background.housekeeping import Housekeeping
-from service.background.orphaned_requests import Unvisited
+from service.background.orphaned_requests import OrphanedRequests
 from service.background.scheduling import Scheduler
-from service.collector.supervision.gateway_processes import Gateways, running_gateways
+from service.collector.supervision.gateway_processes import GatewayProcesses, running_gateways
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings
 from service.jobs import JobRunner
@@ -184,8 +184,8 @@ def _tidying(settings: Settings, repository: Repository) -> Iterator[None]:
 
 
 @contextmanager
-def _giving_up(settings: Settings, repository: Repository, gateways: Gateways) -> Iterator[None]:
-    unvisited = Unvisited(settings, repository, problem=gateways.problem)
+def _giving_up(settings: Settings, repository: Repository, gateways: GatewayProcesses) -> Iterator[None]:
+    unvisited = OrphanedRequests(settings, repository, problem=gateways.problem)
     unvisited.start()
     try:
         yield

@@ -10,10 +10,10 @@ from core.diagnosis.verdict import Verdict
 from service.storage.states import (
     AlarmKind,
     ClockQuality,
-    EventReportOrigin,
-    EventReportState,
     JobState,
     LinkState,
+    RecordingRequestOrigin,
+    RecordingRequestState,
     RecordingSource,
     RecordingState,
 )
@@ -45,8 +45,8 @@ class Base(DeclarativeBase):
         LinkState: _words(LinkState),
         AlarmKind: _words(AlarmKind),
         ClockQuality: _words(ClockQuality),
-        EventReportOrigin: _words(EventReportOrigin),
-        EventReportState: _words(EventReportState),
+        RecordingRequestOrigin: _words(RecordingRequestOrigin),
+        RecordingRequestState: _words(RecordingRequestState),
         RecordingState: _words(RecordingState),
         RecordingSource: _words(RecordingSource),
         JobState: _words(JobState),
@@ -308,14 +308,14 @@ class MeasurementRow(Base):
     __table_args__ = (Index("ix_measurements_step_s_time_ns", "step_s", "time_ns"),)
 
 
-class EventReportRow(Base):
-    __tablename__ = "event_reports"
+class RecordingRequestRow(Base):
+    __tablename__ = "recording_requests"
 
     id: Mapped[str] = mapped_column(String(36), primary_key=True)
     motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
     ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"))
-    origin: Mapped[EventReportOrigin] = mapped_column(server_default=EventReportOrigin.REQUEST)
-    state: Mapped[EventReportState]
+    origin: Mapped[RecordingRequestOrigin] = mapped_column(server_default=RecordingRequestOrigin.REQUEST)
+    state: Mapped[RecordingRequestState]
     reason: Mapped[str | None]
     idempotency_key: Mapped[str | None]
     recording_id: Mapped[str | None] = mapped_column(ForeignKey("recordings.id"), index=True)
@@ -327,9 +327,9 @@ class EventReportRow(Base):
     failed_ns: Mapped[int | None]
 
     __table_args__ = (
-        Index("ux_event_reports_key", "motor", "idempotency_key", unique=True),
-        Index("ix_event_reports_ied_state_requested_ns", "ied", "state", "requested_ns"),
-        Index("ix_event_reports_requested_ns_id", "requested_ns", "id"),
+        Index("ux_recording_requests_key", "motor", "idempotency_key", unique=True),
+        Index("ix_recording_requests_ied_state_requested_ns", "ied", "state", "requested_ns"),
+        Index("ix_recording_requests_requested_ns_id", "requested_ns", "id"),
     )
 
 

@@ -8,10 +8,10 @@ from core.diagnosis.verdict import Verdict
 from service.storage.states import (
     AlarmKind,
     ClockQuality,
-    EventReportOrigin,
-    EventReportState,
     JobState,
     LinkState,
+    RecordingRequestOrigin,
+    RecordingRequestState,
     RecordingSource,
     RecordingState,
 )
@@ -197,14 +197,14 @@ class MotorEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class EventReport:
+class RecordingRequest:
     """An event report somebody asked for. One time for each state it went through."""
 
     id: str
     motor: str
     ied: str
-    origin: EventReportOrigin
-    state: EventReportState
+    origin: RecordingRequestOrigin
+    state: RecordingRequestState
     reason: str | None
     recording_id: str | None
     requested_ns: int
@@ -385,6 +385,6 @@ class Counts:
 
     links: Mapping[LinkState, int]
     alarms: Mapping[AlarmKind, int]
-    event_reports: Mapping[EventReportState, int]
+    recording_requests: Mapping[RecordingRequestState, int]
     recordings: Mapping[RecordingState, int]
     jobs: Mapping[JobState, int]

@@ -31,14 +31,14 @@ class ClockQuality(StrEnum):
     FAILED = "failed"
 
 
-class EventReportOrigin(StrEnum):
+class RecordingRequestOrigin(StrEnum):
     """Who asked for an event report."""
 
     REQUEST = "request"
     SCHEDULE = "schedule"
 
 
-class EventReportState(StrEnum):
+class RecordingRequestState(StrEnum):
     """An event report somebody asked for, from the wish to the diagnosis."""
 
     REQUESTED = "requested"
@@ -49,7 +49,7 @@ class EventReportState(StrEnum):
     FAILED = "failed"
 
 
-IN_THE_RELAY = (EventReportState.TRIGGERED, EventReportState.RECORDED)
+IN_THE_RELAY = (RecordingRequestState.TRIGGERED, RecordingRequestState.RECORDED)
 """Triggered, and the record not yet in the store: the relay owes it."""
 
 

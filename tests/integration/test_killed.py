@@ -10,7 +10,7 @@ import pytest
 from service.client.rest_client import ServiceClient
 from service.configuration.settings import sqlite_url
 from service.storage import Repository, connect
-from service.storage.states import EventReportState
+from service.storage.states import RecordingRequestState
 from tests.integration.processes import (
     MOTOR_NAMES,
     Service,
@@ -47,8 +47,8 @@ def kill_in_the_middle(service: Service, past: str, *, alone: bool) -> list[str]
         assert eventually(lambda: in_the_middle(client, reports, past), 30)
     service.kill(alone=alone)
     repository = Repository(connect(sqlite_url(service.data)))
-    left = {repository.event_report(report).state for report in reports}
-    assert left - {EventReportState.DIAGNOSED}, "it was killed before everything was done"
+    left = {repository.recording_request(report).state for report in reports}
+    assert left - {RecordingRequestState.DIAGNOSED}, "it was killed before everything was done"
     service.start()
     return reports
 

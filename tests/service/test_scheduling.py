@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from service.background.scheduling import LATEST_NS, Scheduler
 from service.plant import Schedule
 from service.storage import Repository
-from service.storage.records import EventReport
+from service.storage.records import RecordingRequest
 from tests.service.collector.conftest import eventually
 from tests.service.fixtures import database_url, engine, repository
 from tests.service.plants import NOW_NS, SECOND_NS, two_motor_plant
@@ -29,15 +29,15 @@ def scheduler(repository: Repository, expression: str = "* * * * *", looked_ns: 
     return scheduled
 
 
-def reports(repository: Repository) -> list[EventReport]:
-    return list(repository.event_reports(limit=100).items)
+def reports(repository: Repository) -> list[RecordingRequest]:
+    return list(repository.recording_requests(limit=100).items)
 
 
 def end(repository: Repository) -> None:
     """The relay made no record."""
     for report in reports(repository):
         if report.failed_ns is None:
-            repository.fail_event_report(report.id, "no record", now_ns=NOW_NS)
+            repository.fail_recording_request(report.id, "no record", now_ns=NOW_NS)
 
 
 def test_a_schedule_asks_once_when_it_is_due(repository: Repository) -> None:
@@ -64,7 +64,7 @@ def test_two_services_ask_once(repository: Repository) -> None:
 
 def test_triggers_do_not_pile_up_at_a_relay_that_makes_no_records(repository: Repository) -> None:
     scheduled = scheduler(repository)
-    by_hand = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    by_hand = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     for minute in range(3):
         scheduled.look(DUE_NS + minute * MINUTE_NS)
     assert reports(repository) == [by_hand]

@@ -7,15 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from service.background.orphaned_requests import RECORD_PATIENCE_S, Unvisited
-from service.collector.supervision.gateway_processes import Gateways
+from service.background.orphaned_requests import RECORD_PATIENCE_S, OrphanedRequests
+from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.supervisor import LONGEST_DELAY_S
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.process.serve import _giving_up
 from service.storage import Repository
-from service.storage.records import EventReport
-from service.storage.states import EventReportState
+from service.storage.records import RecordingRequest
+from service.storage.states import RecordingRequestState
 from tests.service.collector.conftest import eventually
 from tests.service.fixtures import database_url, engine, repository
 from tests.service.plants import NOW_NS, two_motor_plant
@@ -35,7 +35,7 @@ class Watch:
         self.repository = repository
         self.problem: str | None = None
         settings = Settings(data_directory=directory, record_timeout_s=RECORD_S, lease_s=LEASE_S)
-        self.unvisited = Unvisited(settings, repository, problem=lambda: self.problem)
+        self.unvisited = OrphanedRequests(settings, repository, problem=lambda: self.problem)
         self.now_s = 1000.0
         self.beating: list[str] = []
 
@@ -60,14 +60,14 @@ class Watch:
         self.repository.share_relays("g", relays, most=10)
 
     def ask(self) -> str:
-        report = self.repository.request_event_report(MOTOR, now_ns=NOW_NS).id
+        report = self.repository.request_recording(MOTOR, now_ns=NOW_NS).id
         self.unvisited.look(self.now_s)
         return report
 
-    def report(self, report_id: str) -> EventReport:
-        return self.repository.event_report(report_id)
+    def report(self, report_id: str) -> RecordingRequest:
+        return self.repository.recording_request(report_id)
 
-    def state(self, report_id: str) -> EventReportState:
+    def state(self, report_id: str) -> RecordingRequestState:
         return self.report(report_id).state
 
 
@@ -80,15 +80,15 @@ def test_without_any_gateway_a_report_fails_in_words_and_the_schedule_goes_on(wa
     watch.problem = "1 of 1: the collector process is not running"
     report = watch.ask()
     watch.passes(PATIENCE_S)
-    assert watch.state(report) is EventReportState.REQUESTED
-    assert watch.repository.schedule_event_report(MOTOR, due_ns=NOW_NS, now_ns=NOW_NS) is None
+    assert watch.state(report) is RecordingRequestState.REQUESTED
+    assert watch.repository.schedule_recording(MOTOR, due_ns=NOW_NS, now_ns=NOW_NS) is None
     watch.passes(2 * STEP_S)
     ended = watch.report(report)
-    assert ended.state is EventReportState.FAILED
+    assert ended.state is RecordingRequestState.FAILED
     assert ended.reason is not None
     assert f"{RELAY}: no gateway has visited the relay for 62 s: gateways do not run (1 of 1" in ended.reason
     assert "log" in ended.reason
-    assert watch.repository.schedule_event_report(MOTOR, due_ns=NOW_NS, now_ns=NOW_NS) is not None
+    assert watch.repository.schedule_recording(MOTOR, due_ns=NOW_NS, now_ns=NOW_NS) is not None
 
 
 def test_a_relay_no_gateway_has_room_for_is_told(watch: Watch) -> None:
@@ -117,9 +117,9 @@ def test_what_a_gateway_holds_is_never_ended_here(watch: Watch) -> None:
     with watch.gateway(RELAY):
         queue = [watch.ask() for _ in range(3)]
         watch.passes(3 * PATIENCE_S)
-        assert {watch.state(each) for each in queue} == {EventReportState.REQUESTED}
+        assert {watch.state(each) for each in queue} == {RecordingRequestState.REQUESTED}
     watch.passes(PATIENCE_S)
-    assert {watch.state(each) for each in queue} == {EventReportState.REQUESTED}, "its time begins anew"
+    assert {watch.state(each) for each in queue} == {RecordingRequestState.REQUESTED}, "its time begins anew"
 
 
 def test_gateways_that_crash_again_and_again_do_not_keep_a_report_open(watch: Watch) -> None:
@@ -129,28 +129,28 @@ def test_gateways_that_crash_again_and_again_do_not_keep_a_report_open(watch: Wa
         with watch.gateway(RELAY):
             watch.passes(4.0)
     watch.passes(2 * STEP_S)
-    assert watch.state(report) is EventReportState.FAILED
+    assert watch.state(report) is RecordingRequestState.FAILED
 
 
 def test_the_leases_of_a_host_that_died_count_for_nothing(watch: Watch) -> None:
     watch.takes(RELAY)
     report = watch.ask()
     watch.passes(LEASE_S + PATIENCE_S + 3 * STEP_S)
-    assert watch.state(report) is EventReportState.FAILED
+    assert watch.state(report) is RecordingRequestState.FAILED
     assert watch.repository.gateways() == ()
 
 
-@pytest.mark.parametrize("state", [EventReportState.TRIGGERED, EventReportState.RECORDED])
-def test_a_report_that_was_triggered_is_kept_for_an_hour(watch: Watch, state: EventReportState) -> None:
+@pytest.mark.parametrize("state", [RecordingRequestState.TRIGGERED, RecordingRequestState.RECORDED])
+def test_a_report_that_was_triggered_is_kept_for_an_hour(watch: Watch, state: RecordingRequestState) -> None:
     report = watch.ask()
     watch.repository.mark_triggered(report, now_ns=NOW_NS)
-    if state is EventReportState.RECORDED:
+    if state is RecordingRequestState.RECORDED:
         watch.repository.mark_recorded(report, now_ns=NOW_NS)
     watch.passes(RECORD_PATIENCE_S, step_s=60.0)
     assert watch.state(report) is state
     watch.passes(2 * STEP_S)
     ended = watch.report(report)
-    assert ended.state is EventReportState.FAILED
+    assert ended.state is RecordingRequestState.FAILED
     assert "it was triggered" in (ended.reason or "")
 
 
@@ -161,7 +161,7 @@ def test_a_report_that_a_gateway_took_up_meanwhile_is_not_ended(watch: Watch) ->
     watch.repository.end_gateway("g", now_ns=NOW_NS)
     watch.repository.mark_triggered(seen.id, now_ns=NOW_NS)
     assert not watch.repository.give_up_unvisited(seen, "why", now_ns=NOW_NS)
-    assert watch.state(seen.id) is EventReportState.TRIGGERED
+    assert watch.state(seen.id) is RecordingRequestState.TRIGGERED
 
 
 def test_the_service_looks_by_itself(
@@ -170,7 +170,7 @@ def test_the_service_looks_by_itself(
     monkeypatch.setattr("service.background.orphaned_requests.PERIOD_S", 0.05)
     monkeypatch.setattr("service.background.orphaned_requests.LONGEST_DELAY_S", 0.0)
     settings = Settings(data_directory=tmp_path, record_timeout_s=0.1, lease_s=1.0)
-    report = repository.request_event_report(MOTOR, now_ns=time.time_ns()).id
-    with _giving_up(settings, repository, Gateways(settings, two_motor_plant(), repository)):
-        assert eventually(lambda: repository.event_report(report).state is EventReportState.FAILED)
-    assert "the collector process is not running" in (repository.event_report(report).reason or "")
+    report = repository.request_recording(MOTOR, now_ns=time.time_ns()).id
+    with _giving_up(settings, repository, GatewayProcesses(settings, two_motor_plant(), repository)):
+        assert eventually(lambda: repository.recording_request(report).state is RecordingRequestState.FAILED)
+    assert "the collector process is not running" in (repository.recording_request(report).reason or "")

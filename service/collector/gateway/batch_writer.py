@@ -30,7 +30,7 @@ NO_ANSWER = (OperationalError, InterfaceError, TimeoutError)
 """Of a database that is locked, full or away."""
 
 
-class Batches:
+class BatchWriter:
     """Filled by the relays' sessions, from their threads; written by a thread of its own."""
 
     def __init__(self, repository: Repository) -> None:

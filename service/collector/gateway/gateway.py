@@ -8,11 +8,11 @@ from threading import Event, Thread
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.collector.gateway.batch_writer import Batches
-from service.collector.gateway.lease_watchdog import Fence
-from service.collector.gateway.peer_liveness import Neighbours
+from service.collector.gateway.batch_writer import BatchWriter
+from service.collector.gateway.lease_watchdog import LeaseWatchdog
+from service.collector.gateway.peer_liveness import PeerLiveness
 from service.collector.session.relay_session import RelaySession
-from service.collector.session.visit_marks import Visits
+from service.collector.session.visit_marks import VisitMarks
 from service.collector.triggers.triggering import Triggering
 from service.configuration.settings import Settings
 from service.plant import Plant
@@ -21,7 +21,7 @@ from service.storage import LeaseLostError, Repository
 
 log = structlog.get_logger(__name__)
 
-WISH_PERIOD_S = 0.2
+REQUEST_PERIOD_S = 0.2
 """Between looks into the database for event reports somebody asked for."""
 
 BEATS_OF_A_LEASE = 10
@@ -58,7 +58,7 @@ class Gateway:
         settings: Settings,
         *,
         on_end: Callable[[], None],
-        visits: Visits | None = None,
+        visits: VisitMarks | None = None,
     ) -> None:
         """visits: where it marks which relays it is busy with; None where nobody would read it."""
         self._marks = visits
@@ -68,20 +68,20 @@ class Gateway:
         self._store = store
         self._settings = settings
         self._names = frozenset(relay.name for relay in plant.relays)
-        self._neighbours = Neighbours(settings.lease_s)
+        self._peers = PeerLiveness(settings.lease_s)
         self._visits: dict[str, _Visit] = {}
         self._leaving: dict[str, _Visit] = {}
         self._aside: dict[str, Triggering] = {}
-        self._batches = Batches(repository)
+        self._batches = BatchWriter(repository)
         self._registered = False
-        self._fence = Fence(settings.lease_s, on_end=on_end)
+        self._watchdog = LeaseWatchdog(settings.lease_s, on_end=on_end)
 
     def run(self, stop: Event) -> list[str]:
         """Visit relays until `stop` is set. Returns the threads that did not end in time."""
-        self._fence.start()
+        self._watchdog.start()
         self._batches.start()
         next_beat_s = 0.0
-        while not stop.wait(WISH_PERIOD_S):
+        while not stop.wait(REQUEST_PERIOD_S):
             try:
                 if time.monotonic() >= next_beat_s:
                     self._beat()
@@ -99,7 +99,7 @@ class Gateway:
         began_s = time.monotonic()
         if not self._registered:
             if self._leaving:  # what it visited for its former self must have ended before
-                self._fence.renewed(began_s)
+                self._watchdog.renewed(began_s)
                 return
             self._register()
         try:
@@ -111,7 +111,7 @@ class Gateway:
             self._registered = False
             self._abandon_all()
             return
-        self._fence.renewed(began_s)
+        self._watchdog.renewed(began_s)
         self._forget_ended()
         self._leave_alone(share.held)
         busy = self._visits.keys() | self._leaving.keys() | self._aside.keys()
@@ -124,7 +124,7 @@ class Gateway:
         if unvisited:
             self._repository.give_back_relays(self._identity.id, unvisited)
         others = {gateway: beats for gateway, beats in share.beats.items() if gateway != self._identity.id}
-        for gateway, beats in self._neighbours.dead(others, time.monotonic()).items():
+        for gateway, beats in self._peers.dead(others, time.monotonic()).items():
             if self._repository.end_gateway(gateway, beats=beats, now_ns=time.time_ns()):
                 log.warning("a gateway is dead, its relays are shared out", gateway=gateway)
 
@@ -201,7 +201,7 @@ class Gateway:
             visit.thread.join(max(0.0, deadline_s - time.monotonic()))
         left = [visit.thread.name for visit in visits if visit.thread.is_alive()]
         self._batches.stop(max(0.0, deadline_s - time.monotonic()))
-        self._fence.stop()
+        self._watchdog.stop()
         if not left:
             try:
                 self._repository.end_gateway(self._identity.id, now_ns=time.time_ns())

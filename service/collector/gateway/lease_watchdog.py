@@ -14,7 +14,7 @@ LOOKS = 20
 """A lease: so many looks of the fence, for a margin between the fraction above and the whole."""
 
 
-class Fence:
+class LeaseWatchdog:
     """A thread that counts from the beginning of the latest renewal that succeeded.
 
     on_end: called when they stay away for too long.

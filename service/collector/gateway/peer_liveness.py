@@ -1,7 +1,7 @@
 """Which other gateways are dead, told by their counters and our own clock."""
 
 
-class Neighbours:
+class PeerLiveness:
     """Remembers since when each gateway's counter has stood still."""
 
     def __init__(self, lease_s: float) -> None:

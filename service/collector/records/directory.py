@@ -25,10 +25,10 @@ from mms import (
 from service.collector.records.allowance import DAY_NS, DailyAllowance, beyond_its_end
 from service.collector.records.event_folder import Contents, EventFolder
 from service.collector.records.formats import Chosen, one_format_an_event
-from service.collector.records.ledger import Fates
+from service.collector.records.ledger import RecordLedger
 from service.collector.records.listing import MOST_IGNORED, ListedRecord, Listing, RefusedFile, understand
 from service.collector.records.pull import RecordTooLargeError, pull
-from service.collector.records.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, Retries
+from service.collector.records.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, RetrySchedule
 from service.collector.records.settling import Settled, Settling
 from service.collector.session.alarms import RelayAlarms
 from service.collector.session.link import Link
@@ -151,11 +151,11 @@ class RecordDirectory:
             unsteady_s=UNSTEADY_S,
             early_s=min(EARLY_S, settings.record_timeout_s / 2),
         )
-        self._retries = Retries()
+        self._retries = RetrySchedule()
         self._hopeless: set[ListedRecord] = set()
         self._view: _View | None = None
         self.listing_s = 0.0
-        self._fates = Fates(relay.name, motor, repository)
+        self._ledger = RecordLedger(relay.name, motor, repository)
         self._attempts: Counter[str] = Counter()
         self._attempts_day = 0
 
@@ -165,7 +165,7 @@ class RecordDirectory:
         told: a report has just said that a record is made. Raises MmsError when the link fails, OSError when
         the disk does; what was stored until then stays.
         """
-        self._fates.recall()
+        self._ledger.recall()
         began_s = time.monotonic()
         contents = self._folder.contents(client)
         self.listing_s = time.monotonic() - began_s
@@ -174,13 +174,13 @@ class RecordDirectory:
             return Scan(frozenset(), (), (), (), unreachable=unreachable, no_folder=self._folder.missing)
         view = self._view = self._view_of(contents, contents.directory)
         listing, chosen, new = view.listing, view.chosen, view.new
-        self._fates.give_up_all_but(chosen.records)
+        self._ledger.give_up_all_but(chosen.records)
         settled = self._settling.look(new, time.monotonic(), early=chosen.early, told=told)
         ready, unsteady = self._without_shape_shifters(settled)
         self._note_unsteady(unsteady, chosen)
         self._give_up_the_incomplete(settled.incomplete, chosen, contents.directory, owner)
         held_back = self._take_all(client, self._retries.due(ready, time.monotonic()), owner)
-        self._retries.keep([record for record in new if not self._fates.is_decided(record)])
+        self._retries.keep([record for record in new if not self._ledger.is_decided(record)])
         patient = {record.name for record in unsteady}.union(
             held_back, self._retries.put_off(time.monotonic())
         )
@@ -201,7 +201,7 @@ class RecordDirectory:
 
         Contents that are known make no second recording.
         """
-        self._fates.doubt_the_untimed()
+        self._ledger.doubt_the_untimed()
         self._view = None
 
     def _view_of(self, contents: Contents, directory: str) -> _View:
@@ -213,22 +213,24 @@ class RecordDirectory:
             listing = understand(contents.entries, directory)
             self._note_refused_files(listing)
             self._hopeless.intersection_update(listing.records)
-            self._fates.forget_the_untimed_but(listing.records)
-        sure = len(self._fates.stored) - len(self._fates.doubted)
-        decided = (sure, len(self._fates.refused), len(self._hopeless))
+            self._ledger.forget_the_untimed_but(listing.records)
+        sure = len(self._ledger.stored) - len(self._ledger.doubted)
+        decided = (sure, len(self._ledger.refused), len(self._hopeless))
         if before is not None and before.listing is listing and before.decided == decided:
             return before
-        chosen = one_format_an_event(listing.records, self._fates.stored, self._fates.refused, self._hopeless)
-        new = [record for record in chosen.records if not self._fates.is_decided(record)]
-        new.sort(key=lambda record: (self._fates.is_doubted(record), record.modified_ns, record.name))
+        chosen = one_format_an_event(
+            listing.records, self._ledger.stored, self._ledger.refused, self._hopeless
+        )
+        new = [record for record in chosen.records if not self._ledger.is_decided(record)]
+        new.sort(key=lambda record: (self._ledger.is_doubted(record), record.modified_ns, record.name))
         names = frozenset(record.name for record in listing.records)
         return _View(contents, decided, listing, chosen, tuple(new), names)
 
     def _is_to_come(self, record: ListedRecord, chosen: Chosen) -> bool:
         """Whether its event is still to be had, in another format where the record itself is refused."""
-        if self._fates.is_refused(record):
+        if self._ledger.is_refused(record):
             return record in chosen.replaceable
-        return not self._fates.is_decided(record)
+        return not self._ledger.is_decided(record)
 
     def _take_all(self, client: Client, ready: tuple[ListedRecord, ...], owner: Owner) -> tuple[str, ...]:
         """Pull what is ready as far as the day's limit allows; the names of those that must wait."""
@@ -276,7 +278,7 @@ class RecordDirectory:
                 f"{UNSTEADY_S:g} s or {ATTEMPTS_OF_A_NAME} attempts",
             )
         if self._alarms.standing(AlarmKind.FILE_UNSTEADY):
-            lacking = {record.name for record in chosen.records if not self._fates.is_stored(record)}
+            lacking = {record.name for record in chosen.records if not self._ledger.is_stored(record)}
             self._alarms.keep(AlarmKind.FILE_UNSTEADY, lacking)
 
     def _give_up_the_incomplete(
@@ -295,7 +297,7 @@ class RecordDirectory:
 
     def _take(self, client: Client, record: ListedRecord, owner: Owner) -> None:
         """Pull and store one record. Where that fails, refuse it or leave it for the next scan."""
-        self._fates.announce(record)
+        self._ledger.announce(record)
         try:
             stored = self._pull(client, record)
         except RecordTooLargeError as error:
@@ -320,7 +322,7 @@ class RecordDirectory:
             if isinstance(error, ProtocolError):
                 self._note_broken_protocol(record, f"{record.name}: {error}", owner)
             raise
-        self._fates.keep(record, stored, owner(record.name))
+        self._ledger.keep(record, stored, owner(record.name))
 
     def _pull(self, client: Client, record: ListedRecord) -> StoredRecording:
         stored = pull(
@@ -342,13 +344,13 @@ class RecordDirectory:
 
     def _note_broken_protocol(self, record: ListedRecord, reason: str, owner: Owner) -> None:
         """One record that a relay cannot give must not set aside the relay for ever longer."""
-        attempts = self._fates.note_failed_pull(record, reason)
+        attempts = self._ledger.note_failed_pull(record, reason)
         if attempts >= PULL_ATTEMPTS and self._retries.number(record) >= BREAKS_OF_THE_PROTOCOL:
             self._refuse(record, reason, owner)
 
     def _note_denial(self, record: ListedRecord, reason: str, owner: Owner) -> None:
         self._retries.failed(record, reason, time.monotonic(), longest_s=LONGEST_PAUSE_OF_THE_DENIED_S)
-        attempts = self._fates.note_failed_pull(record, reason)
+        attempts = self._ledger.note_failed_pull(record, reason)
         if attempts >= MANY_ATTEMPTS:
             told = f"{reason}, {attempts} times; it is asked for again, for about a day"
             self._alarms.raise_alarm(AlarmKind.FILE_UNSTEADY, record.name, told)
@@ -359,13 +361,13 @@ class RecordDirectory:
         """Counted since the start, because the count in the database holds denials too; that bounds it."""
         self._attempts[record.name] += 1
         self._retries.failed(record, reason, time.monotonic(), is_verdict=True)
-        attempts = self._fates.note_failed_pull(record, reason)
+        attempts = self._ledger.note_failed_pull(record, reason)
         if self._retries.verdicts(record) >= PULL_ATTEMPTS or attempts >= DENIED_ATTEMPTS:
             self._refuse(record, reason, owner)
 
     def _refuse(self, record: ListedRecord, reason: str, owner: Owner) -> None:
         """The record is not pulled again; its event report fails only where no other format is left."""
         has_another = self._view is not None and record in self._view.chosen.replaceable
-        self._fates.refuse(record, reason, None if has_another else owner(record.name))
+        self._ledger.refuse(record, reason, None if has_another else owner(record.name))
         told = "record refused, another format is taken" if has_another else "record refused"
         log.warning(told, relay=self._relay, record=record.name, reason=reason)

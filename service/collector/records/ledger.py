@@ -17,7 +17,7 @@ from service.storage.records import RemoteRecord
 log = structlog.get_logger(__name__)
 
 
-class Fates:
+class RecordLedger:
     """Of one relay's records. Used by that relay's session alone, which alone writes them.
 
     stored: those whose files are in the store.  refused: those that are not pulled again.  doubted: those of
@@ -71,7 +71,7 @@ class Fates:
             self._relay, self._motor, remote_of(record), reason, now_ns=time.time_ns()
         )
 
-    def keep(self, record: ListedRecord, stored: StoredRecording, event_report_id: str | None) -> None:
+    def keep(self, record: ListedRecord, stored: StoredRecording, recording_request_id: str | None) -> None:
         """Its files are in the store; the event report, if any, gets it."""
         remote = remote_of(record)
         added = self._repository.add_recording(
@@ -80,7 +80,7 @@ class Fates:
             now_ns=time.time_ns(),
             ied=self._relay,
             remote=remote,
-            event_report_id=event_report_id,
+            recording_request_id=recording_request_id,
         )
         self.stored.add(remote)
         self.doubted.discard(remote)
@@ -93,7 +93,7 @@ class Fates:
             recording=added.recording.id,
         )
 
-    def refuse(self, record: ListedRecord, reason: str, event_report_id: str | None) -> None:
+    def refuse(self, record: ListedRecord, reason: str, recording_request_id: str | None) -> None:
         """It is not pulled again; the event report, if any, fails with the reason."""
         remote = remote_of(record)
         self._repository.reject_remote_record(
@@ -102,7 +102,7 @@ class Fates:
             remote,
             reason,
             now_ns=time.time_ns(),
-            event_report_id=event_report_id,
+            recording_request_id=recording_request_id,
         )
         self.refused.add(remote)
         self.doubted.discard(remote)

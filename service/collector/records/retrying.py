@@ -23,7 +23,7 @@ class _Failure:
     verdicts: int
 
 
-class Retries:
+class RetrySchedule:
     """Of one relay's records as they are listed; one that changes is another. Times are monotonic [s]."""
 
     def __init__(self) -> None:

@@ -15,7 +15,7 @@ from contextlib import suppress
 
 import structlog
 
-from service.collector.session.visit_marks import Visits
+from service.collector.session.visit_marks import VisitMarks
 from service.storage import NotFoundError, Repository
 from service.storage.records import Quarantine
 
@@ -25,7 +25,7 @@ PROBATION_S = 10.0
 LONGEST_PAUSE_S = 86_400.0
 
 FAULTS_IN_A_ROW = 5
-"""Visits that ended by a broken protocol, with no good one between them."""
+"""VisitMarks that ended by a broken protocol, with no good one between them."""
 
 GOOD_VISIT_S = 10.0
 """A visit that goes well for so long is a good one; one good answer is not."""
@@ -34,7 +34,9 @@ CRASHES = frozenset({signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFP
 """What a fault inside the C library ends a process with. SIGKILL is somebody's wish."""
 
 
-def after_end(visits: Visits, exit_code: int | None, repository: Repository, *, first_pause_s: float) -> None:
+def blame_after_end(
+    visits: VisitMarks, exit_code: int | None, repository: Repository, *, first_pause_s: float
+) -> None:
     """A gateway process has ended: if it crashed, blame whom it was busy with.
 
     A mark of what is no relay, which nobody here has made, is passed over. Raises SQLAlchemyError, OSError.
@@ -71,7 +73,7 @@ def set_aside(repository: Repository, relay: str, reason: str, *, first_pause_s:
     log.error("relay set aside", relay=relay, reason=reason, times=quarantine.times, pause_s=pause_s)
 
 
-class Conduct:
+class ProtocolFaultCounter:
     """How a relay behaves towards its session: whether it is to be set aside, or is trusted again."""
 
     def __init__(self, relay: str, repository: Repository, *, first_pause_s: float) -> None:

@@ -20,9 +20,9 @@ from service.collector.session.alarms import RelayAlarms
 from service.collector.session.discovery import Discovery
 from service.collector.session.link import Link
 from service.collector.session.metering import Metering
-from service.collector.session.protocol_faults import Conduct
-from service.collector.session.reports import Inbox, Subscription
-from service.collector.session.visit_marks import Mark, Visits
+from service.collector.session.protocol_faults import ProtocolFaultCounter
+from service.collector.session.reports import Inbox, ReportSubscription
+from service.collector.session.visit_marks import Mark, VisitMarks
 from service.collector.triggers.triggering import Triggering
 from service.configuration.relay_access import AccessError, credentials
 from service.configuration.settings import Settings
@@ -54,7 +54,7 @@ class RelaySession:
         settings: Settings,
         *,
         gateway: str | None = None,
-        visits: Visits | None = None,
+        visits: VisitMarks | None = None,
         on_sample: Callable[[Sample], None] | None = None,
         on_note: Callable[[LinkNote], None] | None = None,
     ) -> None:
@@ -74,7 +74,7 @@ class RelaySession:
         self._link = Link(relay.name, repository, allowance, on_note=on_note)
         alarms = RelayAlarms(relay.name, repository)
         self._discovery = Discovery(relay, repository, alarms)
-        self._subscription = Subscription(relay.name, repository, self._link)
+        self._subscription = ReportSubscription(relay.name, repository, self._link)
         self._folder = EventFolder(relay.name, settings.events_directory, relay.overrides.events_directory)
         self._directory = RecordDirectory(
             relay,
@@ -95,7 +95,9 @@ class RelaySession:
             if on_sample is None
             else Metering(relay, motor, period_s=settings.metering_period_s, on_sample=on_sample)
         )
-        self._conduct = Conduct(relay.name, repository, first_pause_s=settings.quarantine_s)
+        self._protocol_faults = ProtocolFaultCounter(
+            relay.name, repository, first_pause_s=settings.quarantine_s
+        )
         self._visits = visits
         self._mark: Mark | None = None
         self._client: Client | None = None
@@ -158,7 +160,7 @@ class RelaySession:
         with ExitStack() as marked:
             if self._visits is not None:
                 self._mark = marked.enter_context(self._visits.mark(self._relay.name))
-            self._conduct.visited()
+            self._protocol_faults.visited()
             self._visit_marked()
 
     def _visit_marked(self) -> None:
@@ -178,7 +180,7 @@ class RelaySession:
                 self._asked.clear()
                 waiting = self._work(client)
                 self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
-                self._conduct.answered()
+                self._protocol_faults.answered()
                 self._wait(client, self._hurried_period_s() if waiting else self._settings.poll_period_s)
             self._link.left()
 
@@ -216,12 +218,12 @@ class RelaySession:
             with nullcontext() if self._mark is None else self._mark.waiting():
                 self._stirred.wait(min(due_in_s, until_s - time.monotonic()))
             self._stirred.clear()
-            if self._heed_reports():
+            if self._handle_reports():
                 return
 
-    def _heed_reports(self) -> bool:
+    def _handle_reports(self) -> bool:
         """Whether what has arrived tells of a record."""
-        tells = self._subscription.heed_all()
+        tells = self._subscription.handle_all()
         if tells:
             self._expecting_until_s = time.monotonic() + self._settings.record_timeout_s
         return tells
@@ -236,7 +238,7 @@ class RelaySession:
     def _is_set_aside(self, reason: str) -> bool:
         """A visit ended by a broken protocol: whether that was once too often."""
         try:
-            return self._conduct.broke_the_protocol(reason)
+            return self._protocol_faults.broke_the_protocol(reason)
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
             return False
@@ -244,7 +246,7 @@ class RelaySession:
     def _work(self, client: Client) -> bool:
         """One round: reports, directory, event reports. Returns whether a record is on its way."""
         self._subscription.keep(client)
-        self._heed_reports()
+        self._handle_reports()
         self._triggering.recall()
         told = time.monotonic() < self._expecting_until_s
         if self._expecting_until_s and not told:

@@ -10,7 +10,7 @@ SEQUENCE_NUMBERS = 65_536
 """A report's sequence number has 16 bits (IEC 61850-7-2, SqNum) and begins again after the last."""
 
 
-class Continuity:
+class ReportContinuity:
     """Follows the reports of one control block over one connection after the other.
 
     fault_number: reference of the relay's count of records (FltNum), where it has one.

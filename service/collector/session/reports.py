@@ -23,7 +23,7 @@ from mms import (
     TemporarilyUnavailable,
 )
 from service.collector.session.link import Link
-from service.collector.session.report_continuity import Continuity, is_of, status_of
+from service.collector.session.report_continuity import ReportContinuity, is_of, status_of
 from service.plant import Acquisition
 from service.storage import Repository
 
@@ -63,7 +63,7 @@ class Inbox(SimpleQueue[Report]):
                 return reports
 
 
-class Subscription:
+class ReportSubscription:
     """Of one relay, over one connection after the other. Used by that relay's session alone.
 
     report_control: the block in use, None where the directory is polled.  refusal: why none of the blocks the
@@ -75,7 +75,7 @@ class Subscription:
         self._repository = repository
         self._link = link
         self._acquisition: Acquisition | None = None
-        self._continuity = Continuity(None)
+        self._continuity = ReportContinuity(None)
         self._inbox = Inbox(Event())
         self._unsaved_entry_id: bytes | None = None
         self._overflow_means_loss = False
@@ -86,7 +86,7 @@ class Subscription:
     def begin(self, client: Client, inbox: Inbox, acquisition: Acquisition) -> None:
         """A new connection: reports go on where the last saved one left off. Raises MmsError (the link)."""
         if self._acquisition is None or self._acquisition.record_number != acquisition.record_number:
-            self._continuity = Continuity(acquisition.record_number)
+            self._continuity = ReportContinuity(acquisition.record_number)
         self._acquisition = acquisition
         self._inbox = inbox
         self._continuity.begin()
@@ -98,12 +98,12 @@ class Subscription:
         if self.refusal is not None and time.monotonic() >= self._next_attempt_s:
             self._attempt(client)
 
-    def heed_all(self) -> bool:
+    def handle_all(self) -> bool:
         """Whether what has arrived says that a record is, or will soon be, in the directory."""
-        told = [self.heed(report) for report in self._inbox.drain()]
+        told = [self.handle(report) for report in self._inbox.drain()]
         return any(told)
 
-    def heed(self, report: Report) -> bool:
+    def handle(self, report: Report) -> bool:
         """Whether a report says so."""
         overflowed = report.buffer_overflow and self._overflow_means_loss
         self._overflow_means_loss = True

@@ -29,7 +29,7 @@ class Mark:
             os.pwrite(self._file, BUSY, 0)
 
 
-class Visits:
+class VisitMarks:
     """The marks of one gateway, in a directory of its own."""
 
     def __init__(self, directory: Path) -> None:
@@ -63,6 +63,6 @@ class Visits:
         return [path for path in found if path.is_file()]
 
 
-def visits_of(data_directory: Path, number: int) -> Visits:
+def visits_of(data_directory: Path, number: int) -> VisitMarks:
     """Of one of the gateways of an installation."""
-    return Visits(data_directory / "visiting" / str(number))
+    return VisitMarks(data_directory / "visiting" / str(number))

@@ -8,9 +8,9 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.collector.gateway.process import gateway_id
-from service.collector.session.protocol_faults import after_end
+from service.collector.session.protocol_faults import blame_after_end
 from service.collector.session.visit_marks import visits_of
-from service.collector.supervision.supervisor import CollectorSupervisor
+from service.collector.supervision.supervisor import GatewaySupervisor
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.storage import Repository, StorageError
@@ -18,7 +18,7 @@ from service.storage import Repository, StorageError
 log = structlog.get_logger(__name__)
 
 
-class Gateways:
+class GatewayProcesses:
     """Started and stopped together; one that ends frees its relays and is started again.
 
     Raises OSError where the installation's name cannot be kept.
@@ -48,13 +48,13 @@ class Gateways:
             return None
         return f"{len(failing)} of {len(self._supervisors)}: {failing[0]}"
 
-    def _supervisor(self, number: int) -> CollectorSupervisor:
+    def _supervisor(self, number: int) -> GatewaySupervisor:
         gateway = gateway_id(self._settings, number)
 
         def ended(exit_code: int | None) -> None:
             """The process is dead for sure: nobody needs to wait for its leases to run out."""
             try:
-                after_end(
+                blame_after_end(
                     visits_of(self._settings.data_directory, number),
                     exit_code,
                     self._repository,
@@ -67,13 +67,13 @@ class Gateways:
             except SQLAlchemyError as error:
                 log.warning("the leases run out by themselves", error=str(error))
 
-        return CollectorSupervisor(self._settings, number=number, on_end=ended)
+        return GatewaySupervisor(self._settings, number=number, on_end=ended)
 
 
 @contextmanager
-def running_gateways(settings: Settings, plant: Plant, repository: Repository) -> Iterator[Gateways]:
-    """Gateways for as long as the block lasts."""
-    gateways = Gateways(settings, plant, repository)
+def running_gateways(settings: Settings, plant: Plant, repository: Repository) -> Iterator[GatewayProcesses]:
+    """GatewayProcesses for as long as the block lasts."""
+    gateways = GatewayProcesses(settings, plant, repository)
     gateways.start()
     try:
         yield gateways

@@ -26,7 +26,7 @@ def _nothing(_exit_code: int | None) -> None:
     """For a collector whose end nobody needs to know."""
 
 
-class CollectorSupervisor:
+class GatewaySupervisor:
     """Starts the collector as a child process, and starts it again when it ends.
 
     The child reads its settings from its standard input and ends when that closes: it cannot outlive this

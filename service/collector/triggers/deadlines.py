@@ -1,10 +1,10 @@
 """How long event reports of one relay have waited: for it to answer and, while it answers, for a record."""
 
-from service.storage.records import EventReport
-from service.storage.states import EventReportState
+from service.storage.records import RecordingRequest
+from service.storage.states import RecordingRequestState
 
 
-class Patience:
+class RequestDeadlines:
     """Neither time runs while the relay gives one record after another: with many, a scan takes minutes.
 
     Times are monotonic [s]: a wall clock that is set must end no report's time. After a restart every report
@@ -15,7 +15,7 @@ class Patience:
         self.timeout_s = timeout_s
         self._unanswered_since_s: dict[str, float] = {}
         self._down_since_s: float | None = None
-        self._watched: tuple[str, EventReportState] | None = None
+        self._watched: tuple[str, RecordingRequestState] | None = None
         self._watched_since_s = 0.0
 
     def gave_a_record(self) -> None:
@@ -31,13 +31,13 @@ class Patience:
             self._watched_since_s += now_s - self._down_since_s
             self._down_since_s = None
 
-    def ends_without_answer(self, report: EventReport, now_s: float) -> bool:
+    def ends_without_answer(self, report: RecordingRequest, now_s: float) -> bool:
         """The relay does not answer: whether for too long, since this report first met with that."""
         if self._down_since_s is None:
             self._down_since_s = now_s
         return now_s > self._unanswered_since_s.setdefault(report.id, now_s) + self.timeout_s
 
-    def ends_without_record(self, report: EventReport, now_s: float) -> bool:
+    def ends_without_record(self, report: RecordingRequest, now_s: float) -> bool:
         """Whether it has been in its state for too long, while the relay answered."""
         watched = (report.id, report.state)
         if watched != self._watched:

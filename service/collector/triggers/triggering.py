@@ -27,11 +27,11 @@ from mms import (
 )
 from service.collector.records.directory import Scan
 from service.collector.session.clock import ClockWatch, reading, stamp_of
-from service.collector.triggers.deadlines import Patience
+from service.collector.triggers.deadlines import RequestDeadlines
 from service.plant import Acquisition, Relay, TriggerAction, promised
 from service.storage import Repository
-from service.storage.records import EventReport
-from service.storage.states import IN_THE_RELAY, EventReportState
+from service.storage.records import RecordingRequest
+from service.storage.states import IN_THE_RELAY, RecordingRequestState
 
 log = structlog.get_logger(__name__)
 
@@ -57,9 +57,9 @@ class Triggering:
         self._repository = repository
         self._clock = ClockWatch(relay.name, repository)
         self._gateway = gateway
-        self._patience = Patience(record_timeout_s)
-        self._outstanding: EventReport | None = None
-        self._next: EventReport | None = None
+        self._deadlines = RequestDeadlines(record_timeout_s)
+        self._outstanding: RecordingRequest | None = None
+        self._next: RecordingRequest | None = None
         self._claimed = False
         self._operated_for: str | None = None
         self._listed_before: frozenset[str] = frozenset()
@@ -72,14 +72,14 @@ class Triggering:
 
     def recall(self) -> None:
         """Look up which report, if any, waits for a record of this relay, and which one is next."""
-        reports = self._repository.open_event_reports(self._relay.name)
+        reports = self._repository.open_recording_requests(self._relay.name)
         self._outstanding = next((each for each in reports if each.state in IN_THE_RELAY), None)
-        self._next = next((each for each in reports if each.state is EventReportState.REQUESTED), None)
+        self._next = next((each for each in reports if each.state is RecordingRequestState.REQUESTED), None)
         self._claimed = False
         if self._outstanding is not None and self._outstanding.id != self._operated_for:
             self._take_over(self._outstanding)
 
-    def _take_over(self, report: EventReport) -> None:
+    def _take_over(self, report: RecordingRequest) -> None:
         """Triggered by a gateway now gone: what it had seen before and could not fetch is another record."""
         self._operated_for = report.id
         self._listed_before = self._repository.unfetched_names(
@@ -90,7 +90,7 @@ class Triggering:
         """The report a new record belongs to; it is that record's once both are written down together."""
         self.recall()
         self._claimed = True
-        self._patience.gave_a_record()
+        self._deadlines.gave_a_record()
         report = self._outstanding
         if report is None or record_name in self._listed_before:
             return None
@@ -103,7 +103,7 @@ class Triggering:
         """
         if self._claimed:
             self.recall()
-        self._patience.answered(time.monotonic())
+        self._deadlines.answered(time.monotonic())
         report = self._outstanding
         if report is None:
             if self._next is not None:
@@ -121,23 +121,23 @@ class Triggering:
             return False
         appeared = {*scan.waiting, *scan.failing} - self._listed_before
         still_written = appeared - scan.failing.keys()  # for as long as the directory's own limits allow
-        is_overdue = self._patience.ends_without_record(report, time.monotonic())
-        if appeared and report.state is EventReportState.TRIGGERED:
+        is_overdue = self._deadlines.ends_without_record(report, time.monotonic())
+        if appeared and report.state is RecordingRequestState.TRIGGERED:
             self._repository.mark_recorded(report.id, now_ns=time.time_ns())
         elif is_overdue and not still_written:
             self._fail(report, self._why_overdue(report, scan, appeared))
             return False
         return True
 
-    def _why_overdue(self, report: EventReport, scan: Scan, appeared: Set[str]) -> str:
-        within = f"within {self._patience.timeout_s:g} s"
+    def _why_overdue(self, report: RecordingRequest, scan: Scan, appeared: Set[str]) -> str:
+        within = f"within {self._deadlines.timeout_s:g} s"
         failing = sorted(appeared & scan.failing.keys())
         if failing:
             return f"{self._relay.name}: its record could not be fetched {within}: {scan.failing[failing[0]]}"
-        if report.state is EventReportState.RECORDED:
+        if report.state is RecordingRequestState.RECORDED:
             return (
                 f"{self._relay.name}: its record was seen in the relay, but is gone, or still changes after "
-                f"{self._patience.timeout_s:g} s"
+                f"{self._deadlines.timeout_s:g} s"
             )
         if scan.no_folder is not None:
             return f"{self._relay.name}: expected a record {within} of the trigger; {scan.no_folder}"
@@ -149,8 +149,8 @@ class Triggering:
     def link_failed(self, reason: str) -> None:
         """The relay cannot be asked, `reason` says why: reports that waited for it long enough fail."""
         now_s = time.monotonic()
-        for report in self._repository.open_event_reports(self._relay.name):
-            if self._patience.ends_without_answer(report, now_s):
+        for report in self._repository.open_recording_requests(self._relay.name):
+            if self._deadlines.ends_without_answer(report, now_s):
                 self._fail(report, f"{self._relay.name} {reason}")
 
     def _is_held_up(self, scan: Scan) -> bool:
@@ -164,9 +164,9 @@ class Triggering:
             return False
         if self._held_up_since_s is None:
             self._held_up_since_s = now_s
-        return now_s < self._held_up_since_s + self._patience.timeout_s
+        return now_s < self._held_up_since_s + self._deadlines.timeout_s
 
-    def _grant(self, client: Client, report: EventReport, scan: Scan) -> bool:
+    def _grant(self, client: Client, report: RecordingRequest, scan: Scan) -> bool:
         """Trigger, unless there is nothing to trigger by or no way to have the record."""
         control = self._acquisition.trigger
         if control is None:
@@ -177,7 +177,9 @@ class Triggering:
             return self._trigger(client, report, control, scan.listed)
         return False
 
-    def _trigger(self, client: Client, report: EventReport, control: str, listed: frozenset[str]) -> bool:
+    def _trigger(
+        self, client: Client, report: RecordingRequest, control: str, listed: frozenset[str]
+    ) -> bool:
         try:
             if _is_set(client, control):
                 client.operate(control, False)  # noqa: FBT003 - the value of a control
@@ -190,7 +192,7 @@ class Triggering:
         except REFUSALS as error:
             self._fail(report, f"{self._relay.name} refuses the trigger: {error}")
             return False
-        log.info("triggered", relay=self._relay.name, motor=report.motor, event_report=report.id)
+        log.info("triggered", relay=self._relay.name, motor=report.motor, recording_request=report.id)
         time.sleep(HOLD_S)
         stamp = _stamp_of(client, control)
         if stamp is not None and stamp != stamp_before:
@@ -203,9 +205,9 @@ class Triggering:
             log.warning("the trigger stays set", relay=self._relay.name, control=control, reason=str(error))
         return True
 
-    def _fail(self, report: EventReport, reason: str) -> None:
-        self._repository.fail_event_report(report.id, reason, now_ns=time.time_ns())
-        log.warning("event report failed", relay=self._relay.name, event_report=report.id, reason=reason)
+    def _fail(self, report: RecordingRequest, reason: str) -> None:
+        self._repository.fail_recording_request(report.id, reason, now_ns=time.time_ns())
+        log.warning("event report failed", relay=self._relay.name, recording_request=report.id, reason=reason)
 
 
 def _stamp_of(client: Client, control: str) -> Timestamp | None:

@@ -3,7 +3,6 @@
 from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
 from service.storage.repository.condition import ConditionRows
-from service.storage.repository.event_reports import EventReportRows
 from service.storage.repository.findings import FindingsRows
 from service.storage.repository.jobs import JobRows
 from service.storage.repository.leases import LeaseRows
@@ -11,6 +10,7 @@ from service.storage.repository.links import LinkRows
 from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.quarantines import QuarantineRows
+from service.storage.repository.recording_requests import RecordingRequestRows
 from service.storage.repository.recordings import RecordingRows
 
 
@@ -21,7 +21,7 @@ class Repository(
     LeaseRows,
     AlarmRows,
     QuarantineRows,
-    EventReportRows,
+    RecordingRequestRows,
     RecordingRows,
     JobRows,
     ConditionRows,

@@ -9,10 +9,10 @@ from sqlalchemy.orm import InstrumentedAttribute, Session
 from service.storage.models import (
     AlarmRow,
     DiagnosisRow,
-    EventReportRow,
     IedRow,
     JobRow,
     MotorRow,
+    RecordingRequestRow,
     RecordingRow,
 )
 from service.storage.records import (
@@ -85,7 +85,7 @@ class ConditionRows(Sessions):
             return Counts(
                 links=_count(session, IedRow.link_state),
                 alarms=_count(session, AlarmRow.kind, AlarmRow.cleared_ns.is_(None)),
-                event_reports=_count(session, EventReportRow.state),
+                recording_requests=_count(session, RecordingRequestRow.state),
                 recordings=_count(session, RecordingRow.state),
                 jobs=_count(session, JobRow.state),
             )

@@ -11,7 +11,7 @@ from service.storage.models import DiagnosisRow, JobRow, RecordingRow
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, Page
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
-from service.storage.repository.event_reports import diagnose_rows, fail_rows
+from service.storage.repository.recording_requests import diagnose_rows, fail_rows
 from service.storage.repository.recordings import DEFAULT_METHOD, DEFAULT_MODEL, new_job
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingState

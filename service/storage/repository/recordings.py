@@ -8,17 +8,17 @@ from sqlalchemy.orm import Session
 
 from service.recording_store.store import StoredRecording
 from service.storage.models import (
-    EventReportRow,
     IedRow,
     JobRow,
     MotorRow,
     RecordingFileRow,
+    RecordingRequestRow,
     RecordingRow,
     RemoteRecordRow,
 )
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
 from service.storage.repository.clocks import give_clock
-from service.storage.repository.event_reports import diagnose_rows, fail_row, fail_rows, fetch_row
+from service.storage.repository.recording_requests import diagnose_rows, fail_row, fail_rows, fetch_row
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingSource, RecordingState
 
@@ -121,7 +121,7 @@ class RecordingRows(Sessions):
         reason: str,
         *,
         now_ns: int,
-        event_report_id: str | None = None,
+        recording_request_id: str | None = None,
     ) -> RecordingEntry:
         """Refuses a record for good without storing it (too large, incomplete): it is not pulled again.
 
@@ -132,8 +132,10 @@ class RecordingRows(Sessions):
             if row.state is RecordingState.ANNOUNCED:
                 row.state = RecordingState.REJECTED
                 row.reason = reason
-            if event_report_id is not None:
-                fail_row(found(session, EventReportRow, event_report_id, "event report"), reason, now_ns)
+            if recording_request_id is not None:
+                fail_row(
+                    found(session, RecordingRequestRow, recording_request_id, "event report"), reason, now_ns
+                )
             return recording(row)
 
     def add_recording(
@@ -144,7 +146,7 @@ class RecordingRows(Sessions):
         now_ns: int,
         ied: str | None = None,
         remote: RemoteRecord | None = None,
-        event_report_id: str | None = None,
+        recording_request_id: str | None = None,
         method: str = DEFAULT_METHOD,
         model: str = DEFAULT_MODEL,
     ) -> AddedRecording:
@@ -174,8 +176,8 @@ class RecordingRows(Sessions):
                 _link_remote(session, ied, remote, row)
                 if row.ied == ied:
                     _complete(session, row, stored)
-            if event_report_id is not None and not sent_before:
-                _attach(session, event_report_id, row, now_ns)
+            if recording_request_id is not None and not sent_before:
+                _attach(session, recording_request_id, row, now_ns)
             return AddedRecording(recording(row), created)
 
     def recording(self, recording_id: str) -> RecordingEntry:
@@ -362,9 +364,9 @@ def _list_files(session: Session, row: RecordingRow, stored: StoredRecording) ->
     session.flush()
 
 
-def _attach(session: Session, event_report_id: str, row: RecordingRow, now_ns: int) -> None:
+def _attach(session: Session, recording_request_id: str, row: RecordingRow, now_ns: int) -> None:
     """Gives the event report its recording, and its end where the recording has come to one already."""
-    fetch_row(found(session, EventReportRow, event_report_id, "event report"), row.id, now_ns)
+    fetch_row(found(session, RecordingRequestRow, recording_request_id, "event report"), row.id, now_ns)
     session.flush()
     if row.state is RecordingState.DIAGNOSED:
         diagnose_rows(session, row.id, now_ns)

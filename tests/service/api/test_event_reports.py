@@ -16,7 +16,7 @@ def test_a_report_is_accepted_and_can_be_followed(client: httpx.Client, reposito
     assert location == f"/api/v1/event-reports/{report['id']}"
     assert client.get(location).json() == report
 
-    repository.fail_event_report(report["id"], "relay A1_SEL710 is down", now_ns=NOW_NS)
+    repository.fail_recording_request(report["id"], "relay A1_SEL710 is down", now_ns=NOW_NS)
     failed = client.get(location).json()
     assert (failed["state"], failed["reason"]) == ("failed", "relay A1_SEL710 is down")
     assert failed["failed_time"] == "2025-10-09T08:53:20.000000000Z"
@@ -45,5 +45,5 @@ def test_a_motor_that_left_the_plant_is_refused(client: httpx.Client, repository
         "motor PUMP-A1 is out of service: it is not in the plant's files"
     )
     assert client.post(POST, headers={"Idempotency-Key": "a"}).json() == before, "no new wish"
-    assert repository.schedule_event_report("PUMP-A1", due_ns=NOW_NS, now_ns=NOW_NS) is None
+    assert repository.schedule_recording("PUMP-A1", due_ns=NOW_NS, now_ns=NOW_NS) is None
     assert len(client.get("/api/v1/event-reports").json()["items"]) == 1

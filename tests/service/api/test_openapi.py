@@ -42,9 +42,9 @@ def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BaseSch
     repository = Repository(engine)
     repository.sync_plant(two_motor_plant())
     store = RecordingStore(data / "recordings")
-    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     stored = store.store({"EVENT.CFG": CFG, "EVENT.DAT": DAT})
-    repository.add_recording(stored, motor="PUMP-A1", event_report_id=report.id, now_ns=NOW_NS)
+    repository.add_recording(stored, motor="PUMP-A1", recording_request_id=report.id, now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=NOW_NS)
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)

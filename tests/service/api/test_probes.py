@@ -34,7 +34,7 @@ def test_what_is_not_ready_is_named(context: ApiContext) -> None:
 
 
 def test_metrics(client: httpx.Client, repository: Repository) -> None:
-    repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     response = client.get("/metrics")
     assert response.headers["content-type"].startswith("text/plain")
     assert 'mcc_event_reports{state="requested"} 1.0' in response.text

@@ -68,7 +68,7 @@ def test_a_key_triggers_once(
     with serving(app) as client:
         for key in ("a", "a", "\N{GREEK SMALL LETTER BETA}"):
             assert main(["trigger", "PUMP-A1", "--key", key, "--url", str(client.base_url)]) == 0
-    assert len(repository.event_reports(limit=10).items) == 2
+    assert len(repository.recording_requests(limit=10).items) == 2
 
 
 def test_a_relay_is_released(

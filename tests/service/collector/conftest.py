@@ -16,8 +16,8 @@ from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
-from service.storage.records import EventReport, RecordingEntry
-from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
+from service.storage.records import RecordingEntry, RecordingRequest
+from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from tests.service.collector.scripted_relay import (
     CONTROL,
     FAULT_NUMBER,
@@ -74,12 +74,12 @@ class Bench:
             assert not thread.is_alive()
 
     def request(self) -> str:
-        return self.repository.request_event_report(MOTOR, now_ns=time.time_ns()).id
+        return self.repository.request_recording(MOTOR, now_ns=time.time_ns()).id
 
-    def report(self, report_id: str) -> EventReport:
-        return self.repository.event_report(report_id)
+    def report(self, report_id: str) -> RecordingRequest:
+        return self.repository.recording_request(report_id)
 
-    def reaches(self, report_id: str, state: EventReportState) -> bool:
+    def reaches(self, report_id: str, state: RecordingRequestState) -> bool:
         return eventually(lambda: self.report(report_id).state is state)
 
     def recordings(self) -> list[RecordingEntry]:

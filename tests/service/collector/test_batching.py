@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from service.collector.gateway.batch_writer import Batches
+from service.collector.gateway.batch_writer import BatchWriter
 from service.storage import Repository, connect
 from service.storage.records import LinkNote, LinkTraffic, Sample
 from service.storage.states import LinkState
@@ -73,7 +73,7 @@ def test_a_note_that_waited_gives_no_bytes_of_the_day_back(repository: Repositor
 def test_a_locked_database_costs_nothing_and_doubles_nothing(
     repository: Repository, database_url: str
 ) -> None:
-    batches = Batches(repository)
+    batches = BatchWriter(repository)
     batches.start()
     with closing(sqlite3.connect(database_url.removeprefix("sqlite:///"))) as other:
         other.execute("BEGIN IMMEDIATE")
@@ -91,7 +91,7 @@ def test_a_locked_database_costs_nothing_and_doubles_nothing(
 
 
 def test_what_the_database_refuses_holds_up_nothing(repository: Repository) -> None:
-    batches = Batches(repository)
+    batches = BatchWriter(repository)
     batches.start()
     batches.add_sample(Sample("NO-SUCH-MOTOR", NOW_NS, {"ia_A": 1.0}))
 

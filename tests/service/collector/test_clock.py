@@ -12,7 +12,7 @@ import scl
 from mms import Client, DataAccessError, Timestamp
 from service.collector.session.clock import ClockWatch, reading
 from service.plant.metering import measurands
-from service.storage.states import ClockQuality, EventReportState
+from service.storage.states import ClockQuality, RecordingRequestState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 
@@ -68,7 +68,7 @@ def test_a_trigger_compares_the_clocks(bench: Bench, relay: ScriptedRelay) -> No
     relay.clock_offset_s, relay.clock_quality = OFFSET_S, NOT_SYNCHRONISED
     report = bench.request()
     with bench.session():
-        assert bench.reaches(report, EventReportState.FETCHED)
+        assert bench.reaches(report, RecordingRequestState.FETCHED)
     ied = bench.repository.ied(NAME)
     assert ied.clock_offset_ns is not None
     assert ied.clock_uncertainty_ns is not None
@@ -86,7 +86,7 @@ def test_a_trigger_compares_the_clocks(bench: Bench, relay: ScriptedRelay) -> No
 def test_a_relay_that_stamps_nothing_has_no_known_clock(bench: Bench, relay: ScriptedRelay) -> None:
     report = bench.request()
     with bench.session():
-        assert bench.reaches(report, EventReportState.FETCHED)
+        assert bench.reaches(report, RecordingRequestState.FETCHED)
     assert bench.repository.ied(NAME).clock_offset_ns is None
     assert [recording.clock_quality for recording in bench.recordings()] == [None]
 

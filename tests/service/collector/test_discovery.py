@@ -16,7 +16,7 @@ from scl.data_model import Ied
 from service.collector.session.browsing import browse
 from service.plant import Overrides, TriggerAction, differences
 from service.plant.offer import node_class, promised_by
-from service.storage.states import AlarmKind, EventReportState, LinkState
+from service.storage.states import AlarmKind, LinkState, RecordingRequestState
 from tests.ied_sim.simulating import IED, scenario_of, simulated
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.expectations import at, expecting
@@ -46,13 +46,13 @@ def visited(bench: Bench) -> bool:
 def granted(bench: Bench) -> bool:
     """Whether a wish becomes a stored record."""
     wish = bench.request()
-    return eventually(lambda: bench.report(wish).state is EventReportState.FETCHED, 20)
+    return eventually(lambda: bench.report(wish).state is RecordingRequestState.FETCHED, 20)
 
 
 def refusal(bench: Bench) -> str:
     """Why a wish is not granted."""
     wish = bench.request()
-    assert eventually(lambda: bench.report(wish).state is EventReportState.FAILED)
+    assert eventually(lambda: bench.report(wish).state is RecordingRequestState.FAILED)
     assert bench.report(wish).triggered_ns is None, "nothing was operated"
     return bench.report(wish).reason or ""
 
@@ -227,7 +227,7 @@ def test_a_trigger_that_was_ruled_out_or_does_not_exist(bench: Bench, relay: Scr
     with expecting(bench, ied, Overrides(trigger=f"{NAME}CON/RBGGIO9.SPCSO01")).session():
         assert eventually(lambda: bench.alarms() == {AlarmKind.RELAY_DIFFERS: ["trigger"]})
         wish = bench.request()
-        assert bench.reaches(wish, EventReportState.FAILED)
+        assert bench.reaches(wish, RecordingRequestState.FAILED)
     assert "refuses the trigger" in (bench.report(wish).reason or "")
     assert relay.edges == 0
 

@@ -8,7 +8,7 @@ import pytest
 from mms import Client
 from service.collector.records.event_folder import Contents, EventFolder
 from service.plant import Overrides
-from service.storage.states import EventReportState, LinkState
+from service.storage.states import LinkState, RecordingRequestState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.expectations import overriding
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
@@ -102,7 +102,7 @@ def test_a_trigger_without_a_folder_names_what_was_looked_for(bench: Bench, rela
     relay.events.rmdir()
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert bench.reaches(report_id, RecordingRequestState.FAILED)
     reason = bench.report(report_id).reason or ""
     assert "expected a record within 2 s of the trigger; no directory of event recordings" in reason
     assert relay.edges == 1, "the folder may come with the first record"

@@ -9,7 +9,7 @@ from core.recordings import read
 from service.collector.records.directory import PULL_ATTEMPTS
 from service.collector.records.formats import one_format_an_event, remote_of
 from service.collector.records.listing import ListedRecord, understand
-from service.storage.states import AlarmKind, EventReportState, RecordingState
+from service.storage.states import AlarmKind, RecordingRequestState, RecordingState
 from tests.ied_sim.simulating import IED, scenario_of, simulated
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.expectations import at, expecting
@@ -66,7 +66,7 @@ def test_a_refused_format_comes_last() -> None:
     assert one_format_an_event(both, (), (), ()).replaceable == {comtrade}
 
 
-def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
+def test_a_relay_of_recording_requests_alone(bench: Bench, tmp_path: Path) -> None:
     """A wish becomes a stored event report."""
     scenario = scenario_of("sel-710-ed1")
     record = scenario.profile.record.model_copy(update={"formats": ("CEV",)})
@@ -75,7 +75,7 @@ def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
         here = at(expecting(bench, served.document.ied(IED)), served)
         wish = here.request()
         with here.session():
-            assert eventually(lambda: here.report(wish).state is EventReportState.FETCHED, 20)
+            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FETCHED, 20)
     (recording,) = here.recordings()
     assert recording.digest is not None
     stored = here.store.find(recording.digest)
@@ -83,7 +83,7 @@ def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
     assert {channel.phase for channel in read(stored.entry).channels} >= set("abc")
 
 
-def test_an_event_report_waits_for_its_comtrade(bench: Bench, relay: ScriptedRelay) -> None:
+def test_an_recording_request_waits_for_its_comtrade(bench: Bench, relay: ScriptedRelay) -> None:
     relay.write_record("HR_10001")
     with bench.session():
         assert eventually(lambda: bench.is_stored("HR_10001"))
@@ -109,7 +109,7 @@ def test_a_comtrade_that_comes_too_late_is_no_second_recording(bench: Bench, rel
     assert sorted(recording.name for recording in bench.recordings()) == ["CR_10001", "HR_10002"]
 
 
-def test_an_event_report_stands_in_for_a_comtrade_without_its_data(
+def test_an_recording_request_stands_in_for_a_comtrade_without_its_data(
     bench: Bench, relay: ScriptedRelay
 ) -> None:
     relay.write_file("HR_10001.CFG", b"configuration alone")
@@ -123,15 +123,15 @@ def states(bench: Bench) -> dict[str, RecordingState]:
     return {recording.name: recording.state for recording in bench.recordings()}
 
 
-def test_an_event_report_stands_in_for_a_comtrade_too_large(bench: Bench, relay: ScriptedRelay) -> None:
+def test_an_recording_request_stands_in_for_a_comtrade_too_large(bench: Bench, relay: ScriptedRelay) -> None:
     """The wish for the record gets it, and is not failed by the refusal before."""
     relay.silent = True
     wish = bench.request()
     with bench.session():
-        assert bench.reaches(wish, EventReportState.TRIGGERED)
+        assert bench.reaches(wish, RecordingRequestState.TRIGGERED)
         relay.write_file("CR_10007.CEV", b"event report of the same event")
         relay.write_record("HR_10007", b"x" * 200_000)  # larger than max_file_bytes
-        assert bench.reaches(wish, EventReportState.FETCHED), bench.report(wish).reason
+        assert bench.reaches(wish, RecordingRequestState.FETCHED), bench.report(wish).reason
         assert bench.alarms() == {AlarmKind.FILE_TOO_LARGE: ["HR_10007"]}
         taken = {"HR_10007.CFG, HR_10007.DAT": "the same event as CR_10007.CEV, which is taken"}
         assert eventually(lambda: ignored(bench) == taken)
@@ -161,10 +161,10 @@ def test_a_wish_fails_where_each_format_is_refused(bench: Bench, relay: Scripted
     relay.silent = True
     wish = bench.request()
     with bench.session():
-        assert bench.reaches(wish, EventReportState.TRIGGERED)
+        assert bench.reaches(wish, RecordingRequestState.TRIGGERED)
         relay.write_file("CR_10007.CEV", b"x" * 150_000)
         relay.write_record("HR_10007", b"x" * 200_000)
-        assert bench.reaches(wish, EventReportState.FAILED)
+        assert bench.reaches(wish, RecordingRequestState.FAILED)
         assert "CR_10007.CEV: expected at most 100000 bytes" in (bench.report(wish).reason or "")
         listings = relay.listings
         assert eventually(lambda: relay.listings > listings + 3)
@@ -174,7 +174,7 @@ def test_a_wish_fails_where_each_format_is_refused(bench: Bench, relay: Scripted
     assert relay.opened == 0
 
 
-def test_an_event_report_stands_in_for_a_comtrade_that_is_listed_only(
+def test_an_recording_request_stands_in_for_a_comtrade_that_is_listed_only(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.002)

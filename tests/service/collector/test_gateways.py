@@ -19,10 +19,10 @@ from mms import Server
 from scl import Address
 from scl.model_text import model_text
 from service.collector.gateway.gateway import Gateway, Identity
-from service.collector.gateway.peer_liveness import Neighbours
+from service.collector.gateway.peer_liveness import PeerLiveness
 from service.collector.session.visit_marks import BUSY
 from service.collector.supervision.gateway_processes import running_gateways
-from service.collector.supervision.supervisor import CollectorSupervisor
+from service.collector.supervision.supervisor import GatewaySupervisor
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
@@ -174,9 +174,9 @@ def test_a_gateway_takes_no_more_than_it_may(hall: Hall) -> None:
 
 
 @contextmanager
-def supervised(hall: Hall, host: str) -> Iterator[CollectorSupervisor]:
+def supervised(hall: Hall, host: str) -> Iterator[GatewaySupervisor]:
     """A gateway process, kept running as the service does it, of a host of its own."""
-    supervisor = CollectorSupervisor(hall.settings_of(host))
+    supervisor = GatewaySupervisor(hall.settings_of(host))
     supervisor.start()
     try:
         yield supervisor
@@ -184,7 +184,7 @@ def supervised(hall: Hall, host: str) -> Iterator[CollectorSupervisor]:
         supervisor.stop()
 
 
-def process_of(supervisor: CollectorSupervisor) -> int:
+def process_of(supervisor: GatewaySupervisor) -> int:
     found = supervisor.process_id
     assert found is not None
     return found
@@ -310,13 +310,13 @@ def test_relays_set_aside_by_a_clock_that_was_ahead_are_visited(hall: Hall) -> N
 def test_a_trigger_needs_the_lease(hall: Hall) -> None:
     repository = hall.repository
     motor = hall.plant.motors[0]
-    report = repository.request_event_report(motor.name, now_ns=NOW_NS)
+    report = repository.request_recording(motor.name, now_ns=NOW_NS)
     repository.register_gateway("a", host="here", process_id=1, now_ns=NOW_NS)
     repository.share_relays("a", [motor.relay], most=10)
     repository.register_gateway("b", host="here", process_id=2, now_ns=NOW_NS)
     with pytest.raises(LeaseLostError, match=f"gateway b does not hold the lease of {motor.relay}"):
         repository.mark_triggered(report.id, now_ns=NOW_NS, gateway="b")
-    assert repository.event_report(report.id).triggered_ns is None
+    assert repository.recording_request(report.id).triggered_ns is None
     assert repository.mark_triggered(report.id, now_ns=NOW_NS, gateway="a").triggered_ns == NOW_NS
     assert not repository.end_gateway("a", now_ns=NOW_NS, beats=7), "it has gone on since"
     assert repository.end_gateway("a", now_ns=NOW_NS, beats=1)
@@ -325,7 +325,7 @@ def test_a_trigger_needs_the_lease(hall: Hall) -> None:
 
 
 def test_who_stands_still_for_a_lease_is_dead() -> None:
-    neighbours = Neighbours(10.0)
+    neighbours = PeerLiveness(10.0)
     assert neighbours.dead({"a": 5, "b": 5}, now_s=100.0) == {}
     assert neighbours.dead({"a": 5, "b": 6}, now_s=109.9) == {}
     assert neighbours.dead({"a": 5, "b": 6}, now_s=110.0) == {"a": 5}

@@ -8,7 +8,7 @@ import pytest
 from mms.prototypes import PROTOTYPES
 from service.collector.records.allowance import BLOCK_BYTES, DAY_NS, DailyAllowance
 from service.collector.session.alarms import AND_MORE, RelayAlarms
-from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
+from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 
@@ -49,7 +49,7 @@ def test_a_trigger_whose_record_must_wait_says_so(bench: Bench, relay: ScriptedR
     with bench.with_settings(max_relay_bytes_per_day=RECORD_BYTES).session():
         assert eventually(lambda: bench.is_stored("HR_0"))
         report = bench.request()
-        assert bench.reaches(report, EventReportState.FAILED)
+        assert bench.reaches(report, RecordingRequestState.FAILED)
     assert "max_relay_bytes_per_day" in (bench.report(report).reason or "")
 
 
@@ -159,7 +159,7 @@ def test_nothing_is_deleted_on_a_relay(bench: Bench, relay: ScriptedRelay) -> No
     before = {path: path.read_bytes() for path in relay.events.iterdir()}
     report = bench.request()
     with bench.session():
-        assert bench.reaches(report, EventReportState.FETCHED)
+        assert bench.reaches(report, RecordingRequestState.FETCHED)
     assert before.items() <= {path: path.read_bytes() for path in relay.events.iterdir()}.items()
     of_clients = {name for name in PROTOTYPES if "Connection_" in name and "file" in name.lower()}
     reading = {"getFileDirectoryEx", "fileOpen", "fileRead", "fileClose"}

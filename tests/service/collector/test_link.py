@@ -3,7 +3,7 @@
 import pytest
 
 from mms import Reason, Report, ReportMember
-from service.collector.session.report_continuity import Continuity
+from service.collector.session.report_continuity import ReportContinuity
 from service.storage.states import LinkState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import FAULT_NUMBER, NAME, RECORD_MADE, ScriptedRelay
@@ -69,19 +69,19 @@ def report(number: int | None, **values: object) -> Report:
     ],
 )
 def test_a_gap_in_the_sequence_numbers(numbers: list[int | None], gaps: int) -> None:
-    continuity = Continuity(FAULT_NUMBER)
+    continuity = ReportContinuity(FAULT_NUMBER)
     assert [continuity.missed_before(report(number)) is None for number in numbers].count(False) == gaps
 
 
 def test_another_connection_may_count_anew() -> None:
-    continuity = Continuity(FAULT_NUMBER)
+    continuity = ReportContinuity(FAULT_NUMBER)
     assert continuity.missed_before(report(40)) is None
     continuity.begin()
     assert continuity.missed_before(report(0)) is None
 
 
 def test_a_gap_in_the_relay_s_count_of_records() -> None:
-    continuity = Continuity(FAULT_NUMBER)
+    continuity = ReportContinuity(FAULT_NUMBER)
     assert continuity.missed_before(report(1, made=True, count=4)) is None
     assert continuity.missed_before(report(2, made=True, count=5)) is None
     continuity.begin()

@@ -7,7 +7,7 @@ import scl
 from service.collector.session.relay_session import RelaySession
 from service.plant.metering import measurands
 from service.storage.records import Sample
-from service.storage.states import EventReportState, LinkState
+from service.storage.states import LinkState, RecordingRequestState
 from tests.hostile.dialogue import message, tlv
 from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.outstanding import Outstanding
@@ -39,7 +39,7 @@ def test_a_relay_has_one_request_at_a_time(bench: Bench, relay: ScriptedRelay) -
                 relay.write_record(f"OWN_{number}", bytes(RECORD_BYTES))
                 wish = bench.request()
                 session.wake()
-                assert bench.reaches(wish, EventReportState.FETCHED)
+                assert bench.reaches(wish, RecordingRequestState.FETCHED)
             assert eventually(lambda: len(bench.recordings()) == 2 * RECORDS)
         finally:
             session.stop()

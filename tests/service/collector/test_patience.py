@@ -2,16 +2,16 @@
 
 from dataclasses import replace
 
-from service.collector.triggers.deadlines import Patience
-from service.storage.records import EventReport
-from service.storage.states import EventReportOrigin, EventReportState
+from service.collector.triggers.deadlines import RequestDeadlines
+from service.storage.records import RecordingRequest
+from service.storage.states import RecordingRequestOrigin, RecordingRequestState
 
-TRIGGERED = EventReport(
+TRIGGERED = RecordingRequest(
     id="one",
     motor="PUMP-A1",
     ied="A1",
-    origin=EventReportOrigin.REQUEST,
-    state=EventReportState.TRIGGERED,
+    origin=RecordingRequestOrigin.REQUEST,
+    state=RecordingRequestState.TRIGGERED,
     reason=None,
     recording_id=None,
     requested_ns=0,
@@ -21,12 +21,12 @@ TRIGGERED = EventReport(
     diagnosed_ns=None,
     failed_ns=None,
 )
-RECORDED = replace(TRIGGERED, state=EventReportState.RECORDED)
-QUEUED = replace(TRIGGERED, id="two", state=EventReportState.REQUESTED)
+RECORDED = replace(TRIGGERED, state=RecordingRequestState.RECORDED)
+QUEUED = replace(TRIGGERED, id="two", state=RecordingRequestState.REQUESTED)
 
 
 def test_a_report_ends_when_no_record_comes_in_time() -> None:
-    patience = Patience(10.0)
+    patience = RequestDeadlines(10.0)
     for now_s in (100.0, 105.0, 110.0):
         patience.answered(now_s)
         assert not patience.ends_without_record(TRIGGERED, now_s)
@@ -35,7 +35,7 @@ def test_a_report_ends_when_no_record_comes_in_time() -> None:
 
 
 def test_an_outage_is_not_time_in_which_a_record_could_be_seen() -> None:
-    patience = Patience(10.0)
+    patience = RequestDeadlines(10.0)
     assert not patience.ends_without_record(TRIGGERED, 100.0)
     assert not patience.ends_without_answer(TRIGGERED, 103.0)
     patience.answered(142.0)
@@ -45,7 +45,7 @@ def test_an_outage_is_not_time_in_which_a_record_could_be_seen() -> None:
 
 
 def test_a_link_that_fails_again_and_again_prolongs_no_report_for_ever() -> None:
-    patience = Patience(10.0)
+    patience = RequestDeadlines(10.0)
     visits = 0
     while not patience.ends_without_record(TRIGGERED, visits * 2.0):
         assert not patience.ends_without_answer(TRIGGERED, visits * 2.0 + 1.0)
@@ -55,7 +55,7 @@ def test_a_link_that_fails_again_and_again_prolongs_no_report_for_ever() -> None
 
 
 def test_requests_end_when_the_relay_stays_silent_each_in_its_own_time() -> None:
-    patience = Patience(10.0)
+    patience = RequestDeadlines(10.0)
     assert not patience.ends_without_answer(TRIGGERED, 100.0)
     assert not patience.ends_without_answer(QUEUED, 108.0)
     assert patience.ends_without_answer(TRIGGERED, 110.1)
@@ -64,7 +64,7 @@ def test_requests_end_when_the_relay_stays_silent_each_in_its_own_time() -> None
 
 
 def test_no_time_runs_while_the_relay_gives_records() -> None:
-    patience = Patience(10.0)
+    patience = RequestDeadlines(10.0)
     assert not patience.ends_without_answer(QUEUED, 100.0)
     assert not patience.ends_without_record(TRIGGERED, 100.0)
     patience.gave_a_record()

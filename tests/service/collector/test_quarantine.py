@@ -11,8 +11,13 @@ from pathlib import Path
 import pytest
 
 from service.collector.session import relay_session
-from service.collector.session.protocol_faults import FAULTS_IN_A_ROW, PROBATION_S, Conduct, after_end
-from service.collector.session.visit_marks import Visits
+from service.collector.session.protocol_faults import (
+    FAULTS_IN_A_ROW,
+    PROBATION_S,
+    ProtocolFaultCounter,
+    blame_after_end,
+)
+from service.collector.session.visit_marks import VisitMarks
 from service.storage import Repository
 from service.storage.records import Quarantine
 from service.storage.states import AlarmKind, LinkState
@@ -41,9 +46,9 @@ def crash_in(directory: Path, *, busy: tuple[str, ...], waiting: tuple[str, ...]
 import os, signal
 from contextlib import ExitStack
 from pathlib import Path
-from service.collector.session.visit_marks import Visits
+from service.collector.session.visit_marks import VisitMarks
 with ExitStack() as stack:
-    visits = Visits(Path({str(directory)!r}))
+    visits = VisitMarks(Path({str(directory)!r}))
     marks = {{relay: stack.enter_context(visits.mark(relay)) for relay in {busy + waiting!r}}}
     for relay in {waiting!r}:
         stack.enter_context(marks[relay].waiting())
@@ -53,10 +58,10 @@ with ExitStack() as stack:
 
 
 def test_the_relay_the_gateway_was_busy_with_is_set_aside(repository: Repository, tmp_path: Path) -> None:
-    visits = Visits(tmp_path / "visiting" / "0")
+    visits = VisitMarks(tmp_path / "visiting" / "0")
     exit_code = crash_in(tmp_path / "visiting" / "0", busy=(A,), waiting=(B,))
     assert exit_code == CRASH
-    after_end(visits, exit_code, repository, first_pause_s=PAUSE_S)
+    blame_after_end(visits, exit_code, repository, first_pause_s=PAUSE_S)
     ied = repository.ied(A)
     assert ied.link_state is LinkState.QUARANTINED
     assert "its answers crashed the gateway (SIGSEGV)" in (ied.link_reason or "")
@@ -70,43 +75,43 @@ def test_the_relay_the_gateway_was_busy_with_is_set_aside(repository: Repository
 def test_an_end_that_is_no_crash_blames_nobody(
     repository: Repository, tmp_path: Path, exit_code: int | None
 ) -> None:
-    visits = Visits(tmp_path / "visiting")
+    visits = VisitMarks(tmp_path / "visiting")
     with visits.mark(A):
-        after_end(visits, exit_code, repository, first_pause_s=PAUSE_S)
+        blame_after_end(visits, exit_code, repository, first_pause_s=PAUSE_S)
     assert repository.quarantines() == ()
 
 
 def test_of_several_suspects_the_next_crash_finds_the_one(repository: Repository, tmp_path: Path) -> None:
-    visits = Visits(tmp_path / "visiting")
+    visits = VisitMarks(tmp_path / "visiting")
     with visits.mark(A), visits.mark(B):
-        after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
+        blame_after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
     assert [(each.ied, each.times, pause_s(each)) for each in repository.quarantines()] == [
         (A, 0, 0.0),
         (B, 0, PROBATION_S),
     ]
     assert repository.standing_alarms(A) == repository.standing_alarms(B) == ()
     with visits.mark(A):  # B is not visited yet
-        after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
+        blame_after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
     assert pause_s(repository.quarantine(A)) == PAUSE_S
 
 
 def test_a_crash_between_requests_makes_all_visited_suspects(repository: Repository, tmp_path: Path) -> None:
-    visits = Visits(tmp_path / "visiting")
+    visits = VisitMarks(tmp_path / "visiting")
     with visits.mark(A) as a, visits.mark(B) as b, a.waiting(), b.waiting():
-        after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
+        blame_after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
     assert {each.ied for each in repository.quarantines()} == {A, B}
 
 
 def test_what_is_no_relay_is_not_blamed_and_hides_nobody(repository: Repository, tmp_path: Path) -> None:
-    visits = Visits(tmp_path / "visiting")
+    visits = VisitMarks(tmp_path / "visiting")
     (tmp_path / "visiting" / "a folder").mkdir(parents=True)
     with visits.mark("NOT-A-RELAY"), visits.mark(A):
-        after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
+        blame_after_end(visits, CRASH, repository, first_pause_s=PAUSE_S)
     assert [(each.ied, each.times) for each in repository.quarantines()] == [(A, 1)]
 
 
 def test_a_relay_whose_name_is_a_path_is_marked_inside(tmp_path: Path) -> None:
-    visits = Visits(tmp_path / "marks")
+    visits = VisitMarks(tmp_path / "marks")
     with visits.mark("../../X"):
         assert visits.suspects() == {"../../X"}
         assert [path.name for path in tmp_path.iterdir()] == ["marks"]
@@ -147,7 +152,7 @@ def test_a_suspect_that_comes_back_at_once_is_not_held(repository: Repository) -
 
 
 def test_who_breaks_the_protocol_again_and_again_is_set_aside(repository: Repository) -> None:
-    conduct = Conduct(A, repository, first_pause_s=PAUSE_S)
+    conduct = ProtocolFaultCounter(A, repository, first_pause_s=PAUSE_S)
     told = [conduct.broke_the_protocol("nonsense") for _ in range(FAULTS_IN_A_ROW)]
     assert told == [False] * (FAULTS_IN_A_ROW - 1) + [True]
     assert "broke the protocol 5 times in a row, at last: nonsense" in (repository.ied(A).link_reason or "")
@@ -169,7 +174,7 @@ def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(
 def test_good_visits_between_count(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
     now_s = time.monotonic()
     monkeypatch.setattr(time, "monotonic", lambda: now_s)
-    conduct = Conduct(A, repository, first_pause_s=PAUSE_S)
+    conduct = ProtocolFaultCounter(A, repository, first_pause_s=PAUSE_S)
     for _ in range(3 * FAULTS_IN_A_ROW):
         conduct.visited()
         now_s += 11.0
@@ -183,7 +188,7 @@ def test_a_relay_that_works_as_long_as_it_was_set_aside_is_trusted(
     repository.set_aside(A, "why", first_pause_s=PAUSE_S, longest_pause_s=86_400.0, now_ns=NOW_NS)
     now_s = time.monotonic()
     monkeypatch.setattr(time, "monotonic", lambda: now_s)
-    conduct = Conduct(A, repository, first_pause_s=PAUSE_S)
+    conduct = ProtocolFaultCounter(A, repository, first_pause_s=PAUSE_S)
     conduct.visited()
     now_s += PAUSE_S - 1
     conduct.answered()

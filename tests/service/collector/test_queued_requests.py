@@ -9,7 +9,7 @@ import pytest
 
 from service.collector.gateway.gateway import Gateway, Identity
 from service.plant import Plant, PlantMotor, Site
-from service.storage.states import EventReportState, LinkState
+from service.storage.states import LinkState, RecordingRequestState
 from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 from tests.service.plants import SECOND_NS, motor
@@ -56,14 +56,14 @@ def test_a_queue_does_not_hurry_the_listings(bench: Bench, silent: ScriptedRelay
     with gateway(bench.with_settings(poll_period_s=LONG_S, record_timeout_s=LONG_S)):
         assert eventually(lambda: bench.link() is LinkState.UP)
         first, second, _ = (bench.request() for _ in range(3))
-        assert bench.reaches(first, EventReportState.TRIGGERED)
+        assert bench.reaches(first, RecordingRequestState.TRIGGERED)
         assert not eventually(lambda: silent.edges > 1, within_s=0.5)
         before = silent.listings
         assert not eventually(lambda: silent.listings > before, within_s=WATCHED_S)
-        assert bench.report(second).state is EventReportState.REQUESTED
+        assert bench.report(second).state is RecordingRequestState.REQUESTED
         silent.write_record("HR_1")
-        assert bench.reaches(first, EventReportState.FETCHED)
-        assert bench.reaches(second, EventReportState.TRIGGERED)
+        assert bench.reaches(first, RecordingRequestState.FETCHED)
+        assert bench.reaches(second, RecordingRequestState.TRIGGERED)
     ended, granted = bench.report(first).fetched_ns, bench.report(second).triggered_ns
     assert ended is not None
     assert granted is not None
@@ -75,8 +75,8 @@ def test_the_next_follows_at_once_where_no_record_came(bench: Bench, silent: Scr
     with gateway(bench.with_settings(poll_period_s=poll_period_s, record_timeout_s=1.0)):
         assert eventually(lambda: bench.link() is LinkState.UP)
         first, second = bench.request(), bench.request()
-        assert bench.reaches(first, EventReportState.FAILED)
-        assert bench.reaches(second, EventReportState.TRIGGERED)
+        assert bench.reaches(first, RecordingRequestState.FAILED)
+        assert bench.reaches(second, RecordingRequestState.TRIGGERED)
     failed, granted = bench.report(first).failed_ns, bench.report(second).triggered_ns
     assert failed is not None
     assert granted is not None

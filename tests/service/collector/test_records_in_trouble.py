@@ -6,7 +6,7 @@ import time
 import pytest
 
 from service.collector.records.directory import MANY_ATTEMPTS, PULL_ATTEMPTS
-from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
+from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import ScriptedRelay
 
@@ -162,7 +162,7 @@ def test_a_wish_for_a_record_that_is_denied_fails_in_time_with_the_reason(
     relay.denied.add("HR_10001")
     wish = bench.request()
     with bench.session():
-        assert bench.reaches(wish, EventReportState.FAILED)
+        assert bench.reaches(wish, RecordingRequestState.FAILED)
         assert "its record could not be fetched within 2 s" in (bench.report(wish).reason or "")
         assert "file access denied" in (bench.report(wish).reason or "")
 
@@ -176,7 +176,7 @@ def test_a_trigger_waits_until_what_is_there_is_taken(bench: Bench, relay: Scrip
         time.sleep(0.5)  # it is asked for at once where nothing is in the way
         assert relay.edges == 0
         relay.busy = False
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
     made = bench.recording("HR_10001")
     assert made is not None
     assert bench.report(report_id).recording_id == made.id

@@ -11,7 +11,7 @@ from structlog.testing import capture_logs
 from mms import Client, DataAccessError
 from service.collector.session.relay_session import RelaySession
 from service.recording_store.store import Incoming
-from service.storage.states import AlarmKind, EventReportState, LinkState, RecordingState
+from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
 
@@ -21,7 +21,7 @@ def test_a_wish_becomes_a_stored_record(bench: Bench, relay: ScriptedRelay) -> N
         assert eventually(lambda: bench.link() is LinkState.UP)
         report_id = bench.request()
         session.wake()
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
     report = bench.report(report_id)
     (recording,) = bench.recordings()
     assert report.recording_id == recording.id
@@ -54,7 +54,7 @@ def test_a_report_hurries_the_next_record(bench: Bench, relay: ScriptedRelay) ->
 def test_each_wish_gets_its_own_record_one_at_a_time(bench: Bench, relay: ScriptedRelay) -> None:
     wishes = [bench.request() for _ in range(3)]
     with bench.session():
-        assert all(bench.reaches(wish, EventReportState.FETCHED) for wish in wishes)
+        assert all(bench.reaches(wish, RecordingRequestState.FETCHED) for wish in wishes)
     reports = [bench.report(wish) for wish in wishes]
     assert len({report.recording_id for report in reports}) == 3
     for earlier, later in pairwise(reports):
@@ -71,7 +71,7 @@ def test_a_remote_bit_left_set_is_cleared_first(bench: Bench, relay: ScriptedRel
         relay.silent = False
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
     assert relay.edges == 2
 
 
@@ -82,7 +82,7 @@ def test_a_remote_bit_that_cannot_be_read_is_cleared(
     relay.unreadable_while_set = refusal
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
     assert relay.edges == 1
     assert not relay.is_set
     assert bench.repository.link_figures(NAME).connections == 1
@@ -92,7 +92,7 @@ def test_a_refused_trigger_says_why_and_the_link_stays(bench: Bench, relay: Scri
     relay.refuses = True
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert bench.reaches(report_id, RecordingRequestState.FAILED)
         assert eventually(lambda: bench.link() is LinkState.UP)
     assert "refuses the trigger" in (bench.report(report_id).reason or "")
 
@@ -101,7 +101,7 @@ def test_a_trigger_without_record_fails_at_its_time_limit(bench: Bench, relay: S
     relay.silent = True
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert bench.reaches(report_id, RecordingRequestState.FAILED)
     assert "expected a record within 2 s" in (bench.report(report_id).reason or "")
     assert relay.edges == 1
 
@@ -112,11 +112,11 @@ def test_a_crash_between_trigger_and_record_neither_triggers_twice_nor_loses_it(
     relay.silent = True
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
     assert eventually(lambda: relay.edges == 1)
     relay.write_record("HR_10001", b"made while the collector was away")
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
     assert relay.edges == 1
     assert len(bench.recordings()) == 1
 
@@ -127,7 +127,7 @@ def test_a_crash_just_before_the_operation_costs_the_wish_and_nothing_else(
     report_id = bench.request()
     bench.repository.mark_triggered(report_id, now_ns=time.time_ns())
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert bench.reaches(report_id, RecordingRequestState.FAILED)
     assert relay.edges == 0
 
 
@@ -160,12 +160,12 @@ def test_a_record_whose_time_changes_is_not_what_the_next_trigger_made(
     with bench.session():
         assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
         report_id = bench.request()
-        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
     for file in relay.events.iterdir():
         os.utime(file, (1_000_000_000, 1_000_000_000))
     relay.write_record("HR_2", b"made while the collector was away")
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
     recordings = {recording.name: recording.id for recording in bench.recordings()}
     assert bench.report(report_id).recording_id == recordings["HR_2"]
 
@@ -178,21 +178,21 @@ def test_a_clock_that_is_set_ends_no_report(
     bench.settings = bench.settings.model_copy(update={"record_timeout_s": 20.0})
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
         monkeypatch.setattr(time, "time_ns", lambda: right_ns() + 3600 * 1_000_000_000)
         relay.write_record("HR_10001", b"after the clock was set")
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
 
 
 def test_a_cut_ends_no_wish_that_waits_for_its_turn(bench: Bench, relay: ScriptedRelay) -> None:
     long_ago_ns = time.time_ns() - 3600 * 1_000_000_000
-    wishes = [bench.repository.request_event_report(MOTOR, now_ns=long_ago_ns).id for _ in range(3)]
+    wishes = [bench.repository.request_recording(MOTOR, now_ns=long_ago_ns).id for _ in range(3)]
     relay.stop()
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.DOWN)
         again = bench.start_relay()
         try:
-            assert all(bench.reaches(wish, EventReportState.FETCHED) for wish in wishes)
+            assert all(bench.reaches(wish, RecordingRequestState.FETCHED) for wish in wishes)
         finally:
             again.stop()
 
@@ -202,7 +202,7 @@ def test_a_relay_that_is_down_says_so_and_comes_back(bench: Bench) -> None:
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.DOWN)
         assert str(bench.relay.port) in (bench.repository.ied(NAME).link_reason or "")
-        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert bench.reaches(report_id, RecordingRequestState.FAILED)
         assert "does not answer" in (bench.report(report_id).reason or "")
         relay = bench.start_relay()
         try:
@@ -236,13 +236,15 @@ def test_a_record_that_grows_is_pulled_whole(bench: Bench, relay: ScriptedRelay)
     assert (bench.store.find(recording.digest).directory / "HR_1.DAT").read_bytes() == b"x" * 7
 
 
-def test_a_record_too_large_is_rejected_with_its_event_report(bench: Bench, relay: ScriptedRelay) -> None:
+def test_a_record_too_large_is_rejected_with_its_recording_request(
+    bench: Bench, relay: ScriptedRelay
+) -> None:
     relay.silent = True
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
         relay.write_record("HR_1", b"x" * 200_000)
-        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert bench.reaches(report_id, RecordingRequestState.FAILED)
     (recording,) = bench.recordings()
     assert recording.state is RecordingState.REJECTED
     assert "HR_1.DAT: expected at most 100000 bytes" in (recording.reason or "")
@@ -254,7 +256,7 @@ def test_a_record_listed_before_the_trigger_is_not_the_triggered_one(
     relay.write_record("HR_1", b"a trip of its own", report=False)
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
     recordings = {recording.name: recording.id for recording in bench.recordings()}
     assert bench.report(report_id).recording_id == recordings["HR_10001"]
     assert set(recordings) == {"HR_1", "HR_10001"}
@@ -270,12 +272,12 @@ def test_a_record_that_could_not_be_fetched_before_the_trigger_is_not_the_trigge
     with bench.session():
         assert eventually(lambda: bench.recording("HR_1") is not None)
         report_id = bench.request()
-        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
     relay.denied.clear()
     with bench.session():
         assert eventually(lambda: bench.is_stored("HR_1"))
         relay.write_record("HR_10001", b"what the trigger made")
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
     recordings = {recording.name: recording.id for recording in bench.recordings()}
     assert bench.report(report_id).recording_id == recordings["HR_10001"]
 
@@ -306,7 +308,7 @@ def test_a_full_disk_is_not_blamed_on_the_relay(
     monkeypatch.setattr(Incoming, "keep", disk_full)
     report_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, EventReportState.FAILED)
+        assert bench.reaches(report_id, RecordingRequestState.FAILED)
     assert "is not visited: OSError: [Errno 28] No space left" in (bench.report(report_id).reason or "")
 
 

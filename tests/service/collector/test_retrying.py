@@ -7,18 +7,18 @@ import pytest
 from mms import errors
 from service.collector.records.directory import DENIED_ATTEMPTS, PULL_ATTEMPTS
 from service.collector.records.listing import ListedRecord
-from service.collector.records.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, LONGEST_PAUSE_S, Retries
+from service.collector.records.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, LONGEST_PAUSE_S, RetrySchedule
 
 OLD, NEW = ListedRecord("HR_1", ()), ListedRecord("HR_2", ())
 
 
-def next_due_s(retries: Retries, record: ListedRecord, now_s: float) -> float:
+def next_due_s(retries: RetrySchedule, record: ListedRecord, now_s: float) -> float:
     """To a tenth of a second."""
     return next(now_s + k / 10 for k in range(10_000) if retries.due([record], now_s + k / 10))
 
 
 def test_pauses_grow_and_have_a_limit() -> None:
-    retries = Retries()
+    retries = RetrySchedule()
     times_s = [0.0]
     for _ in range(15):
         retries.failed(OLD, "busy", times_s[-1])
@@ -31,7 +31,7 @@ def test_pauses_grow_and_have_a_limit() -> None:
 
 
 def test_a_denied_one_is_asked_for_again_for_a_day() -> None:
-    retries = Retries()
+    retries = RetrySchedule()
     now_s = 0.0
     for number in range(1, DENIED_ATTEMPTS):
         assert retries.failed(OLD, "denied", now_s, longest_s=LONGEST_PAUSE_OF_THE_DENIED_S) == number
@@ -42,7 +42,7 @@ def test_a_denied_one_is_asked_for_again_for_a_day() -> None:
 
 
 def test_verdicts_are_counted_apart() -> None:
-    retries = Retries()
+    retries = RetrySchedule()
     for number in range(1, 4):
         retries.failed(OLD, "denied", 0.0)
         retries.failed(OLD, "not found", 0.0, is_verdict=True)
@@ -51,7 +51,7 @@ def test_verdicts_are_counted_apart() -> None:
 
 
 def test_one_that_failed_comes_last() -> None:
-    retries = Retries()
+    retries = RetrySchedule()
     assert retries.due([OLD, NEW], 0.0) == (OLD, NEW)
     retries.failed(OLD, "the connection was lost", 0.0)
     assert retries.due([OLD, NEW], 0.1) == (NEW,)
@@ -59,7 +59,7 @@ def test_one_that_failed_comes_last() -> None:
 
 
 def test_what_is_put_off_and_why() -> None:
-    retries = Retries()
+    retries = RetrySchedule()
     assert retries.failed(OLD, "first", 0.0) == 1
     assert retries.put_off(0.0) == frozenset()
     for _ in range(8):

@@ -9,7 +9,7 @@ import pytest
 from ied_sim.scenario.access import Access
 from mms import TlsConfiguration
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
-from service.storage.states import EventReportState, LinkState
+from service.storage.states import LinkState, RecordingRequestState
 from tests.ied_sim.simulating import Simulated, scenario_of, simulated
 from tests.mms.pki import Pki
 from tests.service.collector.conftest import Bench, eventually
@@ -66,7 +66,7 @@ def test_a_record_is_pulled_over_tls_with_a_password(bench: Bench, pki: Pki, tmp
             assert eventually(lambda: here.link() is LinkState.UP)
             wish = here.request()
             session.wake()
-            assert eventually(lambda: here.report(wish).state is EventReportState.FETCHED, 20)
+            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FETCHED, 20)
         (recording,) = here.recordings()
         assert recording.digest is not None
         stored = here.store.find(recording.digest)

@@ -14,7 +14,7 @@ from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import rated_current
 from ied_sim.profiles.profile import Triggers
 from service.plant.recognition import recognise
-from service.storage.states import EventReportState, LinkState, RecordingState
+from service.storage.states import LinkState, RecordingRequestState, RecordingState
 from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated, text
 from tests.service.collector.conftest import MOTOR, Bench, eventually
 from tests.service.collector.expectations import at, expecting
@@ -75,7 +75,7 @@ def test_a_wish_becomes_a_stored_record(
             assert eventually(lambda: here.link() is LinkState.UP)
             wish = here.request()
             session.wake()
-            assert eventually(lambda: here.report(wish).state is EventReportState.FETCHED, 20)
+            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FETCHED, 20)
         (recording,) = here.recordings()
         assert recording.digest is not None
         stored = here.store.find(recording.digest)
@@ -92,7 +92,7 @@ def test_a_record_that_is_never_as_long_as_listed_is_refused_in_writing(bench: B
             assert eventually(lambda: here.link() is LinkState.UP)
             wish = here.request()
             session.wake()
-            assert eventually(lambda: here.report(wish).state is EventReportState.FAILED)
+            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FAILED)
         (recording,) = here.recordings()
     assert recording.digest is None
     assert "expected" in (here.report(wish).reason or "")
@@ -103,7 +103,7 @@ def test_a_refused_control_fails_the_wish_with_its_reason(bench: Bench, tmp_path
         here = of(bench, served, "EVENTS")
         wish = here.request()
         with here.session():
-            assert eventually(lambda: here.report(wish).state is EventReportState.FAILED)
+            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FAILED)
     assert "blocked by interlocking" in (here.report(wish).reason or "")
 
 
@@ -144,7 +144,7 @@ def stored_unasked(bench: Bench) -> Recording:
     assert eventually(lambda: [each.state for each in bench.recordings()] == [RecordingState.FETCHED], 60)
     (entry,) = bench.recordings()
     assert (entry.motor, entry.ied) == (MOTOR, bench.relay.name)
-    assert bench.repository.event_reports(limit=10).items == ()
+    assert bench.repository.recording_requests(limit=10).items == ()
     assert entry.digest is not None
     return read(bench.store.find(entry.digest).entry)
 

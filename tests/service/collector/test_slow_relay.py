@@ -3,7 +3,7 @@
 import os
 import time
 
-from service.storage.states import EventReportState, LinkState
+from service.storage.states import LinkState, RecordingRequestState
 from tests.service.collector.conftest import Bench, eventually
 from tests.service.collector.scripted_relay import ScriptedRelay
 
@@ -26,7 +26,7 @@ def test_a_record_that_comes_while_old_ones_are_fetched_again_is_not_missed(
     with bench.session():
         assert eventually(lambda: stored(bench) == len(OLD_RECORDS))
         report_id = bench.request()
-        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
         relay.opening_s = OPENING_S
         for path in relay.events.iterdir():
             changed_s = path.stat().st_mtime - 3600
@@ -35,8 +35,8 @@ def test_a_record_that_comes_while_old_ones_are_fetched_again_is_not_missed(
         relay.announce()
         assert eventually(lambda: relay.opened > opened)
         relay.write_record("HR_10001")
-        assert eventually(lambda: bench.report(report_id).state is not EventReportState.TRIGGERED)
-        assert bench.reaches(report_id, EventReportState.FETCHED), bench.report(report_id).reason
+        assert eventually(lambda: bench.report(report_id).state is not RecordingRequestState.TRIGGERED)
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED), bench.report(report_id).reason
     made = bench.recording("HR_10001")
     assert made is not None
     assert bench.report(report_id).recording_id == made.id
@@ -60,7 +60,7 @@ def test_wishes_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
         assert eventually(lambda: bench.link() is LinkState.DOWN)
         last = bench.start_relay()
         try:
-            assert all(bench.reaches(wish, EventReportState.FETCHED) for wish in wishes), [
+            assert all(bench.reaches(wish, RecordingRequestState.FETCHED) for wish in wishes), [
                 bench.report(wish).reason for wish in wishes
             ]
         finally:
@@ -71,12 +71,12 @@ def test_a_record_that_takes_long_to_write_is_not_missed(bench: Bench, relay: Sc
     relay.silent = True
     with bench.session():
         report_id = bench.request()
-        assert bench.reaches(report_id, EventReportState.TRIGGERED)
+        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
         relay.write_record("HR_10001", b"x")
         began_s = time.monotonic()
         while time.monotonic() < began_s + bench.settings.record_timeout_s + 1.0:
             with (relay.events / "HR_10001.DAT").open("ab") as file:
                 file.write(b"x")
             time.sleep(0.05)  # it never stands still for as long as it must
-        assert bench.report(report_id).state is EventReportState.RECORDED, bench.report(report_id).reason
-        assert bench.reaches(report_id, EventReportState.FETCHED)
+        assert bench.report(report_id).state is RecordingRequestState.RECORDED, bench.report(report_id).reason
+        assert bench.reaches(report_id, RecordingRequestState.FETCHED)

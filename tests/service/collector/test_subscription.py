@@ -13,7 +13,7 @@ import scl
 from mms import Client, Report
 from service.collector.records.allowance import DailyAllowance
 from service.collector.session.link import Link
-from service.collector.session.reports import Inbox, Subscription
+from service.collector.session.reports import Inbox, ReportSubscription
 from service.plant import promised
 from service.storage.states import LinkState
 from tests.service.collector.conftest import Bench, eventually
@@ -121,16 +121,16 @@ def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRel
         members=(),
     )
     link = Link(NAME, bench.repository, DailyAllowance(1))
-    subscription = Subscription(NAME, bench.repository, link)
+    subscription = ReportSubscription(NAME, bench.repository, link)
     if resumed:
         with bench.session():
             relay.write_record("HR_1")
             assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
     with Client.connect("127.0.0.1", relay.port) as client, capture_logs() as logs:
         subscription.begin(client, Inbox(Event()), promised(bench.relay))
-        subscription.heed(report)
+        subscription.handle(report)
         assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed)
-        subscription.heed(report)
+        subscription.handle(report)
         assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed) + 1
 
 

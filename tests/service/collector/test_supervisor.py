@@ -10,7 +10,7 @@ from threading import Event, Thread
 
 import pytest
 
-from service.collector.supervision.supervisor import CollectorSupervisor, _hand_over
+from service.collector.supervision.supervisor import GatewaySupervisor, _hand_over
 from service.configuration.relay_access import RelayAccess, RelayTls
 from service.configuration.settings import Settings
 from tests.service.collector.conftest import eventually
@@ -19,8 +19,8 @@ OBEDIENT = "import sys; sys.stdin.readline(); sys.stdin.read()"
 STUBBORN = "import time; time.sleep(60)"
 
 
-def supervisor(script: str, directory: Path) -> CollectorSupervisor:
-    return CollectorSupervisor(Settings(data_directory=directory), (sys.executable, "-c", script))
+def supervisor(script: str, directory: Path) -> GatewaySupervisor:
+    return GatewaySupervisor(Settings(data_directory=directory), (sys.executable, "-c", script))
 
 
 def test_a_collector_that_crashes_is_started_again(tmp_path: Path) -> None:
@@ -83,7 +83,7 @@ def test_the_settings_of_a_thousand_relays_wait_for_no_collector(
     tls = RelayTls(certificate=tmp_path, key=tmp_path, pinned=(tmp_path, tmp_path), ca=tmp_path)
     relays = {f"A{number}_SEL710": RelayAccess(tls=tls, password_file=tmp_path) for number in range(1000)}
     settings = Settings(data_directory=tmp_path, relays=relays)
-    supervised = CollectorSupervisor(settings, (sys.executable, "-c", STUBBORN))
+    supervised = GatewaySupervisor(settings, (sys.executable, "-c", STUBBORN))
     supervised.start()
     assert eventually(lambda: supervised.process_id is not None)
     stopping = Thread(target=supervised.stop, daemon=True)
@@ -94,7 +94,7 @@ def test_the_settings_of_a_thousand_relays_wait_for_no_collector(
 
 def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> None:
     ends: list[float] = []
-    supervised = CollectorSupervisor(
+    supervised = GatewaySupervisor(
         Settings(data_directory=tmp_path),
         (str(tmp_path / "missing"),),
         on_end=lambda _: ends.append(time.monotonic()),
@@ -146,7 +146,7 @@ def test_each_further_end_is_waited_for_longer_until_one_has_run_well(
             supervised.ask_to_end()
             ended.set()
 
-    supervised = CollectorSupervisor(
+    supervised = GatewaySupervisor(
         Settings(data_directory=tmp_path), (str(tmp_path / "missing"),), on_end=run
     )
     supervised.start()

@@ -16,7 +16,7 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.states import EventReportState, JobState, RecordingState
+from service.storage.states import JobState, RecordingRequestState, RecordingState
 from tests.service.jobs.stand_ins import GO, act_as_told, fail_to_start, prepare_when_told
 from tests.service.jobs.waiting import wait_until
 from tests.service.plants import motor
@@ -93,13 +93,15 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
 
 
 def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: RecordingStore) -> None:
-    report = repository.request_event_report("PUMP-A1", now_ns=time.time_ns())
+    report = repository.request_recording("PUMP-A1", now_ns=time.time_ns())
     stored = store.store({"E.CFF": b"hang"})
-    repository.add_recording(stored, motor="PUMP-A1", event_report_id=report.id, now_ns=time.time_ns())
+    repository.add_recording(stored, motor="PUMP-A1", recording_request_id=report.id, now_ns=time.time_ns())
     limits = JobLimits(workers=1, job_timeout_s=0.3, attempts=1)
     with running(repository, store, limits):
-        wait_until(lambda: repository.event_report(report.id).state is EventReportState.FAILED)
-    assert repository.event_report(report.id).reason == "gave up after 1 attempts: took longer than 0.3 s"
+        wait_until(lambda: repository.recording_request(report.id).state is RecordingRequestState.FAILED)
+    assert (
+        repository.recording_request(report.id).reason == "gave up after 1 attempts: took longer than 0.3 s"
+    )
 
 
 def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: RecordingStore) -> None:

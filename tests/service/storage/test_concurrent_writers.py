@@ -21,7 +21,7 @@ def request_and_trigger(url: str, motor: str, done: "Queue[str]") -> None:
     repository = Repository(engine)
     try:
         for i in range(ROUNDS):
-            report = repository.request_event_report(motor, now_ns=NOW_NS + i)
+            report = repository.request_recording(motor, now_ns=NOW_NS + i)
             repository.mark_triggered(report.id, now_ns=NOW_NS + i)
             remote = RemoteRecord("SAME", i, NOW_NS)
             repository.announce_recording("A1_SEL710", "PUMP-A1", remote, now_ns=NOW_NS)
@@ -45,7 +45,7 @@ def test_two_processes_write_at_once(database_url: str, repository: Repository) 
         writer.join(timeout=10)
         assert writer.exitcode == 0
     counts = repository.counts()
-    assert counts.event_reports == {"triggered": 2 * ROUNDS}
+    assert counts.recording_requests == {"triggered": 2 * ROUNDS}
     assert counts.recordings == {"announced": ROUNDS}, "each record is announced once, whoever saw it first"
 
 

@@ -6,20 +6,20 @@ from sqlalchemy.exc import StatementError
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository, StateConflictError
 from service.storage.records import ClaimedJob, RemoteRecord
-from service.storage.states import EventReportState, JobState, RecordingState
+from service.storage.states import JobState, RecordingRequestState, RecordingState
 from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 
 @pytest.fixture
 def recording_id(repository: Repository, store: RecordingStore) -> str:
     stored = store.store({"E.CFF": b"samples"})
-    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     added = repository.add_recording(
         stored,
         motor="PUMP-A1",
         ied="A1_SEL710",
         remote=RemoteRecord("E", 7, 0),
-        event_report_id=report.id,
+        recording_request_id=report.id,
         now_ns=NOW_NS,
     )
     return added.recording.id
@@ -31,8 +31,8 @@ def claim(repository: Repository, now_ns: int = NOW_NS) -> ClaimedJob:
     return claimed
 
 
-def report_state(repository: Repository) -> tuple[EventReportState, str | None]:
-    (report,) = repository.event_reports(limit=10).items
+def report_state(repository: Repository) -> tuple[RecordingRequestState, str | None]:
+    (report,) = repository.recording_requests(limit=10).items
     return report.state, report.reason
 
 
@@ -58,7 +58,7 @@ def test_a_result_ends_job_recording_and_report(repository: Repository, recordin
     assert repository.job(recording_id, job_id).state is JobState.DONE
     recording = repository.recording(recording_id)
     assert (recording.state, recording.recorded_ns) == (RecordingState.DIAGNOSED, NOW_NS - SECOND_NS)
-    assert report_state(repository) == (EventReportState.DIAGNOSED, None)
+    assert report_state(repository) == (RecordingRequestState.DIAGNOSED, None)
     diagnosis = repository.current_diagnosis(recording_id)
     assert diagnosis is not None
     assert diagnosis.document == fault().as_dict()
@@ -70,7 +70,7 @@ def test_an_unreadable_record_is_rejected_with_the_reason(repository: Repository
     repository.reject_recording(claim(repository).job.id, "E.CFF: checksum", now_ns=NOW_NS)
     recording = repository.recording(recording_id)
     assert (recording.state, recording.reason) == (RecordingState.REJECTED, "E.CFF: checksum")
-    assert report_state(repository) == (EventReportState.FAILED, "E.CFF: checksum")
+    assert report_state(repository) == (RecordingRequestState.FAILED, "E.CFF: checksum")
     assert repository.claim_job(now_ns=NOW_NS + 1000 * SECOND_NS) is None
 
 
@@ -85,7 +85,7 @@ def test_an_error_is_retried_later_and_given_up_at_last(repository: Repository, 
     assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns) is JobState.FAILED
     reason = "gave up after 3 attempts: killed"
     assert repository.recording(recording_id).state is RecordingState.FAILED
-    assert report_state(repository) == (EventReportState.FAILED, reason)
+    assert report_state(repository) == (RecordingRequestState.FAILED, reason)
     assert repository.retry_or_fail_job(job_id, "again", now_ns=now_ns) is JobState.FAILED
 
 
@@ -169,4 +169,4 @@ def test_trend_and_health(repository: Repository, store: RecordingStore) -> None
     assert (idle.diagnosis, idle.last_recording, idle.ied.name) == (None, None, "A1_SEL710")
     counts = repository.counts()
     assert (counts.recordings, counts.jobs) == ({"diagnosed": 3}, {"done": 3})
-    assert (counts.links, counts.event_reports) == ({"unknown": 2}, {})
+    assert (counts.links, counts.recording_requests) == ({"unknown": 2}, {})

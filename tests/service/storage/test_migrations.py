@@ -83,7 +83,7 @@ def test_a_database_of_the_first_version_keeps_what_it_holds(tmp_path: Path) -> 
     migrate(url)
     repository = Repository(engine)
     assert repository.motor("PUMP-A1").schedule is None
-    assert repository.event_report("r").origin == "request"
+    assert repository.recording_request("r").origin == "request"
     assert repository.recording("x").clock_quality is None
     assert repository.ied("A1").link_state == "up"
     assert repository.link_changes("A1", limit=10).items == ()

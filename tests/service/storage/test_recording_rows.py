@@ -3,7 +3,7 @@ import pytest
 from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import NotFoundError, Repository
 from service.storage.records import ClockReading, RecordingEntry, RemoteRecord
-from service.storage.states import ClockQuality, EventReportState, RecordingState
+from service.storage.states import ClockQuality, RecordingRequestState, RecordingState
 from tests.service.plants import NOW_NS, SECOND_NS, fault
 
 REMOTE = RemoteRecord("C_0001", 11, NOW_NS)
@@ -13,10 +13,10 @@ def record(store: RecordingStore, content: bytes = b"samples") -> StoredRecordin
     return store.store({"C_0001.CFG": b"config", "C_0001.DAT": content})
 
 
-def test_a_pulled_record_is_stored_and_queued_with_its_event_report(
+def test_a_pulled_record_is_stored_and_queued_with_its_recording_request(
     repository: Repository, store: RecordingStore
 ) -> None:
-    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.mark_triggered(report.id, now_ns=NOW_NS)
     announced = repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=NOW_NS)
     assert announced.state is RecordingState.ANNOUNCED
@@ -28,15 +28,15 @@ def test_a_pulled_record_is_stored_and_queued_with_its_event_report(
         motor="PUMP-A1",
         ied="A1_SEL710",
         remote=REMOTE,
-        event_report_id=report.id,
+        recording_request_id=report.id,
         now_ns=NOW_NS + 1,
     )
     assert added.created
     assert (added.recording.id, added.recording.state) == (announced.id, RecordingState.FETCHED)
     assert repository.known_remote_records("A1_SEL710") == {REMOTE}
     assert repository.refused_remote_records("A1_SEL710") == frozenset()
-    assert repository.event_report(report.id).state is EventReportState.FETCHED
-    assert repository.event_report(report.id).recording_id == announced.id
+    assert repository.recording_request(report.id).state is RecordingRequestState.FETCHED
+    assert repository.recording_request(report.id).recording_id == announced.id
     files = [(f.name, f.size_bytes, f.sha256) for f in repository.recording_files(announced.id)]
     assert files == [(f.name, f.size_bytes, f.sha256) for f in stored.files]
     claimed = repository.claim_job(now_ns=NOW_NS + 1)
@@ -91,16 +91,16 @@ def test_a_recording_diagnosed_before_ends_the_report_that_gets_it(
     claimed = repository.claim_job(now_ns=NOW_NS)
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
-    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.add_recording(
         record(store),
         motor="PUMP-A1",
         ied="A1_SEL710",
         remote=REMOTE,
-        event_report_id=report.id,
+        recording_request_id=report.id,
         now_ns=NOW_NS,
     )
-    assert repository.event_report(report.id).state is EventReportState.DIAGNOSED
+    assert repository.recording_request(report.id).state is RecordingRequestState.DIAGNOSED
 
 
 def test_a_record_listed_under_a_new_time_is_not_the_one_a_trigger_made(
@@ -108,32 +108,32 @@ def test_a_record_listed_under_a_new_time_is_not_the_one_a_trigger_made(
 ) -> None:
     touched = RemoteRecord(REMOTE.name, REMOTE.size_bytes, REMOTE.modified_ns + 5)
     repository.add_recording(record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS)
-    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.mark_triggered(report.id, now_ns=NOW_NS)
     repository.add_recording(
         record(store),
         motor="PUMP-A1",
         ied="A1_SEL710",
         remote=touched,
-        event_report_id=report.id,
+        recording_request_id=report.id,
         now_ns=NOW_NS,
     )
-    assert repository.event_report(report.id).state is EventReportState.TRIGGERED
+    assert repository.recording_request(report.id).state is RecordingRequestState.TRIGGERED
     assert repository.known_remote_records("A1_SEL710") == {REMOTE, touched}
 
 
 def test_a_refused_record_is_not_pulled_again(repository: Repository) -> None:
-    report = repository.request_event_report("PUMP-A1", now_ns=NOW_NS)
+    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     assert repository.note_failed_pull("A1_SEL710", "PUMP-A1", REMOTE, "timeout", now_ns=NOW_NS) == 1
     assert repository.note_failed_pull("A1_SEL710", "PUMP-A1", REMOTE, "timeout", now_ns=NOW_NS) == 2
     assert repository.known_remote_records("A1_SEL710") == frozenset()
     refused = repository.reject_remote_record(
-        "A1_SEL710", "PUMP-A1", REMOTE, "larger than 64 MB", event_report_id=report.id, now_ns=NOW_NS
+        "A1_SEL710", "PUMP-A1", REMOTE, "larger than 64 MB", recording_request_id=report.id, now_ns=NOW_NS
     )
     assert (refused.state, refused.reason) == (RecordingState.REJECTED, "larger than 64 MB")
     assert repository.known_remote_records("A1_SEL710") == {REMOTE}
     assert repository.refused_remote_records("A1_SEL710") == {REMOTE}
-    assert repository.event_report(report.id).reason == "larger than 64 MB"
+    assert repository.recording_request(report.id).reason == "larger than 64 MB"
     rejected = repository.recordings(limit=10, state=RecordingState.REJECTED)
     assert [r.id for r in rejected.items] == [refused.id]
 
@@ -201,7 +201,7 @@ def test_two_records_a_relay_lists_are_two_whatever_they_hold(
 
 def test_nothing_is_added_when_a_part_fails(repository: Repository, store: RecordingStore) -> None:
     with pytest.raises(NotFoundError, match="there is no event report 'nope'"):
-        repository.add_recording(record(store), motor="PUMP-A1", event_report_id="nope", now_ns=NOW_NS)
+        repository.add_recording(record(store), motor="PUMP-A1", recording_request_id="nope", now_ns=NOW_NS)
     assert repository.recordings(limit=10).items == ()
     assert repository.claim_job(now_ns=NOW_NS) is None
     with pytest.raises(NotFoundError, match="there is no motor 'X'"):
