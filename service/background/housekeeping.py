@@ -6,9 +6,9 @@ from threading import Event, Thread
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.background.wall_clock import WallClock
 from service.configuration.settings import Settings
 from service.storage import Repository
+from service.timing.wall_clock import WallClock
 
 log = structlog.get_logger(__name__)
 

@@ -1,0 +1,21 @@
+"""Exponential back-off: pauses that double with each failure in a row, up to a longest one."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Backoff:
+    """How long to pause after the n-th failure in a row.
+
+    It keeps no state: who counts the failures knows the pause, also after a restart.
+    """
+
+    first_s: float
+    longest_s: float
+
+    def pause_s(self, failures: int) -> float:
+        """Return the pause after so many failures in a row [s]; 0 after none."""
+        if failures <= 0 or self.first_s <= 0:
+            return 0.0
+        doublings = min(failures - 1, 64)  # beyond that a float would overflow before it is limited
+        return min(self.first_s * 2.0**doublings, self.longest_s)

@@ -1,0 +1,67 @@
+"""A background thread that does one thing again and again, and says so when it cannot."""
+
+from collections.abc import Callable
+from threading import Event, Thread
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+log = structlog.get_logger(__name__)
+
+
+class PeriodicWorker:
+    """One thread that calls `work` every `period_s` seconds until it is stopped.
+
+    No failure ends the thread: it is logged, told by `problem`, and the work is tried again a period later.
+    A database that does not answer is a warning; any other error is logged with its traceback.
+    """
+
+    def __init__(
+        self, name: str, work: Callable[[], None], *, period_s: float, at_once: bool = False
+    ) -> None:
+        """at_once: begin with the work, not with a pause."""
+        self._name = name
+        self._work = work
+        self._period_s = period_s
+        self._at_once = at_once
+        self._stopping = Event()
+        self._thread = Thread(target=self._run, name=name, daemon=True)
+        self._started = False
+        self._failure: str | None = None
+
+    def start(self) -> None:
+        """Start the thread."""
+        self._started = True
+        self._thread.start()
+
+    def stop(self, patience_s: float | None = None) -> None:
+        """End after the work under way, and wait for that: at most `patience_s` where it is given."""
+        self._stopping.set()
+        if self._started:
+            self._thread.join(patience_s)
+
+    def problem(self) -> str | None:
+        """Return why the work is not done at present; None while all is well."""
+        if not self._started:
+            return f"{self._name} has not started"
+        if not self._thread.is_alive() and not self._stopping.is_set():
+            return f"{self._name} is not running"
+        return self._failure
+
+    def _run(self) -> None:
+        if self._at_once:
+            self._attempt()
+        while not self._stopping.wait(self._period_s):
+            self._attempt()
+
+    def _attempt(self) -> None:
+        try:
+            self._work()
+        except SQLAlchemyError as error:
+            self._failure = f"the database does not answer: {error}"
+            log.warning("database does not answer, trying again", work=self._name, error=str(error))
+        except Exception as error:  # a bug in one round must not end all that would follow
+            self._failure = f"{type(error).__name__}: {error}"
+            log.exception("background work failed, trying again", work=self._name)
+        else:
+            self._failure = None

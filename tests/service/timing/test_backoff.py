@@ -1,0 +1,14 @@
+from hypothesis import given
+from hypothesis import strategies as st
+
+from service.timing.backoff import Backoff
+
+
+def test_pauses_double_up_to_the_longest() -> None:
+    backoff = Backoff(first_s=0.5, longest_s=10.0)
+    assert [backoff.pause_s(failures) for failures in range(8)] == [0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 10.0, 10.0]
+
+
+@given(st.integers(min_value=1, max_value=10**9))
+def test_no_number_of_failures_overflows(failures: int) -> None:
+    assert 0.5 <= Backoff(first_s=0.5, longest_s=10.0).pause_s(failures) <= 10.0

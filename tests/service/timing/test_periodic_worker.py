@@ -1,0 +1,58 @@
+from collections.abc import Iterator
+from contextlib import contextmanager
+from queue import SimpleQueue
+from threading import Event
+
+import pytest
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.timing.periodic_worker import PeriodicWorker
+
+LIMIT_S = 10.0
+
+
+@contextmanager
+def running(worker: PeriodicWorker) -> Iterator[None]:
+    worker.start()
+    try:
+        yield
+    finally:
+        worker.stop()
+
+
+def test_it_works_again_and_again_until_it_is_stopped() -> None:
+    done: SimpleQueue[None] = SimpleQueue()
+    worker = PeriodicWorker("counting", lambda: done.put(None), period_s=0.001)
+    with running(worker):
+        for _ in range(3):
+            done.get(timeout=LIMIT_S)
+        assert worker.problem() is None
+    while not done.empty():
+        done.get()
+    assert done.empty()
+
+
+@pytest.mark.parametrize("error", [SQLAlchemyError("locked"), RuntimeError("a bug")])
+def test_a_failure_is_told_and_the_work_is_tried_again(error: Exception) -> None:
+    failed, go_on, done = Event(), Event(), Event()
+
+    def work() -> None:
+        if not failed.is_set():
+            failed.set()
+            raise error
+        go_on.wait(LIMIT_S)
+        done.set()
+
+    worker = PeriodicWorker("fragile", work, period_s=0.001, at_once=True)
+    with running(worker):
+        assert failed.wait(LIMIT_S)
+        while worker.problem() is None:
+            assert not done.is_set()
+        assert str(error) in str(worker.problem())
+        go_on.set()
+        assert done.wait(LIMIT_S)
+    assert worker.problem() is None
+
+
+def test_one_that_has_not_started_says_so() -> None:
+    assert PeriodicWorker("idle", lambda: None, period_s=1.0).problem() == "idle has not started"
