@@ -6,7 +6,7 @@ import scl
 from service.configuration.settings import Settings, SettingsError
 from service.plant import Overrides, PlantError, Schedule, read_plant
 
-DEMO_MOTORS = Path(__file__).parents[2] / "service" / "demo" / "motors.toml"
+DEMO_MOTORS = Path(__file__).parents[3] / "service" / "demo" / "motors.toml"
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from service.configuration.relay_access import (
 )
 from service.configuration.settings import Settings, SettingsError
 from service.plant import read_plant
-from tests.service.test_plant import DEMO_MOTORS
+from tests.service.plant.test_files import DEMO_MOTORS
 
 TLS = RelayTls(certificate=Path("c"), key=Path("k"), pinned=(Path("p"),))
 PASSWORD = "OTTER-7"  # noqa: S105
