@@ -1,4 +1,4 @@
-# One image for every host of the demo enterprise, and for the service in a real plant (docs/deploy.md).
+# One image for every host of the demo enterprise, and for the service in a real plant (docs/how-to/deploy.md).
 
 FROM docker.io/library/python:3.11-slim-bookworm AS build
 ENV PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_ROOT_USER_ACTION=ignore

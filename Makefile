@@ -1,5 +1,5 @@
 # make install | demo | test | lint | bench | fuzz SECONDS=60 | interop LIBIEC61850=TREE      (PYTHON=python3.11 make install: another interpreter)
-# make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/track-record.md)
+# make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
 PYTHON ?= python3
 BIN := .venv/bin
@@ -54,7 +54,7 @@ lint: install
 bench: install
 	$(BIN)/python -m benchmarks.run
 
-# LIBIEC61850: a source tree of that library, built with its examples (docs/interoperability.md).
+# LIBIEC61850: a source tree of that library, built with its examples (docs/evidence/interoperability.md).
 interop: install
 	$(BIN)/python -m benchmarks.interoperability $(LIBIEC61850)
 

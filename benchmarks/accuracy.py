@@ -1,4 +1,4 @@
-"""Measure the diagnosis against independent physics and write docs/accuracy.md.
+"""Measure the diagnosis against independent physics and write docs/evidence/accuracy.md.
 
 python -m benchmarks.accuracy [--quick] [--data FOLDER] [--subject NAME]... [--seeds N] [--records N]
 
@@ -41,7 +41,7 @@ from benchmarks.accuracy_phasors import FaultModel
 from benchmarks.accuracy_report import Section, spread, table, write_sections
 from tests.core.motors import REFERENCE
 
-PAGE = Path(__file__).parent.parent / "docs" / "accuracy.md"
+PAGE = Path(__file__).parent.parent / "docs" / "evidence" / "accuracy.md"
 
 RELAY_RECORDS = tuple((rate, cycles) for rate in (800.0, 960.0, 1_600.0, 8_000.0) for cycles in (15.0, 64.0))
 WINDOW_RECORDS = tuple((10_000.0, cycles) for cycles in (5.0, 10.0, 25.0, 50.0))

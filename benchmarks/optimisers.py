@@ -1,4 +1,4 @@
-"""Measure our optimisers against others' in one run and write docs/optimisers.md.
+"""Measure our optimisers against others' in one run and write docs/evidence/optimisers.md.
 
 python -m benchmarks.optimisers [--subject functions|motor|start] [--runs N] [--sgpp PYTHON]
 
@@ -15,7 +15,7 @@ from benchmarks.accuracy_report import Section, write_sections
 from benchmarks.optimiser_functions import functions
 from benchmarks.optimiser_motor import motor, start
 
-PAGE = Path(__file__).parent.parent / "docs" / "optimisers.md"
+PAGE = Path(__file__).parent.parent / "docs" / "evidence" / "optimisers.md"
 RUNS = {"functions": 30, "motor": 20, "start": 20}
 """Shifts of every function's box, and truths."""
 

@@ -1,8 +1,8 @@
-"""Repeat the thesis's experiments and write docs/thesis.md with our figures beside the thesis's.
+"""Repeat the thesis's experiments and write docs/evidence/thesis.md with our figures beside the thesis's.
 
 python -m benchmarks.thesis [--section functions|commissioning|diagnosis]...
 
-Sections that are not run stay as they are; plots go to docs/images/thesis.
+Sections that are not run stay as they are; plots go to docs/evidence/images/thesis.
 """
 
 import argparse
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from benchmarks.accuracy_report import Section, write_sections
 
-DOCS = Path(__file__).parent.parent / "docs"
+DOCS = Path(__file__).parent.parent / "docs" / "evidence"
 
 TITLES = {
     "functions": "Chapter 4: test functions",

@@ -40,7 +40,7 @@ from tests.core.commissioning.starts import StartRecord, plate_of
 from tests.core.motors import REFERENCE
 
 Array = NDArray[np.float64]
-IMAGES = Path(__file__).parent.parent / "docs" / "images" / "thesis"
+IMAGES = Path(__file__).parent.parent / "docs" / "evidence" / "images" / "thesis"
 MIDDLE = 0.5 * (LOWER + UPPER)
 LOADS = (0.0, 0.25, 0.5, 0.75, 1.0)
 WINDOWS: tuple[tuple[str, tuple[float, float]], ...] = (

@@ -52,7 +52,8 @@ def ied_sim(
     host: Annotated[str, typer.Option(help="With --profile: address to listen at.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="With --profile: port to listen at.")] = 10102,
     scenario: Annotated[
-        Path | None, typer.Option(help="Motors, loads and faults (docs/scenario.md); healthy motors without.")
+        Path | None,
+        typer.Option(help="Motors, loads and faults (docs/reference/scenario.md); healthy motors without."),
     ] = None,
     files: Annotated[
         Path | None, typer.Option(help="Directory that keeps the relays' files; a temporary one without.")

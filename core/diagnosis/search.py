@@ -22,7 +22,10 @@ FINENESS = 18
 ADAPTIVENESS = 0.4
 """Section 6.5.2's setting, with a fineness that lets single coordinates reach a thousandth of their range."""
 HYBRID_GLOBAL, HYBRID_ADAPTIVENESS = 60, 0.7
-"""Few points, spread widely: each winding's best only has to lie in the right valley (docs/optimisers.md)."""
+"""Few points, spread widely: each winding's best only has to lie in the right valley.
+
+docs/evidence/optimisers.md compares these settings with others.
+"""
 SAMPLES = 60
 """Latin hypercube points of which the pattern search begins at the best (section 6.5.1)."""
 PATTERN_EVALUATIONS = 500

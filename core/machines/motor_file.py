@@ -78,7 +78,8 @@ def _plate_from_table(table: Mapping[str, object], *, name: str, source: Path | 
         raise MotorFileError(
             source,
             unknown[0],
-            expected=f"one of the tables {', '.join(f'[{table}]' for table in TABLES)} (docs/motor-file.md)",
+            expected="one of the tables "
+            f"{', '.join(f'[{table}]' for table in TABLES)} (docs/reference/motor-file.md)",
             found="an unknown key",
         )
     nameplate = _Table(table, "nameplate", source)

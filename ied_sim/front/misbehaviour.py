@@ -8,7 +8,7 @@ from math import inf
 
 
 class Kind(StrEnum):
-    """Ways to misbehave; docs/simulator.md tells what each does."""
+    """Ways to misbehave; docs/reference/simulator.md tells what each does."""
 
     SLOW_REPLIES = "slow-replies"
     CUT_MID_FILE = "cut-mid-file"

@@ -40,7 +40,8 @@ class Guard:
         if not self._is_ours(host):
             return (
                 HTTPStatus.MISDIRECTED_REQUEST,
-                f"this service does not go by the name {host[:100]!r}; see allowed_hosts in docs/settings.md",
+                f"this service does not go by the name {host[:100]!r}; "
+                "see allowed_hosts in docs/reference/settings.md",
             )
         origin = headers.get("origin")
         if origin is not None and _network_location(origin) != host.lower():
@@ -73,7 +74,10 @@ class Guard:
         return limited
 
     def _too_large(self) -> str:
-        return f"expected at most {self._max_body_bytes} bytes; see max_upload_bytes in docs/settings.md"
+        return (
+            f"expected at most {self._max_body_bytes} bytes; "
+            "see max_upload_bytes in docs/reference/settings.md"
+        )
 
 
 def _network_location(origin: str) -> str:

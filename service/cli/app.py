@@ -108,7 +108,8 @@ def demo_status(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
 @app.command()
 def serve(
     config: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Settings file (TOML); see docs/settings.md.")
+        Path | None,
+        typer.Option(metavar="FILE", help="Settings file (TOML); see docs/reference/settings.md."),
     ] = None,
 ) -> None:
     """Run the service: API, collectors and diagnosis workers. Ends on SIGTERM or Ctrl-C."""
@@ -120,7 +121,8 @@ def serve(
 @app.command()
 def collect(
     config: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Settings file (TOML); see docs/settings.md.")
+        Path | None,
+        typer.Option(metavar="FILE", help="Settings file (TOML); see docs/reference/settings.md."),
     ] = None,
 ) -> None:
     """Run gateways alone, which share the relays of a service on another host. Ends on SIGTERM or Ctrl-C."""

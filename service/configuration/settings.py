@@ -1,6 +1,6 @@
 """Settings of the service: built-in values, a TOML file, the environment (MCC_...), command line options.
 
-The later one wins. Every setting is explained in docs/settings.md; a test fails when one is missing there.
+The later one wins. docs/reference/settings.md explains every setting; a test fails when one is missing there.
 """
 
 import tomllib
@@ -141,7 +141,7 @@ def _first_problem(error: ValidationError, config: Path | None) -> SettingsError
     field = ".".join(str(part) for part in problem["loc"][:depth])
     if problem["type"] == "extra_forbidden":
         return SettingsError(
-            source, field, expected="a setting named in docs/settings.md", found="another name"
+            source, field, expected="a setting named in docs/reference/settings.md", found="another name"
         )
     if problem["type"] == "missing":
         return SettingsError(source, field, expected="this setting", found="none")

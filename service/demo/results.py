@@ -11,7 +11,7 @@ from service.client.rest_client import Document
 from service.client.verdicts import verdict_text
 from service.demo.truth import Truth
 
-FOOTNOTE = "the interval is the record's own scatter; see docs/diagnosis.md"
+FOOTNOTE = "the interval is the record's own scatter; see docs/explanation/diagnosis.md"
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,5 @@
 """A collector under a seeded schedule of faults, and whether anything was lost, doubled or falsified.
 
-`python -m tests.chaos --seed 1 --minutes 2 --recordings 300` or `make chaos`. docs/track-record.md says what
-is done and what came of it.
+`python -m tests.chaos --seed 1 --minutes 2 --recordings 300` or `make chaos`.
+docs/evidence/track-record.md says what is done and what came of it.
 """

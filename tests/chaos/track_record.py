@@ -1,11 +1,11 @@
-"""python -m tests.chaos.track_record RESULT.json ...: writes the table of docs/track-record.md anew."""
+"""Write the table of docs/evidence/track-record.md: python -m tests.chaos.track_record RESULT.json ..."""
 
 import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-PAGE = Path(__file__).parents[2] / "docs" / "track-record.md"
+PAGE = Path(__file__).parents[2] / "docs" / "evidence" / "track-record.md"
 BEGIN, END = "<!-- runs: written by tests/chaos/track_record.py -->", "<!-- end of runs -->"
 
 HEADER = (

@@ -1,4 +1,4 @@
-"""docs/simulator.md: every profile, key and kind is there, and its example is a profile."""
+"""docs/reference/simulator.md: every profile, key and kind is there, and its example is a profile."""
 
 import re
 from pathlib import Path
@@ -10,7 +10,7 @@ from ied_sim.profiles.profile import Files, Points, Profile, Record, Triggers, r
 from ied_sim.scenario.scenario import read_scenario
 from ied_sim.texts.making import MAKERS
 
-PAGE = (Path(__file__).parents[2] / "docs" / "simulator.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "simulator.md").read_text(encoding="utf-8")
 
 
 def test_profiles_kinds_and_reports_are_documented() -> None:

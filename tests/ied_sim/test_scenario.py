@@ -65,7 +65,7 @@ def test_a_fault_of_the_relay_alone_needs_no_motor(tmp_path: Path) -> None:
 
 
 def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
-    page = (REPOSITORY / "docs" / "scenario.md").read_text(encoding="utf-8")
+    page = (REPOSITORY / "docs" / "reference" / "scenario.md").read_text(encoding="utf-8")
     example, timeline = re.findall(r"```toml\n(.*?)```", page, re.DOTALL)
     relay = read_scenario(write(tmp_path, example))["A2_SEL710"]
     assert relay.plant.supply.harmonics[0].order == 5
@@ -78,7 +78,7 @@ def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
 
 
 def test_every_field_is_documented() -> None:
-    page = (REPOSITORY / "docs" / "scenario.md").read_text(encoding="utf-8")
+    page = (REPOSITORY / "docs" / "reference" / "scenario.md").read_text(encoding="utf-8")
     sections = [found for found in vars(scenario_tables).values() if _is_table(found)]
     assert len(sections) > 10
     fields = {name for section in sections for name in section.model_fields}

@@ -1,4 +1,4 @@
-"""docs/settings.md and docs/api.md name what there is, and nothing else."""
+"""docs/reference/settings.md and docs/reference/api.md name what there is, and nothing else."""
 
 import re
 from dataclasses import fields
@@ -14,12 +14,14 @@ DOCS = Path(__file__).parents[2] / "docs"
 
 
 def test_every_setting_is_documented() -> None:
-    rows = re.findall(r"^\| `(\w+)` \|", (DOCS / "settings.md").read_text(encoding="utf-8"), re.MULTILINE)
+    rows = re.findall(
+        r"^\| `(\w+)` \|", (DOCS / "reference" / "settings.md").read_text(encoding="utf-8"), re.MULTILINE
+    )
     assert sorted(rows) == sorted(Settings.model_fields)
 
 
 def test_every_decision_about_a_relay_is_documented() -> None:
-    page = (DOCS / "relays.md").read_text(encoding="utf-8")
+    page = (DOCS / "reference" / "relays.md").read_text(encoding="utf-8")
     keys = re.findall(r"^(\w+) = .*$", page.partition("[motor.relay]\n")[2].partition("```")[0], re.MULTILINE)
     assert sorted(keys) == sorted(field.name for field in fields(Overrides))
 
@@ -32,5 +34,7 @@ def test_every_route_is_documented(tmp_path: Path) -> None:
     routes = {
         f"{method.upper()} {path}" for path, methods in app.openapi()["paths"].items() for method in methods
     }
-    rows = re.findall(r"^\| `([A-Z]+ /\S+)` \|", (DOCS / "api.md").read_text(encoding="utf-8"), re.MULTILINE)
+    rows = re.findall(
+        r"^\| `([A-Z]+ /\S+)` \|", (DOCS / "reference" / "api.md").read_text(encoding="utf-8"), re.MULTILINE
+    )
     assert sorted(rows) == sorted(routes)

@@ -1,4 +1,4 @@
-"""docs/security.md: its commands make certificates, its settings use them, its exchange works."""
+"""docs/how-to/security.md: its commands make certificates, its settings use them, its exchange works."""
 
 import re
 import shutil
@@ -12,7 +12,7 @@ from service.configuration.relay_access import credentials
 from service.configuration.settings import Settings
 from tests.mms.relays import LOOPBACK, start_relay
 
-PAGE = (Path(__file__).parents[2] / "docs" / "security.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "security.md").read_text(encoding="utf-8")
 RELAY = "A1_SEL710"
 PASSWORD = "TAIL-7"  # noqa: S105
 

@@ -40,7 +40,7 @@ def test_lists_in_the_environment_are_json(monkeypatch: pytest.MonkeyPatch) -> N
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("prot = 1", "prot: expected a setting named in docs/settings.md"),
+        ("prot = 1", "prot: expected a setting named in docs/reference/settings.md"),
         ("port = 99999", "port: expected Input should be less than or equal to 65535, found 99999"),
         ("port = ", "expected valid TOML in UTF-8"),
     ],

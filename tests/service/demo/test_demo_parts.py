@@ -110,7 +110,7 @@ def test_no_figure_is_cut_off_where_there_is_no_terminal(capsys: pytest.CaptureF
     (row,) = [line for line in out.splitlines() if "M" in line]
     assert row.split()[0] == "M" * 100
     assert "95 % scatter" in out
-    assert "the interval is the record's own scatter; see docs/diagnosis.md" in out
+    assert "the interval is the record's own scatter; see docs/explanation/diagnosis.md" in out
     assert row.split()[-6:] == ["fault", "b", "5.00", "4.90..5.10", "0.650", "1.50"]
 
 

@@ -1,0 +1,57 @@
+"""Every link between pages leads somewhere, and every path that a page or a message names exists."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.docs.pages import ROOT, anchors, pages, text_files
+
+LINK = re.compile(r"\]\((?!https?:|mailto:)([^)\s]+)\)")
+DOCS_PATH = re.compile(r"(?<![\w/.])docs/[\w./-]*\w")
+CODE_PATH = re.compile(
+    r"`((?:benchmarks|core|docs|examples|ied_sim|mms|scl|service|testing|tests|\.ci|\.github)/[\w./-]*\w)`"
+)
+HISTORY = {"CHANGELOG.md", "track-record.md"}
+"""Pages that tell of the past; code they name may have moved since."""
+
+
+def name(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+@pytest.mark.parametrize("page", pages(), ids=name)
+def test_links_lead_to_a_file_and_a_heading(page: Path) -> None:
+    broken = []
+    for link in LINK.findall(page.read_text(encoding="utf-8")):
+        path, _, anchor = link.partition("#")
+        target = (page.parent / path) if path else page
+        if not target.exists() or (anchor and anchor not in anchors(target)):
+            broken.append(link)
+    assert broken == []
+
+
+@pytest.mark.parametrize("page", [page for page in pages() if page.name not in HISTORY], ids=name)
+def test_code_paths_exist(page: Path) -> None:
+    paths = [
+        path for path in CODE_PATH.findall(page.read_text(encoding="utf-8")) if "__pycache__" not in path
+    ]
+    assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
+def test_every_documentation_path_that_is_named_exists() -> None:
+    missing = [
+        (name(file), path)
+        for file in text_files()
+        for path in DOCS_PATH.findall(file.read_text(encoding="utf-8"))
+        if not (ROOT / path).exists()
+    ]
+    assert missing == []
+
+
+def test_the_index_leads_to_every_page() -> None:
+    index = ROOT / "docs" / "README.md"
+    linked = {
+        (index.parent / link.partition("#")[0]).resolve() for link in LINK.findall(index.read_text("utf-8"))
+    }
+    assert {page for page in pages() if page.is_relative_to(index.parent)} - linked == {index}
