@@ -17,7 +17,7 @@ from service.api import (
     relays,
 )
 from service.api.context import ApiContext
-from service.api.guard import Guard
+from service.api.host_guard import HostGuard
 
 PREFIX = "/api/v1"
 DESCRIPTION = """Stator condition of every motor of the plant, from the protection relays it already has.
@@ -44,7 +44,7 @@ def create_app(context: ApiContext) -> FastAPI:
     app.include_router(probes.router)
     problems.install(app)
     app.add_middleware(
-        Guard,
+        HostGuard,
         hosts=[str(context.settings.bind_address), *context.settings.allowed_hosts],
         max_body_bytes=context.settings.max_upload_bytes,
     )

@@ -1,4 +1,4 @@
-"""Event reports: have a relay record, and follow what becomes of it."""
+"""Recording requests, under the name the REST contract gives them: event reports."""
 
 import time
 from http import HTTPStatus
@@ -39,11 +39,11 @@ def request_event_report(
     idempotency_key: IdempotencyKey = None,
 ) -> EventReport:
     """Asks the motor's relay for an event recording. Follow the event report until diagnosed or failed."""
-    report = context.repository.request_recording(
+    wanted = context.repository.request_recording(
         name, now_ns=time.time_ns(), idempotency_key=idempotency_key
     )
-    response.headers["Location"] = request.url_for("get_event_report", report_id=report.id).path
-    return EventReport.model_validate(report)
+    response.headers["Location"] = request.url_for("get_event_report", report_id=wanted.id).path
+    return EventReport.model_validate(wanted)
 
 
 @router.get("/event-reports", responses=problems())
@@ -54,8 +54,8 @@ def list_event_reports(
     cursor: CursorText = None,
 ) -> Page[EventReport]:
     """Event reports, of one motor or of all, latest first."""
-    reports = context.repository.recording_requests(motor=motor, limit=limit, after=decode(cursor, int, str))
-    return page(reports, EventReport.model_validate)
+    requests = context.repository.recording_requests(motor=motor, limit=limit, after=decode(cursor, int, str))
+    return page(requests, EventReport.model_validate)
 
 
 @router.get("/event-reports/{report_id}", responses=problems(404))

@@ -55,7 +55,7 @@ def _prepare_sqlite(connection: DBAPIConnection, entry: ConnectionPoolEntry) -> 
     )
     cursor = connection.cursor()
     # WAL: readers do not wait for the writer of the other process.
-    # synchronous=FULL: an event report answered with 202 and a record whose EntryID the relay may forget
+    # synchronous=FULL: a request answered with 202 and a record whose EntryID the relay may forget
     # survive a power cut; NORMAL could lose the last commits. Few commits a second can afford an fsync each.
     for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
         cursor.execute(f"PRAGMA {pragma}")

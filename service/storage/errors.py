@@ -44,7 +44,7 @@ class LeaseLostError(StorageError):
 
 
 class StateConflictError(StorageError):
-    """A step that does not follow from the present state, e.g. a failed event report cannot be triggered."""
+    """A step that does not follow from the present state, e.g. a failed request cannot be triggered."""
 
     def __init__(self, kind: str, name: str, *, present: str, wanted: str) -> None:
         self.kind = kind

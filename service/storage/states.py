@@ -32,14 +32,14 @@ class ClockQuality(StrEnum):
 
 
 class RecordingRequestOrigin(StrEnum):
-    """Who asked for an event report."""
+    """Who requested a recording."""
 
     REQUEST = "request"
     SCHEDULE = "schedule"
 
 
 class RecordingRequestState(StrEnum):
-    """An event report somebody asked for, from the wish to the diagnosis."""
+    """How far a requested recording has come."""
 
     REQUESTED = "requested"
     TRIGGERED = "triggered"

@@ -2,16 +2,17 @@
 
 from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
-from service.storage.repository.condition import ConditionRows
 from service.storage.repository.findings import FindingsRows
 from service.storage.repository.jobs import JobRows
 from service.storage.repository.leases import LeaseRows
 from service.storage.repository.links import LinkRows
 from service.storage.repository.measurements import MeasurementRows
+from service.storage.repository.motor_health import MotorHealthRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.quarantines import QuarantineRows
 from service.storage.repository.recording_requests import RecordingRequestRows
 from service.storage.repository.recordings import RecordingRows
+from service.storage.repository.state_counts import StateCounts
 
 
 class Repository(
@@ -24,7 +25,8 @@ class Repository(
     RecordingRequestRows,
     RecordingRows,
     JobRows,
-    ConditionRows,
+    MotorHealthRows,
+    StateCounts,
     MeasurementRows,
     BaselineRows,
 ):

@@ -74,7 +74,7 @@ class JobRows(Sessions):
                 row.attempts -= 1
 
     def finish_job(self, job_id: str, diagnosis: Diagnosis, *, recorded_ns: int, now_ns: int) -> None:
-        """Keeps the result: diagnosis, job, recording, event report in one transaction; again: no change.
+        """Keep the result: diagnosis, job, recording and requests in one transaction; again changes nothing.
 
         recorded_ns: trigger time written in the record. Raises NotFoundError.
         """

@@ -1,4 +1,8 @@
-"""Event reports: what somebody asked a relay to record, followed to its end."""
+"""Recording requests: what somebody asked a relay to record, followed to its end.
+
+The REST API calls them event reports, and so do the messages of errors. In this code an event report is a
+file that a relay writes.
+"""
 
 import uuid
 
@@ -15,12 +19,15 @@ from service.storage.states import IN_THE_RELAY, RecordingRequestOrigin, Recordi
 OPEN = (RecordingRequestState.REQUESTED, *IN_THE_RELAY)
 ENDED = (RecordingRequestState.DIAGNOSED, RecordingRequestState.FAILED)
 
+KIND = "event report"
+"""What messages of errors call a recording request."""
+
 
 class RecordingRequestRows(Sessions):
     def request_recording(
         self, motor: str, *, now_ns: int, idempotency_key: str | None = None
     ) -> RecordingRequest:
-        """A new wish for an event recording of a motor; the same key again gives the first one's report.
+        """Request an event recording of a motor; the same key again gives the first one's request.
 
         Raises NotFoundError, OutOfServiceError for a motor that left the plant.
         """
@@ -38,10 +45,10 @@ class RecordingRequestRows(Sessions):
             return _request(session, where, RecordingRequestOrigin.REQUEST, idempotency_key, now_ns)
 
     def schedule_recording(self, motor: str, *, due_ns: int, now_ns: int) -> RecordingRequest | None:
-        """The report a motor's schedule asks for at `due_ns`, however often that is told.
+        """Request what a motor's schedule asks for at `due_ns`; asked again, it gives the same request.
 
-        None, and no report, while an earlier one waits for its record: triggers must not pile up at a relay
-        that makes none. Nor for a motor that left the plant. Raises NotFoundError.
+        None, and no new request, while an earlier one waits for its record: triggers must not pile up at a
+        relay that makes none. Nor is there one for a motor that left the plant. Raises NotFoundError.
         """
         key = f"schedule {due_ns}"
         of_motor = select(RecordingRequestRow).where(RecordingRequestRow.motor == motor)
@@ -55,10 +62,10 @@ class RecordingRequestRows(Sessions):
                 return None
             return _request(session, where, RecordingRequestOrigin.SCHEDULE, key, now_ns)
 
-    def recording_request(self, report_id: str) -> RecordingRequest:
+    def recording_request(self, request_id: str) -> RecordingRequest:
         """Raises NotFoundError."""
         with self._read() as session:
-            return recording_request(found(session, RecordingRequestRow, report_id, "event report"))
+            return recording_request(found(session, RecordingRequestRow, request_id, KIND))
 
     def recording_requests(
         self, *, limit: int, after: Cursor | None = None, motor: str | None = None
@@ -85,7 +92,7 @@ class RecordingRequestRows(Sessions):
             return tuple(session.scalars(query))
 
     def open_recording_requests(self, ied: str) -> tuple[RecordingRequest, ...]:
-        """Reports of a relay that have no recording yet, oldest first: what to go on with after a restart."""
+        """Requests to a relay that have no recording yet, oldest first: the work left after a restart."""
         query = (
             select(RecordingRequestRow)
             .where(RecordingRequestRow.ied == ied, RecordingRequestRow.state.in_(OPEN))
@@ -95,7 +102,7 @@ class RecordingRequestRows(Sessions):
             return tuple(recording_request(row) for row in session.scalars(query))
 
     def all_open_recording_requests(self) -> tuple[RecordingRequest, ...]:
-        """Of every relay, one that left the plant included."""
+        """Requests without a recording, to every relay, including those that left the plant."""
         # By relay, which the index begins with: those long ended do not matter.
         query = select(RecordingRequestRow).where(
             RecordingRequestRow.ied.in_(select(IedRow.name)), RecordingRequestRow.state.in_(OPEN)
@@ -103,44 +110,44 @@ class RecordingRequestRows(Sessions):
         with self._read() as session:
             return tuple(recording_request(row) for row in session.scalars(query))
 
-    def give_up_unvisited(self, report: RecordingRequest, reason: str, *, now_ns: int) -> bool:
-        """Fails a report that is as it was seen. Raises NotFoundError.
+    def give_up_unvisited(self, request: RecordingRequest, reason: str, *, now_ns: int) -> bool:
+        """Fail a request that is still as it was seen. Raises NotFoundError.
 
         False, and nothing is changed, where its state is another by now or a gateway holds its relay.
         """
         with self._write() as session:
-            row = found(session, RecordingRequestRow, report.id, "event report")
-            if row.state is not report.state or session.get(LeaseRow, row.ied) is not None:
+            row = found(session, RecordingRequestRow, request.id, KIND)
+            if row.state is not request.state or session.get(LeaseRow, row.ied) is not None:
                 return False
             fail_row(row, reason, now_ns)
             return True
 
-    def mark_triggered(self, report_id: str, *, now_ns: int, gateway: str | None = None) -> RecordingRequest:
+    def mark_triggered(self, request_id: str, *, now_ns: int, gateway: str | None = None) -> RecordingRequest:
         """The relay is about to be triggered, by the gateway that holds its lease.
 
         Raises NotFoundError, StateConflictError, LeaseLostError where that gateway does not hold it.
         """
         with self._write() as session:
-            row = found(session, RecordingRequestRow, report_id, "event report")
+            row = found(session, RecordingRequestRow, request_id, KIND)
             if gateway is not None:
                 require_lease(session, row.ied, gateway)
             if _advances(row, {RecordingRequestState.REQUESTED}, RecordingRequestState.TRIGGERED):
                 row.triggered_ns = now_ns
             return recording_request(row)
 
-    def mark_recorded(self, report_id: str, *, now_ns: int) -> RecordingRequest:
+    def mark_recorded(self, request_id: str, *, now_ns: int) -> RecordingRequest:
         """The relay reported the record. Raises NotFoundError, StateConflictError."""
         with self._write() as session:
-            row = found(session, RecordingRequestRow, report_id, "event report")
+            row = found(session, RecordingRequestRow, request_id, KIND)
             before = {RecordingRequestState.REQUESTED, RecordingRequestState.TRIGGERED}
             if _advances(row, before, RecordingRequestState.RECORDED):
                 row.recorded_ns = now_ns
             return recording_request(row)
 
-    def fail_recording_request(self, report_id: str, reason: str, *, now_ns: int) -> RecordingRequest:
-        """Gives a report up, with the reason. Raises NotFoundError, StateConflictError (has ended)."""
+    def fail_recording_request(self, request_id: str, reason: str, *, now_ns: int) -> RecordingRequest:
+        """Give a request up, with the reason. Raises NotFoundError, StateConflictError (has ended)."""
         with self._write() as session:
-            row = found(session, RecordingRequestRow, report_id, "event report")
+            row = found(session, RecordingRequestRow, request_id, KIND)
             fail_row(row, reason, now_ns)
             return recording_request(row)
 
@@ -165,17 +172,17 @@ def _request(
 def _advances(
     row: RecordingRequestRow, before: set[RecordingRequestState], wanted: RecordingRequestState
 ) -> bool:
-    """Moves a report on; False when it is there already, so that a repeated step changes nothing."""
+    """Move a request on; False when it is there already, so that a repeated step changes nothing."""
     if row.state is wanted:
         return False
     if row.state not in before:
-        raise StateConflictError("event report", row.id, present=row.state, wanted=wanted)
+        raise StateConflictError(KIND, row.id, present=row.state, wanted=wanted)
     row.state = wanted
     return True
 
 
 def fetch_row(row: RecordingRequestRow, recording_id: str, now_ns: int) -> None:
-    """The report's recording is stored. Raises StateConflictError."""
+    """The requested recording is stored. Raises StateConflictError."""
     if row.recording_id == recording_id:
         return
     if _advances(row, set(OPEN), RecordingRequestState.FETCHED):
@@ -184,14 +191,14 @@ def fetch_row(row: RecordingRequestRow, recording_id: str, now_ns: int) -> None:
 
 
 def diagnose_rows(session: Session, recording_id: str, now_ns: int) -> None:
-    """Ends the reports that waited for this recording's diagnosis."""
+    """End the requests that waited for this recording's diagnosis."""
     for row in _waiting_for(session, recording_id):
         row.state = RecordingRequestState.DIAGNOSED
         row.diagnosed_ns = now_ns
 
 
 def fail_rows(session: Session, recording_id: str, reason: str, now_ns: int) -> None:
-    """Ends the reports that waited for this recording, with the reason it has no diagnosis."""
+    """End the requests that waited for this recording, with the reason it has no diagnosis."""
     for row in _waiting_for(session, recording_id):
         fail_row(row, reason, now_ns)
 

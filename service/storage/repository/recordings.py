@@ -18,7 +18,7 @@ from service.storage.models import (
 )
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
 from service.storage.repository.clocks import give_clock
-from service.storage.repository.recording_requests import diagnose_rows, fail_row, fail_rows, fetch_row
+from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_row, fail_rows, fetch_row
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingSource, RecordingState
 
@@ -125,7 +125,7 @@ class RecordingRows(Sessions):
     ) -> RecordingEntry:
         """Refuses a record for good without storing it (too large, incomplete): it is not pulled again.
 
-        The event report that waited for it fails with the same reason.
+        The request that waited for it fails with the same reason.
         """
         with self._write() as session:
             row = _announced(session, ied, motor, remote, now_ns)
@@ -133,9 +133,7 @@ class RecordingRows(Sessions):
                 row.state = RecordingState.REJECTED
                 row.reason = reason
             if recording_request_id is not None:
-                fail_row(
-                    found(session, RecordingRequestRow, recording_request_id, "event report"), reason, now_ns
-                )
+                fail_row(found(session, RecordingRequestRow, recording_request_id, KIND), reason, now_ns)
             return recording(row)
 
     def add_recording(
@@ -150,12 +148,12 @@ class RecordingRows(Sessions):
         method: str = DEFAULT_METHOD,
         model: str = DEFAULT_MODEL,
     ) -> AddedRecording:
-        """A record whose files are stored: its row, its first job and its event report, all or nothing.
+        """Add a record whose files are stored: its row, its first job and its request, all or nothing.
 
         From a relay: `ied` and `remote`; uploaded: neither. Two of a relay are the same by name and waveform:
         a file that only describes it may come late; it is added. Of two of a motor one of which was uploaded,
         the waveform is enough.
-        The event report gets what its relay had not sent before: a record that is listed again, under another
+        The request gets what its relay had not sent before: a record that is listed again, under another
         time, is none that a trigger made. Raises NotFoundError, StateConflictError.
         """
         if (ied is None) != (remote is None):
@@ -365,8 +363,8 @@ def _list_files(session: Session, row: RecordingRow, stored: StoredRecording) ->
 
 
 def _attach(session: Session, recording_request_id: str, row: RecordingRow, now_ns: int) -> None:
-    """Gives the event report its recording, and its end where the recording has come to one already."""
-    fetch_row(found(session, RecordingRequestRow, recording_request_id, "event report"), row.id, now_ns)
+    """Give the request its recording, and its end where the recording has come to one already."""
+    fetch_row(found(session, RecordingRequestRow, recording_request_id, KIND), row.id, now_ns)
     session.flush()
     if row.state is RecordingState.DIAGNOSED:
         diagnose_rows(session, row.id, now_ns)

@@ -21,8 +21,8 @@ def request_and_trigger(url: str, motor: str, done: "Queue[str]") -> None:
     repository = Repository(engine)
     try:
         for i in range(ROUNDS):
-            report = repository.request_recording(motor, now_ns=NOW_NS + i)
-            repository.mark_triggered(report.id, now_ns=NOW_NS + i)
+            request = repository.request_recording(motor, now_ns=NOW_NS + i)
+            repository.mark_triggered(request.id, now_ns=NOW_NS + i)
             remote = RemoteRecord("SAME", i, NOW_NS)
             repository.announce_recording("A1_SEL710", "PUMP-A1", remote, now_ns=NOW_NS)
     finally:

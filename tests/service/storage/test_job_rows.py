@@ -13,13 +13,13 @@ from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 @pytest.fixture
 def recording_id(repository: Repository, store: RecordingStore) -> str:
     stored = store.store({"E.CFF": b"samples"})
-    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
+    request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     added = repository.add_recording(
         stored,
         motor="PUMP-A1",
         ied="A1_SEL710",
         remote=RemoteRecord("E", 7, 0),
-        recording_request_id=report.id,
+        recording_request_id=request.id,
         now_ns=NOW_NS,
     )
     return added.recording.id
@@ -31,9 +31,9 @@ def claim(repository: Repository, now_ns: int = NOW_NS) -> ClaimedJob:
     return claimed
 
 
-def report_state(repository: Repository) -> tuple[RecordingRequestState, str | None]:
-    (report,) = repository.recording_requests(limit=10).items
-    return report.state, report.reason
+def request_state(repository: Repository) -> tuple[RecordingRequestState, str | None]:
+    (request,) = repository.recording_requests(limit=10).items
+    return request.state, request.reason
 
 
 def test_a_job_is_claimed_once(repository: Repository, recording_id: str) -> None:
@@ -51,14 +51,14 @@ def test_a_clock_that_is_set_back_holds_up_no_job(repository: Repository, record
     assert (second.job.id, second.job.finished_ns) == (first.job.id, None)
 
 
-def test_a_result_ends_job_recording_and_report(repository: Repository, recording_id: str) -> None:
+def test_a_result_ends_job_recording_and_request(repository: Repository, recording_id: str) -> None:
     job_id = claim(repository).job.id
     for _ in range(2):
         repository.finish_job(job_id, fault(), recorded_ns=NOW_NS - SECOND_NS, now_ns=NOW_NS + SECOND_NS)
     assert repository.job(recording_id, job_id).state is JobState.DONE
     recording = repository.recording(recording_id)
     assert (recording.state, recording.recorded_ns) == (RecordingState.DIAGNOSED, NOW_NS - SECOND_NS)
-    assert report_state(repository) == (RecordingRequestState.DIAGNOSED, None)
+    assert request_state(repository) == (RecordingRequestState.DIAGNOSED, None)
     diagnosis = repository.current_diagnosis(recording_id)
     assert diagnosis is not None
     assert diagnosis.document == fault().as_dict()
@@ -70,7 +70,7 @@ def test_an_unreadable_record_is_rejected_with_the_reason(repository: Repository
     repository.reject_recording(claim(repository).job.id, "E.CFF: checksum", now_ns=NOW_NS)
     recording = repository.recording(recording_id)
     assert (recording.state, recording.reason) == (RecordingState.REJECTED, "E.CFF: checksum")
-    assert report_state(repository) == (RecordingRequestState.FAILED, "E.CFF: checksum")
+    assert request_state(repository) == (RecordingRequestState.FAILED, "E.CFF: checksum")
     assert repository.claim_job(now_ns=NOW_NS + 1000 * SECOND_NS) is None
 
 
@@ -85,7 +85,7 @@ def test_an_error_is_retried_later_and_given_up_at_last(repository: Repository, 
     assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns) is JobState.FAILED
     reason = "gave up after 3 attempts: killed"
     assert repository.recording(recording_id).state is RecordingState.FAILED
-    assert report_state(repository) == (RecordingRequestState.FAILED, reason)
+    assert request_state(repository) == (RecordingRequestState.FAILED, reason)
     assert repository.retry_or_fail_job(job_id, "again", now_ns=now_ns) is JobState.FAILED
 
 

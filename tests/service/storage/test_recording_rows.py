@@ -16,8 +16,8 @@ def record(store: RecordingStore, content: bytes = b"samples") -> StoredRecordin
 def test_a_pulled_record_is_stored_and_queued_with_its_recording_request(
     repository: Repository, store: RecordingStore
 ) -> None:
-    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
-    repository.mark_triggered(report.id, now_ns=NOW_NS)
+    request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
+    repository.mark_triggered(request.id, now_ns=NOW_NS)
     announced = repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=NOW_NS)
     assert announced.state is RecordingState.ANNOUNCED
     assert repository.known_remote_records("A1_SEL710") == frozenset()
@@ -28,15 +28,15 @@ def test_a_pulled_record_is_stored_and_queued_with_its_recording_request(
         motor="PUMP-A1",
         ied="A1_SEL710",
         remote=REMOTE,
-        recording_request_id=report.id,
+        recording_request_id=request.id,
         now_ns=NOW_NS + 1,
     )
     assert added.created
     assert (added.recording.id, added.recording.state) == (announced.id, RecordingState.FETCHED)
     assert repository.known_remote_records("A1_SEL710") == {REMOTE}
     assert repository.refused_remote_records("A1_SEL710") == frozenset()
-    assert repository.recording_request(report.id).state is RecordingRequestState.FETCHED
-    assert repository.recording_request(report.id).recording_id == announced.id
+    assert repository.recording_request(request.id).state is RecordingRequestState.FETCHED
+    assert repository.recording_request(request.id).recording_id == announced.id
     files = [(f.name, f.size_bytes, f.sha256) for f in repository.recording_files(announced.id)]
     assert files == [(f.name, f.size_bytes, f.sha256) for f in stored.files]
     claimed = repository.claim_job(now_ns=NOW_NS + 1)
@@ -84,23 +84,23 @@ def test_other_content_under_the_same_listing_is_another_recording(
     assert len(ids) == 2
 
 
-def test_a_recording_diagnosed_before_ends_the_report_that_gets_it(
+def test_a_recording_diagnosed_before_ends_a_request_that_gets_it(
     repository: Repository, store: RecordingStore
 ) -> None:
     repository.add_recording(record(store), motor="PUMP-A1", now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=NOW_NS)
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
-    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
+    request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.add_recording(
         record(store),
         motor="PUMP-A1",
         ied="A1_SEL710",
         remote=REMOTE,
-        recording_request_id=report.id,
+        recording_request_id=request.id,
         now_ns=NOW_NS,
     )
-    assert repository.recording_request(report.id).state is RecordingRequestState.DIAGNOSED
+    assert repository.recording_request(request.id).state is RecordingRequestState.DIAGNOSED
 
 
 def test_a_record_listed_under_a_new_time_is_not_the_one_a_trigger_made(
@@ -108,32 +108,32 @@ def test_a_record_listed_under_a_new_time_is_not_the_one_a_trigger_made(
 ) -> None:
     touched = RemoteRecord(REMOTE.name, REMOTE.size_bytes, REMOTE.modified_ns + 5)
     repository.add_recording(record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS)
-    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
-    repository.mark_triggered(report.id, now_ns=NOW_NS)
+    request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
+    repository.mark_triggered(request.id, now_ns=NOW_NS)
     repository.add_recording(
         record(store),
         motor="PUMP-A1",
         ied="A1_SEL710",
         remote=touched,
-        recording_request_id=report.id,
+        recording_request_id=request.id,
         now_ns=NOW_NS,
     )
-    assert repository.recording_request(report.id).state is RecordingRequestState.TRIGGERED
+    assert repository.recording_request(request.id).state is RecordingRequestState.TRIGGERED
     assert repository.known_remote_records("A1_SEL710") == {REMOTE, touched}
 
 
 def test_a_refused_record_is_not_pulled_again(repository: Repository) -> None:
-    report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
+    request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     assert repository.note_failed_pull("A1_SEL710", "PUMP-A1", REMOTE, "timeout", now_ns=NOW_NS) == 1
     assert repository.note_failed_pull("A1_SEL710", "PUMP-A1", REMOTE, "timeout", now_ns=NOW_NS) == 2
     assert repository.known_remote_records("A1_SEL710") == frozenset()
     refused = repository.reject_remote_record(
-        "A1_SEL710", "PUMP-A1", REMOTE, "larger than 64 MB", recording_request_id=report.id, now_ns=NOW_NS
+        "A1_SEL710", "PUMP-A1", REMOTE, "larger than 64 MB", recording_request_id=request.id, now_ns=NOW_NS
     )
     assert (refused.state, refused.reason) == (RecordingState.REJECTED, "larger than 64 MB")
     assert repository.known_remote_records("A1_SEL710") == {REMOTE}
     assert repository.refused_remote_records("A1_SEL710") == {REMOTE}
-    assert repository.recording_request(report.id).reason == "larger than 64 MB"
+    assert repository.recording_request(request.id).reason == "larger than 64 MB"
     rejected = repository.recordings(limit=10, state=RecordingState.REJECTED)
     assert [r.id for r in rejected.items] == [refused.id]
 

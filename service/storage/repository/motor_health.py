@@ -1,22 +1,14 @@
-"""The condition of motors: latest diagnosis, trend, and counts of everything."""
+"""What is known of motors: the latest diagnosis, the relay, and the trend."""
 
-from enum import StrEnum
-from typing import TypeVar
-
-from sqlalchemy import ColumnElement, func, select
-from sqlalchemy.orm import InstrumentedAttribute, Session
+from sqlalchemy import select
 
 from service.storage.models import (
-    AlarmRow,
     DiagnosisRow,
     IedRow,
-    JobRow,
     MotorRow,
-    RecordingRequestRow,
     RecordingRow,
 )
 from service.storage.records import (
-    Counts,
     Cursor,
     DiagnosisEntry,
     IedEntry,
@@ -30,10 +22,8 @@ from service.storage.records import (
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import RecordingState
 
-State = TypeVar("State", bound=StrEnum)
 
-
-class ConditionRows(Sessions):
+class MotorHealthRows(Sessions):
     def health(self, motor: str) -> MotorHealth:
         """What is known of a motor now; the latest recording counts, not the latest diagnosis made.
 
@@ -80,16 +70,6 @@ class ConditionRows(Sessions):
                 session, query, order, lambda row: _trend_point(row, quantity), limit=limit, after=after
             )
 
-    def counts(self) -> Counts:
-        with self._read() as session:
-            return Counts(
-                links=_count(session, IedRow.link_state),
-                alarms=_count(session, AlarmRow.kind, AlarmRow.cleared_ns.is_(None)),
-                recording_requests=_count(session, RecordingRequestRow.state),
-                recordings=_count(session, RecordingRow.state),
-                jobs=_count(session, JobRow.state),
-            )
-
 
 def _trend_point(row: DiagnosisRow, quantity: Quantity) -> TrendPoint:
     ci95 = None
@@ -97,10 +77,3 @@ def _trend_point(row: DiagnosisRow, quantity: Quantity) -> TrendPoint:
         ci95 = (row.mu_f_ci95_low, row.mu_f_ci95_high)
     value = {"mu_f": row.mu_f, "theta_f": row.theta_f, "load_level": row.load_level}[quantity]
     return TrendPoint(row.recorded_ns, value, ci95, row.verdict, row.recording_id)
-
-
-def _count(
-    session: Session, state: InstrumentedAttribute[State], *only_those: ColumnElement[bool]
-) -> dict[State, int]:
-    rows = session.execute(select(state, func.count()).where(*only_those).group_by(state))
-    return {row[0]: row[1] for row in rows}

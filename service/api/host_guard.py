@@ -16,7 +16,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.api.problems import problem_response
 
 
-class Guard:
+class HostGuard:
     """ASGI middleware. `hosts`: names this service goes by; "*" for any."""
 
     def __init__(self, app: ASGIApp, *, hosts: Collection[str], max_body_bytes: int) -> None:

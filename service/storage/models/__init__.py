@@ -1,0 +1,44 @@
+"""Tables. Times are UTC, integer nanoseconds since 1970 (columns ..._ns); ids are random UUIDs as text."""
+
+from service.storage.models.base import Base
+from service.storage.models.diagnoses import DiagnosisRow, JobRow
+from service.storage.models.measurements import MeasurementRow
+from service.storage.models.plant import IedRow, MotorRow, SiteRow
+from service.storage.models.recordings import (
+    BaselineRecordingRow,
+    RecordingFileRow,
+    RecordingRequestRow,
+    RecordingRow,
+    RemoteRecordRow,
+)
+from service.storage.models.relays import (
+    AlarmRow,
+    GatewayRow,
+    LeaseRow,
+    LinkChangeRow,
+    LinkFiguresRow,
+    QuarantineRow,
+    RelayFindingsRow,
+)
+
+__all__ = [
+    "AlarmRow",
+    "Base",
+    "BaselineRecordingRow",
+    "DiagnosisRow",
+    "GatewayRow",
+    "IedRow",
+    "JobRow",
+    "LeaseRow",
+    "LinkChangeRow",
+    "LinkFiguresRow",
+    "MeasurementRow",
+    "MotorRow",
+    "QuarantineRow",
+    "RecordingFileRow",
+    "RecordingRequestRow",
+    "RecordingRow",
+    "RelayFindingsRow",
+    "RemoteRecordRow",
+    "SiteRow",
+]

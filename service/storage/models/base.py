@@ -1,0 +1,56 @@
+"""What all tables share: how names, times and states are stored."""
+
+from collections.abc import Mapping
+from enum import StrEnum
+
+from sqlalchemy import JSON, BigInteger, Enum, MetaData
+from sqlalchemy.orm import DeclarativeBase
+
+from core.diagnosis.verdict import Verdict
+from service.storage.states import (
+    AlarmKind,
+    ClockQuality,
+    JobState,
+    LinkState,
+    RecordingRequestOrigin,
+    RecordingRequestState,
+    RecordingSource,
+    RecordingState,
+)
+
+
+def _words(enum: type[StrEnum]) -> Enum:
+    """Column of the enum's values, as text: readable in any database tool, no migration to grow."""
+    return Enum(
+        enum,
+        values_callable=lambda members: [member.value for member in members],
+        native_enum=False,
+        create_constraint=False,
+        length=16,
+    )
+
+
+class Base(DeclarativeBase):
+    metadata = MetaData(
+        naming_convention={
+            "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+            "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+            "ck": "ck_%(table_name)s_%(constraint_name)s",
+            "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+            "pk": "pk_%(table_name)s",
+        }
+    )
+    type_annotation_map = {  # noqa: RUF012  # SQLAlchemy's own declaration style
+        int: BigInteger,
+        LinkState: _words(LinkState),
+        AlarmKind: _words(AlarmKind),
+        ClockQuality: _words(ClockQuality),
+        RecordingRequestOrigin: _words(RecordingRequestOrigin),
+        RecordingRequestState: _words(RecordingRequestState),
+        RecordingState: _words(RecordingState),
+        RecordingSource: _words(RecordingSource),
+        JobState: _words(JobState),
+        Verdict: _words(Verdict),
+        Mapping[str, object]: JSON,
+        list[Mapping[str, object]]: JSON,
+    }

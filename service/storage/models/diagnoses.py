@@ -1,0 +1,58 @@
+"""Tables of the diagnoses: the queue of jobs and their results."""
+
+from collections.abc import Mapping
+
+from sqlalchemy import ForeignKey, Index, String
+from sqlalchemy.orm import Mapped, mapped_column
+
+from core.diagnosis.verdict import Verdict
+from service.storage.models.base import Base
+from service.storage.states import JobState
+
+
+class JobRow(Base):
+    __tablename__ = "jobs"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"))
+    method: Mapped[str]
+    model: Mapped[str]
+    state: Mapped[JobState]
+    attempts: Mapped[int]
+    not_before_ns: Mapped[int]
+    created_ns: Mapped[int]
+    started_ns: Mapped[int | None]
+    finished_ns: Mapped[int | None]
+    error: Mapped[str | None]
+
+    __table_args__ = (
+        Index("ix_jobs_state_not_before_ns", "state", "not_before_ns"),
+        Index("ix_jobs_recording_id_created_ns_id", "recording_id", "created_ns", "id"),
+    )
+
+
+class DiagnosisRow(Base):
+    """The result of one job. `current` marks the latest of a recording: that one is in the trend."""
+
+    __tablename__ = "diagnoses"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    job_id: Mapped[str] = mapped_column(ForeignKey("jobs.id"), unique=True)
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), index=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    current: Mapped[bool]
+    created_ns: Mapped[int]
+    recorded_ns: Mapped[int]
+    verdict: Mapped[Verdict]
+    mu_f: Mapped[float | None]
+    mu_f_ci95_low: Mapped[float | None]
+    mu_f_ci95_high: Mapped[float | None]
+    theta_f: Mapped[int | None]
+    load_level: Mapped[float | None]
+    method: Mapped[str]
+    model: Mapped[str]
+    document: Mapped[Mapping[str, object]]
+
+    __table_args__ = (
+        Index("ix_diagnoses_motor_current_recorded_ns_id", "motor", "current", "recorded_ns", "id"),
+    )

@@ -1,0 +1,108 @@
+"""Tables of the recordings: those asked for, those a relay lists, and those in the store."""
+
+from sqlalchemy import ForeignKey, Index, String, text
+from sqlalchemy.orm import Mapped, mapped_column
+
+from service.storage.models.base import Base
+from service.storage.states import (
+    ClockQuality,
+    RecordingRequestOrigin,
+    RecordingRequestState,
+    RecordingSource,
+    RecordingState,
+)
+
+
+class RecordingRow(Base):
+    __tablename__ = "recordings"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    ied: Mapped[str | None] = mapped_column(ForeignKey("ieds.name"))
+    source: Mapped[RecordingSource]
+    name: Mapped[str]
+    digest: Mapped[str | None] = mapped_column(String(64))
+    size_bytes: Mapped[int]
+    remote_modified_ns: Mapped[int | None]
+    state: Mapped[RecordingState]
+    reason: Mapped[str | None]
+    attempts: Mapped[int]
+    announced_ns: Mapped[int]
+    fetched_ns: Mapped[int | None]
+    recorded_ns: Mapped[int | None]
+    clock_offset_ns: Mapped[int | None]
+    clock_uncertainty_ns: Mapped[int | None]
+    clock_quality: Mapped[ClockQuality | None]
+    clock_measured_ns: Mapped[int | None]
+
+    __table_args__ = (
+        Index("ux_recordings_relay", "ied", "name", "digest", unique=True),
+        # NULLs differ from each other in a unique index: uploads, which have no IED, need one of their own.
+        Index(
+            "ux_recordings_upload",
+            "motor",
+            "name",
+            "digest",
+            unique=True,
+            sqlite_where=text("ied IS NULL"),
+            postgresql_where=text("ied IS NULL"),
+        ),
+        Index("ix_recordings_announced_ns_id", "announced_ns", "id"),
+        Index("ix_recordings_motor_announced_ns_id", "motor", "announced_ns", "id"),
+    )
+
+
+class RemoteRecordRow(Base):
+    """A record as its relay lists it, and the recording it became: what is here is not pulled again."""
+
+    __tablename__ = "remote_records"
+
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), primary_key=True)
+    name: Mapped[str] = mapped_column(primary_key=True)
+    size_bytes: Mapped[int] = mapped_column(primary_key=True)
+    modified_ns: Mapped[int] = mapped_column(primary_key=True)
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), index=True)
+
+
+class RecordingFileRow(Base):
+    __tablename__ = "recording_files"
+
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), primary_key=True)
+    name: Mapped[str] = mapped_column(primary_key=True)
+    size_bytes: Mapped[int]
+    sha256: Mapped[str] = mapped_column(String(64), index=True)
+
+
+class BaselineRecordingRow(Base):
+    """A recording that stands for a motor's healthy condition."""
+
+    __tablename__ = "baseline_recordings"
+
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), primary_key=True)
+    chosen_ns: Mapped[int]
+
+
+class RecordingRequestRow(Base):
+    __tablename__ = "recording_requests"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"))
+    origin: Mapped[RecordingRequestOrigin] = mapped_column(server_default=RecordingRequestOrigin.REQUEST)
+    state: Mapped[RecordingRequestState]
+    reason: Mapped[str | None]
+    idempotency_key: Mapped[str | None]
+    recording_id: Mapped[str | None] = mapped_column(ForeignKey("recordings.id"), index=True)
+    requested_ns: Mapped[int]
+    triggered_ns: Mapped[int | None]
+    recorded_ns: Mapped[int | None]
+    fetched_ns: Mapped[int | None]
+    diagnosed_ns: Mapped[int | None]
+    failed_ns: Mapped[int | None]
+
+    __table_args__ = (
+        Index("ux_recording_requests_key", "motor", "idempotency_key", unique=True),
+        Index("ix_recording_requests_ied_state_requested_ns", "ied", "state", "requested_ns"),
+        Index("ix_recording_requests_requested_ns_id", "requested_ns", "id"),
+    )

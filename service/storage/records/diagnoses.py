@@ -1,0 +1,87 @@
+"""Jobs, their results, and what these say of a motor."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from core.diagnosis.verdict import Verdict
+from service.storage.records.plant import IedEntry, MotorEntry
+from service.storage.records.recordings import RecordingEntry
+from service.storage.states import AlarmKind, JobState, LinkState, RecordingRequestState, RecordingState
+
+Quantity = Literal["mu_f", "theta_f", "load_level"]
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A diagnosis to be made, under way, or made."""
+
+    id: str
+    recording_id: str
+    method: str
+    model: str
+    state: JobState
+    attempts: int
+    not_before_ns: int
+    created_ns: int
+    started_ns: int | None
+    finished_ns: int | None
+    error: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class ClaimedJob:
+    """A job with what the worker needs: the motor's name, the digest of the recording's files, and those of
+    the motor's baseline."""
+
+    job: Job
+    motor: str
+    digest: str
+    baseline: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class DiagnosisEntry:
+    """The result of a job; `document` is `Diagnosis.as_dict()`."""
+
+    id: str
+    job_id: str
+    recording_id: str
+    motor: str
+    current: bool
+    created_ns: int
+    recorded_ns: int
+    verdict: Verdict
+    document: Mapping[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class TrendPoint:
+    """One recording's figure. `ci95` only for mu_f; `value` is None where the recording does not tell it."""
+
+    recorded_ns: int
+    value: float | None
+    ci95: tuple[float, float] | None
+    verdict: Verdict
+    recording_id: str
+
+
+@dataclass(frozen=True, slots=True)
+class MotorHealth:
+    """What is known of a motor now: the latest recording's diagnosis, its relay, its latest recording."""
+
+    motor: MotorEntry
+    ied: IedEntry
+    diagnosis: DiagnosisEntry | None
+    last_recording: RecordingEntry | None
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How many of each there are, by state; of alarms, those that stand, by kind. For the metrics."""
+
+    links: Mapping[LinkState, int]
+    alarms: Mapping[AlarmKind, int]
+    recording_requests: Mapping[RecordingRequestState, int]
+    recordings: Mapping[RecordingState, int]
+    jobs: Mapping[JobState, int]

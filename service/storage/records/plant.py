@@ -1,0 +1,45 @@
+"""Sites, relays and motors as the repository hands them out."""
+
+from dataclasses import dataclass
+
+from service.storage.states import ClockQuality, LinkState
+
+
+@dataclass(frozen=True, slots=True)
+class SiteEntry:
+    name: str
+    description: str
+
+
+@dataclass(frozen=True, slots=True)
+class IedEntry:
+    """A relay and the state of its link; `last_success_ns` is the last request it answered.
+
+    clock_...: the latest ClockReading, None before the first.
+    """
+
+    name: str
+    site: str
+    host: str
+    port: int
+    manufacturer: str
+    type: str
+    link_state: LinkState
+    link_reason: str | None
+    link_changed_ns: int | None
+    last_success_ns: int | None
+    clock_offset_ns: int | None
+    clock_uncertainty_ns: int | None
+    clock_quality: ClockQuality | None
+    clock_measured_ns: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class MotorEntry:
+    """A motor; `schedule` is a cron expression in UTC."""
+
+    name: str
+    description: str
+    site: str
+    ied: str
+    schedule: str | None

@@ -1,0 +1,75 @@
+"""Recordings: those asked for, those a relay lists, and those in the store."""
+
+from dataclasses import dataclass
+
+from service.storage.states import (
+    ClockQuality,
+    RecordingRequestOrigin,
+    RecordingRequestState,
+    RecordingSource,
+    RecordingState,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingRequest:
+    """A recording that somebody requested of a relay, with one time for each state it went through."""
+
+    id: str
+    motor: str
+    ied: str
+    origin: RecordingRequestOrigin
+    state: RecordingRequestState
+    reason: str | None
+    recording_id: str | None
+    requested_ns: int
+    triggered_ns: int | None
+    recorded_ns: int | None
+    fetched_ns: int | None
+    diagnosed_ns: int | None
+    failed_ns: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class RemoteRecord:
+    """A record as a relay lists it: name without suffix, sum of its file sizes, their latest modification."""
+
+    name: str
+    size_bytes: int
+    modified_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingEntry:
+    """A recording; `digest` is its place in the recording store, None until it is fetched.
+
+    recorded_ns: the trigger time written in the record, known once it was read, by the relay's clock.
+    clock_...: the latest ClockReading of that relay when the recording was stored, None without one of
+    about that time.
+    """
+
+    id: str
+    motor: str
+    ied: str | None
+    source: RecordingSource
+    name: str
+    digest: str | None
+    size_bytes: int
+    remote_modified_ns: int | None
+    state: RecordingState
+    reason: str | None
+    attempts: int
+    announced_ns: int
+    fetched_ns: int | None
+    recorded_ns: int | None
+    clock_offset_ns: int | None
+    clock_uncertainty_ns: int | None
+    clock_quality: ClockQuality | None
+    clock_measured_ns: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingFile:
+    name: str
+    size_bytes: int
+    sha256: str

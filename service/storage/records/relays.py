@@ -1,0 +1,130 @@
+"""What is known of a relay: its clock, its link, who visits it, its alarms and findings."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from service.storage.states import AlarmKind, ClockQuality, LinkState
+
+
+@dataclass(frozen=True, slots=True)
+class ClockReading:
+    """A relay's clock less ours, and what the relay says of its clock."""
+
+    offset_ns: int
+    uncertainty_ns: int
+    quality: ClockQuality
+    measured_ns: int
+
+
+@dataclass(frozen=True, slots=True)
+class Quarantine:
+    """A relay set aside from `since_ns` until `until_ns`, and not trusted yet afterwards.
+
+    times: how often in a row; 0 where it is one of several that are suspected.
+    """
+
+    ied: str
+    reason: str
+    times: int
+    since_ns: int
+    until_ns: int
+
+    def holds(self, now_ns: int) -> bool:
+        """Whether the relay is to be left alone at `now_ns`, by a clock that may have been set since.
+
+        Only within the pause's own length of its beginning, on either side: a clock that was a day ahead
+        keeps no relay away for a day, and one of another host, a second behind, ends no pause early.
+        """
+        return abs(now_ns - self.since_ns) < self.until_ns - self.since_ns
+
+
+@dataclass(frozen=True, slots=True)
+class GatewayEntry:
+    """A process that visits relays, and how many it holds leases of."""
+
+    id: str
+    host: str
+    process_id: int
+    started_ns: int
+    relays: int
+
+
+@dataclass(frozen=True, slots=True)
+class LinkChange:
+    """A link's new state, since when and why."""
+
+    changed_ns: int
+    state: LinkState
+    reason: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class LinkTraffic:
+    """What went over a link since it was last told."""
+
+    connections: int = 0
+    received_bytes: int = 0
+    reports: int = 0
+    report_gaps: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class LinkNote:
+    """A relay answered at `now_ns`, and what went over its link since the last note.
+
+    day_bytes: counted against the limit of the UTC day `day` (days since 1970), until now.
+    """
+
+    ied: str
+    now_ns: int
+    traffic: LinkTraffic
+    round_trip_s: float | None
+    day: int
+    day_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class LinkFigures:
+    """What went over a relay's link in all, and how long its latest answer took [s].
+
+    report_gaps: how often reports were lost.  day_bytes: counted against the limit of the UTC day `day`
+    (days since 1970).
+    """
+
+    ied: str
+    round_trip_s: float | None = None
+    connections: int = 0
+    received_bytes: int = 0
+    reports: int = 0
+    report_gaps: int = 0
+    day: int = 0
+    day_bytes: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Alarm:
+    """What somebody has to look after at a relay; standing until `cleared_ns` is set."""
+
+    id: str
+    ied: str
+    kind: AlarmKind
+    subject: str
+    reason: str
+    raised_ns: int
+    cleared_ns: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class RelayFindings:
+    """What was found at a relay when it was last visited, as JSON documents.
+
+    acquisition: what is used of it.  differences: from its SCL.  ignored_files: those of its events directory
+    that are not taken, with the reason; `ignored_in_all` may be more.
+    """
+
+    ied: str
+    found_ns: int
+    acquisition: Mapping[str, object]
+    differences: Sequence[Mapping[str, object]] = ()
+    ignored_files: Sequence[Mapping[str, object]] = ()
+    ignored_in_all: int = 0
