@@ -13,7 +13,8 @@ from service.collector.gateway.lease_watchdog import LeaseWatchdog
 from service.collector.gateway.peer_liveness import PeerLiveness
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.visit_marks import VisitMarks
-from service.collector.triggers.triggering import Triggering
+from service.collector.triggers.deadlines import RequestDeadlines
+from service.collector.triggers.unanswered import UnansweredRequests
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.recording_store.store import RecordingStore
@@ -71,7 +72,7 @@ class Gateway:
         self._peers = PeerLiveness(settings.lease_s)
         self._visits: dict[str, _Visit] = {}
         self._leaving: dict[str, _Visit] = {}
-        self._aside: dict[str, Triggering] = {}
+        self._aside: dict[str, UnansweredRequests] = {}
         self._batches = BatchWriter(repository)
         self._registered = False
         self._watchdog = LeaseWatchdog(settings.lease_s, on_end=on_end)
@@ -136,14 +137,12 @@ class Gateway:
             for each in self._repository.quarantines()
             if each.ied in held and each.holds(now_ns)
         }
-        self._aside = {ied: self._aside.get(ied) or self._triggering(ied) for ied in aside}
+        self._aside = {ied: self._aside.get(ied) or self._unanswered(ied) for ied in aside}
         for ied, reason in aside.items():
-            self._aside[ied].link_failed(f"it is set aside, {reason}")
+            self._aside[ied].fail_overdue(f"it is set aside, {reason}")
 
-    def _triggering(self, ied: str) -> Triggering:
-        return Triggering(
-            self._plant.relay(ied), self._repository, record_timeout_s=self._settings.record_timeout_s
-        )
+    def _unanswered(self, ied: str) -> UnansweredRequests:
+        return UnansweredRequests(ied, self._repository, RequestDeadlines(self._settings.record_timeout_s))
 
     def _register(self) -> None:
         self._repository.register_gateway(

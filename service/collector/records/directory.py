@@ -22,6 +22,7 @@ from mms import (
     TemporarilyUnavailable,
     Timeout,
 )
+from service.collector.records.alarms import RecordAlarms
 from service.collector.records.allowance import DAY_NS, DailyAllowance, beyond_its_end
 from service.collector.records.event_folder import Contents, EventFolder
 from service.collector.records.formats import Chosen, one_format_an_event
@@ -30,8 +31,6 @@ from service.collector.records.listing import MOST_IGNORED, ListedRecord, Listin
 from service.collector.records.pull import RecordTooLargeError, pull
 from service.collector.records.retrying import LONGEST_PAUSE_OF_THE_DENIED_S, RetrySchedule
 from service.collector.records.settling import Settled, Settling
-from service.collector.session.alarms import RelayAlarms
-from service.collector.session.link import Link
 from service.configuration.settings import Settings
 from service.plant import Relay
 from service.recording_store.store import RecordingStore, RecordingStoreError, StoredRecording
@@ -133,15 +132,16 @@ class RecordDirectory:
         settings: Settings,
         *,
         folder: EventFolder,
-        link: Link,
-        alarms: RelayAlarms,
+        alarms: RecordAlarms,
         allowance: DailyAllowance,
+        on_bytes: Callable[[int], None],
     ) -> None:
+        """on_bytes: is told how many bytes of a file came."""
         self._relay = relay.name
         self._store = store
         self._folder = folder
         self._max_file_bytes = settings.max_file_bytes
-        self._link = link
+        self._on_bytes = on_bytes
         self._alarms = alarms
         self._allowance = allowance
         self._settling = Settling(
@@ -333,7 +333,7 @@ class RecordDirectory:
         return stored
 
     def _received(self, number_of_bytes: int) -> None:
-        self._link.received(number_of_bytes)
+        self._on_bytes(number_of_bytes)
         self._allowance.charge(number_of_bytes, time.time_ns())
 
     def _note_lost_link(self, record: ListedRecord, reason: str) -> None:

@@ -91,6 +91,17 @@ class ClockWatch:
         self._before = None
         self._due_s = 0.0
 
+    def control_stamp(self, client: Client, control: str) -> Timestamp | None:
+        """Return the stamp of a control's latest change; None where the relay gives none.
+
+        Raises MmsError (the link).
+        """
+        return stamp_of(client, f"{control}.t", FunctionalConstraint.ST)
+
+    def note_change(self, stamp: Timestamp, *, asked_ns: int, answered_ns: int) -> None:
+        """Note the stamp of a change between two times of this host's clock. Raises SQLAlchemyError."""
+        self.note(reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns))
+
     def note(self, clock: ClockReading) -> None:
         """A reading, however it was made. Raises SQLAlchemyError."""
         self._repository.note_clock(self._relay, clock)

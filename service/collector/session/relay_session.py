@@ -17,13 +17,14 @@ from service.collector.records.allowance import DailyAllowance
 from service.collector.records.directory import RecordDirectory, Scan
 from service.collector.records.event_folder import EventFolder
 from service.collector.session.alarms import RelayAlarms
+from service.collector.session.clock import ClockWatch
 from service.collector.session.discovery import Discovery
 from service.collector.session.link import Link
 from service.collector.session.metering import Metering
 from service.collector.session.protocol_faults import ProtocolFaultCounter
 from service.collector.session.reports import Inbox, ReportSubscription
 from service.collector.session.visit_marks import Mark, VisitMarks
-from service.collector.triggers.triggering import Triggering
+from service.collector.triggers.trigger_queue import TriggerQueue
 from service.configuration.relay_access import AccessError, credentials
 from service.configuration.settings import Settings
 from service.plant import Relay
@@ -83,12 +84,17 @@ class RelaySession:
             store,
             settings,
             folder=self._folder,
-            link=self._link,
             alarms=alarms,
             allowance=allowance,
+            on_bytes=self._link.received,
         )
-        self._triggering = Triggering(
-            relay, repository, record_timeout_s=settings.record_timeout_s, gateway=gateway
+        self._clock = ClockWatch(relay.name, repository)
+        self._triggers = TriggerQueue(
+            relay,
+            repository,
+            clock=self._clock,
+            record_timeout_s=settings.record_timeout_s,
+            gateway=gateway,
         )
         self._metering = (
             None
@@ -192,7 +198,8 @@ class RelaySession:
     def _begin(self, client: Client) -> None:
         """A new connection: find out what the relay is, and use that. Raises MmsError."""
         acquisition = self._discovery.look(client)
-        self._triggering.use(acquisition)
+        self._triggers.use(acquisition)
+        self._clock.use(acquisition.measurands)
         self._folder.begin()
         if self._metering is not None:
             self._metering.begin(acquisition.measurands)
@@ -231,7 +238,7 @@ class RelaySession:
     def _note_failure(self, trouble: str, reason: str) -> None:
         self._link.failed(reason)
         try:
-            self._triggering.link_failed(f"{trouble}: {reason}")
+            self._triggers.link_failed(f"{trouble}: {reason}")
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
 
@@ -247,13 +254,15 @@ class RelaySession:
         """One round: reports, directory, event reports. Returns whether a record is on its way."""
         self._subscription.keep(client)
         self._handle_reports()
-        self._triggering.recall()
+        self._triggers.recall()
         told = time.monotonic() < self._expecting_until_s
         if self._expecting_until_s and not told:
             self._directory.doubt_the_untimed()
             self._expecting_until_s = 0.0
-        scan = self._directory.scan(client, self._triggering.claim, told=told)
-        triggered = self._triggering.follow(client, scan)
+        scan = self._directory.scan(client, self._triggers.claim, told=told)
+        triggered = self._triggers.follow(client, scan)
+        if not triggered and not scan.waiting:
+            self._clock.look(client)
         if scan.taken and not scan.waiting:
             self._expecting_until_s = 0.0
         expecting = bool(scan.waiting) or time.monotonic() < self._expecting_until_s

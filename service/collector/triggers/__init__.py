@@ -1,1 +1,1 @@
-"""Recordings that somebody asked for."""
+"""Recording requests: what somebody asked a relay to record."""

@@ -1,0 +1,235 @@
+"""Recording requests of one relay: trigger the relay, wait for its record, or say why there is none.
+
+A request is marked triggered in the database BEFORE the relay is operated. Whatever happens in between, a
+crash included, the relay is operated at most once for it: a relay has room for few records, and each new one
+drives out an older one. The price is paid in one case, a crash after the mark and before the operation: no
+record comes, the request fails at its time limit, and the person asks again. A crash after the operation
+costs nothing: the record is in the relay's directory, and the restarted collector gives it to the request.
+A gateway that no longer holds the relay's lease is refused the mark. So a gateway that was frozen, and wakes
+up after another took over its relays, operates nothing.
+"""
+
+import time
+from collections.abc import Set
+from typing import Protocol
+
+import structlog
+
+from mms import (
+    AccessDenied,
+    Client,
+    ControlRefused,
+    FunctionalConstraint,
+    NotFound,
+    ProtocolError,
+    TemporarilyUnavailable,
+    Timestamp,
+    ValueRefused,
+)
+from service.collector.records.directory import Scan
+from service.collector.triggers.deadlines import RequestDeadlines
+from service.collector.triggers.unanswered import UnansweredRequests
+from service.plant import Acquisition, Relay, TriggerAction, promised
+from service.storage import Repository
+from service.storage.records import RecordingRequest
+from service.storage.states import IN_THE_RELAY, RecordingRequestState
+
+log = structlog.get_logger(__name__)
+
+REFUSALS = (AccessDenied, ControlRefused, NotFound, ProtocolError, ValueError)
+"""The relay answers, and the answer is no. ValueError: an override that is no reference. Errors of the link
+leave a request as it is until its time limit."""
+
+HOLD_S = 0.05
+"""How long the remote bit stays set: relays look at their equations every quarter cycle, some less often."""
+
+
+class ControlClock(Protocol):
+    """Reads the relay's clock from the time stamp of a control's change."""
+
+    def control_stamp(self, client: Client, control: str) -> Timestamp | None:
+        """Return the stamp of the latest change; None where the relay gives none. Raises MmsError (link)."""
+
+    def note_change(self, stamp: Timestamp, *, asked_ns: int, answered_ns: int) -> None:
+        """Note the stamp of a change between two times of this host's clock. Raises SQLAlchemyError."""
+
+
+class TriggerQueue:
+    """The recording requests of one relay, one at a time. Used by that relay's session alone.
+
+    A new record belongs to the oldest request that was triggered, unless it was listed before the trigger.
+    """
+
+    def __init__(
+        self,
+        relay: Relay,
+        repository: Repository,
+        *,
+        clock: ControlClock,
+        record_timeout_s: float,
+        gateway: str | None = None,
+    ) -> None:
+        self._relay = relay
+        self._acquisition = promised(relay)
+        self._repository = repository
+        self._clock = clock
+        self._gateway = gateway
+        self._deadlines = RequestDeadlines(record_timeout_s)
+        self._unanswered = UnansweredRequests(relay.name, repository, self._deadlines)
+        self._outstanding: RecordingRequest | None = None
+        self._next: RecordingRequest | None = None
+        self._claimed = False
+        self._operated_for: str | None = None
+        self._listed_before: frozenset[str] = frozenset()
+        self._held_up_since_s: float | None = None
+
+    def use(self, acquisition: Acquisition) -> None:
+        """Use what a new connection has found."""
+        self._acquisition = acquisition
+
+    def recall(self) -> None:
+        """Look up which request, if any, waits for a record of this relay, and which one is next."""
+        requests = self._repository.open_recording_requests(self._relay.name)
+        self._outstanding = next((each for each in requests if each.state in IN_THE_RELAY), None)
+        self._next = next((each for each in requests if each.state is RecordingRequestState.REQUESTED), None)
+        self._claimed = False
+        if self._outstanding is not None and self._outstanding.id != self._operated_for:
+            self._take_over(self._outstanding)
+
+    def _take_over(self, request: RecordingRequest) -> None:
+        """Go on with the request of a gateway now gone.
+
+        Records which that gateway had seen before the trigger, and could not fetch, belong to no request.
+        """
+        self._operated_for = request.id
+        self._listed_before = self._repository.unfetched_names(
+            self._relay.name, seen_before_ns=request.triggered_ns or 0
+        )
+
+    def claim(self, record_name: str) -> str | None:
+        """Return the request a new record belongs to; both are then written down in one transaction."""
+        self.recall()
+        self._claimed = True
+        self._deadlines.gave_a_record()
+        request = self._outstanding
+        if request is None or record_name in self._listed_before:
+            return None
+        return request.id
+
+    def follow(self, client: Client, scan: Scan) -> bool:
+        """After `recall` and a scan: trigger for the next request, or see how the outstanding one is doing.
+
+        Returns whether a record is on its way. Raises MmsError when the link fails.
+        """
+        if self._claimed:
+            self.recall()
+        self._deadlines.answered(time.monotonic())
+        request = self._outstanding
+        if request is None:
+            return self._next is not None and (
+                self._is_held_up(scan) or self._grant(client, self._next, scan)
+            )
+        held_back = [name for name in scan.held_back if name not in self._listed_before]
+        if held_back:
+            self._fail(
+                request,
+                f"{self._relay.name}: its record waits in the relay for another day, because the relay sent "
+                "as much today as the setting max_relay_bytes_per_day allows",
+            )
+            return False
+        appeared = {*scan.waiting, *scan.failing} - self._listed_before
+        still_written = appeared - scan.failing.keys()  # for as long as the directory's own limits allow
+        is_overdue = self._deadlines.ends_without_record(request, time.monotonic())
+        if appeared and request.state is RecordingRequestState.TRIGGERED:
+            self._repository.mark_recorded(request.id, now_ns=time.time_ns())
+        elif is_overdue and not still_written:
+            self._fail(request, self._why_overdue(request, scan, appeared))
+            return False
+        return True
+
+    def _why_overdue(self, request: RecordingRequest, scan: Scan, appeared: Set[str]) -> str:
+        within = f"within {self._deadlines.timeout_s:g} s"
+        failing = sorted(appeared & scan.failing.keys())
+        if failing:
+            return f"{self._relay.name}: its record could not be fetched {within}: {scan.failing[failing[0]]}"
+        if request.state is RecordingRequestState.RECORDED:
+            return (
+                f"{self._relay.name}: its record was seen in the relay, but is gone, or still changes after "
+                f"{self._deadlines.timeout_s:g} s"
+            )
+        if scan.no_folder is not None:
+            return f"{self._relay.name}: expected a record {within} of the trigger; {scan.no_folder}"
+        return (
+            f"{self._relay.name}: expected a record {within} of the trigger, "
+            "found none; check the relay's event report settings (ER)"
+        )
+
+    def link_failed(self, reason: str) -> None:
+        """Fail the requests that have waited long enough for a relay that cannot be asked."""
+        self._unanswered.fail_overdue(reason)
+
+    def _is_held_up(self, scan: Scan) -> bool:
+        """Whether the trigger waits for older records that are about to be taken.
+
+        After a crash in between, nobody would know that they were there before the trigger.
+        """
+        now_s = time.monotonic()
+        if not scan.waiting:
+            self._held_up_since_s = None
+            return False
+        if self._held_up_since_s is None:
+            self._held_up_since_s = now_s
+        return now_s < self._held_up_since_s + self._deadlines.timeout_s
+
+    def _grant(self, client: Client, request: RecordingRequest, scan: Scan) -> bool:
+        """Trigger, unless there is nothing to trigger by or no way to have the record."""
+        control = self._acquisition.trigger
+        if control is None:
+            self._fail(request, f"{self._relay.name} cannot be triggered: {self._acquisition.no_trigger}")
+        elif scan.unreachable is not None:
+            self._fail(request, f"{self._relay.name} is not triggered: {scan.unreachable}")
+        else:
+            return self._trigger(client, request, control, scan.listed)
+        return False
+
+    def _trigger(
+        self, client: Client, request: RecordingRequest, control: str, listed: frozenset[str]
+    ) -> bool:
+        try:
+            if _is_set(client, control):
+                client.operate(control, False)  # noqa: FBT003 - the value of a control
+            stamp_before = self._clock.control_stamp(client, control)
+            self._repository.mark_triggered(request.id, now_ns=time.time_ns(), gateway=self._gateway)
+            self._operated_for, self._listed_before = request.id, listed
+            asked_ns = time.time_ns()
+            client.operate(control, True)  # noqa: FBT003
+            answered_ns = time.time_ns()
+        except REFUSALS as error:
+            self._fail(request, f"{self._relay.name} refuses the trigger: {error}")
+            return False
+        log.info("triggered", relay=self._relay.name, motor=request.motor, recording_request=request.id)
+        time.sleep(HOLD_S)
+        stamp = self._clock.control_stamp(client, control)
+        if stamp is not None and stamp != stamp_before:
+            self._clock.note_change(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
+        if self._acquisition.trigger_action is TriggerAction.PULSE and not _is_set(client, control):
+            return True
+        try:
+            client.operate(control, False)  # noqa: FBT003
+        except REFUSALS as error:
+            log.warning("the trigger stays set", relay=self._relay.name, control=control, reason=str(error))
+        return True
+
+    def _fail(self, request: RecordingRequest, reason: str) -> None:
+        self._repository.fail_recording_request(request.id, reason, now_ns=time.time_ns())
+        log.warning(
+            "recording request failed", relay=self._relay.name, recording_request=request.id, reason=reason
+        )
+
+
+def _is_set(client: Client, control: str) -> bool:
+    """Whether a control is on; some relays do not let what may be written be read. Raises MmsError (link)."""
+    try:
+        return client.read(f"{control}.stVal", FunctionalConstraint.ST) is True
+    except (AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused):
+        return False
