@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from math import ceil, pi, sqrt
 
 import numpy as np
-from scipy.signal import decimate
 
 from core.commissioning.errors import CommissioningError
 from core.commissioning.onset import current_onset, quiet_offset, voltage_onset
@@ -25,6 +24,7 @@ from core.machines.starting import StartPlayback
 from core.machines.supply import Supply, supply
 from core.recordings import Recording
 from core.signals.clarke import clarke
+from core.signals.decimation import decimate
 from core.signals.errors import SignalError
 from core.signals.phasors import fundamental_frequency, fundamental_phasors
 from core.signals.sequence import PhaseSequence, sequence_phasors
@@ -199,7 +199,7 @@ def thinned(start: Start) -> Start:
     factor = int(start.sample_rate_hz / start.frequency_hz / SEARCH_SAMPLES_A_CYCLE)
     if factor < 2:
         return start
-    voltage_ab = decimate(start.voltage_ab, factor, ftype="fir", axis=1)
+    voltage_ab = decimate(start.voltage_ab, factor)
     rate = start.sample_rate_hz / factor
     first, last = start.compared
     return replace(

@@ -11,13 +11,13 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import decimate
 
 from core.machines.base import Array
 from core.machines.parameters import Connection, Motor
 from core.machines.playback import Window, window_of_record
 from core.machines.supply import Supply, supply
 from core.signals.clarke import clarke
+from core.signals.decimation import decimate
 from core.signals.phasors import fundamental_phasors
 from core.signals.sequence import PhaseSequence
 
@@ -122,8 +122,8 @@ def thinned(case: Case) -> Case:
     factor = int(case.sample_rate_hz / case.frequency_hz / FEWEST_SAMPLES_A_CYCLE)
     if factor < 2:
         return case
-    current_ab = decimate(case.current_ab, factor, ftype="fir", axis=1)
-    voltage_ab = decimate(case.voltage_ab, factor, ftype="fir", axis=1)
+    current_ab = decimate(case.current_ab, factor)
+    voltage_ab = decimate(case.voltage_ab, factor)
     rate = case.sample_rate_hz / factor
     return replace(
         case,

@@ -11,12 +11,11 @@ from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import toeplitz
-from scipy.signal.windows import tukey
 
 from core.diagnosis.case import LONGEST_WINDOW_S, Case
 from core.machines.base import Array
 from core.machines.steady_state import ComplexArray
+from core.signals.windows import tukey_window
 
 HIGHEST_ORDER = 13
 """Harmonics that repeat every cycle and so are no noise."""
@@ -86,7 +85,7 @@ def fundamental_of(case: Case) -> Fundamental:
     turning = np.exp(-2j * pi / per_cycle * np.arange(samples))
     vectors = np.stack([x[0, first:] + 1j * x[1, first:] for x in (case.current_ab, case.voltage_ab)])
     highest = max(1, min(HIGHEST_ORDER, int(0.45 * per_cycle)))
-    weight = tukey(samples, TAPERED)
+    weight = tukey_window(samples, TAPERED)
     found, beside = _periodic(vectors, turning, weight, highest)
     edges = np.round(np.arange(cycles) * samples / cycles).astype(np.int64)
     fewer = samples * float(weight @ weight) / float(weight.sum()) ** 2
@@ -129,7 +128,8 @@ def _periodic(
     # Inner products of the harmonics depend on the difference of their orders alone.
     low, high = _sums(powers, weight), _sums(powers, weight * powers[highest])
     differences = np.concatenate([low, high[1:]])
-    gram = toeplitz(differences)
+    lag = np.subtract.outer(np.arange(differences.size), np.arange(differences.size))
+    gram = np.where(lag >= 0, differences[np.abs(lag)], differences[np.abs(lag)].conj())
     # The basis turns the other way than `powers`: order k of it is their conjugate.
     forwards, backwards = _sums(powers, weight * vectors), _sums(powers, weight * vectors.conj()).conj()
     products = np.concatenate([backwards[:, :0:-1], forwards], axis=1)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from math import log1p, sqrt
 
 import numpy as np
-from scipy.stats import t as student_t
+from scipy.special import stdtrit
 
 from core.diagnosis.case import Case
 from core.diagnosis.fundamental import axis_phasors, components, fundamental_of
@@ -103,9 +103,7 @@ class Fit:
         """95 % confidence interval of an unknown; its bound alone where it ended on one."""
         if name in self.at_bound:
             return self.value(name), self.value(name)
-        reach = (
-            float(student_t.ppf(0.5 + CONFIDENCE / 2.0, self.degrees_of_freedom)) * self.standard_error[name]
-        )
+        reach = float(stdtrit(self.degrees_of_freedom, 0.5 + CONFIDENCE / 2.0)) * self.standard_error[name]
         return self.value(name) - reach, self.value(name) + reach
 
 

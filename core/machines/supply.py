@@ -9,7 +9,6 @@ from math import ceil, pi
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from core.machines.base import Array
 
@@ -39,6 +38,8 @@ def supply(
     """Supply from measured Clarke voltages (2, n) [V] and their peak phasors (2,) at sample 0."""
     substeps = ceil(frequency_hz / (sample_rate_hz * COARSEST_STEP_CYCLES))
     if substeps > 1:
+        from scipy.interpolate import CubicSpline  # its import takes 0.1 s, and few records need it
+
         n = voltage_ab.shape[1]
         fine = np.arange((n - 1) * substeps + 1) / substeps
         voltage_ab = CubicSpline(np.arange(n), voltage_ab, axis=1)(fine)

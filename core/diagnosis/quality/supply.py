@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import decimate
 
 from core.diagnosis.assumed_supply import assumed_voltage
 from core.diagnosis.quality.finding import finding
@@ -13,6 +12,7 @@ from core.diagnosis.quality.samples import clipping, holding
 from core.diagnosis.verdict import QualityFinding
 from core.machines.base import Array
 from core.machines.parameters import Nameplate
+from core.signals.decimation import decimate
 from core.signals.errors import SignalError
 from core.signals.phasors import fundamental_frequency, fundamental_phasors
 from core.signals.sequence import PhaseSequence, SequencePhasors, sequence_phasors
@@ -225,7 +225,7 @@ def _frequency(voltage_ab: Array, rate: float, nameplate: Nameplate) -> float:
         factor = int(rate / nameplate.rated_frequency_Hz / SMOOTHED_RATE_CYCLES)
         if factor < 2:
             raise
-        return fundamental_frequency(decimate(voltage_ab, factor, ftype="fir", axis=1), rate / factor)
+        return fundamental_frequency(decimate(voltage_ab, factor), rate / factor)
 
 
 def _strongest_line(voltage_ab: Array) -> float:
