@@ -12,9 +12,9 @@ import tempfile
 import time
 from pathlib import Path
 
-from ied_sim.front.misbehaviour import Kind, Misbehaviour
+from ied_sim.misbehaviour import Kind, Misbehaviour
 from ied_sim.profiles.profile import shipped
-from ied_sim.scenario.scenario import RelayScenario
+from ied_sim.relay.configuration import RelayConfiguration
 from mms import Client, Report
 from tests.ied_sim.simulating import IED, Simulated, fetch, scenario_of, simulated, text
 
@@ -22,7 +22,7 @@ FAULTS = ("_ws.malformed", '_ws.expert.severity == "Error"')
 REWRITTEN = (Kind.PARTIAL_LISTING, Kind.WRONG_SIZE, Kind.EMPTY_RPTID)
 
 
-def use(served: Simulated, scenario: RelayScenario, client: Client, directory: Path) -> None:
+def use(served: Simulated, scenario: RelayConfiguration, client: Client, directory: Path) -> None:
     """Browse, read, take reports, operate, fetch files."""
     points, files = scenario.profile.points, scenario.profile.files
     for device in client.logical_devices():
@@ -45,7 +45,7 @@ def use(served: Simulated, scenario: RelayScenario, client: Client, directory: P
             fetch(client, files.folder, directory)
 
 
-def captured(scenario: RelayScenario, directory: Path) -> tuple[int, int, int]:
+def captured(scenario: RelayConfiguration, directory: Path) -> tuple[int, int, int]:
     """Frames, MMS frames and faulty frames of one use of a relay."""
     pcap = directory / "use.pcap"
     with simulated(directory / "relay", scenario) as served:

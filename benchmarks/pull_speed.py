@@ -10,8 +10,8 @@ from pathlib import Path
 
 from benchmarks.interoperability.peers import PeerError, linked
 from mms import Client, TlsConfiguration
-from mms.library import shared_library
-from mms.library_noise import keep_tls_notes_off_stderr
+from mms.binding.library import shared_library
+from mms.binding.stderr_filter import keep_tls_notes_off_stderr
 from service.collector.records.listing import understand
 from service.collector.records.pull import pull
 from service.recording_store.store import RecordingStore

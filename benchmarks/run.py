@@ -1,7 +1,7 @@
 """Side-by-side measurements, ratios in one run: python -m benchmarks.run (make bench)."""
 
 from benchmarks import diagnosis, machine_models, many_points, pull_speed, recordings, simulated_plant
-from mms.library_noise import keep_tls_notes_off_stderr
+from mms.binding.stderr_filter import keep_tls_notes_off_stderr
 
 SUBJECTS = (machine_models, diagnosis, many_points, recordings, simulated_plant, pull_speed)
 

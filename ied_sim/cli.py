@@ -15,10 +15,11 @@ import scl
 from ied_sim import warm_up
 from ied_sim.errors import ScenarioError, SimulatorError, TableError
 from ied_sim.profiles.profile import DEFAULT, read_profile, shipped
-from ied_sim.scenario.scenario import RelayScenario, healthy_reference, read_scenario
-from ied_sim.scenario.standalone import IED_NAME, standalone
+from ied_sim.profiles.standalone import IED_NAME, standalone
+from ied_sim.relay.configuration import RelayConfiguration
+from ied_sim.scenario.scenario import healthy_reference, read_scenario
 from ied_sim.simulator import Simulator
-from mms.library_noise import keep_tls_notes_off_stderr
+from mms.binding.stderr_filter import keep_tls_notes_off_stderr
 from scl import Address
 
 app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -100,7 +101,7 @@ def main() -> None:
     app()
 
 
-def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, RelayScenario]:
+def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, RelayConfiguration]:
     """A scenario for every IED of the file: that of the scenario file, or the healthy reference motor."""
     scenarios = {found.name: healthy_reference(found.name, profile) for found in document.ieds}
     given = {} if path is None else read_scenario(path, profile)
@@ -116,7 +117,7 @@ def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, 
 
 
 def _serve(
-    document: scl.Scl, names: list[str], scenarios: dict[str, RelayScenario], files: Path | None
+    document: scl.Scl, names: list[str], scenarios: dict[str, RelayConfiguration], files: Path | None
 ) -> None:
     # Waited for instead of handled, and blocked before any thread starts: all threads inherit it.
     signals = (signal.SIGTERM, signal.SIGINT)

@@ -9,8 +9,9 @@ from typing import Self
 
 from ied_sim.errors import SimulatorError
 from ied_sim.front import FrontDoors
+from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.relay import Relay
-from ied_sim.scenario.scenario import RelayScenario, healthy_reference
+from ied_sim.scenario.scenario import healthy_reference
 from mms import ServerPump, ServerStartFailed
 from scl import Address, Scl
 
@@ -27,7 +28,12 @@ class Simulator:
     """
 
     def __init__(
-        self, document: Scl, scenarios: Mapping[str, RelayScenario], *, files: Path, ieds: Sequence[str] = ()
+        self,
+        document: Scl,
+        scenarios: Mapping[str, RelayConfiguration],
+        *,
+        files: Path,
+        ieds: Sequence[str] = (),
     ) -> None:
         names = tuple(dict.fromkeys(ieds)) or tuple(ied.name for ied in document.ieds)
         self.addresses: dict[str, Address] = {name: document.address(name) for name in names}

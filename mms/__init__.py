@@ -6,9 +6,9 @@ ServerPump  one thread that drives many servers
 """
 
 from mms.client.client import Client, DataSetMember
-from mms.client.controls import AddCause, ControlModel
 from mms.client.files import FileEntry
 from mms.client.reports import Reason, Report, ReportMember
+from mms.control_model import AddCause, ControlModel
 from mms.errors import (
     AccessDenied,
     AssociationBroken,
@@ -35,10 +35,10 @@ from mms.errors import (
     ValueRefused,
 )
 from mms.references import FunctionalConstraint
+from mms.security.tls import TlsConfiguration, TlsVersion
 from mms.server.file_access import FileAnswer, FileOperation, FileRequest
 from mms.server.pump import ServerPump
 from mms.server.server import MOST_CONNECTIONS, ControlAction, Server
-from mms.tls import TlsConfiguration, TlsVersion
 from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Validity, Value
 
 __all__ = [

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from ied_sim.front.ber import Element, MalformedError, decode, element, encode, spans
-from ied_sim.front.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, Switchboard
 from ied_sim.profiles.profile import Files
 
 _SESSION = bytes([1, 0, 1, 0])

@@ -14,7 +14,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from core.recordings.comtrade_writer import DataFormat, Revision
 from ied_sim.errors import ProfileError
-from ied_sim.scenario.toml_errors import Table, first_error, read_table
+from ied_sim.toml_tables import Table, first_error, read_table
 from mms import MOST_CONNECTIONS
 
 SHIPPED = Path(__file__).parent

@@ -2,7 +2,7 @@
 
 import time
 
-from ied_sim.front.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, Switchboard
 
 
 class RelayClock:

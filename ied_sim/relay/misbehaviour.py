@@ -3,7 +3,7 @@
 import logging
 from queue import SimpleQueue
 
-from ied_sim.front.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, Switchboard
 from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.server import RelayServer

@@ -5,7 +5,7 @@ It looks at the metered currents every so often, not at samples: trips come up t
 
 from dataclasses import dataclass
 
-from ied_sim.relay.metering import Metering
+from ied_sim.monitoring.metering import Metering
 
 NEGATIVE_SEQUENCE_HEATING = 3.0
 """How much more a negative-sequence current heats than a positive one (NEMA MG-1, commonly 3 to 6)."""

@@ -8,13 +8,13 @@ import numpy as np
 from core.recordings import Recording
 from core.recordings.cev_writer import EventSummary
 from core.recordings.waveform import Digitals
-from ied_sim.front.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, Switchboard
+from ied_sim.monitoring.journal import Event, Journal
+from ied_sim.monitoring.metering import METERING_CYCLES, Metering, metered
+from ied_sim.monitoring.relay_word import BITS, RelayWord
 from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.event_files import FIRST_NUMBER, EventFiles
 from ied_sim.relay.event_recorder import Capture
-from ied_sim.relay.journal import Event, Journal
-from ied_sim.relay.metering import METERING_CYCLES, Metering, metered
-from ied_sim.relay.word import BITS, RelayWord
 
 WORDS_PER_CYCLE = 4
 TARGET_BITS = ("50P1T", "49T", "46UBT")

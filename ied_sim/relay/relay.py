@@ -7,24 +7,24 @@ from pathlib import Path
 
 from ied_sim.errors import SimulatorError
 from ied_sim.front import FrontDoors
-from ied_sim.front.misbehaviour import ON_THE_WIRE, Kind, Switchboard
+from ied_sim.misbehaviour import ON_THE_WIRE, Kind, Switchboard
+from ied_sim.monitoring.journal import Journal
+from ied_sim.monitoring.metering import Metering
+from ied_sim.monitoring.motor_watch import MotorWatch
+from ied_sim.monitoring.relay_word import RelayWord
 from ied_sim.motor.contactor import Closure
 from ied_sim.motor.plant import rated_current
 from ied_sim.relay.clock import RelayClock
+from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.event_files import EventFiles
 from ied_sim.relay.event_recorder import Capture, EventRecorder
-from ied_sim.relay.journal import Journal
-from ied_sim.relay.metering import Metering
 from ied_sim.relay.misbehaviour import RelayMisbehaviour
-from ied_sim.relay.motor_watch import MotorWatch
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.protection import Protection
 from ied_sim.relay.record_keeper import Identity, RecordKeeper
 from ied_sim.relay.server import RelayServer
 from ied_sim.relay.settings import relay_settings
 from ied_sim.relay.values import RelayValues
-from ied_sim.relay.word import RelayWord
-from ied_sim.scenario.scenario import RelayScenario
 from ied_sim.texts import Maker, Story, texts
 from mms import MOST_CONNECTIONS, AddCause, ControlAction, Server
 from scl import Address, Scl
@@ -56,7 +56,7 @@ class Relay:
         self,
         document: Scl,
         ied_name: str,
-        scenario: RelayScenario,
+        scenario: RelayConfiguration,
         *,
         address: Address,
         files: Path,

@@ -5,11 +5,11 @@ import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from ied_sim.front.loopback import ReservedAddress
+from ied_sim.front.reserved_address import ReservedAddress
 from ied_sim.profiles.profile import Profile
 from ied_sim.relay.clock import RelayClock
+from ied_sim.relay.configuration import Access
 from ied_sim.relay.points import RelayPoints
-from ied_sim.scenario.access import Access
 from mms import (
     GOOD,
     MOST_CONNECTIONS,

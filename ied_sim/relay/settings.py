@@ -1,10 +1,10 @@
 """The settings a relay shows: names after the SEL-710's, values from what is simulated."""
 
 from ied_sim.motor.plant import rated_current
-from ied_sim.scenario.scenario import RelayScenario
+from ied_sim.relay.configuration import RelayConfiguration
 
 
-def relay_settings(name: str, scenario: RelayScenario) -> tuple[tuple[str, str], ...]:
+def relay_settings(name: str, scenario: RelayConfiguration) -> tuple[tuple[str, str], ...]:
     """Name and value of each, in the order they are listed; "OFF" for what is not in use."""
     nameplate = scenario.plant.motor.nameplate
     recorder, protection = scenario.recorder, scenario.protection

@@ -5,7 +5,7 @@ from math import degrees
 
 import numpy as np
 
-from ied_sim.relay.metering import Metering, metered_values
+from ied_sim.monitoring.metering import Metering, metered_values
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.server import RelayServer
 from mms import Value

@@ -1,23 +1,15 @@
 """Who may connect to a simulated relay: anybody, or who has a pinned certificate, a password, or both."""
 
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ied_sim.scenario.toml_errors import Table
+from ied_sim.relay.configuration import Access
+from ied_sim.toml_tables import Table
 from mms import CredentialFileError, TlsConfiguration, TlsVersion
-from mms.credential_files import read_secret
-from mms.passwords import EXPECTED, is_password
-
-
-@dataclass(frozen=True, slots=True)
-class Access:
-    """What a client must show; nothing by default."""
-
-    tls: TlsConfiguration | None = None
-    passwords: tuple[str, ...] = field(default=(), repr=False)
+from mms.security.credential_files import read_secret
+from mms.security.passwords import EXPECTED, is_password
 
 
 class TlsTable(Table):

@@ -4,7 +4,6 @@ One TOML file, explained in docs/reference/scenario.md.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -12,14 +11,12 @@ from pydantic import ValidationError
 from core.machines.motor_file import MotorFileError, motor_from_table
 from core.machines.parameters import MachineParameters, Motor, Nameplate
 from ied_sim.errors import ScenarioError
-from ied_sim.front.misbehaviour import Misbehaviour
 from ied_sim.motor.contactor import Contactor
 from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant
 from ied_sim.motor.windings import highest_fault_resistance
 from ied_sim.profiles.profile import DEFAULT, Profile, Record, Triggers, read_profile
+from ied_sim.relay.configuration import Access, RelayConfiguration
 from ied_sim.relay.event_recorder import RecorderSettings
-from ied_sim.relay.protection import ProtectionSettings
-from ied_sim.scenario.access import Access
 from ied_sim.scenario.tables import (
     FileTable,
     LoadTable,
@@ -29,42 +26,11 @@ from ied_sim.scenario.tables import (
     SupplyTable,
     TriggersTable,
 )
-from ied_sim.scenario.toml_errors import first_error, read_table
+from ied_sim.toml_tables import first_error, read_table
 from mms import CredentialFileError
 
-LOAD_PROFILE_S = 60.0
 
-
-@dataclass(frozen=True, slots=True)
-class RelayScenario:
-    """What one relay protects, what kind of relay it is, how it records, what it does wrong, whom it lets in.
-
-    load_profile_s: time between rows of the load profile.
-    """
-
-    plant: MotorPlant
-    profile: Profile
-    recorder: RecorderSettings
-    triggers: Triggers = field(default_factory=Triggers)
-    protection: ProtectionSettings = field(default_factory=ProtectionSettings)
-    misbehaviour: tuple[Misbehaviour, ...] = ()
-    load_profile_s: float = LOAD_PROFILE_S
-    access: Access = field(default_factory=Access)
-
-    def truth(self, time_s: float) -> dict[str, float | int | None]:
-        """The true condition at a time since the start: mu_f (the equivalent level), theta_f, load_level."""
-        plant = self.plant
-        parameters = plant.motor.parameters
-        fault = None if plant.fault is None else plant.fault.at(time_s)
-        level = 0.0 if fault is None else fault.equivalent_level(parameters.stator_resistance_ohm)
-        return {
-            "mu_f": level,
-            "theta_f": fault.phase if fault is not None and level > 0 else None,
-            "load_level": plant.load.level_at(time_s),
-        }
-
-
-def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayScenario]:
+def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayConfiguration]:
     """Scenario of each IED by its name; `profile` for those that name none.
 
     Raises ScenarioError, ProfileError.
@@ -74,7 +40,7 @@ def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayScenario
         motors = FileTable.model_validate(table).motor
     except ValidationError as error:
         raise first_error(path, _place(table, error), error, ScenarioError) from error
-    scenarios: dict[str, RelayScenario] = {}
+    scenarios: dict[str, RelayConfiguration] = {}
     for motor in motors:
         if motor.ied in scenarios:
             raise ScenarioError(
@@ -84,14 +50,14 @@ def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayScenario
     return scenarios
 
 
-def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayScenario:
+def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayConfiguration:
     """A healthy 800 W motor (thesis Table 3.2) at half load: what a relay protects that no scenario names.
 
     Raises ProfileError where there is no such profile.
     """
     motor = _reference_motor(ied)
     kind = read_profile(profile)
-    return RelayScenario(
+    return RelayConfiguration(
         MotorPlant(
             motor=motor,
             supply=SupplyTable().supply(motor.nameplate),
@@ -134,7 +100,7 @@ def _motor(path: Path, section: MotorTable) -> Motor:
         ) from error
 
 
-def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> RelayScenario:
+def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> RelayConfiguration:
     where = f"[motor {section.ied}]"
     motor = _motor(path, section)
     course = None if section.fault is None else section.fault.course()
@@ -148,7 +114,7 @@ def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> Relay
                 found=f"{course.resistance_ohm:g}",
             )
     profile = _profile(path, section, profile_name)
-    return RelayScenario(
+    return RelayConfiguration(
         plant=MotorPlant(
             motor=motor,
             supply=section.supply.supply(motor.nameplate),

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from core.machines.parameters import Motor, Nameplate
-from ied_sim.front.misbehaviour import PARAMETERS, Kind, Misbehaviour
+from ied_sim.misbehaviour import PARAMETERS, Kind, Misbehaviour
 from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import rated_current
@@ -18,7 +18,7 @@ from ied_sim.motor.supply import Harmonic, Supply, SupplyEvent
 from ied_sim.motor.warming import Warming
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
 from ied_sim.scenario.access import AccessTable
-from ied_sim.scenario.toml_errors import Table
+from ied_sim.toml_tables import Table
 
 CURRENT_HEADROOM = 12
 """Full scale of the current channels over the rated current's peak: a start-up current must fit."""

@@ -1,6 +1,6 @@
 """HISTORY.TXT and CHISTORY.TXT: the stored event reports, newest first."""
 
-from ied_sim.texts.story import DATE_LABELS, Story
+from ied_sim.texts.snapshot import DATE_LABELS, Story
 
 
 def history(story: Story) -> bytes:

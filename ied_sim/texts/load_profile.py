@@ -1,7 +1,7 @@
 """LDP.TXT and CLDP.TXT: the load profile, what was metered every so often, oldest first."""
 
-from ied_sim.relay.journal import LoadRow
-from ied_sim.texts.story import DATE_LABELS, Story
+from ied_sim.monitoring.journal import LoadRow
+from ied_sim.texts.snapshot import DATE_LABELS, Story
 
 LABELS = ("IA_MAG", "IB_MAG", "IC_MAG", "UBI_PCT", "VAVE", "P", "Q", "PF", "FREQ", "TCU")
 

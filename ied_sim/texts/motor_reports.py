@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from ied_sim.relay.journal import NotedStart
-from ied_sim.texts.story import Story
+from ied_sim.monitoring.journal import NotedStart
+from ied_sim.texts.snapshot import Story
 
 
 def motor_starts(story: Story) -> bytes:

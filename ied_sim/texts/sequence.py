@@ -1,6 +1,6 @@
 """SER.TXT and CSER.TXT: the sequential events recorder, changes of the relay word, newest first."""
 
-from ied_sim.texts.story import DATE_LABELS, Story
+from ied_sim.texts.snapshot import DATE_LABELS, Story
 
 
 def sequence(story: Story) -> bytes:

@@ -7,14 +7,15 @@ from types import TracebackType
 from typing import Final, Self
 
 from mms import errors
+from mms.binding.value_conversion import decode
 from mms.client import controls
 from mms.client.connection import Connection
 from mms.client.data_sets import members_of
 from mms.client.files import FileEntry, Sink, download, list_files
 from mms.client.reports import Report, Subscriptions
 from mms.references import FunctionalConstraint, logical_device, object_reference
-from mms.tls import TlsConfiguration
-from mms.values import DataAccessError, Value, decode
+from mms.security.tls import TlsConfiguration
+from mms.values import DataAccessError, Value
 
 _DATA_OBJECT, _DATA_SET, _BUFFERED, _UNBUFFERED = range(4)  # the library's ACSIClass
 

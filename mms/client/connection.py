@@ -16,13 +16,13 @@ from enum import Enum
 from typing import Final, Protocol
 
 from mms import errors
-from mms.callbacks import guarded, inside_callback
+from mms.binding.callbacks import guarded, inside_callback
+from mms.binding.connection_deadline import between, limited, present
+from mms.binding.library import library
+from mms.binding.prototypes import ConnectionClosedHandler
 from mms.client.credentials import Credentials
 from mms.client.refusals import refused
-from mms.library import library
-from mms.prototypes import ConnectionClosedHandler
-from mms.time_limit import between, limited, present
-from mms.tls import TlsConfiguration
+from mms.security.tls import TlsConfiguration
 
 log: Final = logging.getLogger("mms")
 

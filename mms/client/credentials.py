@@ -2,8 +2,8 @@
 
 import ctypes
 
-from mms.passwords import ClientPassword
-from mms.tls import TlsConfiguration, TlsContext
+from mms.security.passwords import ClientPassword
+from mms.security.tls import TlsConfiguration, TlsContext
 
 
 class Credentials:

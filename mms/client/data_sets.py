@@ -9,8 +9,8 @@ import re
 from typing import Final
 
 from mms import errors
+from mms.binding.prototypes import VariableAccessSpecification
 from mms.client.connection import Connection
-from mms.prototypes import VariableAccessSpecification
 from mms.references import object_reference
 
 _ITEM = re.compile(r"([^$]+)\$([A-Z]{2})\$([^$]+(?:\$[^$]+)*)")

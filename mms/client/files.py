@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Final, Protocol
 
 from mms import errors
-from mms.callbacks import guarded
+from mms.binding.callbacks import guarded
+from mms.binding.prototypes import FileReadHandler
 from mms.client.connection import Connection
 from mms.client.pace import Pace
-from mms.prototypes import FileReadHandler
 
 log: Final = logging.getLogger("mms")
 

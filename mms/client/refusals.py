@@ -13,7 +13,7 @@ from enum import Enum
 from typing import Final
 
 from mms import errors
-from mms.tls import TLS_PORT, TlsContext, TlsVersion
+from mms.security.tls import TLS_PORT, TlsContext, TlsVersion
 
 _CONNECT_REQUEST: Final = bytes.fromhex("0300001611e00000000100c0010dc2020001c1020000")
 _TPKT, _TLS_ALERT, _TLS_HANDSHAKE = 3, 21, 22

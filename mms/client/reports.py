@@ -14,11 +14,12 @@ from enum import IntFlag
 from typing import Final
 
 from mms import errors
-from mms.callbacks import guarded
+from mms.binding.callbacks import guarded
+from mms.binding.prototypes import ReportHandler
+from mms.binding.value_conversion import decode
 from mms.client.connection import Connection
-from mms.prototypes import ReportHandler
 from mms.references import object_reference
-from mms.values import Value, decode
+from mms.values import Value
 
 log: Final = logging.getLogger("mms")
 

@@ -6,7 +6,7 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Final
 
-from mms.callbacks import log
+from mms.binding.callbacks import log
 
 
 class FileOperation(IntEnum):

@@ -6,9 +6,10 @@ import threading
 from enum import IntEnum
 from typing import Final
 
+from mms.binding.value_conversion import Mismatch, assign
 from mms.errors import ModelError
 from mms.server.model_text import checked
-from mms.values import Mismatch, Quality, Value, assign
+from mms.values import Quality, Value
 
 _REFERENCE_LIMIT: Final = 128
 _parser_lock: Final = threading.Lock()

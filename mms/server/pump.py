@@ -17,9 +17,7 @@ import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Final, Self
-
-from mms.server.server import Server
+from typing import Final, Protocol, Self
 
 log: Final = logging.getLogger("mms")
 
@@ -32,11 +30,29 @@ _SHORTEST_INTERVAL_S: Final = 0.05
 _INTERVAL_PER_SERVER_S: Final = 0.005
 
 
+class PumpedServer(Protocol):
+    """What the pump calls of a server; the server owns the C object and its lock."""
+
+    @property
+    def connections(self) -> int: ...
+
+    @property
+    def patience_s(self) -> float: ...
+
+    def listen(self) -> None: ...
+
+    def serve_ready(self) -> bool: ...
+
+    def take_turn(self) -> bool: ...
+
+    def close(self) -> None: ...
+
+
 @dataclass(slots=True)
 class _Looks:
     """When one server is looked at next [s, monotonic], and how long after the last look that is [s]."""
 
-    server: Server
+    server: PumpedServer
     due_s: float = 0.0
     interval_s: float = 0.0
     lonely: bool = True
@@ -46,7 +62,7 @@ class _Looks:
 class _Turns:
     """When one server's next turn is due [s, monotonic], and the interval that then follows [s]."""
 
-    server: Server
+    server: PumpedServer
     due_s: float = 0.0
     interval_s: float = _SHORTEST_INTERVAL_S
 
@@ -54,7 +70,7 @@ class _Turns:
 class ServerPump:
     """One thread that serves any number of servers; a context manager, which stops them."""
 
-    def __init__(self, servers: Iterable[Server]) -> None:
+    def __init__(self, servers: Iterable[PumpedServer]) -> None:
         self._servers = tuple(servers)
         self._looks = [_Looks(server) for server in self._servers]
         self._turns = [_Turns(server) for server in self._servers]

@@ -12,23 +12,22 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Final, Self
+from typing import Final, Self
 
-from mms.callbacks import guarded
-from mms.client.controls import AddCause, ControlModel
+from mms.binding.callbacks import guarded
+from mms.binding.connection_deadline import between, limited
+from mms.binding.library import library
+from mms.binding.prototypes import ControlHandler, FileAccessHandler, WaitForExecutionHandler
+from mms.binding.value_conversion import decode
+from mms.control_model import AddCause, ControlModel
 from mms.errors import ModelError, ServerStartFailed
-from mms.library import library
-from mms.passwords import authenticator
-from mms.prototypes import ControlHandler, FileAccessHandler, WaitForExecutionHandler
 from mms.references import FunctionalConstraint
+from mms.security.passwords import authenticator
+from mms.security.tls import TlsConfiguration, TlsContext
 from mms.server.file_access import FileAnswer, FileGuard, FileHook
 from mms.server.model import Model, Node
-from mms.time_limit import between, limited
-from mms.tls import TlsConfiguration, TlsContext
-from mms.values import Quality, Value, decode
-
-if TYPE_CHECKING:
-    from mms.server.pump import ServerPump
+from mms.server.pump import ServerPump
+from mms.values import Quality, Value
 
 _DENY: Final = 1  # AccessPolicy
 _FAILED, _OK = 0, 1  # ControlHandlerResult
@@ -167,8 +166,6 @@ class Server:
 
     def start(self) -> None:
         """Listen and serve on a thread of its own; ServerStartFailed if address and port cannot be had."""
-        from mms.server.pump import ServerPump
-
         pump = ServerPump([self])
         pump.start()
         self._pump = pump

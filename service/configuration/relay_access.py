@@ -13,8 +13,8 @@ from typing import Annotated, Final, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, SecretStr
 
 from mms import CredentialFileError, TlsConfiguration, TlsVersion
-from mms.credential_files import read_secret
-from mms.passwords import EXPECTED, is_password
+from mms.security.credential_files import read_secret
+from mms.security.passwords import EXPECTED, is_password
 
 AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
 

@@ -8,11 +8,12 @@ from pathlib import Path
 
 from core.recordings import Recording, read
 from ied_sim.errors import SimulatorError
-from ied_sim.front.misbehaviour import Misbehaviour
+from ied_sim.misbehaviour import Misbehaviour
+from ied_sim.profiles.standalone import standalone
+from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.event_recorder import RecorderSettings
 from ied_sim.relay.relay import Relay
-from ied_sim.scenario.scenario import RelayScenario, healthy_reference
-from ied_sim.scenario.standalone import standalone
+from ied_sim.scenario.scenario import healthy_reference
 from ied_sim.simulator import Simulator
 from mms import Client
 from scl import Address, Scl
@@ -47,7 +48,7 @@ class Simulated:
 
 
 @contextmanager
-def simulated(files: Path, scenario: RelayScenario) -> Iterator[Simulated]:
+def simulated(files: Path, scenario: RelayConfiguration) -> Iterator[Simulated]:
     """R1 of the scenario's profile on a free port; another one where somebody was faster."""
     for _ in range(5):
         document = standalone(scenario.profile, IED, Address("127.0.0.1", free_port()))
@@ -67,7 +68,7 @@ def simulated(files: Path, scenario: RelayScenario) -> Iterator[Simulated]:
 
 def scenario_of(
     profile: str, *misbehaviour: Misbehaviour, recorder: RecorderSettings = SHORT
-) -> RelayScenario:
+) -> RelayConfiguration:
     """A healthy motor behind a relay of this kind, with short records."""
     return replace(healthy_reference(IED, profile), recorder=recorder, misbehaviour=misbehaviour)
 

@@ -6,11 +6,11 @@ from pathlib import Path
 import pytest
 
 from ied_sim.errors import ScenarioError, SimulatorError
-from ied_sim.front.misbehaviour import Kind, Misbehaviour
+from ied_sim.misbehaviour import Kind, Misbehaviour
+from ied_sim.profiles.standalone import standalone
+from ied_sim.relay.configuration import Access
 from ied_sim.relay.relay import Relay
-from ied_sim.scenario.access import Access
 from ied_sim.scenario.scenario import read_scenario
-from ied_sim.scenario.standalone import standalone
 from mms import AssociationRejected, Client, MmsError, TlsRequired
 from scl import Address
 from tests.ied_sim.serving import free_port, wait_until

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from ied_sim.front.misbehaviour import PARAMETERS, Kind
+from ied_sim.misbehaviour import PARAMETERS, Kind
 from ied_sim.profiles.profile import Files, Points, Profile, Record, Triggers, read_profile, shipped
 from ied_sim.scenario.scenario import read_scenario
-from ied_sim.texts.making import MAKERS
+from ied_sim.texts.catalogue import MAKERS
 
 PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "simulator.md").read_text(encoding="utf-8")
 

@@ -10,7 +10,7 @@ import pytest
 
 from core.recordings import read
 from ied_sim.errors import SimulatorError
-from ied_sim.front.misbehaviour import PARAMETERS, Kind, Misbehaviour
+from ied_sim.misbehaviour import PARAMETERS, Kind, Misbehaviour
 from mms import (
     AddCause,
     Client,

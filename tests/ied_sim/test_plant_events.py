@@ -8,14 +8,14 @@ import pytest
 from numpy.typing import NDArray
 
 from core.machines.parameters import Connection
+from ied_sim.monitoring.metering import meter
+from ied_sim.monitoring.motor_watch import MotorWatch
 from ied_sim.motor.contactor import Contactor
 from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import MotorPlant, rated_current
 from ied_sim.motor.supply import Supply, SupplyEvent
 from ied_sim.motor.warming import COPPER_PER_K, Warming
 from ied_sim.motor.windings import winding_circuit
-from ied_sim.relay.metering import meter
-from ied_sim.relay.motor_watch import MotorWatch
 from tests.ied_sim.motors import REFERENCE, SMALL, plant
 
 RATE_HZ = 2_000.0

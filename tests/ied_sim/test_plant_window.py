@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from ied_sim.monitoring.metering import meter
 from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
 from ied_sim.motor.load import Load
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Harmonic, Supply
-from ied_sim.relay.metering import meter
 from tests.ied_sim.motors import DELTA, REFERENCE, plant, short
 
 RATE_HZ = 10_000.0

@@ -10,7 +10,7 @@ import pytest
 
 from ied_sim.errors import ProfileError, SimulatorError
 from ied_sim.profiles.profile import Profile, RecordFormat, Triggers, read_profile, shipped
-from ied_sim.scenario.scenario import RelayScenario
+from ied_sim.relay.configuration import RelayConfiguration
 from mms import Client, FunctionalConstraint, MmsError, NotFound, Report, Value
 from scl import Scl
 from tests.ied_sim.serving import wait_until
@@ -211,8 +211,8 @@ def test_every_format_is_written_and_read(written: str, suffixes: list[str], tmp
     assert recording.repairs == ()
 
 
-def replaced(scenario: object, profile: object) -> "RelayScenario":
-    assert isinstance(scenario, RelayScenario)
+def replaced(scenario: object, profile: object) -> "RelayConfiguration":
+    assert isinstance(scenario, RelayConfiguration)
     assert isinstance(profile, Profile)
     return replace(scenario, profile=profile)
 

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ied_sim.front.ber import Element, decode, encode
-from ied_sim.front.misbehaviour import Switchboard
 from ied_sim.front.rewriting import Rewriter
+from ied_sim.misbehaviour import Switchboard
 from ied_sim.profiles.profile import Files
 
 SESSION = bytes([1, 0, 1, 0])

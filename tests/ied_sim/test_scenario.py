@@ -10,10 +10,10 @@ import pytest
 import scl
 from core.machines.parameters import Connection
 from ied_sim.errors import ScenarioError
-from ied_sim.front.misbehaviour import Kind
+from ied_sim.misbehaviour import Kind
 from ied_sim.scenario import tables as scenario_tables
 from ied_sim.scenario.scenario import healthy_reference, read_scenario
-from ied_sim.scenario.toml_errors import Table
+from ied_sim.toml_tables import Table
 
 REPOSITORY = Path(__file__).parents[2]
 DEMO = REPOSITORY / "service" / "demo" / "scenario.toml"

@@ -11,14 +11,14 @@ from core.recordings.compressed_ascii import rows
 from core.recordings.repairs import Repairs
 from ied_sim.motor.contactor import Contactor
 from ied_sim.profiles.profile import Triggers
+from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
-from ied_sim.scenario.scenario import RelayScenario
 from mms import Client, FunctionalConstraint
 from tests.ied_sim.serving import wait_until
 from tests.ied_sim.simulating import IED, Simulated, fetch, names, recordings, scenario_of, simulated, text
 
 
-def stopped(scenario: RelayScenario) -> RelayScenario:
+def stopped(scenario: RelayConfiguration) -> RelayConfiguration:
     """The same with a motor that stands at first."""
     return replace(scenario, plant=replace(scenario.plant, contactor=Contactor(open_at_first=True)))
 

@@ -20,6 +20,7 @@ from mms import (
     Timeout,
 )
 from mms.client import controls
+from mms.control_model import words_of
 from tests.mms.relays import LOOPBACK
 
 OBJECT = "T1CON/RBGGIO1.SPCSO0{}"
@@ -152,5 +153,5 @@ def test_handlers_are_for_controllable_objects_only(relay: Server) -> None:
 
 
 def test_an_unknown_add_cause_still_has_words() -> None:
-    assert controls.words_of(99) == "add cause 99"
-    assert controls.words_of(8) == "blocked by mode"
+    assert words_of(99) == "add cause 99"
+    assert words_of(8) == "blocked by mode"

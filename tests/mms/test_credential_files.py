@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mms import Client, CredentialFileError, TlsConfiguration
-from mms.credential_files import read_certificates, read_secret
+from mms.security.credential_files import read_certificates, read_secret
 from tests.mms.pki import Pki
 from tests.mms.relays import LOOPBACK, free_port
 

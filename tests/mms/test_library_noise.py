@@ -7,7 +7,7 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mms.library_noise import other_lines
+from mms.binding.stderr_filter import other_lines
 from tests.mms.pki import Pki
 from tests.mms.relays import RelayProcess
 
@@ -15,7 +15,7 @@ SCRIPT = """
 import os, sys
 from pathlib import Path
 from mms import Client, TlsConfiguration
-from mms.library_noise import keep_tls_notes_off_stderr
+from mms.binding.stderr_filter import keep_tls_notes_off_stderr
 keep_tls_notes_off_stderr()
 folder = Path(sys.argv[2])
 names = ("client.pem", "client.key", "relay.pem", "authority.pem")

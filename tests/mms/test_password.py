@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mms import AssociationRejected, Client, FunctionalConstraint, Server, TlsConfiguration
-from mms.passwords import LONGEST, is_password
+from mms.security.passwords import LONGEST, is_password
 from tests.mms.pki import Pki
 from tests.mms.relays import LOOPBACK, start_relay
 

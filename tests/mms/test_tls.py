@@ -26,9 +26,9 @@ from mms import (
     TlsRequired,
     TlsVersion,
 )
-from mms.credential_files import described
-from mms.library import library
-from mms.tls import TlsContext
+from mms.binding.library import library
+from mms.security.credential_files import described
+from mms.security.tls import TlsContext
 from tests.certificates import identity
 from tests.mms.pki import Pki
 from tests.mms.relays import LOOPBACK, RelayProcess, eventually, mute_server, start_relay
@@ -172,7 +172,7 @@ def test_a_relay_whose_certificate_is_out_of_time_is_not_trusted(
     of_client = replace(pki.of_client(), pinned=(outdated.certificate_file,))
     with pytest.raises(ValueError, match="valid now"):
         of_relay.check()
-    monkeypatch.setattr("mms.credential_files._require_valid_now", lambda *_: None)
+    monkeypatch.setattr("mms.security.credential_files._require_valid_now", lambda *_: None)
     with start_relay(tls=of_relay) as relay, pytest.raises(RelayNotTrusted, match=reason):
         connect(relay, of_client)
 

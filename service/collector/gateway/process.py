@@ -13,7 +13,7 @@ from typing import BinaryIO, NoReturn
 
 import structlog
 
-from mms.library_noise import keep_tls_notes_off_stderr
+from mms.binding.stderr_filter import keep_tls_notes_off_stderr
 from service.collector.gateway.gateway import Gateway, Identity
 from service.collector.session.visit_marks import visits_of
 from service.configuration.settings import Settings

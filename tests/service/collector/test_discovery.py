@@ -9,7 +9,7 @@ import pytest
 
 import scl
 from ied_sim.profiles.profile import read_profile
-from ied_sim.scenario.standalone import standalone
+from ied_sim.profiles.standalone import standalone
 from mms import Client
 from scl import Address
 from scl.data_model import Ied

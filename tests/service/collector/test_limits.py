@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from mms.prototypes import PROTOTYPES
+from mms.binding.prototypes import PROTOTYPES
 from service.collector.records.allowance import BLOCK_BYTES, DAY_NS, DailyAllowance
 from service.collector.session.alarms import AND_MORE, RelayAlarms
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from ied_sim.scenario.access import Access
+from ied_sim.relay.configuration import Access
 from mms import TlsConfiguration
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
 from service.storage.states import LinkState, RecordingRequestState

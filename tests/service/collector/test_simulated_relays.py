@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.recordings import Recording, read
-from ied_sim.front.misbehaviour import Kind, Misbehaviour
+from ied_sim.misbehaviour import Kind, Misbehaviour
 from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import rated_current
 from ied_sim.profiles.profile import Triggers

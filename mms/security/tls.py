@@ -17,10 +17,16 @@ from typing import Final
 from cryptography import x509
 from cryptography.hazmat.primitives import serialization
 
-from mms.callbacks import guarded
-from mms.credential_files import PrivateKey, described, is_self_signed, read_certificates, read_identity
+from mms.binding.callbacks import guarded
+from mms.binding.prototypes import TlsEventHandler
 from mms.errors import CredentialFileError
-from mms.prototypes import TlsEventHandler
+from mms.security.credential_files import (
+    PrivateKey,
+    described,
+    is_self_signed,
+    read_certificates,
+    read_identity,
+)
 
 TLS_PORT: Final = 3782
 """Where servers speak TLS by default (IEC 62351-3)."""

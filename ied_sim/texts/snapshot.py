@@ -6,8 +6,8 @@ from datetime import UTC, datetime, timedelta
 
 from core.machines.parameters import Motor
 from core.recordings.compressed_ascii import closed
-from ied_sim.relay.journal import Journal
-from ied_sim.relay.word import RelayWord
+from ied_sim.monitoring.journal import Journal
+from ied_sim.monitoring.relay_word import RelayWord
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 

@@ -9,7 +9,7 @@ import functools
 import importlib.util
 from pathlib import Path
 
-from mms.prototypes import PROTOTYPES
+from mms.binding.prototypes import PROTOTYPES
 
 _WHEEL = "pyiec61850-ng"
 

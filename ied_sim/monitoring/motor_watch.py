@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ied_sim.monitoring.metering import METERING_CYCLES, Metering, meter, metered
 from ied_sim.motor.contactor import Closure
 from ied_sim.motor.plant import DISTURBANCE_MEMORY_S, METERING_STEP_RATE_HZ, START_MEMORY_S, MotorPlant
-from ied_sim.relay.metering import METERING_CYCLES, Metering, meter, metered
 
 TRACE_RATE_HZ = 2_000.0
 

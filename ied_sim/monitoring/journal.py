@@ -4,8 +4,8 @@ import threading
 from collections import Counter, deque
 from dataclasses import dataclass, field
 
-from ied_sim.relay.metering import Metering
-from ied_sim.relay.motor_watch import Start
+from ied_sim.monitoring.metering import Metering
+from ied_sim.monitoring.motor_watch import Start
 
 STARTS_KEPT = 5
 LOAD_ROWS_KEPT = 1000

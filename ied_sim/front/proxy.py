@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 
-from ied_sim.front.loopback import ReservedAddress
-from ied_sim.front.misbehaviour import Kind, Switchboard
+from ied_sim.front.reserved_address import ReservedAddress
 from ied_sim.front.rewriting import Rewriter
 from ied_sim.front.transport import CONNECT_CONFIRM, DATA, Message, read_message, unit_size, units_of
+from ied_sim.misbehaviour import Kind, Switchboard
 from ied_sim.profiles.profile import Files
 from mms import MOST_CONNECTIONS
 from scl import Address

@@ -8,8 +8,8 @@ import hmac
 from collections.abc import Iterable
 from typing import Final
 
-from mms.callbacks import guarded
-from mms.prototypes import Authenticator
+from mms.binding.callbacks import guarded
+from mms.binding.prototypes import Authenticator
 
 _PASSWORD: Final = 1  # AcseAuthenticationMechanism
 _NOBODY: Final = False

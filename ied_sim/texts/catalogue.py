@@ -5,7 +5,7 @@ from typing import Final
 
 from ied_sim.profiles.profile import Text
 from ied_sim.texts import history, load_profile, motor_reports, sequence
-from ied_sim.texts.story import Story
+from ied_sim.texts.snapshot import Story
 
 FOLDER: Final = "REPORTS"
 SETTINGS_FOLDER: Final = "SETTINGS"

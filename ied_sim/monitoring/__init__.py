@@ -1,0 +1,1 @@
+"""What a relay measures of its motor and remembers: phasors, starts, events, the relay word."""

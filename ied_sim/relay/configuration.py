@@ -1,0 +1,49 @@
+"""What one simulated relay is given: its motor, kind and settings, what it does wrong, whom it lets in."""
+
+from dataclasses import dataclass, field
+
+from ied_sim.misbehaviour import Misbehaviour
+from ied_sim.motor.plant import MotorPlant
+from ied_sim.profiles.profile import Profile, Triggers
+from ied_sim.relay.event_recorder import RecorderSettings
+from ied_sim.relay.protection import ProtectionSettings
+from mms import TlsConfiguration
+
+LOAD_PROFILE_S = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class Access:
+    """What a client must show; nothing by default."""
+
+    tls: TlsConfiguration | None = None
+    passwords: tuple[str, ...] = field(default=(), repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class RelayConfiguration:
+    """What one relay protects, what kind of relay it is, how it records, what it does wrong, whom it lets in.
+
+    load_profile_s: time between rows of the load profile.
+    """
+
+    plant: MotorPlant
+    profile: Profile
+    recorder: RecorderSettings
+    triggers: Triggers = field(default_factory=Triggers)
+    protection: ProtectionSettings = field(default_factory=ProtectionSettings)
+    misbehaviour: tuple[Misbehaviour, ...] = ()
+    load_profile_s: float = LOAD_PROFILE_S
+    access: Access = field(default_factory=Access)
+
+    def truth(self, time_s: float) -> dict[str, float | int | None]:
+        """The true condition at a time since the start: mu_f (the equivalent level), theta_f, load_level."""
+        plant = self.plant
+        parameters = plant.motor.parameters
+        fault = None if plant.fault is None else plant.fault.at(time_s)
+        level = 0.0 if fault is None else fault.equivalent_level(parameters.stator_resistance_ohm)
+        return {
+            "mu_f": level,
+            "theta_f": fault.phase if fault is not None and level > 0 else None,
+            "load_level": plant.load.level_at(time_s),
+        }

@@ -1,0 +1,1 @@
+"""Who may connect: TLS certificates and passwords."""
