@@ -13,8 +13,8 @@ from core.commissioning.prior import PARAMETERS, Prior
 from core.commissioning.result import Estimate, StartFound
 from core.commissioning.start import Start
 from core.commissioning.unknowns import HIGHEST_LOAD, LOWEST_LOAD
-from core.diagnosis.quality import circle_diagram
 from core.machines.parameters import Motor
+from core.quality import circle_diagram
 
 USUAL_PULL_OUT, POSSIBLE_PULL_OUT = (2.0, 5.0), (0.8, 10.0)
 """Pull-out over rated torque. IEC 60034-1 asks for 1.6 at least; catalogues of cage motors have 2 to 4."""

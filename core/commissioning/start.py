@@ -14,14 +14,14 @@ import numpy as np
 from core.commissioning.errors import CommissioningError
 from core.commissioning.onset import current_onset, quiet_offset, voltage_onset
 from core.commissioning.wiring import check_wiring
-from core.diagnosis.case import winding_frame
-from core.diagnosis.quality import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE, rated_current_A, sampled_well
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
 from core.machines.parameters import ChannelNames, Connection, Nameplate
 from core.machines.playback import DELAY_MARGIN_COLUMNS
 from core.machines.starting import StartPlayback
 from core.machines.supply import Supply, supply
+from core.machines.winding_frame import to_winding_frame
+from core.quality import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE, rated_current_A, sampled_well
 from core.recordings import Recording
 from core.signals.clarke import clarke
 from core.signals.decimation import decimate
@@ -185,7 +185,7 @@ def start_of(
     # No busbar has a constant part: what the channels show of one would magnetise the model.
     whole = int(_whole_cycles(measured.voltage_ab.shape[1] - live, rate / frequency))
     voltage_ab = measured.voltage_ab - measured.voltage_ab[:, -whole:].mean(axis=1, keepdims=True)
-    current_ab, voltage_ab = winding_frame(clarke(current_abc), voltage_ab, sequence, nameplate.connection)
+    current_ab, voltage_ab = to_winding_frame(clarke(current_abc), voltage_ab, sequence, nameplate.connection)
     return _framed(
         source, nameplate, current_ab, voltage_ab, rate, frequency, sequence, onset, live, hint, span_s
     )

@@ -11,8 +11,8 @@ from math import ceil
 
 from core.commissioning.errors import CommissioningError
 from core.commissioning.prior import prior_of
-from core.diagnosis.quality import wired_well
 from core.machines.parameters import Motor, Nameplate
+from core.quality import wired_well
 from core.signals.terminals import Terminals
 
 INRUSH_CYCLES = 1.0

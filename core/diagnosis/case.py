@@ -1,13 +1,11 @@
 """One recording of one motor, brought into the form every stage works on.
 
-Stages see winding quantities in a positive-sequence world: a delta is turned into its windings, and a supply
-of sequence a-c-b is mirrored, so that rotation, slip and load always count positive. The winding a stage
-names is turned back into the terminals' labels on the way out.
+Stages see winding quantities in a positive-sequence supply (core.machines.winding_frame). The winding that a
+stage names is turned back into the terminals' labels on the way out.
 """
 
 from dataclasses import dataclass, replace
-from math import pi, sqrt
-from typing import Literal
+from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +14,7 @@ from core.machines.base import Array
 from core.machines.parameters import Connection, Motor
 from core.machines.playback import Window, window_of_record
 from core.machines.supply import Supply, supply
+from core.machines.winding_frame import Winding, terminal_winding, to_winding_frame
 from core.signals.clarke import clarke
 from core.signals.decimation import decimate
 from core.signals.phasors import fundamental_phasors
@@ -25,15 +24,6 @@ LONGEST_WINDOW_S, LONGEST_RECORD_S = 1.0, 1.2
 """What is compared, and what is looked at: with it the cycles before and behind that delays reach to."""
 FEWEST_SAMPLES_A_CYCLE = 40
 """Of a thinned record: up to the 13th harmonic its shape is kept."""
-Winding = Literal[0, 1, 2]
-
-_TURNED: dict[tuple[Connection, PhaseSequence], tuple[Winding, Winding, Winding]] = {
-    (Connection.STAR, PhaseSequence.ABC): (0, 1, 2),
-    (Connection.DELTA, PhaseSequence.ABC): (0, 1, 2),
-    # Mirroring swaps terminals b and c: in delta the windings a-b and c-a change places.
-    (Connection.STAR, PhaseSequence.ACB): (0, 2, 1),
-    (Connection.DELTA, PhaseSequence.ACB): (2, 1, 0),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +56,7 @@ class Case:
 
     def terminal_winding(self, winding: int) -> Winding:
         """The winding as the terminals label it."""
-        return _TURNED[self.motor.nameplate.connection, self.sequence][winding]
+        return terminal_winding(winding, self.sequence, self.motor.nameplate.connection)
 
     def space_vector(self, x_ab: Array) -> NDArray[np.complex128]:
         """x_alpha + j x_beta over the compared samples, from values over the window, shape (2, window)."""
@@ -83,7 +73,7 @@ def case_of(
     sequence: PhaseSequence,
 ) -> Case:
     """Winding quantities in a positive-sequence world; inputs as measured at the terminals."""
-    current_ab, voltage_ab = winding_frame(
+    current_ab, voltage_ab = to_winding_frame(
         clarke(current_abc), voltage_ab, sequence, motor.nameplate.connection
     )
     phasor = sqrt(2.0) * fundamental_phasors(voltage_ab, frequency_hz, sample_rate_hz)
@@ -97,20 +87,6 @@ def case_of(
         sequence=sequence,
         window=window_of_record(current_ab.shape[1], sample_rate_hz, frequency_hz, LONGEST_WINDOW_S),
     )
-
-
-def winding_frame(
-    current_ab: Array, voltage_ab: Array, sequence: PhaseSequence, connection: Connection
-) -> tuple[Array, Array]:
-    """Currents and voltages of the windings, positive sequence, from those of the terminals, all (2, n)."""
-    if sequence is PhaseSequence.ACB:
-        mirror = np.array([[1.0], [-1.0]])
-        current_ab, voltage_ab = mirror * current_ab, mirror * voltage_ab
-    if connection is Connection.DELTA:
-        # v_ab = v_a - v_b and i_a = i_ab - i_ca turn and stretch the space vectors by sqrt 3 and 30 degrees.
-        ahead = _rotation(pi / 6.0)
-        current_ab, voltage_ab = ahead @ current_ab / sqrt(3.0), ahead @ voltage_ab * sqrt(3.0)
-    return current_ab, voltage_ab
 
 
 def thinned(case: Case) -> Case:
@@ -133,7 +109,3 @@ def thinned(case: Case) -> Case:
         sample_rate_hz=rate,
         window=window_of_record(current_ab.shape[1], rate, case.frequency_hz, LONGEST_WINDOW_S),
     )
-
-
-def _rotation(angle: float) -> Array:
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])

@@ -2,7 +2,6 @@
 
 from core.diagnosis.case import Case
 from core.diagnosis.hypotheses import Explanation, feigned, is_explained
-from core.diagnosis.quality.finding import finding
 from core.diagnosis.refinement import (
     CHANNEL_RATIO,
     FAULT_LEVEL,
@@ -12,7 +11,8 @@ from core.diagnosis.refinement import (
     Fit,
 )
 from core.diagnosis.tolerance import PARAMETERS, Systematic
-from core.diagnosis.verdict import QualityFinding, Verdict
+from core.diagnosis.verdict import Verdict
+from core.quality.finding import QualityFinding, finding
 
 PHASES = ("a", "b", "c")
 USUAL_OFFSET_CYCLES = 1 / 80

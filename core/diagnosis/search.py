@@ -8,6 +8,7 @@ from scipy.optimize import OptimizeResult
 
 from core.diagnosis.case import Case, thinned
 from core.diagnosis.errors import DiagnosisError
+from core.diagnosis.methods import Method
 from core.machines.base import Array, StatorModel
 from core.machines.candidates import Candidates
 from core.machines.playback import Playback
@@ -162,13 +163,12 @@ def _pattern_search_lhs(objective: Objective) -> OptimizeResult:
 
 
 METHODS: dict[str, Callable[[Objective], OptimizeResult]] = {
-    "hybrid": _hybrid,
-    "hcpa": _hcpa,
-    "genetic": _genetic,
-    "pattern-search": _pattern_search,
-    "pattern-search-lhs": _pattern_search_lhs,
+    Method.HYBRID: _hybrid,
+    Method.HCPA: _hcpa,
+    Method.GENETIC: _genetic,
+    Method.PATTERN_SEARCH: _pattern_search,
+    Method.PATTERN_SEARCH_LHS: _pattern_search_lhs,
 }
-DEFAULT_METHOD = "hybrid"
 
 
 def _best(result: OptimizeResult, winding: int, cycle: float) -> Candidates:

@@ -6,27 +6,29 @@ from time import perf_counter
 
 import numpy as np
 
-from core.diagnosis.assumed_supply import SUPPLY_UNBALANCE
 from core.diagnosis.baseline import Baseline, baseline_of, standing
 from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.hypotheses import explain, is_explained
 from core.diagnosis.indicators import indicators
 from core.diagnosis.judgement import identified, judge
-from core.diagnosis.quality import examine
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Model
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
-from core.diagnosis.search import DEFAULT_METHOD, METHODS, search
+from core.diagnosis.search import METHODS, search
 from core.diagnosis.tolerance import systematic
-from core.diagnosis.verdict import Diagnosis, QualityFinding, Verdict
+from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.base import StatorModel
 from core.machines.parameters import Motor
 from core.machines.playback import Playback, electrical_to_rpm
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
+from core.quality import examine
+from core.quality.assumed_supply import SUPPLY_UNBALANCE
+from core.quality.finding import QualityFinding
 from core.recordings import Quantity, Recording, RecordingError
 from core.signals.terminals import terminals
 
-MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
+MODELS: dict[str, StatorModel] = {Model(model.name): model for model in (SplitWinding(), ShortedWinding())}
 
 
 def diagnose(
@@ -34,7 +36,7 @@ def diagnose(
     motor: Motor,
     *,
     method: str = DEFAULT_METHOD,
-    model: str = "split-winding",
+    model: str = DEFAULT_MODEL,
     baseline: Baseline | None = None,
     currents_only: bool = False,
 ) -> Diagnosis:
@@ -93,8 +95,8 @@ def diagnose(
         compute_seconds=perf_counter() - begun,
         quality=tuple(quality),
         reasons=tuple(reasons),
-        model=model,
-        method=method,
+        model=str(model),
+        method=str(method),
         load_level_ci95=running.interval(LOAD_LEVEL),
         speed_rpm=_speed_rpm(case, playback, running),
         detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),
@@ -182,8 +184,8 @@ def _refused(
         compute_seconds=seconds,
         quality=tuple(quality),
         reasons=tuple(f"{finding.name}: {finding.message}" for finding in quality if not finding.passed),
-        model=model,
-        method=method,
+        model=str(model),
+        method=str(method),
         currents_only=currents_only,
     )
 

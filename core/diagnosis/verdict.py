@@ -4,34 +4,14 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Literal
 
+from core.quality.finding import QualityFinding
+
 
 class Verdict(StrEnum):
     HEALTHY = "healthy"
     WATCH = "watch"
     FAULT = "fault"
     UNDIAGNOSABLE = "undiagnosable"
-
-
-@dataclass(frozen=True, slots=True)
-class QualityFinding:
-    """One check of the quality gate: its name, the figure it measured, its limit and what that means."""
-
-    name: str
-    value: float
-    limit: float
-    unit: str
-    passed: bool
-    message: str
-
-    def as_dict(self) -> dict[str, str | float | bool]:
-        return {
-            "name": self.name,
-            "value": self.value,
-            "limit": self.limit,
-            "unit": self.unit,
-            "passed": self.passed,
-            "message": self.message,
-        }
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,8 @@ from uuid import UUID
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from core.diagnosis.search import DEFAULT_METHOD, METHODS
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
+from core.diagnosis.search import METHODS
 from core.diagnosis.stator import MODELS
 from core.diagnosis.verdict import Verdict
 from core.recordings import Quantity
@@ -197,7 +198,7 @@ class DiagnosisRequest(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     method: Method = DEFAULT_METHOD
-    model: Model = "split-winding"
+    model: Model = DEFAULT_MODEL
 
 
 class Health(Document):

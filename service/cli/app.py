@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, one_line, print_failure
 
 app = typer.Typer(
@@ -27,23 +28,6 @@ INTERRUPTED = 130
 """What Typer makes of Ctrl-C."""
 
 DEFAULT_URL = "http://127.0.0.1:8710"
-
-
-class Method(StrEnum):
-    """How the fault is searched."""
-
-    HYBRID = "hybrid"
-    HCPA = "hcpa"
-    GENETIC = "genetic"
-    PATTERN_SEARCH = "pattern-search"
-    PATTERN_SEARCH_LHS = "pattern-search-lhs"
-
-
-class Model(StrEnum):
-    """How shorted turns are modelled."""
-
-    SPLIT_WINDING = "split-winding"
-    SHORTED_WINDING = "shorted-winding"
 
 
 class Load(StrEnum):
@@ -145,8 +129,8 @@ def diagnose(
             metavar="MOTOR.toml", help="The motor (default: RECORD's name with .toml, or motor.toml)."
         ),
     ] = None,
-    method: Method = Method.HYBRID,
-    model: Model = Model.SPLIT_WINDING,
+    method: Method = DEFAULT_METHOD,
+    model: Model = DEFAULT_MODEL,
     baseline: Annotated[
         list[Path] | None,
         typer.Option(

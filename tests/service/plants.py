@@ -1,7 +1,8 @@
 """A small plant and results for the tests of the service."""
 
-from core.diagnosis.verdict import Diagnosis, QualityFinding, Verdict
+from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.parameters import MachineParameters, Motor, Nameplate
+from core.quality.finding import QualityFinding
 from service.plant import Plant, PlantMotor, Relay, Site
 
 SECOND_NS = 1_000_000_000

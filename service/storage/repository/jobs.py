@@ -5,6 +5,7 @@ import uuid
 from sqlalchemy import func, or_, select, update
 from sqlalchemy.orm import Session
 
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis
 from service.storage.errors import StateConflictError
 from service.storage.models import DiagnosisRow, JobRow, RecordingRow
@@ -12,7 +13,7 @@ from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, Pag
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
 from service.storage.repository.recording_requests import diagnose_rows, fail_rows
-from service.storage.repository.recordings import DEFAULT_METHOD, DEFAULT_MODEL, new_job
+from service.storage.repository.recordings import new_job
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingState
 

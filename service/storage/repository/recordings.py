@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from sqlalchemy import ColumnElement, delete, func, select
 from sqlalchemy.orm import Session
 
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from service.recording_store.store import StoredRecording
 from service.storage.models import (
     IedRow,
@@ -21,9 +22,6 @@ from service.storage.repository.clocks import give_clock
 from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_row, fail_rows, fetch_row
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingSource, RecordingState
-
-DEFAULT_METHOD = "hybrid"
-DEFAULT_MODEL = "split-winding"
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.stator import diagnose, learn_baseline
+from core.diagnosis.methods import Method, Model
+from core.diagnosis.search import METHODS
+from core.diagnosis.stator import MODELS, diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.candidates import Candidates
 from core.machines.parameters import Connection, Motor
@@ -345,3 +347,8 @@ def test_a_diagnosis_is_repeatable() -> None:
 
     record = healthy_record()
     assert figures(diagnose(record, REFERENCE)) == figures(diagnose(record, REFERENCE))
+
+
+def test_every_named_method_and_model_can_be_used() -> None:
+    assert set(METHODS) == set(Method)
+    assert set(MODELS) == set(Model)

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.diagnosis.verdict import QualityFinding
 from core.machines.motor_file_writer import write_motor
+from core.quality.finding import QualityFinding
 from core.recordings import comtrade
 from service.cli import main
 from service.cli.diagnose import _table

@@ -5,12 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from core.diagnosis.quality.currents import Currents
-from core.diagnosis.quality.finding import finding
-from core.diagnosis.quality.machine import CircleDiagram
-from core.diagnosis.quality.supply import Feed
-from core.diagnosis.verdict import QualityFinding
 from core.machines.base import Array
+from core.quality.circle_diagram import CircleDiagram
+from core.quality.currents import Currents
+from core.quality.finding import QualityFinding, finding
+from core.quality.supply import Feed
 from core.signals.clarke import clarke
 from core.signals.sequence import PhaseSequence, SequencePhasors
 from core.signals.terminals import Terminals

@@ -3,14 +3,13 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from core.diagnosis.quality import currents, samples, supply
-from core.diagnosis.quality.finding import all_passed
-from core.diagnosis.quality.machine import circle_diagram
-from core.diagnosis.quality.magnitude import magnitude
-from core.diagnosis.quality.steadiness import steadiness
-from core.diagnosis.verdict import QualityFinding
 from core.machines.base import Array
 from core.machines.parameters import Motor, Nameplate
+from core.quality import currents, samples, supply
+from core.quality.circle_diagram import circle_diagram
+from core.quality.finding import QualityFinding, all_passed
+from core.quality.magnitude import magnitude
+from core.quality.steadiness import steadiness
 from core.signals.sequence import PhaseSequence
 from core.signals.terminals import Terminals
 

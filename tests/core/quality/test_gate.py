@@ -12,10 +12,11 @@ import pytest
 
 from benchmarks.accuracy_phasors import Condition
 from benchmarks.accuracy_records import Disturbances, disturbed_record, random_harmonics
-from core.diagnosis.quality import Passed, examine
 from core.diagnosis.stator import diagnose
-from core.diagnosis.verdict import QualityFinding, Verdict
+from core.diagnosis.verdict import Verdict
 from core.machines.parameters import Motor, Nameplate
+from core.quality import Passed, examine
+from core.quality.finding import QualityFinding
 from core.recordings import Recording
 from core.signals.terminals import terminals
 from tests.core.diagnosis.spoiling import (

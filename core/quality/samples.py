@@ -6,10 +6,9 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from core.diagnosis.quality.finding import finding
-from core.diagnosis.verdict import QualityFinding
 from core.machines.base import Array
 from core.machines.parameters import Nameplate
+from core.quality.finding import QualityFinding, finding
 from core.recordings import Channel
 from core.signals.terminals import Terminals
 

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.diagnosis.assumed_supply import assumed_voltage
-from core.diagnosis.quality.finding import finding
-from core.diagnosis.quality.samples import clipping, holding
-from core.diagnosis.verdict import QualityFinding
 from core.machines.base import Array
 from core.machines.parameters import Nameplate
+from core.quality.assumed_supply import assumed_voltage
+from core.quality.finding import QualityFinding, finding
+from core.quality.samples import clipping, holding
 from core.signals.decimation import decimate
 from core.signals.errors import SignalError
 from core.signals.phasors import fundamental_frequency, fundamental_phasors

@@ -6,10 +6,10 @@ those before it, and the gate stops at the first group that fails: what is named
 follows from it.
 """
 
-from core.diagnosis.quality.gate import Passed, examine, sampled_well, wired_well
-from core.diagnosis.quality.machine import circle_diagram
-from core.diagnosis.quality.magnitude import rated_current_A
-from core.diagnosis.quality.supply import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE
+from core.quality.circle_diagram import circle_diagram
+from core.quality.gate import Passed, examine, sampled_well, wired_well
+from core.quality.magnitude import rated_current_A
+from core.quality.supply import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE
 
 __all__ = [
     "FREQUENCY_TOLERANCE",

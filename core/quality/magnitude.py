@@ -5,10 +5,9 @@ from math import sqrt
 
 import numpy as np
 
-from core.diagnosis.quality.finding import finding
-from core.diagnosis.verdict import QualityFinding
 from core.machines.base import Array
 from core.machines.parameters import Nameplate
+from core.quality.finding import QualityFinding, finding
 from core.signals.terminals import Terminals
 
 SILENT, DEAFENING = 0.005, 1e4

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.diagnosis.quality.finding import finding
-from core.diagnosis.quality.machine import CircleDiagram
-from core.diagnosis.quality.supply import Feed
-from core.diagnosis.verdict import QualityFinding
+from core.quality.circle_diagram import CircleDiagram
+from core.quality.finding import QualityFinding, finding
+from core.quality.supply import Feed
 from core.signals.clarke import CLARKE
 from core.signals.phasors import harmonic_phasors
 from core.signals.sequence import SequencePhasors, sequence_phasors
