@@ -39,7 +39,7 @@ from benchmarks.accuracy_cells import (
 )
 from benchmarks.accuracy_phasors import FaultModel
 from benchmarks.accuracy_report import Section, spread, table, write_sections
-from tests.core.motors import REFERENCE
+from testing.machines.motors import REFERENCE
 
 PAGE = Path(__file__).parent.parent / "docs" / "evidence" / "accuracy.md"
 

@@ -16,7 +16,7 @@ from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.parameters import Motor
 from core.recordings import Recording
-from tests.core.motors import ALL, REFERENCE
+from testing.machines.motors import ALL, REFERENCE
 
 NOISE = 0.002
 """White noise of the channels, of rated values."""

@@ -13,7 +13,7 @@ from benchmarks.accuracy_phasors import Condition, FaultModel
 from benchmarks.accuracy_records import record_of, rms_noise, steady_samples
 from benchmarks.accuracy_report import mark, rate_text, spread, table
 from core.diagnosis.stator import diagnose
-from tests.core.motors import REFERENCE
+from testing.machines.motors import REFERENCE
 
 LEVELS = (0.01, 0.05, 0.10, 0.19)
 LOADS = (0.12, 0.5, 1.0)

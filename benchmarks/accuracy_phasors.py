@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from core.machines.parameters import Motor
-from tests.core.phase_circuits import FORTESCUE, Fault, Operation, running
+from testing.machines.phase_circuits import FORTESCUE, Fault, Operation, running
 
 Complex = NDArray[np.complex128]
 BACKWARD_OPEN = 1e-12

@@ -16,7 +16,7 @@ from ied_sim.misbehaviour import Kind, Misbehaviour
 from ied_sim.profiles.profile import shipped
 from ied_sim.relay.configuration import RelayConfiguration
 from mms import Client, Report
-from tests.ied_sim.simulating import IED, Simulated, fetch, scenario_of, simulated, text
+from testing.relays.simulated import IED, Simulated, fetch, scenario_of, simulated, text
 
 FAULTS = ("_ws.malformed", '_ws.expert.severity == "Error"')
 REWRITTEN = (Kind.PARTIAL_LISTING, Kind.WRONG_SIZE, Kind.EMPTY_RPTID)

@@ -28,8 +28,9 @@ from scl.instantiation import write
 from service.client.rest_client import ServiceClient, ServiceError
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
-from tests.integration import processes
-from tests.integration.processes import Service, descendants, eventually
+from testing.service import processes
+from testing.service.processes import Service, descendants
+from testing.waiting import eventually
 
 POLL_PERIOD_S = 5.0
 LOOK_S = 5.0

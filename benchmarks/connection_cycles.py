@@ -22,8 +22,10 @@ from service.plant import Relay
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.states import LinkState
-from tests.mms.relays import LOOPBACK, Relaying, RelayProcess, eventually, mute_server
-from tests.service.plants import relay, two_motor_plant
+from testing.ports import LOOPBACK
+from testing.relays.serving import Relaying, RelayProcess, mute_server
+from testing.service.plants import relay, two_motor_plant
+from testing.waiting import eventually
 
 CYCLES = 1000
 WARM_UP = 10

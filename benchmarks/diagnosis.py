@@ -14,8 +14,8 @@ from core.machines.parameters import Motor
 from core.machines.playback import Playback
 from core.machines.running import SteadyRunning
 from core.recordings import Recording
-from tests.core.motors import ALL
-from tests.core.phase_circuits import Fault, recording, running
+from testing.machines.motors import ALL
+from testing.machines.phase_circuits import Fault, recording, running
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -23,8 +23,8 @@ THESIS_SECONDS = 106.0
 """The improved HCPA's 524 evaluations in Table 6.1."""
 FIRST_CALL = """
 from time import perf_counter
-from tests.core.motors import REFERENCE
-from tests.core.phase_circuits import Fault, recording, running
+from testing.machines.motors import REFERENCE
+from testing.machines.phase_circuits import Fault, recording, running
 record = recording(running(REFERENCE, 0.5, fault=Fault(0.05, 1)), seconds=0.5, noise=0.005)
 begun = perf_counter()
 from core.diagnosis.stator import diagnose

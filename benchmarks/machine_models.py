@@ -16,8 +16,8 @@ from core.machines.playback import Beginning, Playback, Window
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import Supply, supply
-from tests.core.motors import REFERENCE
-from tests.core.page_equations import integrate
+from testing.machines.motors import REFERENCE
+from testing.machines.page_equations import integrate
 
 RATE, SAMPLES, MARGIN = 10_000.0, 5_000, 250
 W_S = 2.0 * np.pi * 50.0

@@ -20,7 +20,7 @@ from core.machines.playback import Playback
 from core.machines.split_winding import SplitWinding
 from core.signals.clarke import clarke
 from core.signals.sequence import PhaseSequence
-from tests.core.motors import REFERENCE
+from testing.machines.motors import REFERENCE
 
 Array = NDArray[np.float64]
 

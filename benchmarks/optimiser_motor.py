@@ -20,8 +20,8 @@ from core.commissioning.prior import PARAMETERS
 from core.diagnosis.search import HYBRID_GLOBAL
 from core.machines.candidates import LoadLaw
 from core.optimisers import least_squares
-from tests.core.commissioning.starts import plate_of
-from tests.core.motors import REFERENCE
+from testing.machines.motors import REFERENCE
+from testing.machines.starts import plate_of
 
 Array = NDArray[np.float64]
 Lines = tuple[str, ...]

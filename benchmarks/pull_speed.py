@@ -15,9 +15,10 @@ from mms.binding.stderr_filter import keep_tls_notes_off_stderr
 from service.collector.records.listing import understand
 from service.collector.records.pull import pull
 from service.recording_store.store import RecordingStore
-from tests.mms.pki import Pki
-from tests.mms.relays import LOOPBACK, RelayProcess
-from tests.service.api.comtrade_files import CFG
+from testing.ports import LOOPBACK
+from testing.relays.pki import Pki
+from testing.relays.serving import RelayProcess
+from testing.service.small_record import CFG
 
 FILE_BYTES = 20_000_000
 ROUNDS, TLS_ROUNDS = 15, 3

@@ -11,8 +11,8 @@ import numpy as np
 
 from benchmarks.stopwatch import best_of
 from core.recordings import Channel, Digitals, Quantity, Recording, comtrade, read
-from tests.core.motors import REFERENCE
-from tests.core.phase_circuits import recording, running
+from testing.machines.motors import REFERENCE
+from testing.machines.phase_circuits import recording, running
 
 
 def measure() -> Iterator[str]:

@@ -14,7 +14,7 @@ from pathlib import Path
 import scl
 from mms import MmsError
 from scl.model_text import model_text
-from tests.scl.browsing import contents_of_file, contents_of_server
+from testing.relays.browsing import contents_of_file, contents_of_server
 
 SUFFIXES = (".icd", ".cid", ".iid", ".scd")
 

@@ -1,6 +1,6 @@
 """The cost of a start as a test problem: the thesis's seven unknowns over Table 5.1, random truths.
 
-Records come from the simulator's phase windings (tests/core/commissioning/starts.py).
+Records come from the simulator's phase windings (testing/machines/starts.py).
 """
 
 from dataclasses import dataclass, replace
@@ -12,8 +12,8 @@ from core.commissioning.start import Start, start_of, thinned
 from core.machines.candidates import LoadLaw
 from core.machines.parameters import MachineParameters, Motor
 from core.machines.starting import StartCandidates
-from tests.core.commissioning.starts import StartRecord, plate_of
-from tests.core.motors import REFERENCE
+from testing.machines.motors import REFERENCE
+from testing.machines.starts import StartRecord, plate_of
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ python -m benchmarks.thesis_commissioning [--seeds N] [--first-seed N] [--images
 
 prints the section as Markdown.
 
-Records come from the simulator's phase windings (tests/core/commissioning/starts.py), which share no code
+Records come from the simulator's phase windings (testing/machines/starts.py), which share no code
 with the models. The motor is Table 3.2's; the estimator is told the middle of Table 5.1, never the truth.
 """
 
@@ -36,8 +36,8 @@ from core.machines.candidates import LoadLaw
 from core.machines.parameters import MachineParameters
 from core.machines.playback import electrical_to_rpm
 from core.machines.starting import start_candidate
-from tests.core.commissioning.starts import StartRecord, plate_of
-from tests.core.motors import REFERENCE
+from testing.machines.motors import REFERENCE
+from testing.machines.starts import StartRecord, plate_of
 
 Array = NDArray[np.float64]
 IMAGES = Path(__file__).parent.parent / "docs" / "evidence" / "images" / "thesis"

@@ -17,8 +17,8 @@ from benchmarks.accuracy_report import spread, table
 from benchmarks.start_problems import LOWER, TRUTH, UPPER, Box
 from core.commissioning.start import Start, start_of
 from core.optimisers import hcpa
-from tests.core.commissioning.starts import StartRecord, plate_of
-from tests.core.motors import REFERENCE
+from testing.machines.motors import REFERENCE
+from testing.machines.starts import StartRecord, plate_of
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from core.machines.parameters import Motor
 from core.signals.clarke import clarke
-from tests.core.commissioning.starts import StartRecord, with_parameters
+from testing.machines.starts import StartRecord, with_parameters
 
 STEP = 1e-4
 

@@ -12,10 +12,11 @@ from benchmarks.interoperability.peers import Result, Tree, c_server
 from mms import Client, ConnectFailed, FunctionalConstraint, Report
 from scl import Address
 from service.client.rest_client import ServiceClient
-from tests.integration import processes
-from tests.integration.processes import RELAYS, all_recordings, eventually, running_service
-from tests.mms.relays import LOOPBACK, free_port
-from tests.service.api.comtrade_files import CFG, DAT
+from testing.ports import LOOPBACK, free_port
+from testing.service import processes
+from testing.service.processes import RELAYS, all_recordings, running_service
+from testing.service.small_record import CFG, DAT
+from testing.waiting import eventually
 
 FILES, CONTROLS, VALUES, PASSWORD = (
     f"server_example_{what}" for what in ("files", "control", "basic_io", "password_auth")

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mms import Client, ConnectFailed
-from tests.mms.relays import LOOPBACK, free_port
+from testing.ports import LOOPBACK, free_port
 
 C_CLIENT = Path(__file__).parent.parent / "c_client.c"
 START_LIMIT_S = 10.0

@@ -16,8 +16,8 @@ from benchmarks.interoperability.peers import TOOL_LIMIT_S, Result, Tree, output
 from ied_sim.profiles.profile import Profile, shipped
 from mms import Client, ControlAction, FunctionalConstraint, Server
 from scl.model_text import model_text
-from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated
-from tests.mms.relays import LOOPBACK, free_port
+from testing.ports import LOOPBACK, free_port
+from testing.relays.simulated import IED, Simulated, scenario_of, simulated
 
 MMS_UTILITY, FILE_TOOL = "mms_utility", "file-tool"
 CONTROL_CLIENT, REPORT_CLIENT = "client_example_control", "iec61850_client_example_reporting"

@@ -10,6 +10,7 @@ from subprocess import CalledProcessError
 
 from service.client.rest_client import ServiceClient
 from service.demo.addresses import free_ports
+from testing.waiting import eventually
 from tests.chaos import account
 from tests.chaos.disk import Disk, SmallDisk, WritingLimit
 from tests.chaos.evidence import Evidence, growth
@@ -25,7 +26,6 @@ from tests.chaos.served import ServedService, handles_of, running
 from tests.chaos.settling import links_not_up, settle
 from tests.chaos.simulators import running_simulators
 from tests.chaos.triggers import Triggers
-from tests.integration.processes import eventually
 
 LINKS_UP_LIMIT_S = 300.0
 REST_LIMIT_S = 20.0

@@ -12,8 +12,9 @@ from threading import Event, Thread
 from typing import IO
 
 from service.client.rest_client import ServiceClient
+from testing.service.processes import descendants, is_alive, service_environment
+from testing.waiting import eventually
 from tests.chaos.history import History
-from tests.integration.processes import descendants, eventually, is_alive, service_environment
 
 RESTART_AFTER_S = 0.5
 START_LIMIT_S = 300.0

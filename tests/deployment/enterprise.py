@@ -23,6 +23,7 @@ import yaml
 
 from service.client.rest_client import ServiceClient, ServiceError
 from service.demo.addresses import free_ports
+from testing.service.processes import MOTOR_NAMES
 from tests.deployment.composing import BUILD_LIMIT_S, ROOT, Compose, ComposeError
 from tests.deployment.documented import blocks
 from tests.deployment.long_outage import (
@@ -30,7 +31,6 @@ from tests.deployment.long_outage import (
     an_upload_of_what_is_known_changes_nothing,
 )
 from tests.deployment.observed import START_LIMIT_S, Enterprise
-from tests.integration.processes import MOTOR_NAMES
 
 DOCKERFILE = (ROOT / "Dockerfile").read_text(encoding="utf-8")
 SERVICES = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))["services"]

@@ -4,9 +4,9 @@ import time
 from collections.abc import Callable, Mapping
 
 from service.client.rest_client import ServiceClient, ServiceError
+from testing.service.processes import MOTOR_NAMES, link_states
 from tests.deployment.composing import Compose
 from tests.deployment.transfers import Transfer, require_once_each, transfers
-from tests.integration.processes import MOTOR_NAMES, link_states
 
 START_LIMIT_S = 300.0
 DIAGNOSIS_LIMIT_S = 120.0

@@ -11,10 +11,11 @@ from pathlib import Path
 from ied_sim.front.ber import Element, MalformedError, decode, encode
 from ied_sim.front.transport import read_message, units_of
 from mms import Client, FunctionalConstraint, MmsError, Report, Server
+from testing.ports import LOOPBACK
+from testing.relays.model import IED
+from testing.relays.serving import start_relay
+from testing.service.small_record import CFG, DAT
 from tests.hostile.background import background_loop
-from tests.mms.relay_model import IED
-from tests.mms.relays import LOOPBACK, start_relay
-from tests.service.api.comtrade_files import CFG, DAT
 
 SESSION = bytes([1, 0, 1, 0])
 CONFIRMED_REQUEST, CONFIRMED_RESPONSE, UNCONFIRMED = b"\xa0", b"\xa1", b"\xa3"

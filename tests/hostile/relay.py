@@ -10,10 +10,10 @@ from random import Random
 
 from ied_sim.front.ber import Element
 from ied_sim.front.transport import read_message
+from testing.ports import LOOPBACK
 from tests.hostile import crafted, spoiling
 from tests.hostile.background import background_loop
 from tests.hostile.dialogue import CONFIRMED_REQUEST, Dialogue, framed, message, pdu_of, tlv
-from tests.mms.relays import LOOPBACK
 
 GOOD_HANDSHAKES = 0.93
 GOOD_PROBES = 0.8

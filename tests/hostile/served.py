@@ -8,21 +8,21 @@ from pathlib import Path
 import scl
 from scl import Address
 from service.client.rest_client import ServiceClient, ServiceError
-from tests.hostile.bulk import resident_MB
-from tests.hostile.dialogue import Dialogue
-from tests.hostile.relay import HostileRelay, serving
-from tests.hostile.surroundings import Snapshot, strangers
-from tests.integration import processes
-from tests.integration.processes import (
+from testing.ports import LOOPBACK
+from testing.service import processes
+from testing.service.processes import (
     RELAYS,
     Service,
     all_recordings,
     descendants,
-    eventually,
     running_service,
     simulated_plant,
 )
-from tests.mms.relays import LOOPBACK
+from testing.waiting import eventually
+from tests.hostile.bulk import resident_MB
+from tests.hostile.dialogue import Dialogue
+from tests.hostile.relay import HostileRelay, serving
+from tests.hostile.surroundings import Snapshot, strangers
 
 GOOD, BAD = RELAYS[1:3], (RELAYS[0], *RELAYS[3:])
 HONEST = 0.7

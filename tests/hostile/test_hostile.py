@@ -10,11 +10,11 @@ import pytest
 
 from mms import AssociationBroken, Client, FileSizeMismatch, ProtocolError, Timeout
 from mms.client import files
+from testing.ports import LOOPBACK
 from tests.hostile import bulk, crafted, spoiling
 from tests.hostile.dialogue import CON, PRO, Dialogue, overheard, tlv
 from tests.hostile.relay import HostileRelay, lying
 from tests.hostile.surroundings import Snapshot, strangers
-from tests.mms.relays import LOOPBACK
 
 CASES = 300
 MOST_MEMORY_MB = 400.0

@@ -12,11 +12,12 @@ from mms import Client, ConnectFailed, ConnectionLost, MmsError, Timeout
 from mms.client import files, pace
 from service.collector.records.directory import LINK_FAILURES
 from service.storage.states import LinkState, RecordingState
+from testing.ports import LOOPBACK
+from testing.waiting import eventually
 from tests.hostile import crafted
 from tests.hostile.dialogue import PRO, Dialogue, overheard, tlv
 from tests.hostile.relay import LIST_OF_NAMES, lying
-from tests.mms.relays import LOOPBACK
-from tests.service.collector.conftest import Bench, bench, eventually
+from tests.service.collector.conftest import Bench, bench
 
 __all__ = ["bench"]
 

@@ -23,8 +23,8 @@ from mms.client import connection, controls
 from service.collector.records.listing import understand
 from service.collector.records.pull import pull
 from service.recording_store.store import RecordingStore, RecordingStoreError
+from testing.ports import LOOPBACK
 from tests.hostile.dialogue import CON, PRO
-from tests.mms.relays import LOOPBACK
 
 REQUEST_TIMEOUT_S = 0.06
 REQUESTS_A_CONNECTION = 60

@@ -1,10 +1,9 @@
-"""A relay on a free port of the loopback interface, and waiting for it."""
+"""A relay on a free port of the loopback interface, and a client of it."""
 
 import queue
 import re
-import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -15,27 +14,13 @@ from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import healthy_reference
 from mms import MOST_CONNECTIONS, Client, Report, ServerPump, ServerStartFailed, Value
 from scl import Address
+from testing.ports import LOOPBACK, free_port
 
 IED = "A1_SEL710"
 TRIGGER_BIT = f"{IED}CON/RBGGIO1.SPCSO01"
 EVENT_REPORTS = f"{IED}CFG/LLN0.BR.BRep01"
 PATIENCE_S = 60.0
 SHORT_RECORD = RecorderSettings(sample_rate_hz=5_000.0, pre_trigger_s=0.02, post_trigger_s=0.06, capacity=3)
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
-
-
-def wait_until(condition: Callable[[], bool], what: str) -> None:
-    """Poll until it holds; AssertionError when patience ends."""
-    deadline_s = time.monotonic() + PATIENCE_S
-    while not condition():
-        assert time.monotonic() < deadline_s, f"waited {PATIENCE_S:g} s for {what}"
-        time.sleep(0.005)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +70,7 @@ def served_relay(files: Path, settings: RecorderSettings = SHORT_RECORD) -> Iter
     """A1_SEL710 of the demo plant with the reference motor and, unless told otherwise, short records."""
     relay, pump = _start(files, settings)
     try:
-        with Client.connect("127.0.0.1", relay.server.port) as client:
+        with Client.connect(LOOPBACK, relay.server.port) as client:
             reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
             client.subscribe(EVENT_REPORTS, reports)
             yield ServedRelay(relay, client, reports)
@@ -105,7 +90,7 @@ def _start(files: Path, settings: RecorderSettings) -> tuple[Relay, ServerPump]:
             document,
             IED,
             scenario,
-            address=Address("127.0.0.1", free_port()),
+            address=Address(LOOPBACK, free_port()),
             files=files,
             epoch_ns=time.time_ns(),
         )

@@ -13,10 +13,11 @@ from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import read_scenario
 from mms import AssociationRejected, Client, MmsError, TlsRequired
 from scl import Address
-from tests.ied_sim.serving import free_port, wait_until
-from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated
+from testing.ports import free_port
+from testing.relays.pki import Pki
+from testing.relays.simulated import IED, Simulated, scenario_of, simulated
+from testing.waiting import wait_until
 from tests.ied_sim.test_scenario import MINIMAL
-from tests.mms.pki import Pki
 
 TLS = 'tls = {certificate = "relay.pem", key = "relay.key", ca = "authority.pem", pinned = ["client.pem"]}'
 PASSWORDS = ("OTTER", "TAIL of 7")

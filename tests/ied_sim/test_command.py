@@ -20,7 +20,8 @@ from ied_sim.scenario.scenario import healthy_reference
 from ied_sim.simulator import Simulator
 from mms import Client
 from scl import Address
-from tests.ied_sim.serving import free_port, wait_until
+from testing.ports import free_port
+from testing.waiting import wait_until
 
 DEMO_SCENARIO = Path(__file__).parents[2] / "service" / "demo" / "scenario.toml"
 RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")

@@ -24,8 +24,8 @@ from mms import (
     Timestamp,
     Value,
 )
-from tests.ied_sim.serving import wait_until
-from tests.ied_sim.simulating import IED, Simulated, fetch, names, scenario_of, simulated, text
+from testing.relays.simulated import IED, Simulated, fetch, names, scenario_of, simulated, text
+from testing.waiting import wait_until
 
 TRIGGER = f"{IED}CON/RBGGIO1.SPCSO01"
 NUMBER = f"{IED}PRO/FLTRDRE1.FltNum.stVal"

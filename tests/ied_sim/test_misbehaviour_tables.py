@@ -7,7 +7,7 @@ import pytest
 from ied_sim.errors import ScenarioError, SimulatorError
 from ied_sim.misbehaviour import Kind, Misbehaviour, Switchboard
 from ied_sim.scenario.scenario import read_scenario
-from tests.ied_sim.simulating import scenario_of, simulated
+from testing.relays.simulated import scenario_of, simulated
 from tests.ied_sim.test_scenario import MINIMAL
 
 SWITCH = "CON/RBGGIO1.SPCSO30"

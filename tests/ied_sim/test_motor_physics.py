@@ -13,7 +13,8 @@ from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, TurnFault
 from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant, rated_current
 from ied_sim.motor.supply import Harmonic, Supply
 from ied_sim.motor.windings import highest_fault_resistance, winding_circuit
-from tests.ied_sim.motors import DELTA, REFERENCE, SMALL, plant, short
+from testing.machines.motors import LARGE, MEDIUM, REFERENCE
+from tests.ied_sim.plants import plant, short
 
 Array = NDArray[np.float64]
 RPM = 30 / pi
@@ -47,7 +48,7 @@ def test_ten_percent_of_phase_b_shorted_draws_the_published_currents() -> None:
     assert rms(operation.currents_A) == pytest.approx([1.542, 2.378, 1.619], abs=0.0006)
 
 
-@pytest.mark.parametrize("motor", [REFERENCE, SMALL, DELTA], ids=lambda motor: motor.name)
+@pytest.mark.parametrize("motor", [REFERENCE, MEDIUM, LARGE], ids=lambda motor: motor.name)
 def test_no_shorted_turns_is_exactly_the_healthy_motor(motor: Motor) -> None:
     healthy = plant(motor).operation(0.0, 0.05, 10_000)
     unfaulted = plant(motor, fault=short(0.0)).operation(0.0, 0.05, 10_000)
@@ -56,7 +57,7 @@ def test_no_shorted_turns_is_exactly_the_healthy_motor(motor: Motor) -> None:
     assert circuit.loops == plant(motor).circuit(0.0).loops
 
 
-@pytest.mark.parametrize("motor", [REFERENCE, DELTA], ids=lambda motor: motor.name)
+@pytest.mark.parametrize("motor", [REFERENCE, LARGE], ids=lambda motor: motor.name)
 def test_few_shorted_turns_disturb_in_proportion(motor: Motor) -> None:
     healthy = plant(motor).operation(0.0, 0.04, 10_000).currents_A
     disturbance = [
@@ -72,9 +73,9 @@ def test_few_shorted_turns_disturb_in_proportion(motor: Motor) -> None:
     [
         (REFERENCE, None),
         (REFERENCE, TurnFault(0.05, 1)),
-        (SMALL, TurnFault(0.02, 2, 0.05)),
-        (SMALL, TurnFault(0.01, 0, 0.5)),
-        (DELTA, TurnFault(0.1, 0)),
+        (MEDIUM, TurnFault(0.02, 2, 0.05)),
+        (MEDIUM, TurnFault(0.01, 0, 0.5)),
+        (LARGE, TurnFault(0.1, 0)),
     ],
 )
 def test_start_up_agrees_with_an_eighth_order_integrator(
@@ -154,7 +155,7 @@ def test_circuit_reproduces_the_split_winding_equations() -> None:
     assert np.abs(ours - expected).max() < 1e-5 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("motor", [REFERENCE, SMALL, DELTA], ids=lambda motor: motor.name)
+@pytest.mark.parametrize("motor", [REFERENCE, MEDIUM, LARGE], ids=lambda motor: motor.name)
 @pytest.mark.parametrize("level", [0.0, 1.0])
 def test_windows_begin_settled(motor: Motor, level: float) -> None:
     faulted = plant(motor, level=level, fault=short(0.1))
@@ -164,15 +165,15 @@ def test_windows_begin_settled(motor: Motor, level: float) -> None:
 
 
 def test_line_currents_of_a_three_wire_motor_add_up_to_nothing() -> None:
-    for motor in (REFERENCE, DELTA):
+    for motor in (REFERENCE, LARGE):
         currents = plant(motor, fault=short(0.1)).operation(0.0, 0.02, 10_000).currents_A
         assert np.abs(currents.sum(axis=0)).max() < 1e-9 * np.abs(currents).max()
 
 
 def test_a_delta_fault_of_phase_a_shows_between_terminals_a_and_b() -> None:
     """What the shorted winding draws comes in at a and leaves at b: line c carries the least of it."""
-    healthy = plant(DELTA).operation(0.0, 0.02, 10_000).currents_A
-    faulted = plant(DELTA, fault=short(0.01, 0)).operation(0.0, 0.02, 10_000).currents_A
+    healthy = plant(LARGE).operation(0.0, 0.02, 10_000).currents_A
+    faulted = plant(LARGE, fault=short(0.01, 0)).operation(0.0, 0.02, 10_000).currents_A
     extra = rms(faulted - healthy)
     assert extra[2] < 0.05 * extra[0]
     assert extra[0] == pytest.approx(extra[1], rel=0.05)
@@ -187,7 +188,7 @@ def test_with_acb_the_motor_turns_backwards_and_terminals_keep_their_windings() 
 
 
 def test_star_and_delta_of_equal_impedance_draw_the_same() -> None:
-    star = SMALL.parameters
+    star = MEDIUM.parameters
     tripled = type(star)(
         3 * star.stator_resistance_ohm,
         3 * star.rotor_resistance_ohm,
@@ -196,9 +197,9 @@ def test_star_and_delta_of_equal_impedance_draw_the_same() -> None:
         3 * star.stator_self_inductance_H,
         star.inertia_kgm2,
     )
-    nameplate = SMALL.nameplate
+    nameplate = MEDIUM.nameplate
     delta = Motor("delta twin", type(nameplate)(7_500, 400, 50, 2, Connection.DELTA), tripled)
-    in_star = plant(SMALL).operation(0.0, 0.02, 10_000).currents_A
+    in_star = plant(MEDIUM).operation(0.0, 0.02, 10_000).currents_A
     in_delta = plant(delta).operation(0.0, 0.02, 10_000).currents_A
     assert np.abs(in_star - in_delta).max() < 1e-6 * np.abs(in_star).max()
 
@@ -220,7 +221,7 @@ def test_rated_current_is_near_that_of_the_known_motor() -> None:
     assert rated_current(REFERENCE) == pytest.approx(1.714, rel=0.05)
 
 
-@pytest.mark.parametrize("motor", [REFERENCE, SMALL, DELTA], ids=lambda motor: motor.name)
+@pytest.mark.parametrize("motor", [REFERENCE, MEDIUM, LARGE], ids=lambda motor: motor.name)
 def test_the_stiffest_fault_a_scenario_may_have_is_stable(motor: Motor) -> None:
     """The highest resistance across the fewest turns that still count: nearly healthy, and no more."""
     highest_ohm = highest_fault_resistance(motor.parameters, HIGHEST_STEP_RATE_HZ * RATE_PER_STEP)

@@ -16,7 +16,8 @@ from ied_sim.motor.plant import MotorPlant, rated_current
 from ied_sim.motor.supply import Supply, SupplyEvent
 from ied_sim.motor.warming import COPPER_PER_K, Warming
 from ied_sim.motor.windings import winding_circuit
-from tests.ied_sim.motors import REFERENCE, SMALL, plant
+from testing.machines.motors import MEDIUM, REFERENCE
+from tests.ied_sim.plants import plant
 
 RATE_HZ = 2_000.0
 
@@ -139,7 +140,7 @@ def test_broken_bars_make_sidebands_at_twice_the_slip_that_grow_with_them() -> N
     """The lower one is about n / N of the fundamental (Bellini et al.; sin a / (2 p (2 pi - a)) is alike)."""
     found = []
     for share in (0.0, 0.02, 0.05):
-        motor = replace(plant(SMALL, level=0.9), broken_bars=share)
+        motor = replace(plant(MEDIUM, level=0.9), broken_bars=share)
         run = motor.operation(2.0, 8.0, 1_000.0, settling_s=1.0)
         slip = 1 - run.speed_rad_s.mean() / (2 * np.pi * 25)
         spectrum = np.abs(np.fft.rfft(run.currents_A[0] * np.hanning(8_000)))

@@ -11,7 +11,8 @@ from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
 from ied_sim.motor.load import Load
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Harmonic, Supply
-from tests.ied_sim.motors import DELTA, REFERENCE, plant, short
+from testing.machines.motors import LARGE, REFERENCE
+from tests.ied_sim.plants import plant, short
 
 RATE_HZ = 10_000.0
 FINE = Sensors(full_scale_A=10.0, full_scale_V=700.0)
@@ -153,8 +154,8 @@ def test_metering_of_the_reference_motor(sequence: str) -> None:
 
 
 def test_metering_sees_the_negative_sequence_of_a_fault() -> None:
-    healthy = meter(plant(DELTA), 2.0)
-    faulted = meter(plant(DELTA, fault=short(0.05)), 2.0)
+    healthy = meter(plant(LARGE), 2.0)
+    faulted = meter(plant(LARGE, fault=short(0.05)), 2.0)
     assert abs(healthy.sequence(healthy.currents_A)[1]) < 0.1
     assert abs(faulted.sequence(faulted.currents_A)[1]) > 5
 

@@ -13,8 +13,7 @@ from ied_sim.profiles.profile import Profile, RecordFormat, Triggers, read_profi
 from ied_sim.relay.configuration import RelayConfiguration
 from mms import Client, FunctionalConstraint, MmsError, NotFound, Report, Value
 from scl import Scl
-from tests.ied_sim.serving import wait_until
-from tests.ied_sim.simulating import (
+from testing.relays.simulated import (
     IED,
     SHORT,
     Simulated,
@@ -24,6 +23,7 @@ from tests.ied_sim.simulating import (
     scenario_of,
     simulated,
 )
+from testing.waiting import wait_until
 
 CHANNELS = ["IA", "IB", "IC", "VA", "VB", "VC"]
 

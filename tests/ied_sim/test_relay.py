@@ -16,7 +16,8 @@ from ied_sim.scenario.scenario import healthy_reference
 from mms import FunctionalConstraint, Timestamp
 from scl import DEMO_PLANT_SCD, Address
 from scl import read as read_scl
-from tests.ied_sim.serving import IED, SHORT_RECORD, TRIGGER_BIT, ServedRelay, served_relay, wait_until
+from testing.waiting import wait_until
+from tests.ied_sim.serving import IED, SHORT_RECORD, TRIGGER_BIT, ServedRelay, served_relay
 
 
 @pytest.fixture

@@ -14,8 +14,8 @@ from ied_sim.profiles.profile import Triggers
 from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
 from mms import Client, FunctionalConstraint
-from tests.ied_sim.serving import wait_until
-from tests.ied_sim.simulating import IED, Simulated, fetch, names, recordings, scenario_of, simulated, text
+from testing.relays.simulated import IED, Simulated, fetch, names, recordings, scenario_of, simulated, text
+from testing.waiting import wait_until
 
 
 def stopped(scenario: RelayConfiguration) -> RelayConfiguration:

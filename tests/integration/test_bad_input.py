@@ -15,18 +15,18 @@ from core.recordings import Quantity, comtrade, read
 from mms import Client
 from service.cli import main
 from service.client.rest_client import ServiceClient
-from tests.integration.listeners import listening_addresses
-from tests.integration.processes import (
+from testing.service.processes import (
     Service,
     SimulatedPlant,
     all_recordings,
     descendants,
-    eventually,
     link_states,
     running_service,
     serve_in_vain,
     simulated_plant,
 )
+from testing.waiting import eventually
+from tests.integration.listeners import listening_addresses
 
 pytestmark = pytest.mark.timeout(300)
 """The bench starts in the first test; later ones wait for time limits of relays that are down."""

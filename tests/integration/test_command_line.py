@@ -15,7 +15,8 @@ from core.recordings.cev_writer import EventSummary, write_cev
 from mms import Client
 from service.cli import main
 from service.demo import MOTORS
-from tests.integration.processes import eventually, simulated_plant
+from testing.service.processes import simulated_plant
+from testing.waiting import eventually
 
 pytestmark = pytest.mark.timeout(300)
 """The first test starts a simulator."""

@@ -16,7 +16,8 @@ from service.client.rest_client import ServiceClient
 from service.demo.addresses import free_ports
 from service.demo.plant import SERVICE_PORT, running_plant
 from service.process.single_instance import exclusive
-from tests.integration.processes import MOTOR_NAMES, descendants, eventually, is_alive
+from testing.service.processes import MOTOR_NAMES, descendants, is_alive
+from testing.waiting import eventually
 
 pytestmark = pytest.mark.timeout(300)
 """On a loaded machine a demo takes its time to start, and one waits for the other to end."""

@@ -11,16 +11,16 @@ from service.client.rest_client import ServiceClient
 from service.configuration.settings import sqlite_url
 from service.storage import Repository, connect
 from service.storage.states import RecordingRequestState
-from tests.integration.processes import (
+from testing.service.processes import (
     MOTOR_NAMES,
     Service,
     descendants,
-    eventually,
     is_alive,
     link_states,
     running_service,
     simulated_plant,
 )
+from testing.waiting import eventually
 
 PROGRESS = ("requested", "triggered", "recorded", "fetched", "diagnosed")
 

@@ -12,8 +12,9 @@ import pytest
 
 from core.recordings import read
 from mms import Client
+from testing.service.processes import SimulatedPlant, simulated_plant
+from testing.waiting import eventually
 from tests.integration import foreign_client
-from tests.integration.processes import SimulatedPlant, eventually, simulated_plant
 
 pytestmark = pytest.mark.timeout(300)
 """The first test starts a simulator."""

@@ -11,8 +11,10 @@ import scl
 from scl import Address
 from service.cli.app import main
 from service.client.rest_client import ServiceClient
-from tests.integration.processes import RELAYS, Service, descendants, eventually, running_service
-from tests.mms.relays import LOOPBACK, free_port, mute_server
+from testing.ports import LOOPBACK, free_port
+from testing.relays.serving import mute_server
+from testing.service.processes import RELAYS, Service, descendants, running_service
+from testing.waiting import eventually
 
 pytestmark = pytest.mark.timeout(300)
 

@@ -13,16 +13,16 @@ import pytest
 
 from service.client.rest_client import ServiceClient
 from service.configuration.relay_access import PASSWORD_VARIABLE
-from tests.integration.processes import (
+from testing.relays.pki import Pki
+from testing.service.processes import (
     Service,
     all_recordings,
     descendants,
-    eventually,
     link_states,
     running_service,
     simulated_plant,
 )
-from tests.mms.pki import Pki
+from testing.waiting import eventually
 
 pytestmark = pytest.mark.timeout(300)
 

@@ -9,7 +9,8 @@ import pytest
 
 import scl
 from service.demo import MOTORS
-from tests.integration.processes import descendants, eventually, is_alive, running_service, serve_in_vain
+from testing.service.processes import descendants, is_alive, running_service, serve_in_vain
+from testing.waiting import eventually
 
 pytestmark = pytest.mark.timeout(300)
 """Starting and stopping a service may take START_LIMIT_S each."""

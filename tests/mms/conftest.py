@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from mms import Client, Server
-from tests.mms.relays import LOOPBACK, RelayProcess, start_relay
+from testing.ports import LOOPBACK
+from testing.relays.serving import RelayProcess, start_relay
 
 
 @pytest.fixture

@@ -8,7 +8,9 @@ import time
 import pytest
 
 from mms import Client, ConnectFailed, ConnectionLost, FunctionalConstraint, Server, Timeout
-from tests.mms.relays import LOOPBACK, Relaying, RelayProcess, eventually, free_port, mute_server, start_relay
+from testing.ports import LOOPBACK, free_port
+from testing.relays.serving import Relaying, RelayProcess, mute_server, start_relay
+from testing.waiting import eventually
 
 IND01 = "T1PRO/GGIO1.Ind01.stVal"
 

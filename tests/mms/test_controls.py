@@ -21,7 +21,7 @@ from mms import (
 )
 from mms.client import controls
 from mms.control_model import words_of
-from tests.mms.relays import LOOPBACK
+from testing.ports import LOOPBACK
 
 OBJECT = "T1CON/RBGGIO1.SPCSO0{}"
 MODELS = {"direct": 1, "select before operate": 2, "direct enhanced": 3, "select before operate enhanced": 4}

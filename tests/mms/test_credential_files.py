@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from mms import Client, CredentialFileError, TlsConfiguration
 from mms.security.credential_files import read_certificates, read_secret
-from tests.mms.pki import Pki
-from tests.mms.relays import LOOPBACK, free_port
+from testing.ports import LOOPBACK, free_port
+from testing.relays.pki import Pki
 
 PEM = serialization.Encoding.PEM
 PKCS8 = serialization.PrivateFormat.PKCS8

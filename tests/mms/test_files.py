@@ -25,7 +25,8 @@ from mms import (
 from mms.client import files as files_module
 from mms.client.files import FileEntry
 from mms.server.file_access import FileGuard
-from tests.mms.relays import LOOPBACK, RelayProcess, start_relay
+from testing.ports import LOOPBACK
+from testing.relays.serving import RelayProcess, start_relay
 
 CONTENT = bytes(range(256)) * 1000
 NAME = "EVENTS/C4_00001.CEV"

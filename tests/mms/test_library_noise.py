@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mms.binding.stderr_filter import other_lines
-from tests.mms.pki import Pki
-from tests.mms.relays import RelayProcess
+from testing.relays.pki import Pki
+from testing.relays.serving import RelayProcess
 
 SCRIPT = """
 import os, sys

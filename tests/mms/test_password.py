@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from mms import AssociationRejected, Client, FunctionalConstraint, Server, TlsConfiguration
 from mms.security.passwords import LONGEST, is_password
-from tests.mms.pki import Pki
-from tests.mms.relays import LOOPBACK, start_relay
+from testing.ports import LOOPBACK
+from testing.relays.pki import Pki
+from testing.relays.serving import start_relay
 
 IND01 = "T1PRO/GGIO1.Ind01.stVal"
 RIGHT = "TAIL-of-the-bear 7!"

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from mms import Client, FunctionalConstraint, Report, Server, ServerPump, ServerStartFailed
-from tests.mms.relay_model import MODEL_TEXT
-from tests.mms.relays import LOOPBACK, eventually, free_port
+from testing.ports import LOOPBACK, free_port
+from testing.relays.model import MODEL_TEXT
+from testing.waiting import eventually
 
 IND01 = "T1PRO/GGIO1.Ind01.stVal"
 ST = FunctionalConstraint.ST

@@ -21,7 +21,8 @@ from mms import (
     Validity,
     Value,
 )
-from tests.mms.relays import LOOPBACK, start_relay
+from testing.ports import LOOPBACK
+from testing.relays.serving import start_relay
 
 ST, MX = FunctionalConstraint.ST, FunctionalConstraint.MX
 

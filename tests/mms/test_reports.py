@@ -24,7 +24,8 @@ from mms import (
     Validity,
 )
 from mms.client.reports import Subscriptions, _Field
-from tests.mms.relays import LOOPBACK, RelayProcess, start_relay
+from testing.ports import LOOPBACK
+from testing.relays.serving import RelayProcess, start_relay
 
 BUFFERED = "T1PRO/LLN0.BR.BRep01"
 UNBUFFERED = "T1PRO/LLN0.RP.URep01"

@@ -19,8 +19,10 @@ from mms import (
     Timestamp,
     Value,
 )
-from tests.mms.relay_model import MODEL_TEXT
-from tests.mms.relays import LOOPBACK, eventually, free_port, start_relay
+from testing.ports import LOOPBACK, free_port
+from testing.relays.model import MODEL_TEXT
+from testing.relays.serving import start_relay
+from testing.waiting import eventually
 
 ST = FunctionalConstraint.ST
 TYPES = "T1PRO/GGIO1.Types"

@@ -29,9 +29,11 @@ from mms import (
 from mms.binding.library import library
 from mms.security.credential_files import described
 from mms.security.tls import TlsContext
-from tests.certificates import identity
-from tests.mms.pki import Pki
-from tests.mms.relays import LOOPBACK, RelayProcess, eventually, mute_server, start_relay
+from testing.ports import LOOPBACK
+from testing.relays.certificates import identity
+from testing.relays.pki import Pki
+from testing.relays.serving import RelayProcess, mute_server, start_relay
+from testing.waiting import eventually
 
 IND01 = "T1PRO/GGIO1.Ind01.stVal"
 REPORTS = "T1PRO/LLN0.BR.BRep01"

@@ -7,7 +7,7 @@ import pytest
 import scl
 from mms import FunctionalConstraint
 from scl.model_text import model_text
-from tests.scl.browsing import contents_of_file, contents_of_server, served
+from testing.relays.browsing import contents_of_file, contents_of_server, served
 from tests.scl.documents import write_scl
 from tests.scl.vendor_shapes import EDITION_2, EDITION_2_1, SHAPES
 

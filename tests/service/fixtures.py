@@ -9,7 +9,7 @@ from sqlalchemy import Engine
 from service.configuration.settings import sqlite_url
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
-from tests.service.plants import two_motor_plant
+from testing.service.plants import two_motor_plant
 
 
 @pytest.fixture

@@ -10,7 +10,8 @@ import pytest
 from mms import Client, RelayNotTrusted, Server, TlsConfiguration
 from service.configuration.relay_access import credentials
 from service.configuration.settings import Settings
-from tests.mms.relays import LOOPBACK, start_relay
+from testing.ports import LOOPBACK
+from testing.relays.serving import start_relay
 
 PAGE = (Path(__file__).parents[2] / "docs" / "how-to" / "security.md").read_text(encoding="utf-8")
 RELAY = "A1_SEL710"

@@ -18,9 +18,9 @@ from ied_sim.motor.load import Load
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
-from tests.core.commissioning.starts import StartRecord, plate_of, with_parameters
-from tests.core.motors import LARGE, MEDIUM, REFERENCE
-from tests.core.page_equations import integrate
+from testing.machines.motors import LARGE, MEDIUM, REFERENCE
+from testing.machines.page_equations import integrate
+from testing.machines.starts import StartRecord, plate_of, with_parameters
 
 MIDDLE = MachineParameters(10.0, 10.0, 0.032, 0.032, 0.4775, 0.0191)
 """Of Table 5.1's ranges: what the estimator is told of the thesis's motor."""

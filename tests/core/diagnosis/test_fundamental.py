@@ -10,8 +10,8 @@ from core.diagnosis.operating_point import from_phasors
 from core.machines.parameters import Motor
 from core.signals.clarke import clarke, inverse_clarke
 from core.signals.sequence import PhaseSequence
-from tests.core.motors import ALL, REFERENCE
-from tests.core.phase_circuits import recording, running
+from testing.machines.motors import ALL, REFERENCE
+from testing.machines.phase_circuits import recording, running
 
 RATE = 10_000.0
 SAMPLES = 5_000

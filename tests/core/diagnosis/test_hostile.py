@@ -19,9 +19,9 @@ from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
 from core.recordings import Channel, Quantity, Recording, RecordingError
+from testing.machines.motors import ALL, REFERENCE
+from testing.machines.phase_circuits import Fault, recording, running
 from tests.core.diagnosis.spoiling import clipped, edited, exchanged, frozen, repeated
-from tests.core.motors import ALL, REFERENCE
-from tests.core.phase_circuits import Fault, recording, running
 
 CHANNELS = recording(running(REFERENCE, 0.5), seconds=0.01).channels
 HEALTHY = {motor.name: recording(running(motor, 0.6), noise=0.003, seconds=0.3) for motor in ALL}

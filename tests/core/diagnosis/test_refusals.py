@@ -8,8 +8,8 @@ import pytest
 from core.diagnosis.stator import diagnose
 from core.diagnosis.verdict import Verdict
 from core.recordings import Recording
-from tests.core.motors import REFERENCE
-from tests.core.phase_circuits import recording, running
+from testing.machines.motors import REFERENCE
+from testing.machines.phase_circuits import recording, running
 
 
 def healthy_record() -> Recording:

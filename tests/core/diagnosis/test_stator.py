@@ -18,9 +18,9 @@ from core.machines.supply import supply
 from core.recordings import Channel, Quantity, Recording, RecordingError
 from core.signals.clarke import clarke, inverse_clarke
 from core.signals.phasors import fundamental_phasors
+from testing.machines.motors import ALL, LARGE, MEDIUM, REFERENCE
+from testing.machines.phase_circuits import Fault, recording, running
 from tests.core.diagnosis.spoiling import edited
-from tests.core.motors import ALL, LARGE, MEDIUM, REFERENCE
-from tests.core.phase_circuits import Fault, recording, running
 
 IDS = [motor.name for motor in ALL]
 

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.parameters import Connection, Motor
-from tests.core.motors import ALL, MEDIUM, REFERENCE
-from tests.core.page_equations import integrate
+from testing.machines.motors import ALL, MEDIUM, REFERENCE
+from testing.machines.page_equations import integrate
 
 Array = NDArray[np.float64]
 

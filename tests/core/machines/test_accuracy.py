@@ -15,9 +15,9 @@ from core.machines.playback import Beginning, Playback, Trajectories, Window
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import Supply, supply
+from testing.machines.motors import ALL, MEDIUM, REFERENCE
+from testing.machines.page_equations import PAGES, integrate
 from tests.core.machines import reference_values as reference
-from tests.core.motors import ALL, MEDIUM, REFERENCE
-from tests.core.page_equations import PAGES, integrate
 
 Array = NDArray[np.float64]
 MODELS: tuple[StatorModel, ...] = (SplitWinding(), ShortedWinding(), HighResistanceConnection())

@@ -10,10 +10,10 @@ from core.machines.broken_bars import BrokenBars
 from core.machines.healthy import HealthyMachine
 from core.machines.parameters import Motor
 from core.machines.playback import Beginning, Playback, Trajectories, Window
+from testing.machines.motors import MEDIUM, REFERENCE
+from testing.machines.page_equations import axis_resistance_growth
 from tests.core.machines import reference_values as reference
 from tests.core.machines.test_accuracy import MARGIN, feed, one_candidate
-from tests.core.motors import MEDIUM, REFERENCE
-from tests.core.page_equations import axis_resistance_growth
 
 Array = NDArray[np.float64]
 RATE, W_S = reference.RATE_HZ, reference.W_S

@@ -15,8 +15,8 @@ from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import Supply, supply
 from core.signals.clarke import clarke
-from tests.core.motors import ALL, LARGE, MEDIUM, REFERENCE
-from tests.core.phase_circuits import Fault, Operation, running
+from testing.machines.motors import ALL, LARGE, MEDIUM, REFERENCE
+from testing.machines.phase_circuits import Fault, Operation, running
 
 Array = NDArray[np.float64]
 MODELS: tuple[StatorModel, ...] = (ShortedWinding(), SplitWinding())

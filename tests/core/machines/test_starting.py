@@ -13,7 +13,7 @@ from ied_sim.motor.load import Load
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply as Busbar
-from tests.core.motors import MEDIUM, REFERENCE
+from testing.machines.motors import MEDIUM, REFERENCE
 
 W_S = 2.0 * np.pi * 50.0
 FIRST = 10

@@ -19,6 +19,8 @@ from core.quality import Passed, examine
 from core.quality.finding import QualityFinding
 from core.recordings import Recording
 from core.signals.terminals import terminals
+from testing.machines.motors import ALL, LARGE, MEDIUM, REFERENCE
+from testing.machines.phase_circuits import Fault, recording, running
 from tests.core.diagnosis.spoiling import (
     CURRENTS,
     VOLTAGES,
@@ -31,8 +33,6 @@ from tests.core.diagnosis.spoiling import (
     saturated,
     with_line_voltages,
 )
-from tests.core.motors import ALL, LARGE, MEDIUM, REFERENCE
-from tests.core.phase_circuits import Fault, recording, running
 
 IDS = [motor.name for motor in ALL]
 USUAL = Disturbances(

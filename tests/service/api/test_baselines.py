@@ -10,7 +10,7 @@ import pytest
 from core.diagnosis.verdict import Diagnosis
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 BASELINE = "/api/v1/motors/PUMP-A1/baseline"
 

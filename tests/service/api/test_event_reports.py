@@ -2,7 +2,7 @@ import httpx
 
 from service.plant import Plant
 from service.storage import Repository
-from tests.service.plants import NOW_NS
+from testing.service.plants import NOW_NS
 
 POST = "/api/v1/motors/PUMP-A1/event-reports"
 

@@ -2,7 +2,7 @@ import httpx
 
 from service.storage import Repository
 from service.storage.records import Sample
-from tests.service.plants import NOW_NS, SECOND_NS
+from testing.service.plants import NOW_NS, SECOND_NS
 
 URL = "/api/v1/motors/PUMP-A1/measurements"
 

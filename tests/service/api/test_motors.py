@@ -3,7 +3,7 @@ import pytest
 
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 FIRST = "2025-10-09T08:53:20.000000000Z"
 

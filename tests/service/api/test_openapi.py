@@ -17,9 +17,9 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.records import Sample
 from service.storage.states import AlarmKind, LinkState
-from tests.service.api.comtrade_files import CFG, DAT
+from testing.service.plants import NOW_NS, fault, two_motor_plant
+from testing.service.small_record import CFG, DAT
 from tests.service.api.serving import serving
-from tests.service.plants import NOW_NS, fault, two_motor_plant
 
 NO_WRONG_REQUESTS = {
     "GET /healthz",

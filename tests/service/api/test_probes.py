@@ -5,8 +5,8 @@ from sqlalchemy import create_engine
 
 from service.api import ApiContext, create_app
 from service.storage import Repository
+from testing.service.plants import NOW_NS
 from tests.service.api.serving import serving
-from tests.service.plants import NOW_NS
 
 
 def test_alive_and_ready(context: ApiContext) -> None:

@@ -13,8 +13,8 @@ from service.api import ApiContext, create_app
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
+from testing.service.plants import two_motor_plant
 from tests.service.api.serving import serving
-from tests.service.plants import two_motor_plant
 
 NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
 

@@ -11,11 +11,11 @@ from core.diagnosis.stator import MODELS
 from service.api import ApiContext, create_app
 from service.storage import Repository
 from service.storage.records import RemoteRecord
+from testing.service.plants import NOW_NS, SECOND_NS, fault
+from testing.service.small_record import CFG, DAT, IA
 from tests.core.recordings.cev_files import REPORT
 from tests.core.recordings.comtrade_files import RECORD_1999
-from tests.service.api.comtrade_files import CFG, DAT, IA
 from tests.service.api.serving import serving
-from tests.service.plants import NOW_NS, SECOND_NS, fault
 
 FILES = {"EVENT.CFG": CFG, "EVENT.DAT": DAT}
 

@@ -3,7 +3,7 @@ import httpx
 from service.storage import Repository
 from service.storage.records import LinkTraffic, RelayFindings
 from service.storage.states import AlarmKind, LinkState
-from tests.service.plants import NOW_NS, SECOND_NS
+from testing.service.plants import NOW_NS, SECOND_NS
 
 FIRST = "2025-10-09T08:53:20.000000000Z"
 NAME = "A1_SEL710"

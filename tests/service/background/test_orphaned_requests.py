@@ -16,9 +16,9 @@ from service.process.serve import _giving_up
 from service.storage import Repository
 from service.storage.records import RecordingRequest
 from service.storage.states import RecordingRequestState
-from tests.service.collector.conftest import eventually
+from testing.service.plants import NOW_NS, two_motor_plant
+from testing.waiting import eventually
 from tests.service.fixtures import database_url, engine, repository
-from tests.service.plants import NOW_NS, two_motor_plant
 
 __all__ = ["database_url", "engine", "repository"]
 

@@ -11,9 +11,9 @@ from service.background.scheduling import LATEST_NS, Scheduler
 from service.plant import Schedule
 from service.storage import Repository
 from service.storage.records import RecordingRequest
-from tests.service.collector.conftest import eventually
+from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
+from testing.waiting import eventually
 from tests.service.fixtures import database_url, engine, repository
-from tests.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 
 __all__ = ["database_url", "engine", "repository"]
 

@@ -11,8 +11,8 @@ from core.machines.motor_file import read_motor, read_plate
 from core.recordings import comtrade, read
 from examples import make_start_record
 from service.cli import main
-from tests.core.commissioning.starts import StartRecord
-from tests.core.motors import REFERENCE
+from testing.machines.motors import REFERENCE
+from testing.machines.starts import StartRecord
 
 EXAMPLES = Path(make_start_record.__file__).parent
 NAMEPLATE = """

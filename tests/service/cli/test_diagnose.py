@@ -15,9 +15,9 @@ from core.recordings import comtrade
 from service.cli import main
 from service.cli.diagnose import _table
 from service.cli.output import results
-from tests.core.motors import REFERENCE
-from tests.core.phase_circuits import Fault, recording, running
-from tests.service.plants import undiagnosable
+from testing.machines.motors import REFERENCE
+from testing.machines.phase_circuits import Fault, recording, running
+from testing.service.plants import undiagnosable
 
 CLIPPED = "IA reads its full scale in 12 samples"
 

@@ -12,10 +12,10 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import LinkState
+from testing.service.plants import NOW_NS
 from tests.service.api.serving import serving
 from tests.service.api.test_relays import ACQUISITION
 from tests.service.fixtures import database_url, engine, repository
-from tests.service.plants import NOW_NS
 
 __all__ = ["database_url", "engine", "repository"]
 

@@ -1,8 +1,7 @@
 """A plant of one scripted relay, a real database and recording store, and sessions to run against them."""
 
-import socket
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +9,6 @@ from threading import Thread
 
 import pytest
 
-from core.machines.parameters import MachineParameters, Motor, Nameplate
 from service.collector.session.relay_session import RelaySession
 from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
@@ -18,6 +16,9 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.records import RecordingEntry, RecordingRequest
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
+from testing.ports import LOOPBACK, free_port
+from testing.service.plants import motor
+from testing.waiting import eventually
 from tests.service.collector.scripted_relay import (
     CONTROL,
     FAULT_NUMBER,
@@ -28,23 +29,6 @@ from tests.service.collector.scripted_relay import (
 )
 
 MOTOR = "PUMP-A1"
-
-
-def eventually(condition: Callable[[], bool], within_s: float = 30.0) -> bool:
-    """Whether the condition comes true in time."""
-    deadline_s = time.monotonic() + within_s
-    while time.monotonic() < deadline_s:
-        if condition():
-            return True
-        time.sleep(0.02)
-    return condition()
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 @dataclass
@@ -123,7 +107,7 @@ def bench(tmp_path: Path) -> Bench:
     relay = Relay(
         name=NAME,
         site="FACTORY_A",
-        host="127.0.0.1",
+        host=LOOPBACK,
         port=free_port(),
         manufacturer="SEL",
         type="SEL-710",
@@ -133,15 +117,10 @@ def bench(tmp_path: Path) -> Bench:
         report_control=REPORT_CONTROL,
         metering_data_set=None,
     )
-    motor = Motor(
-        MOTOR,
-        Nameplate(800, 380, 50, 2),
-        MachineParameters(8.4, 8.2, 0.0328, 0.0328, 0.4377, 0.0229),
-    )
     plant = Plant(
         sites=(Site("FACTORY_A", "Factory A"),),
         relays=(relay,),
-        motors=(PlantMotor(motor, "pump", "FACTORY_A", NAME),),
+        motors=(PlantMotor(motor(MOTOR), "pump", "FACTORY_A", NAME),),
     )
     repository = Repository(connect(settings.database_url))
     repository.sync_plant(plant)

@@ -7,7 +7,7 @@ from service.plant.metering import measurands
 from service.plant.offer import promised_by
 from service.plant.overrides import AS_RECOGNISED, Overrides
 from service.plant.recognition import recognise
-from tests.ied_sim.simulating import Simulated
+from testing.relays.simulated import Simulated
 from tests.service.collector.conftest import Bench
 
 

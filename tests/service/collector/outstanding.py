@@ -7,9 +7,9 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 
 from ied_sim.front.transport import read_message
+from testing.ports import LOOPBACK
 from tests.hostile.background import background_loop
 from tests.hostile.dialogue import CONFIRMED_REQUEST, CONFIRMED_RESPONSE, pdu_of
-from tests.mms.relays import LOOPBACK
 
 CONFIRMED_ERROR, REJECT = b"\xa2", b"\xa4"
 HELD_BACK_S = 0.002

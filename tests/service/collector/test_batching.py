@@ -11,9 +11,9 @@ from service.collector.gateway.batch_writer import BatchWriter
 from service.storage import Repository, connect
 from service.storage.records import LinkNote, LinkTraffic, Sample
 from service.storage.states import LinkState
-from tests.service.collector.conftest import eventually
+from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
+from testing.waiting import eventually
 from tests.service.fixtures import database_url
-from tests.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 
 __all__ = ["database_url"]
 

@@ -13,7 +13,8 @@ from mms import Client, DataAccessError, Timestamp
 from service.collector.session.clock import ClockWatch, reading
 from service.plant.metering import measurands
 from service.storage.states import ClockQuality, RecordingRequestState
-from tests.service.collector.conftest import Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 
 OFFSET_S = -3.25

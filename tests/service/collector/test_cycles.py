@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks.connection_cycles import Visits, closed_by_the_client, cut, grown, unanswered
-from tests.mms.relays import Relaying, RelayProcess, mute_server
+from testing.relays.serving import Relaying, RelayProcess, mute_server
 
 pytestmark = pytest.mark.timeout(180)
 

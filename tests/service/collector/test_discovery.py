@@ -17,8 +17,9 @@ from service.collector.session.browsing import browse
 from service.plant import Overrides, TriggerAction, differences
 from service.plant.offer import node_class, promised_by
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState
-from tests.ied_sim.simulating import IED, scenario_of, simulated
-from tests.service.collector.conftest import Bench, eventually
+from testing.relays.simulated import IED, scenario_of, simulated
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import at, expecting
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 

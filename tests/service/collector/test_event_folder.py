@@ -9,7 +9,8 @@ from mms import Client
 from service.collector.records.event_folder import Contents, EventFolder
 from service.plant import Overrides
 from service.storage.states import LinkState, RecordingRequestState
-from tests.service.collector.conftest import Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import overriding
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 

@@ -10,8 +10,9 @@ from service.collector.records.directory import PULL_ATTEMPTS
 from service.collector.records.formats import one_format_an_event, remote_of
 from service.collector.records.listing import ListedRecord, understand
 from service.storage.states import AlarmKind, RecordingRequestState, RecordingState
-from tests.ied_sim.simulating import IED, scenario_of, simulated
-from tests.service.collector.conftest import Bench, eventually
+from testing.relays.simulated import IED, scenario_of, simulated
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import at, expecting
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 from tests.service.collector.test_listing import listed

@@ -30,8 +30,8 @@ from service.plant import Plant, read_plant
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository, connect, migrate
 from service.storage.states import LinkState
-from tests.service.collector.conftest import eventually
-from tests.service.plants import NOW_NS, SECOND_NS
+from testing.service.plants import NOW_NS, SECOND_NS
+from testing.waiting import eventually
 
 LEASE_S = 1.5
 

@@ -9,7 +9,8 @@ from mms.binding.prototypes import PROTOTYPES
 from service.collector.records.allowance import BLOCK_BYTES, DAY_NS, DailyAllowance
 from service.collector.session.alarms import AND_MORE, RelayAlarms
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
-from tests.service.collector.conftest import Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 
 RECORD_BYTES = 2 * BLOCK_BYTES

@@ -5,7 +5,8 @@ import pytest
 from mms import Reason, Report, ReportMember
 from service.collector.session.report_continuity import ReportContinuity
 from service.storage.states import LinkState
-from tests.service.collector.conftest import Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import FAULT_NUMBER, NAME, RECORD_MADE, ScriptedRelay
 
 

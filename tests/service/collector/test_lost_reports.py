@@ -1,7 +1,8 @@
 """However reports are lost, the directory tells: every record comes, and the link says what was lost."""
 
 from service.storage.states import LinkState
-from tests.service.collector.conftest import Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import NAME, RECORD_MADE, ScriptedRelay
 
 

@@ -16,7 +16,8 @@ from service.collector.session.relay_session import RelaySession
 from service.plant import Measurand, MeteredQuantity, Relay
 from service.plant.metering import measurands, measurands_offered
 from service.storage.records import Sample
-from tests.service.collector.conftest import MOTOR, Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import MOTOR, Bench
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 
 MMXU = f"{NAME}MET/METMMXU1"

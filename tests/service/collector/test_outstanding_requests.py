@@ -8,8 +8,9 @@ from service.collector.session.relay_session import RelaySession
 from service.plant.metering import measurands
 from service.storage.records import Sample
 from service.storage.states import LinkState, RecordingRequestState
+from testing.waiting import eventually
 from tests.hostile.dialogue import message, tlv
-from tests.service.collector.conftest import MOTOR, Bench, eventually
+from tests.service.collector.conftest import MOTOR, Bench
 from tests.service.collector.outstanding import Outstanding
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 

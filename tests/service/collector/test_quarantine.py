@@ -21,12 +21,13 @@ from service.collector.session.visit_marks import VisitMarks
 from service.storage import Repository
 from service.storage.records import Quarantine
 from service.storage.states import AlarmKind, LinkState
+from testing.service.plants import NOW_NS, SECOND_NS
+from testing.waiting import eventually
 from tests.hostile.dialogue import overheard
 from tests.hostile.relay import LIST_OF_NAMES, lying
-from tests.service.collector.conftest import Bench, eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import NAME
 from tests.service.fixtures import database_url, engine, repository
-from tests.service.plants import NOW_NS, SECOND_NS
 
 __all__ = ["database_url", "engine", "repository"]
 

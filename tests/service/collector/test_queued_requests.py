@@ -10,9 +10,10 @@ import pytest
 from service.collector.gateway.gateway import Gateway, Identity
 from service.plant import Plant, PlantMotor, Site
 from service.storage.states import LinkState, RecordingRequestState
-from tests.service.collector.conftest import MOTOR, Bench, eventually
+from testing.service.plants import SECOND_NS, motor
+from testing.waiting import eventually
+from tests.service.collector.conftest import MOTOR, Bench
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
-from tests.service.plants import SECOND_NS, motor
 
 LONG_S = 60.0
 WATCHED_S = 2.0

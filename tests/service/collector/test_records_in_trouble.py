@@ -7,7 +7,8 @@ import pytest
 
 from service.collector.records.directory import MANY_ATTEMPTS, PULL_ATTEMPTS
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
-from tests.service.collector.conftest import Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import ScriptedRelay
 
 

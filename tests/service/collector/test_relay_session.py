@@ -12,7 +12,8 @@ from mms import Client, DataAccessError
 from service.collector.session.relay_session import RelaySession
 from service.recording_store.store import Incoming
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
-from tests.service.collector.conftest import MOTOR, Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import MOTOR, Bench
 from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
 
 

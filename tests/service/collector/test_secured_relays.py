@@ -10,9 +10,10 @@ from ied_sim.relay.configuration import Access
 from mms import TlsConfiguration
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
 from service.storage.states import LinkState, RecordingRequestState
-from tests.ied_sim.simulating import Simulated, scenario_of, simulated
-from tests.mms.pki import Pki
-from tests.service.collector.conftest import Bench, eventually
+from testing.relays.pki import Pki
+from testing.relays.simulated import Simulated, scenario_of, simulated
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import NAME
 from tests.service.collector.test_simulated_relays import of
 

@@ -15,8 +15,9 @@ from ied_sim.motor.plant import rated_current
 from ied_sim.profiles.profile import Triggers
 from service.plant.recognition import recognise
 from service.storage.states import LinkState, RecordingRequestState, RecordingState
-from tests.ied_sim.simulating import IED, Simulated, scenario_of, simulated, text
-from tests.service.collector.conftest import MOTOR, Bench, eventually
+from testing.relays.simulated import IED, Simulated, scenario_of, simulated, text
+from testing.waiting import eventually
+from tests.service.collector.conftest import MOTOR, Bench
 from tests.service.collector.expectations import at, expecting
 from tests.service.collector.scripted_relay import NAME
 

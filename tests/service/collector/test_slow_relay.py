@@ -4,7 +4,8 @@ import os
 import time
 
 from service.storage.states import LinkState, RecordingRequestState
-from tests.service.collector.conftest import Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import ScriptedRelay
 
 OPENING_S = 0.4

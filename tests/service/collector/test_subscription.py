@@ -16,7 +16,8 @@ from service.collector.session.link import Link
 from service.collector.session.reports import Inbox, ReportSubscription
 from service.plant import promised
 from service.storage.states import LinkState
-from tests.service.collector.conftest import Bench, eventually
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import expecting
 from tests.service.collector.scripted_relay import NAME, REPORT_CONTROL, ScriptedRelay
 

@@ -13,7 +13,7 @@ import pytest
 from service.collector.supervision.supervisor import GatewaySupervisor, _hand_over
 from service.configuration.relay_access import RelayAccess, RelayTls
 from service.configuration.settings import Settings
-from tests.service.collector.conftest import eventually
+from testing.waiting import eventually
 
 OBEDIENT = "import sys; sys.stdin.readline(); sys.stdin.read()"
 STUBBORN = "import time; time.sleep(60)"

@@ -20,7 +20,7 @@ from service.demo.processes import Program, ProgramError
 from service.demo.results import DemoDiagnosis, DemoMotor, document, slowest, table
 from service.demo.truth import Truth, TruthError, ask_simulator
 from service.plant.files import plant_of_files
-from tests.service.collector.conftest import eventually
+from testing.waiting import eventually
 
 DIAGNOSIS = {"verdict": "fault", "mu_f": 0.05, "mu_f_ci95": [0.049, 0.051], "phase": "b", "load_level": 0.65}
 

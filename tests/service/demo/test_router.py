@@ -15,7 +15,8 @@ from mms import Client, ConnectFailed, FunctionalConstraint
 from scl.demo_enterprise import write_demo_enterprise
 from service.demo.addresses import free_ports
 from service.demo.router import MOST_CONNECTIONS, main, passages
-from tests.integration.processes import eventually, simulated_plant
+from testing.service.processes import simulated_plant
+from testing.waiting import eventually
 
 RELAY = "A1_SEL710"
 TRIGGER = f"{RELAY}CON/RBGGIO1.SPCSO01.stVal"

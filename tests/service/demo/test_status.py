@@ -9,7 +9,7 @@ from service.cli import main
 from service.client.rest_client import Document
 from service.demo.status import MotorStatus
 from service.demo.truth import Truth
-from tests.integration.processes import MOTOR_NAMES, running_service, simulated_plant
+from testing.service.processes import MOTOR_NAMES, running_service, simulated_plant
 
 FAULT_B = Truth(mu_f=0.05, theta_f=1, load_level=0.65)
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
-from tests.service.jobs.waiting import wait_until
-from tests.service.plants import NOW_NS, fault
+from testing.service.plants import NOW_NS, fault
+from testing.waiting import wait_until
 
 GO = "STAND_IN_GO"
 """Environment variable with the path of the file that lets a worker go on."""

@@ -17,9 +17,9 @@ from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.states import JobState, RecordingRequestState, RecordingState
+from testing.service.plants import motor
+from testing.waiting import wait_until
 from tests.service.jobs.stand_ins import GO, act_as_told, fail_to_start, prepare_when_told
-from tests.service.jobs.waiting import wait_until
-from tests.service.plants import motor
 
 LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, retry_delay_s=0.01)
 MOTORS = {"PUMP-A1": motor("PUMP-A1")}
@@ -70,7 +70,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     assert lost is not None
     store.entry(lost).unlink()
     with running(repository, store) as runner:
-        wait_until(lambda: ended(repository, *ids.values()), timeout_s=60)
+        wait_until(lambda: ended(repository, *ids.values()), within_s=60)
         wait_until(lambda: runner.problem() is None)
     recordings = {what: repository.recording(id_) for what, id_ in ids.items()}
     assert {what: str(recording.state) for what, recording in recordings.items()} == {

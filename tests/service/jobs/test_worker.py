@@ -14,11 +14,11 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from tests.core.motors import REFERENCE
-from tests.core.phase_circuits import recording as waveforms
-from tests.core.phase_circuits import running
-from tests.service.jobs.waiting import wait_until
-from tests.service.plants import NOW_NS, motor
+from testing.machines.motors import REFERENCE
+from testing.machines.phase_circuits import recording as waveforms
+from testing.machines.phase_circuits import running
+from testing.service.plants import NOW_NS, motor
+from testing.waiting import wait_until
 
 TRIGGER_INDEX = 400
 
@@ -82,7 +82,7 @@ def test_worker_processes_diagnose(repository: Repository, store: RecordingStore
     )
     runner.start()
     try:
-        wait_until(lambda: repository.current_diagnosis(added.recording.id), timeout_s=120)
+        wait_until(lambda: repository.current_diagnosis(added.recording.id), within_s=120)
     finally:
         runner.stop()
     health = repository.health("PUMP-A1")

@@ -11,7 +11,7 @@ from threading import Thread
 from service.storage import Repository, connect
 from service.storage.records import RemoteRecord
 from service.storage.states import LinkState
-from tests.service.plants import NOW_NS, two_motor_plant
+from testing.service.plants import NOW_NS, two_motor_plant
 
 ROUNDS = 60
 

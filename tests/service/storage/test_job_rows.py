@@ -7,7 +7,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository, StateConflictError
 from service.storage.records import ClaimedJob, RemoteRecord
 from service.storage.states import JobState, RecordingRequestState, RecordingState
-from tests.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 
 @pytest.fixture

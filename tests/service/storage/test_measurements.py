@@ -13,7 +13,7 @@ from service.storage import NotFoundError, Repository
 from service.storage.models import MeasurementRow
 from service.storage.records import Measurement, Sample
 from service.storage.repository.measurements import FIGURES
-from tests.service.plants import SECOND_NS
+from testing.service.plants import SECOND_NS
 
 QUARTER_NS = 900 * SECOND_NS
 BEGIN_NS = 1_760_000_000 * SECOND_NS // QUARTER_NS * QUARTER_NS

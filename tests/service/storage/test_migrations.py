@@ -10,7 +10,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, StorageError, connect, migrate
 from service.storage.migrations import config
 from service.storage.models import Base
-from tests.service.plants import NOW_NS
+from testing.service.plants import NOW_NS
 
 
 def test_migrations_make_the_tables_of_the_models(engine: Engine) -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from service.storage import NotFoundError, Repository
 from service.storage.states import AlarmKind, LinkState
-from tests.service.plants import NOW_NS, two_motor_plant
+from testing.service.plants import NOW_NS, two_motor_plant
 
 
 def test_the_tables_follow_the_plant(repository: Repository) -> None:

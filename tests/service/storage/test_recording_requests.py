@@ -2,7 +2,7 @@ import pytest
 
 from service.storage import NotFoundError, Repository, StateConflictError
 from service.storage.states import RecordingRequestState
-from tests.service.plants import NOW_NS, SECOND_NS
+from testing.service.plants import NOW_NS, SECOND_NS
 
 
 def test_a_request_goes_through_its_states(repository: Repository) -> None:

@@ -4,7 +4,7 @@ from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import NotFoundError, Repository
 from service.storage.records import ClockReading, RecordingEntry, RemoteRecord
 from service.storage.states import ClockQuality, RecordingRequestState, RecordingState
-from tests.service.plants import NOW_NS, SECOND_NS, fault
+from testing.service.plants import NOW_NS, SECOND_NS, fault
 
 REMOTE = RemoteRecord("C_0001", 11, NOW_NS)
 

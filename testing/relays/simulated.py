@@ -17,7 +17,7 @@ from ied_sim.scenario.scenario import healthy_reference
 from ied_sim.simulator import Simulator
 from mms import Client
 from scl import Address, Scl
-from tests.ied_sim.serving import free_port
+from testing.ports import LOOPBACK, free_port
 
 IED = "R1"
 SHORT = RecorderSettings(sample_rate_hz=1_600.0, pre_trigger_s=0.04, post_trigger_s=0.08, capacity=3)
@@ -51,7 +51,7 @@ class Simulated:
 def simulated(files: Path, scenario: RelayConfiguration) -> Iterator[Simulated]:
     """R1 of the scenario's profile on a free port; another one where somebody was faster."""
     for _ in range(5):
-        document = standalone(scenario.profile, IED, Address("127.0.0.1", free_port()))
+        document = standalone(scenario.profile, IED, Address(LOOPBACK, free_port()))
         simulator = Simulator(document, {IED: scenario}, files=files)
         try:
             simulator.start()

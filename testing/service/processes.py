@@ -4,8 +4,7 @@ import os
 import signal
 import subprocess
 import sys
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,21 +14,12 @@ from scl import Address
 from service.client.rest_client import ServiceClient, ServiceError
 from service.demo import MOTORS, SCENARIO
 from service.demo.addresses import free_ports
+from testing.waiting import eventually
 
 RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")
 MOTOR_NAMES = ("PUMP-A1", "FAN-A2", "MILL-A3", "CONVEYOR-B1", "COMPRESSOR-B2", "PUMP-B3")
 
 START_LIMIT_S = 60.0
-
-
-def eventually(condition: Callable[[], bool], within_s: float) -> bool:
-    """Whether the condition comes true in time."""
-    deadline_s = time.monotonic() + within_s
-    while time.monotonic() < deadline_s:
-        if condition():
-            return True
-        time.sleep(0.05)
-    return condition()
 
 
 @dataclass(frozen=True)

@@ -1,27 +1,14 @@
-"""Motors the tests of the plant simulation speak of."""
+"""Simulated motors on a clean supply."""
 
 from math import sqrt
 
-from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
+from core.machines.parameters import Motor
 from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.load import Load
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
-
-REFERENCE = Motor(
-    "reference", Nameplate(800, 380, 50, 2), MachineParameters(8.4, 8.2, 0.0328, 0.0328, 0.4377, 0.0229)
-)
-DELTA = Motor(
-    "delta",
-    Nameplate(37_000, 400, 50, 2, Connection.DELTA),
-    MachineParameters(0.247, 0.1509, 0.002172, 0.002172, 0.05422, 0.37),
-)
-SMALL = Motor(
-    "7.5 kW",
-    Nameplate(7_500, 400, 50, 2),
-    MachineParameters(0.7384, 0.7402, 0.003045, 0.003045, 0.08273, 0.0343),
-)
+from testing.machines.motors import REFERENCE
 
 
 def plant(

@@ -6,23 +6,13 @@ import socket
 import subprocess
 import sys
 import threading
-import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final
 
 from mms import FileAnswer, FileRequest, Server, ServerStartFailed, TlsConfiguration
-from tests.mms.relay_model import MODEL_TEXT
-
-LOOPBACK: Final = "127.0.0.1"
-
-
-def free_port() -> int:
-    """A port that was free a moment ago: the library cannot choose one itself."""
-    with socket.socket() as probe:
-        probe.bind((LOOPBACK, 0))
-        return int(probe.getsockname()[1])
+from testing.ports import LOOPBACK, free_port
+from testing.relays.model import MODEL_TEXT
 
 
 def start_relay(
@@ -47,16 +37,6 @@ def start_relay(
     raise AssertionError("unreachable")
 
 
-def eventually(condition: Callable[[], bool], timeout_s: float = 5.0) -> bool:
-    """Poll until the condition holds; False when the time is over."""
-    deadline = time.monotonic() + timeout_s
-    while time.monotonic() < deadline:
-        if condition():
-            return True
-        time.sleep(0.005)
-    return condition()
-
-
 class RelayProcess:
     """A relay in a process of its own, to be frozen or killed."""
 
@@ -64,7 +44,7 @@ class RelayProcess:
         """With the certificates of a Pki it speaks TLS."""
         folder = [] if certificates is None else [str(certificates)]
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "tests.mms.relay_process", str(file_root), *folder],
+            [sys.executable, "-m", "testing.relays.process", str(file_root), *folder],
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
         )  # fmt: skip
         assert self._process.stdout is not None

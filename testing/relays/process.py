@@ -1,4 +1,4 @@
-"""`python -m tests.mms.relay_process FILE_ROOT [CERTIFICATES]`: a relay, over TLS with a Pki's certificates.
+"""`python -m testing.relays.process FILE_ROOT [CERTIFICATES]`: a relay, over TLS with a Pki's certificates.
 
 It prints its port and serves until its input ends.
 """
@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from mms import TlsConfiguration
-from tests.mms.relays import start_relay
+from testing.relays.serving import start_relay
 
 
 def main() -> None:

@@ -5,7 +5,7 @@ from datetime import timedelta
 from pathlib import Path
 
 from mms import TlsConfiguration, TlsVersion
-from tests.certificates import Identity, identity
+from testing.relays.certificates import Identity, identity
 
 
 @dataclass(frozen=True, slots=True)

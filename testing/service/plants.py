@@ -1,21 +1,20 @@
 """A small plant and results for the tests of the service."""
 
+from dataclasses import replace
+
 from core.diagnosis.verdict import Diagnosis, Verdict
-from core.machines.parameters import MachineParameters, Motor, Nameplate
+from core.machines.parameters import Motor
 from core.quality.finding import QualityFinding
 from service.plant import Plant, PlantMotor, Relay, Site
+from testing.machines.motors import REFERENCE
 
 SECOND_NS = 1_000_000_000
 NOW_NS = 1_760_000_000 * SECOND_NS
 
 
 def motor(name: str) -> Motor:
-    """The 800 W machine of the demo plant."""
-    return Motor(
-        name,
-        Nameplate(800.0, 380.0, 50.0, 2),
-        MachineParameters(8.4, 8.2, 0.0328, 0.0328, 0.4377, 0.0229),
-    )
+    """The 800 W machine of the demo plant, under this name."""
+    return replace(REFERENCE, name=name)
 
 
 def relay(name: str, site: str, port: int = 10210) -> Relay:

@@ -1,0 +1,1 @@
+"""The service seen from outside: its processes, a small plant and a small record."""
