@@ -1,1 +1,1 @@
-"""What the service does in threads of its own: schedules, housekeeping, event reports nobody attends to."""
+"""Periodic work in threads of the service: schedules, housekeeping, orphaned recording requests."""

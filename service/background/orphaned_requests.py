@@ -1,19 +1,18 @@
-"""Event reports of relays that no gateway visits are given up here; all others are their gateway's affair.
+"""Ends recording requests whose relay no gateway visits.
 
-A gateway ends the reports of the relays it holds, those that do not answer included. Where none holds a
-relay, because gateways crash or do not start, are too few, or the relay left the plant, nobody else would,
-and an open report keeps the motor's schedule from asking for the next.
+A gateway ends the open requests of the relays it holds, also where a relay does not answer. Nobody holds a
+relay when gateways crash or do not start, when there are too few of them, or when the relay left the plant. A
+request would then stay open for ever, and an open request keeps the motor's schedule from making the next.
 
-A report's time runs only while nobody visits its relay, by a clock that only goes forward, and begins anew
-when a gateway has held the relay for `record_timeout_s` without a break: by then it has seen to it itself.
+The time of a request runs only while nobody visits its relay, by the monotonic clock. It starts again from
+zero once a gateway has held the relay for `record_timeout_s` without a break: by then the gateway has dealt
+with the request itself.
 """
 
 import time
 from collections.abc import Callable
-from threading import Event, Thread
 
 import structlog
-from sqlalchemy.exc import SQLAlchemyError
 
 from service.collector.gateway.peer_liveness import PeerLiveness
 from service.collector.supervision.supervisor import LONGEST_DELAY_S
@@ -26,94 +25,89 @@ log = structlog.get_logger(__name__)
 
 PERIOD_S = 2.0
 
-RECORD_PATIENCE_S = 3600.0
-"""Of a report that was triggered: its record may wait in the relay, for a gateway that comes back."""
+TRIGGERED_LIMIT_S = 3600.0
+"""For a request whose relay was triggered: the record may wait in the relay until a gateway comes back."""
 
 
-class OrphanedRequests:
-    """One thread. `problem` says why gateways of this service do not run, None while all do."""
+class OrphanedRequestEnder:
+    """Fails every open request that has had no gateway for too long."""
 
     def __init__(
-        self, settings: Settings, repository: Repository, *, problem: Callable[[], str | None]
+        self,
+        settings: Settings,
+        repository: Repository,
+        *,
+        gateway_problem: Callable[[], str | None],
+        restart_delay_s: float = LONGEST_DELAY_S,
     ) -> None:
+        """
+        gateway_problem: why gateways of this service do not run; None while all do.
+        restart_delay_s: the longest pause before a gateway that ended is started again.
+        """
         self._repository = repository
-        self._problem = problem
+        self._gateway_problem = gateway_problem
         self._record_timeout_s = settings.record_timeout_s
-        # A gateway that ended is started again, or its relays are taken over, within this grace.
-        self._patience_s = settings.record_timeout_s + settings.lease_s + LONGEST_DELAY_S
+        # Within this time a gateway that ended runs again, or another has taken over its relays.
+        self._limit_s = settings.record_timeout_s + settings.lease_s + restart_delay_s
         self._peers = PeerLiveness(settings.lease_s)
-        self._looked_s: float | None = None
+        self._checked_s: float | None = None
         self._held_for_s: dict[str, float] = {}
-        self._waited_s: dict[str, float] = {}
-        self._stopping = Event()
-        self._thread = Thread(target=self._run, name="unvisited", daemon=True)
+        self._orphaned_for_s: dict[str, float] = {}
 
-    def start(self) -> None:
-        self._thread.start()
-
-    def stop(self) -> None:
-        self._stopping.set()
-        self._thread.join()
-
-    def look(self, now_s: float) -> None:
-        """Give up what has waited too long; `now_s` is monotonic [s]. Raises SQLAlchemyError: look again."""
-        passed_s = 0.0 if self._looked_s is None else now_s - self._looked_s
-        self._looked_s = now_s
-        self._end_the_dead(now_s)
+    def end_overdue(self, now_s: float) -> None:
+        """Fail the requests that have waited too long; `now_s` is monotonic [s]. Raises SQLAlchemyError."""
+        passed_s = 0.0 if self._checked_s is None else now_s - self._checked_s
+        self._checked_s = now_s
+        self._end_dead_gateways(now_s)
         held = self._repository.held_relays()
         self._held_for_s = {ied: self._held_for_s.get(ied, 0.0) + passed_s for ied in held}
-        waited_s = {}
-        for report in self._repository.all_open_recording_requests():
-            waited_s[report.id] = self._waited(report, passed_s)
-            if report.ied not in held and waited_s[report.id] > self._limit_s(report):
-                self._give_up(report, waited_s[report.id])
-        self._waited_s = waited_s
+        orphaned_for_s = {}
+        for request in self._repository.all_open_recording_requests():
+            waited_s = orphaned_for_s[request.id] = self._waited_s(request, passed_s)
+            if request.ied not in held and waited_s > self._limit_of_s(request):
+                self._fail(request, waited_s)
+        self._orphaned_for_s = orphaned_for_s
 
-    def _waited(self, report: RecordingRequest, passed_s: float) -> float:
-        """How long a report has been seen without anybody who visits its relay [s]."""
-        before_s = self._waited_s.get(report.id)
-        held_for_s = self._held_for_s.get(report.ied)
+    def _waited_s(self, request: RecordingRequest, passed_s: float) -> float:
+        """How long the request has been seen while nobody visited its relay [s]."""
+        before_s = self._orphaned_for_s.get(request.id)
+        held_for_s = self._held_for_s.get(request.ied)
         if before_s is None:
             return 0.0
         if held_for_s is None:
             return before_s + passed_s
         return before_s if held_for_s < self._record_timeout_s else 0.0
 
-    def _limit_s(self, report: RecordingRequest) -> float:
-        requested = report.state is RecordingRequestState.REQUESTED
-        return self._patience_s if requested else max(self._patience_s, RECORD_PATIENCE_S)
+    def _limit_of_s(self, request: RecordingRequest) -> float:
+        if request.state is RecordingRequestState.REQUESTED:
+            return self._limit_s
+        return max(self._limit_s, TRIGGERED_LIMIT_S)
 
-    def _end_the_dead(self, now_s: float) -> None:
-        """A gateway of another host that died leaves its leases behind, and perhaps no gateway to notice."""
+    def _end_dead_gateways(self, now_s: float) -> None:
+        """Free the relays of gateways that died with their host: no other gateway may be left to do it."""
         for gateway, beats in self._peers.dead(self._repository.beats(), now_s).items():
             if self._repository.end_gateway(gateway, beats=beats, now_ns=time.time_ns()):
-                log.warning("a gateway is dead, its relays are free", gateway=gateway)
+                log.warning("gateway is dead; its relays are free", gateway=gateway)
 
-    def _give_up(self, report: RecordingRequest, waited_s: float) -> None:
-        reason = f"{report.ied}: no gateway has visited the relay for {waited_s:.0f} s: {self._why(report)}"
-        if report.state is not RecordingRequestState.REQUESTED:
+    def _fail(self, request: RecordingRequest, waited_s: float) -> None:
+        cause = self._cause(request)
+        reason = f"{request.ied}: no gateway has visited the relay for {waited_s:.0f} s: {cause}"
+        if request.state is not RecordingRequestState.REQUESTED:
             reason += "; it was triggered, and a record it made is pulled without a report when it is visited"
-        if self._repository.give_up_unvisited(report, reason, now_ns=time.time_ns()):
-            log.warning("event report failed", relay=report.ied, recording_request=report.id, reason=reason)
+        if self._repository.fail_orphaned_request(request, reason, now_ns=time.time_ns()):
+            log.warning("recording request failed", relay=request.ied, request=request.id, reason=reason)
 
-    def _why(self, report: RecordingRequest) -> str:
-        """And what to do about it."""
-        if not self._repository.is_in_service(report.ied):
+    def _cause(self, request: RecordingRequest) -> str:
+        """Why nobody visits the relay, and what can be done about it."""
+        if not self._repository.is_in_service(request.ied):
             return "it is not in the plant's files any more; ask for a motor that GET /api/v1/motors lists"
-        problem = self._problem()
+        problem = self._gateway_problem()
         if problem is not None:
             return f"gateways do not run ({problem}); the service's log says why, GET /readyz when they do"
-        quarantine = self._repository.quarantine(report.ied)
+        quarantine = self._repository.quarantine(request.ied)
         if quarantine is not None:
-            return f"it was set aside, {quarantine.reason}; see GET /api/v1/ieds/{report.ied}"
+            return f"it was set aside, {quarantine.reason}; see GET /api/v1/ieds/{request.ied}"
         return (
             "the gateways that run hold other relays; see GET /api/v1/gateways, and the settings "
             "relays_per_gateway, scd and motors of each"
         )
-
-    def _run(self) -> None:
-        while not self._stopping.wait(PERIOD_S):
-            try:
-                self.look(time.monotonic())
-            except SQLAlchemyError as error:
-                log.warning("database does not answer, trying again", error=str(error))

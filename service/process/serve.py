@@ -4,7 +4,7 @@ import os
 import signal
 import socket
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from ipaddress import IPv6Address
 from pathlib import Path
@@ -19,10 +19,8 @@ from sqlalchemy.exc import OperationalError
 
 from service.api.app import create_app
 from service.api.context import ApiContext
-from service.background.housekeeping import Housekeeping
-from service.background.orphaned_requests import OrphanedRequests
-from service.background.scheduling import Scheduler
-from service.collector.supervision.gateway_processes import GatewayProcesses, running_gateways
+from service.background.workers import background_workers
+from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings
 from service.jobs import JobRunner
@@ -30,6 +28,7 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.plant import Plant, read_plant
 from service.process.installation import installation_id
+from service.process.parts import Part, running
 from service.process.single_instance import exclusive
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
@@ -56,24 +55,10 @@ def serve(settings: Settings) -> None:
         repository = _prepared(settings, plant)
         store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
         store.discard_incoming()
-        with (
-            running_gateways(settings, plant, repository) as collector,
-            _diagnosing(settings, plant, repository, store) as jobs,
-            _scheduling(plant, repository) as schedules,
-            _tidying(settings, repository),
-            _giving_up(settings, repository, collector),
-        ):
-            context = ApiContext(
-                settings,
-                repository,
-                store,
-                readiness={
-                    "collector": collector.problem,
-                    "jobs": jobs.problem,
-                    "schedules": schedules.problem,
-                },
-                on_new_job=jobs.wake,
-            )
+        jobs, parts = _parts(settings, plant, repository, store)
+        readiness = {name: part.problem for name, part in parts.items()}
+        context = ApiContext(settings, repository, store, readiness=readiness, on_new_job=jobs.wake)
+        with running(parts.values()):
             host, port = listener.getsockname()[:2]
             log.info("serving", host=host, port=port, motors=len(plant.motors))
             _answer(context, listener)
@@ -110,7 +95,7 @@ def collect(settings: Settings) -> None:
     with exclusive(settings.data_directory / "service.lock", wait=False):
         repository = Repository(connect(settings.database_url))
         repository.check()
-        with running_gateways(settings, plant, repository):
+        with running([GatewayProcesses(settings, plant, repository)]):
             log.info("collecting for a service elsewhere", relays=len(plant.relays))
             end.wait()
     log.info("collecting ended")
@@ -139,10 +124,11 @@ def _answer(context: ApiContext, listener: socket.socket) -> None:
         log.info("interrupted")
 
 
-@contextmanager
-def _diagnosing(
+def _parts(
     settings: Settings, plant: Plant, repository: Repository, store: RecordingStore
-) -> Iterator[JobRunner]:
+) -> tuple[JobRunner, Mapping[str, Part]]:
+    """The job runner, and all parts of the service by the names that GET /readyz lists."""
+    gateways = GatewayProcesses(settings, plant, repository)
     jobs = JobRunner(
         repository,
         store,
@@ -156,41 +142,8 @@ def _diagnosing(
         ),
         prepare_worker=prepare_worker,
     )
-    jobs.start()
-    try:
-        yield jobs
-    finally:
-        jobs.stop()
-
-
-@contextmanager
-def _scheduling(plant: Plant, repository: Repository) -> Iterator[Scheduler]:
-    schedules = Scheduler(plant.motors, repository)
-    schedules.start()
-    try:
-        yield schedules
-    finally:
-        schedules.stop()
-
-
-@contextmanager
-def _tidying(settings: Settings, repository: Repository) -> Iterator[None]:
-    housekeeping = Housekeeping(settings, repository)
-    housekeeping.start()
-    try:
-        yield
-    finally:
-        housekeeping.stop()
-
-
-@contextmanager
-def _giving_up(settings: Settings, repository: Repository, gateways: GatewayProcesses) -> Iterator[None]:
-    unvisited = OrphanedRequests(settings, repository, problem=gateways.problem)
-    unvisited.start()
-    try:
-        yield
-    finally:
-        unvisited.stop()
+    workers = background_workers(settings, plant, repository, gateway_problem=gateways.problem)
+    return jobs, {"collector": gateways, "jobs": jobs, **workers}
 
 
 def _require_writable(directory: Path) -> None:

@@ -3,13 +3,13 @@
 What is old is told by the wall clock, and somebody may set that a day ahead, and right again minutes later.
 """
 
+from core.units import NANOSECONDS_PER_SECOND
+
 SETTLING_S = 3600.0
 """A clock that was not set for so long is taken for right."""
 
 LARGEST_STEP_S = 5.0
 """Between two looks. A clock that is kept right by the network is slewed, or set by less."""
-
-SECOND_NS = 1_000_000_000
 
 
 class WallClock:
@@ -32,9 +32,9 @@ class WallClock:
         lead_ns = wall_ns - monotonic_ns
         if self._lead_ns is None:
             self._since_ns = monotonic_ns
-        elif abs(lead_ns - self._lead_ns) > LARGEST_STEP_S * SECOND_NS:
+        elif abs(lead_ns - self._lead_ns) > LARGEST_STEP_S * NANOSECONDS_PER_SECOND:
             self._since_ns = monotonic_ns
             self._steps += 1
         self._lead_ns = lead_ns
-        self.is_settled = monotonic_ns - self._since_ns >= SETTLING_S * SECOND_NS
+        self.is_settled = monotonic_ns - self._since_ns >= SETTLING_S * NANOSECONDS_PER_SECOND
         self.was_set = self._steps > 0 and not self.is_settled

@@ -1,10 +1,12 @@
 """`mcc serve` comes up whole or says why not, and goes down whole."""
 
+import re
 import shutil
 import signal
 import socket
 from pathlib import Path
 
+import httpx
 import pytest
 
 import scl
@@ -12,12 +14,18 @@ from service.demo import MOTORS
 from testing.service.processes import descendants, is_alive, running_service, serve_in_vain
 from testing.waiting import eventually
 
+API_PAGE = Path(__file__).parents[2] / "docs" / "reference" / "api.md"
+
 pytestmark = pytest.mark.timeout(300)
 """Starting and stopping a service may take START_LIMIT_S each."""
 
 
-def test_sigterm_ends_every_process(tmp_path: Path) -> None:
+def test_every_part_is_documented_and_ready_and_sigterm_ends_every_process(tmp_path: Path) -> None:
+    page = API_PAGE.read_text(encoding="utf-8")
+    documented = re.findall(r"^\| `(\w+)` \|", page.partition("| Part of `/readyz` |")[2], re.MULTILINE)
     with running_service(tmp_path, scl.DEMO_PLANT_SCD) as service:
+        parts = httpx.get(f"{service.url}/readyz", trust_env=False).json()["parts"]
+        assert parts == dict.fromkeys(documented, "ready")
         below = descendants(service.process_id)
         assert len(below) >= 3, "a collector and two workers"
         assert service.stop() == 0

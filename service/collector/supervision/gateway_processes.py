@@ -1,8 +1,6 @@
 """The gateway processes of this installation: as many as its relays need, each kept running."""
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
@@ -68,14 +66,3 @@ class GatewayProcesses:
                 log.warning("the leases run out by themselves", error=str(error))
 
         return GatewaySupervisor(self._settings, number=number, on_end=ended)
-
-
-@contextmanager
-def running_gateways(settings: Settings, plant: Plant, repository: Repository) -> Iterator[GatewayProcesses]:
-    """GatewayProcesses for as long as the block lasts."""
-    gateways = GatewayProcesses(settings, plant, repository)
-    gateways.start()
-    try:
-        yield gateways
-    finally:
-        gateways.stop()

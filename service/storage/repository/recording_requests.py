@@ -110,7 +110,7 @@ class RecordingRequestRows(Sessions):
         with self._read() as session:
             return tuple(recording_request(row) for row in session.scalars(query))
 
-    def give_up_unvisited(self, request: RecordingRequest, reason: str, *, now_ns: int) -> bool:
+    def fail_orphaned_request(self, request: RecordingRequest, reason: str, *, now_ns: int) -> bool:
         """Fail a request that is still as it was seen. Raises NotFoundError.
 
         False, and nothing is changed, where its state is another by now or a gateway holds its relay.

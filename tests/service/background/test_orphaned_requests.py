@@ -1,41 +1,38 @@
-"""A report that no gateway sees to ends in words; whatever a gateway sees to is let alone."""
+"""A request whose relay no gateway visits fails with the reason; the others are left to their gateway."""
 
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
-from service.background.orphaned_requests import RECORD_PATIENCE_S, OrphanedRequests
+from service.background.orphaned_requests import TRIGGERED_LIMIT_S, OrphanedRequestEnder
 from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.supervisor import LONGEST_DELAY_S
 from service.configuration.settings import Settings
 from service.plant import Plant
-from service.process.serve import _giving_up
 from service.storage import Repository
 from service.storage.records import RecordingRequest
 from service.storage.states import RecordingRequestState
 from testing.service.plants import NOW_NS, two_motor_plant
-from testing.waiting import eventually
 from tests.service.fixtures import database_url, engine, repository
 
 __all__ = ["database_url", "engine", "repository"]
 
 MOTOR, RELAY, OTHER = "PUMP-A1", "A1_SEL710", "A2_SEL710"
 RECORD_S, LEASE_S = 20.0, 10.0
-PATIENCE_S = RECORD_S + LEASE_S + LONGEST_DELAY_S
+LIMIT_S = RECORD_S + LEASE_S + LONGEST_DELAY_S
 STEP_S = 2.0
 
 
 class Watch:
-    """The look-out, and a monotonic clock of its own."""
+    """An ender of orphaned requests, with a monotonic clock that the tests set."""
 
     def __init__(self, repository: Repository, directory: Path) -> None:
         self.repository = repository
         self.problem: str | None = None
         settings = Settings(data_directory=directory, record_timeout_s=RECORD_S, lease_s=LEASE_S)
-        self.unvisited = OrphanedRequests(settings, repository, problem=lambda: self.problem)
+        self.ender = OrphanedRequestEnder(settings, repository, gateway_problem=lambda: self.problem)
         self.now_s = 1000.0
         self.beating: list[str] = []
 
@@ -44,7 +41,7 @@ class Watch:
             self.now_s += step_s
             for gateway in self.beating:
                 self.repository.share_relays(gateway, [], most=0)
-            self.unvisited.look(self.now_s)
+            self.ender.end_overdue(self.now_s)
 
     @contextmanager
     def gateway(self, *relays: str) -> Iterator[None]:
@@ -61,7 +58,7 @@ class Watch:
 
     def ask(self) -> str:
         report = self.repository.request_recording(MOTOR, now_ns=NOW_NS).id
-        self.unvisited.look(self.now_s)
+        self.ender.end_overdue(self.now_s)
         return report
 
     def report(self, report_id: str) -> RecordingRequest:
@@ -79,7 +76,7 @@ def watch(repository: Repository, tmp_path: Path) -> Watch:
 def test_without_any_gateway_a_report_fails_in_words_and_the_schedule_goes_on(watch: Watch) -> None:
     watch.problem = "1 of 1: the collector process is not running"
     report = watch.ask()
-    watch.passes(PATIENCE_S)
+    watch.passes(LIMIT_S)
     assert watch.state(report) is RecordingRequestState.REQUESTED
     assert watch.repository.schedule_recording(MOTOR, due_ns=NOW_NS, now_ns=NOW_NS) is None
     watch.passes(2 * STEP_S)
@@ -94,21 +91,21 @@ def test_without_any_gateway_a_report_fails_in_words_and_the_schedule_goes_on(wa
 def test_a_relay_no_gateway_has_room_for_is_told(watch: Watch) -> None:
     with watch.gateway(OTHER):
         report = watch.ask()
-        watch.passes(PATIENCE_S + 2 * STEP_S)
+        watch.passes(LIMIT_S + 2 * STEP_S)
     assert "relays_per_gateway" in (watch.report(report).reason or "")
 
 
 def test_a_relay_that_was_set_aside_is_told(watch: Watch) -> None:
     watch.repository.set_aside(RELAY, "it bites", first_pause_s=9.0, longest_pause_s=9.0, now_ns=NOW_NS)
     report = watch.ask()
-    watch.passes(PATIENCE_S + 2 * STEP_S)
+    watch.passes(LIMIT_S + 2 * STEP_S)
     assert f"it was set aside, it bites; see GET /api/v1/ieds/{RELAY}" in (watch.report(report).reason or "")
 
 
 def test_a_relay_that_left_the_plant_is_told(watch: Watch) -> None:
     report = watch.ask()
     watch.repository.sync_plant(Plant(sites=(), relays=(), motors=()))
-    watch.passes(PATIENCE_S + 2 * STEP_S)
+    watch.passes(LIMIT_S + 2 * STEP_S)
     assert "not in the plant's files any more" in (watch.report(report).reason or "")
 
 
@@ -116,9 +113,9 @@ def test_what_a_gateway_holds_is_never_ended_here(watch: Watch) -> None:
     """A long queue at a relay that answers, or a link that is down: the gateway sees to both."""
     with watch.gateway(RELAY):
         queue = [watch.ask() for _ in range(3)]
-        watch.passes(3 * PATIENCE_S)
+        watch.passes(3 * LIMIT_S)
         assert {watch.state(each) for each in queue} == {RecordingRequestState.REQUESTED}
-    watch.passes(PATIENCE_S)
+    watch.passes(LIMIT_S)
     assert {watch.state(each) for each in queue} == {RecordingRequestState.REQUESTED}, "its time begins anew"
 
 
@@ -135,7 +132,7 @@ def test_gateways_that_crash_again_and_again_do_not_keep_a_report_open(watch: Wa
 def test_the_leases_of_a_host_that_died_count_for_nothing(watch: Watch) -> None:
     watch.takes(RELAY)
     report = watch.ask()
-    watch.passes(LEASE_S + PATIENCE_S + 3 * STEP_S)
+    watch.passes(LEASE_S + LIMIT_S + 3 * STEP_S)
     assert watch.state(report) is RecordingRequestState.FAILED
     assert watch.repository.gateways() == ()
 
@@ -146,7 +143,7 @@ def test_a_report_that_was_triggered_is_kept_for_an_hour(watch: Watch, state: Re
     watch.repository.mark_triggered(report, now_ns=NOW_NS)
     if state is RecordingRequestState.RECORDED:
         watch.repository.mark_recorded(report, now_ns=NOW_NS)
-    watch.passes(RECORD_PATIENCE_S, step_s=60.0)
+    watch.passes(TRIGGERED_LIMIT_S, step_s=60.0)
     assert watch.state(report) is state
     watch.passes(2 * STEP_S)
     ended = watch.report(report)
@@ -157,20 +154,18 @@ def test_a_report_that_was_triggered_is_kept_for_an_hour(watch: Watch, state: Re
 def test_a_report_that_a_gateway_took_up_meanwhile_is_not_ended(watch: Watch) -> None:
     seen = watch.report(watch.ask())
     watch.takes(RELAY)
-    assert not watch.repository.give_up_unvisited(seen, "why", now_ns=NOW_NS)
+    assert not watch.repository.fail_orphaned_request(seen, "why", now_ns=NOW_NS)
     watch.repository.end_gateway("g", now_ns=NOW_NS)
     watch.repository.mark_triggered(seen.id, now_ns=NOW_NS)
-    assert not watch.repository.give_up_unvisited(seen, "why", now_ns=NOW_NS)
+    assert not watch.repository.fail_orphaned_request(seen, "why", now_ns=NOW_NS)
     assert watch.state(seen.id) is RecordingRequestState.TRIGGERED
 
 
-def test_the_service_looks_by_itself(
-    repository: Repository, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.background.orphaned_requests.PERIOD_S", 0.05)
-    monkeypatch.setattr("service.background.orphaned_requests.LONGEST_DELAY_S", 0.0)
+def test_without_running_gateways_the_reason_says_so(repository: Repository, tmp_path: Path) -> None:
     settings = Settings(data_directory=tmp_path, record_timeout_s=0.1, lease_s=1.0)
-    report = repository.request_recording(MOTOR, now_ns=time.time_ns()).id
-    with _giving_up(settings, repository, GatewayProcesses(settings, two_motor_plant(), repository)):
-        assert eventually(lambda: repository.recording_request(report).state is RecordingRequestState.FAILED)
+    report = repository.request_recording(MOTOR, now_ns=NOW_NS).id
+    gateways = GatewayProcesses(settings, two_motor_plant(), repository)
+    ender = OrphanedRequestEnder(settings, repository, gateway_problem=gateways.problem, restart_delay_s=0.0)
+    for now_s in (0.0, 1.0, 2.0):
+        ender.end_overdue(now_s)
     assert "the collector process is not running" in (repository.recording_request(report).reason or "")

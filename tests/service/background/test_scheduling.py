@@ -7,12 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.background.scheduling import LATEST_NS, Scheduler
+from service.background.scheduling import LONGEST_DELAY_NS, Scheduler
 from service.plant import Schedule
 from service.storage import Repository
 from service.storage.records import RecordingRequest
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
-from testing.waiting import eventually
 from tests.service.fixtures import database_url, engine, repository
 
 __all__ = ["database_url", "engine", "repository"]
@@ -22,11 +21,10 @@ DUE_NS = NOW_NS - NOW_NS % MINUTE_NS + MINUTE_NS
 """The next full minute."""
 
 
-def scheduler(repository: Repository, expression: str = "* * * * *", looked_ns: int = NOW_NS) -> Scheduler:
+def scheduler(repository: Repository, expression: str = "* * * * *", since_ns: int = NOW_NS) -> Scheduler:
     pump, fan = two_motor_plant().motors
-    scheduled = Scheduler([replace(pump, schedule=Schedule.parse(expression)), fan], repository)
-    scheduled._looked_ns = looked_ns
-    return scheduled
+    motors = [replace(pump, schedule=Schedule.parse(expression)), fan]
+    return Scheduler(motors, repository, since_ns=since_ns)
 
 
 def reports(repository: Repository) -> list[RecordingRequest]:
@@ -42,22 +40,22 @@ def end(repository: Repository) -> None:
 
 def test_a_schedule_asks_once_when_it_is_due(repository: Repository) -> None:
     scheduled = scheduler(repository)
-    scheduled.look(DUE_NS - 1)
+    scheduled.request_due(DUE_NS - 1)
     assert reports(repository) == []
-    scheduled.look(DUE_NS)
-    scheduled.look(DUE_NS + 1)
+    scheduled.request_due(DUE_NS)
+    scheduled.request_due(DUE_NS + 1)
     (report,) = reports(repository)
     assert (report.motor, report.origin, report.requested_ns) == ("PUMP-A1", "schedule", DUE_NS)
     end(repository)
-    scheduled.look(DUE_NS + MINUTE_NS - 1)
+    scheduled.request_due(DUE_NS + MINUTE_NS - 1)
     assert len(reports(repository)) == 1
-    scheduled.look(DUE_NS + MINUTE_NS + 5)
+    scheduled.request_due(DUE_NS + MINUTE_NS + 5)
     assert len(reports(repository)) == 2
 
 
 def test_two_services_ask_once(repository: Repository) -> None:
     for scheduled in (scheduler(repository), scheduler(repository)):
-        scheduled.look(DUE_NS + 1)
+        scheduled.request_due(DUE_NS + 1)
         end(repository)
     assert len(reports(repository)) == 1
 
@@ -66,55 +64,48 @@ def test_triggers_do_not_pile_up_at_a_relay_that_makes_no_records(repository: Re
     scheduled = scheduler(repository)
     by_hand = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     for minute in range(3):
-        scheduled.look(DUE_NS + minute * MINUTE_NS)
+        scheduled.request_due(DUE_NS + minute * MINUTE_NS)
     assert reports(repository) == [by_hand]
     end(repository)
-    scheduled.look(DUE_NS + 3 * MINUTE_NS)
+    scheduled.request_due(DUE_NS + 3 * MINUTE_NS)
     assert len(reports(repository)) == 2
 
 
 def test_what_was_slept_through_is_not_made_up_for(repository: Repository) -> None:
     scheduled = scheduler(repository, "0 * * * *")
     hour_ns = NOW_NS - NOW_NS % (60 * MINUTE_NS) + 60 * MINUTE_NS
-    scheduled.look(hour_ns + LATEST_NS + SECOND_NS)
+    scheduled.request_due(hour_ns + LONGEST_DELAY_NS + SECOND_NS)
     assert reports(repository) == []
-    scheduled.look(hour_ns + 60 * MINUTE_NS - SECOND_NS)
-    scheduled.look(hour_ns + 60 * MINUTE_NS + SECOND_NS)
+    scheduled.request_due(hour_ns + 60 * MINUTE_NS - SECOND_NS)
+    scheduled.request_due(hour_ns + 60 * MINUTE_NS + SECOND_NS)
     assert len(reports(repository)) == 1
 
 
 def test_a_clock_that_jumps_back_repeats_nothing(repository: Repository) -> None:
     scheduled = scheduler(repository)
-    scheduled.look(DUE_NS)
+    scheduled.request_due(DUE_NS)
     end(repository)
-    scheduled.look(DUE_NS - 10 * SECOND_NS)
-    scheduled.look(DUE_NS + SECOND_NS)
+    scheduled.request_due(DUE_NS - 10 * SECOND_NS)
+    scheduled.request_due(DUE_NS + SECOND_NS)
     assert len(reports(repository)) == 1
-    scheduled.look(DUE_NS - 86_400 * SECOND_NS)
-    scheduled.look(DUE_NS - 86_400 * SECOND_NS + SECOND_NS)
+    scheduled.request_due(DUE_NS - 86_400 * SECOND_NS)
+    scheduled.request_due(DUE_NS - 86_400 * SECOND_NS + SECOND_NS)
     assert len(reports(repository)) == 1
-    scheduled.look(DUE_NS - 86_400 * SECOND_NS + MINUTE_NS)
+    scheduled.request_due(DUE_NS - 86_400 * SECOND_NS + MINUTE_NS)
     assert len(reports(repository)) == 2, "it goes on by the new time, not in a day"
 
 
-def test_the_thread_looks_by_itself(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.background.scheduling.PERIOD_S", 0.01)
-    scheduled = scheduler(repository)
-    assert scheduled.problem() == "the scheduler is not running"
-    scheduled._looked_ns = time.time_ns() - MINUTE_NS
-    scheduled.start()
-    try:
-        assert eventually(lambda: len(reports(repository)) == 1)
-        assert scheduled.problem() is None
-    finally:
-        scheduled.stop()
+def test_a_new_scheduler_requests_nothing_of_the_past(repository: Repository) -> None:
+    pump, _ = two_motor_plant().motors
+    scheduled = Scheduler([replace(pump, schedule=Schedule.parse("0 0 1 1 *"))], repository)
+    scheduled.request_due(time.time_ns())
+    assert reports(repository) == []
 
 
-def test_a_plant_without_schedules_needs_no_thread(repository: Repository) -> None:
-    idle = Scheduler(two_motor_plant().motors, repository)
-    idle.start()
-    assert idle.problem() is None
-    idle.stop()
+def test_a_plant_without_schedules_requests_nothing(repository: Repository) -> None:
+    idle = Scheduler(two_motor_plant().motors, repository, since_ns=NOW_NS)
+    idle.request_due(DUE_NS)
+    assert reports(repository) == []
 
 
 @pytest.mark.parametrize("words", ["", "* * * *", "* * * * * *", "61 * * * *", "x * * * *", "0 0 30 2 *"])

@@ -21,12 +21,13 @@ from scl.model_text import model_text
 from service.collector.gateway.gateway import Gateway, Identity
 from service.collector.gateway.peer_liveness import PeerLiveness
 from service.collector.session.visit_marks import BUSY
-from service.collector.supervision.gateway_processes import running_gateways
+from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.supervisor import GatewaySupervisor
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
 from service.plant import Plant, read_plant
+from service.process.parts import running
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository, connect, migrate
 from service.storage.states import LinkState
@@ -230,7 +231,8 @@ def test_relays_of_a_frozen_host_are_taken_over_until_it_wakes(hall: Hall) -> No
 def test_a_stray_file_among_the_marks_of_visits_keeps_no_gateway_from_coming_again(
     hall: Hall, stray: str
 ) -> None:
-    with running_gateways(hall.settings, hall.plant, hall.repository) as gateways:
+    gateways = GatewayProcesses(hall.settings, hall.plant, hall.repository)
+    with running([gateways]):
         assert eventually(hall.all_visited, 60)
         (first,) = hall.repository.gateways()
         marks = hall.settings.data_directory / "visiting" / "0"

@@ -1,13 +1,10 @@
 """Measured values: kept as sampled for a while, averaged, and forgotten."""
 
 import random
-from pathlib import Path
 from statistics import fmean
 
 import pytest
 
-from service.background.housekeeping import Housekeeping
-from service.configuration.settings import Settings
 from service.plant import MeteredQuantity
 from service.storage import NotFoundError, Repository
 from service.storage.models import MeasurementRow
@@ -84,52 +81,6 @@ def test_an_interval_that_is_not_over_has_no_mean(repository: Repository) -> Non
     for _ in range(2):
         repository.average_measurements(now_ns=BEGIN_NS + 180 * SECOND_NS)
     assert [(minute.ia_A, minute.samples) for minute in measured(repository, 60)] == [(2.0, 2)]
-
-
-def test_old_values_are_forgotten_and_their_means_kept(repository: Repository, tmp_path: Path) -> None:
-    settings = Settings(data_directory=tmp_path, metering_sample_days=1, metering_minute_days=2)
-    housekeeping = Housekeeping(settings, repository)
-    repository.add_samples([Sample("PUMP-A1", BEGIN_NS, {"ia_A": 1.0})])
-    counts = []
-    for days in (0.5, 1.5, 2.5):
-        housekeeping.tidy(BEGIN_NS + round(days * DAY_NS), round(days * DAY_NS))
-        counts.append([len(measured(repository, step_s)) for step_s in (0, 60, 900)])
-    assert counts == [[1, 1, 1], [0, 1, 1], [0, 0, 1]]
-    housekeeping.start()
-    housekeeping.stop()
-    assert [len(measured(repository, step_s)) for step_s in (0, 60, 900)] == [0, 0, 1], "the clock was set"
-
-
-def test_a_clock_that_is_ahead_for_a_while_deletes_nothing(repository: Repository, tmp_path: Path) -> None:
-    """Begun with the clock ahead, or set ahead in service."""
-    settings = Settings(data_directory=tmp_path, metering_sample_days=1, metering_minute_days=2)
-    repository.add_samples([Sample("PUMP-A1", BEGIN_NS, {"ia_A": 1.0})])
-    housekeeping = Housekeeping(settings, repository)
-    monotonic_s = 50
-    for ahead_s, seconds in ((3 * 86_400, 600), (0, 30), (5 * 86_400, 600), (-86_400, 600), (0, 120)):
-        for _ in range(0, seconds, 30):
-            monotonic_s += 30
-            at_ns = BEGIN_NS + (monotonic_s + ahead_s) * SECOND_NS
-            housekeeping.tidy(at_ns, monotonic_s * SECOND_NS)
-        assert len(measured(repository, 0)) == 1
-    repository.add_samples([Sample("PUMP-A1", BEGIN_NS + 899 * SECOND_NS, {"ia_A": 3.0})])
-    monotonic_s += 3600
-    housekeeping.tidy(BEGIN_NS + monotonic_s * SECOND_NS, monotonic_s * SECOND_NS)
-    assert len(measured(repository, 0)) == 2
-    monotonic_s += 86_400
-    housekeeping.tidy(BEGIN_NS + monotonic_s * SECOND_NS, monotonic_s * SECOND_NS)
-    assert measured(repository, 0) == []
-
-
-def test_a_clock_that_is_set_ahead_cuts_no_interval_short(repository: Repository, tmp_path: Path) -> None:
-    housekeeping = Housekeeping(Settings(data_directory=tmp_path), repository)
-    repository.add_samples([Sample("PUMP-A1", BEGIN_NS, {"ia_A": 1.0})])
-    for at_s, ahead_s in ((10, 0), (70, 86_400), (130, 86_400), (190, 0)):
-        housekeeping.tidy(BEGIN_NS + (at_s + ahead_s) * SECOND_NS, at_s * SECOND_NS)
-    repository.add_samples([Sample("PUMP-A1", BEGIN_NS + 600 * SECOND_NS, {"ia_A": 3.0})])
-    for at_s in (3700, 3800):
-        housekeeping.tidy(BEGIN_NS + at_s * SECOND_NS, at_s * SECOND_NS)
-    assert [(quarter.ia_A, quarter.samples) for quarter in measured(repository, 900)] == [(2.0, 2)]
 
 
 def test_means_of_a_clock_that_was_ahead_hold_up_no_others(repository: Repository) -> None:

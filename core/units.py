@@ -1,0 +1,7 @@
+"""Factors between seconds, which equations are in, and nanoseconds, which time stamps are in."""
+
+from typing import Final
+
+NANOSECONDS_PER_SECOND: Final = 1_000_000_000
+SECONDS_PER_DAY: Final = 86_400
+NANOSECONDS_PER_DAY: Final = SECONDS_PER_DAY * NANOSECONDS_PER_SECOND

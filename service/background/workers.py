@@ -1,0 +1,59 @@
+"""The workers of the service's periodic work, by the names that GET /readyz lists."""
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from service.background import housekeeping, orphaned_requests, scheduling
+from service.background.housekeeping import Housekeeping
+from service.background.orphaned_requests import OrphanedRequestEnder
+from service.background.scheduling import Scheduler
+from service.configuration.settings import Settings
+from service.plant import Plant
+from service.storage import Repository
+from service.timing.periodic_worker import PeriodicWorker
+
+
+@dataclass(frozen=True, slots=True)
+class Periods:
+    """Pauses between two rounds of each work [s]."""
+
+    scheduling_s: float = scheduling.PERIOD_S
+    housekeeping_s: float = housekeeping.PERIOD_S
+    orphaned_requests_s: float = orphaned_requests.PERIOD_S
+
+
+PERIODS = Periods()
+
+
+def background_workers(
+    settings: Settings,
+    plant: Plant,
+    repository: Repository,
+    *,
+    gateway_problem: Callable[[], str | None],
+    periods: Periods = PERIODS,
+) -> Mapping[str, PeriodicWorker]:
+    """Return one worker for each periodic work, not started yet.
+
+    gateway_problem: why gateways of this service do not run; None while all do.
+    """
+    scheduler = Scheduler(plant.motors, repository)
+    keeper = Housekeeping(settings, repository)
+    ender = OrphanedRequestEnder(settings, repository, gateway_problem=gateway_problem)
+    return {
+        "schedules": PeriodicWorker(
+            "scheduling", lambda: scheduler.request_due(time.time_ns()), period_s=periods.scheduling_s
+        ),
+        "housekeeping": PeriodicWorker(
+            "housekeeping",
+            lambda: keeper.average_and_delete(time.time_ns(), time.monotonic_ns()),
+            period_s=periods.housekeeping_s,
+            at_once=True,
+        ),
+        "orphaned_requests": PeriodicWorker(
+            "ending of orphaned requests",
+            lambda: ender.end_overdue(time.monotonic()),
+            period_s=periods.orphaned_requests_s,
+        ),
+    }
