@@ -1,4 +1,4 @@
-"""Event reports that queue up at one relay: the next follows at once, and until then the relay has peace."""
+"""Recording requests that queue up at a relay: the next follows at once, and until then it is not hurried."""
 
 import os
 from collections.abc import Iterator

@@ -14,8 +14,8 @@ from testing.relays.simulated import IED, scenario_of, simulated
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import at, expecting
+from tests.service.collector.records.test_listing import listed
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
-from tests.service.collector.test_listing import listed
 
 
 def records(*names: str) -> tuple[ListedRecord, ...]:
@@ -67,7 +67,7 @@ def test_a_refused_format_comes_last() -> None:
     assert one_format_an_event(both, (), (), ()).replaceable == {comtrade}
 
 
-def test_a_relay_of_recording_requests_alone(bench: Bench, tmp_path: Path) -> None:
+def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
     """A wish becomes a stored event report."""
     scenario = scenario_of("sel-710-ed1")
     record = scenario.profile.record.model_copy(update={"formats": ("CEV",)})
@@ -84,7 +84,7 @@ def test_a_relay_of_recording_requests_alone(bench: Bench, tmp_path: Path) -> No
     assert {channel.phase for channel in read(stored.entry).channels} >= set("abc")
 
 
-def test_an_recording_request_waits_for_its_comtrade(bench: Bench, relay: ScriptedRelay) -> None:
+def test_an_event_report_waits_for_its_comtrade(bench: Bench, relay: ScriptedRelay) -> None:
     relay.write_record("HR_10001")
     with bench.session():
         assert eventually(lambda: bench.is_stored("HR_10001"))
@@ -110,7 +110,7 @@ def test_a_comtrade_that_comes_too_late_is_no_second_recording(bench: Bench, rel
     assert sorted(recording.name for recording in bench.recordings()) == ["CR_10001", "HR_10002"]
 
 
-def test_an_recording_request_stands_in_for_a_comtrade_without_its_data(
+def test_an_event_report_stands_in_for_a_comtrade_without_its_data(
     bench: Bench, relay: ScriptedRelay
 ) -> None:
     relay.write_file("HR_10001.CFG", b"configuration alone")
@@ -124,7 +124,7 @@ def states(bench: Bench) -> dict[str, RecordingState]:
     return {recording.name: recording.state for recording in bench.recordings()}
 
 
-def test_an_recording_request_stands_in_for_a_comtrade_too_large(bench: Bench, relay: ScriptedRelay) -> None:
+def test_an_event_report_stands_in_for_a_comtrade_too_large(bench: Bench, relay: ScriptedRelay) -> None:
     """The wish for the record gets it, and is not failed by the refusal before."""
     relay.silent = True
     wish = bench.request()
@@ -175,7 +175,7 @@ def test_a_wish_fails_where_each_format_is_refused(bench: Bench, relay: Scripted
     assert relay.opened == 0
 
 
-def test_an_recording_request_stands_in_for_a_comtrade_that_is_listed_only(
+def test_an_event_report_stands_in_for_a_comtrade_that_is_listed_only(
     bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.002)
