@@ -14,12 +14,12 @@ from collections.abc import Callable
 
 import structlog
 
-from service.collector.gateway.peer_liveness import PeerLiveness
-from service.collector.supervision.supervisor import LONGEST_DELAY_S
+from service.collector.supervision.gateway_supervisor import LONGEST_DELAY_S
 from service.configuration.settings import Settings
 from service.storage import Repository
 from service.storage.records import RecordingRequest
 from service.storage.states import RecordingRequestState
+from service.timing.peer_liveness import PeerLiveness
 
 log = structlog.get_logger(__name__)
 

@@ -10,7 +10,6 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from service.collector.gateway.batch_writer import BatchWriter
 from service.collector.gateway.lease_watchdog import LeaseWatchdog
-from service.collector.gateway.peer_liveness import PeerLiveness
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.visit_marks import VisitMarks
 from service.collector.triggers.deadlines import RequestDeadlines
@@ -19,6 +18,7 @@ from service.configuration.settings import Settings
 from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository
+from service.timing.peer_liveness import PeerLiveness
 
 log = structlog.get_logger(__name__)
 
@@ -48,7 +48,7 @@ class _Visit:
 
 
 class Gateway:
-    """`run` is the process's main loop. on_end: what to do when the leases cannot be renewed for too long."""
+    """Visits the relays whose leases this gateway holds. `run` is the main loop of its process."""
 
     def __init__(
         self,
@@ -58,11 +58,14 @@ class Gateway:
         store: RecordingStore,
         settings: Settings,
         *,
-        on_end: Callable[[], None],
-        visits: VisitMarks | None = None,
+        on_expiry: Callable[[], None],
+        visit_marks: VisitMarks | None = None,
     ) -> None:
-        """visits: where it marks which relays it is busy with; None where nobody would read it."""
-        self._marks = visits
+        """on_expiry: called when the leases could not be renewed for too long; it has to end the process.
+
+        visit_marks: where it marks which relays it is busy with; None where nobody would read them.
+        """
+        self._visit_marks = visit_marks
         self._identity = identity
         self._plant = plant
         self._repository = repository
@@ -75,7 +78,7 @@ class Gateway:
         self._aside: dict[str, UnansweredRequests] = {}
         self._batches = BatchWriter(repository)
         self._registered = False
-        self._watchdog = LeaseWatchdog(settings.lease_s, on_end=on_end)
+        self._watchdog = LeaseWatchdog(settings.lease_s, on_expiry=on_expiry)
 
     def run(self, stop: Event) -> list[str]:
         """Visit relays until `stop` is set. Returns the threads that did not end in time."""
@@ -161,7 +164,7 @@ class Gateway:
             self._store,
             self._settings,
             gateway=self._identity.id,
-            visits=self._marks,
+            visit_marks=self._visit_marks,
             on_sample=self._batches.add_sample,
             on_note=self._batches.add_note,
         )

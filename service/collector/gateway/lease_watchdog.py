@@ -17,12 +17,12 @@ LOOKS = 20
 class LeaseWatchdog:
     """A thread that counts from the beginning of the latest renewal that succeeded.
 
-    on_end: called when they stay away for too long.
+    on_expiry: called when they stay away for too long.
     """
 
-    def __init__(self, lease_s: float, *, on_end: Callable[[], None]) -> None:
+    def __init__(self, lease_s: float, *, on_expiry: Callable[[], None]) -> None:
         self._lease_s = lease_s
-        self._on_end = on_end
+        self._on_expiry = on_expiry
         self._renewed_s = time.monotonic()
         self._closed = Event()
         self._thread = Thread(target=self._watch, name="fence", daemon=True)
@@ -41,5 +41,5 @@ class LeaseWatchdog:
     def _watch(self) -> None:
         while not self._closed.wait(self._lease_s / LOOKS):
             if time.monotonic() - self._renewed_s > END * self._lease_s:
-                self._on_end()
+                self._on_expiry()
                 return

@@ -15,7 +15,7 @@ import structlog
 
 from mms.binding.stderr_filter import keep_tls_notes_off_stderr
 from service.collector.gateway.gateway import Gateway, Identity
-from service.collector.session.visit_marks import visits_of
+from service.collector.session.visit_marks import VisitMarks
 from service.configuration.settings import Settings
 from service.plant import read_plant
 from service.process.installation import installation_id
@@ -26,7 +26,7 @@ from service.storage import Repository, connect
 
 log = structlog.get_logger(__name__)
 
-FENCED_OFF = 3
+LEASES_EXPIRED = 3
 """Exit code of a gateway that could not renew its leases."""
 
 
@@ -45,7 +45,9 @@ def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
         keep_tls_notes_off_stderr()
     configure_logging("collector")
     service_gone = Event()
-    Thread(target=_watch, args=(settings_pipe, service_gone), name="parent-watch", daemon=True).start()
+    Thread(
+        target=_wait_for_end_of_input, args=(settings_pipe, service_gone), name="parent-watch", daemon=True
+    ).start()
     # The same gateway of a killed service may be about to end: holding its lock, we know that it is dead.
     with exclusive(settings.data_directory / f"gateway-{number}.lock", wait=True):
         left_over = _collect(settings, number, service_gone)
@@ -59,26 +61,26 @@ def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
     name = gateway_id(settings, number)
     store = RecordingStore(settings.recordings_directory, name.replace("/", "-"))
     store.discard_incoming()
-    visits = visits_of(settings.data_directory, number)
-    visits.forget()  # of a gateway whose service ended with it
+    marks = VisitMarks.of_gateway(settings.data_directory, number)
+    marks.clear()  # left by a gateway whose service ended with it
     gateway = Gateway(
         Identity(name, socket.gethostname(), os.getpid()),
         read_plant(settings),
         Repository(connect(settings.database_url)),
         store,
         settings,
-        visits=visits,
-        on_end=_fenced_off,
+        visit_marks=marks,
+        on_expiry=_end_process,
     )
     log.info("collecting", gateway=number)
     return gateway.run(stop)
 
 
-def _fenced_off() -> NoReturn:
+def _end_process() -> NoReturn:
     log.error("the leases could not be renewed: ending before others take the relays over")
-    os._exit(FENCED_OFF)
+    os._exit(LEASES_EXPIRED)
 
 
-def _watch(pipe: BinaryIO, service_gone: Event) -> None:
+def _wait_for_end_of_input(pipe: BinaryIO, service_gone: Event) -> None:
     pipe.read()
     service_gone.set()

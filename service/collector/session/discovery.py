@@ -12,8 +12,8 @@ import structlog
 from mms import Client
 from service.collector.records.event_folder import ROOT
 from service.collector.records.listing import RefusedFile
-from service.collector.session.alarms import RelayAlarms
 from service.collector.session.browsing import browse, control_model
+from service.collector.session.relay_alarms import RelayAlarms
 from service.plant import Acquisition, Difference, Relay, differences, offered, promised
 from service.storage import Repository
 from service.storage.records import RelayFindings

@@ -16,14 +16,15 @@ from mms import Client, CredentialFileError, MmsError, ProtocolError
 from service.collector.records.allowance import DailyAllowance
 from service.collector.records.directory import RecordDirectory, Scan
 from service.collector.records.event_folder import EventFolder
-from service.collector.session.alarms import RelayAlarms
 from service.collector.session.clock import ClockWatch
 from service.collector.session.discovery import Discovery
 from service.collector.session.link import Link
 from service.collector.session.metering import Metering
-from service.collector.session.protocol_faults import ProtocolFaultCounter
-from service.collector.session.reports import Inbox, ReportSubscription
-from service.collector.session.visit_marks import Mark, VisitMarks
+from service.collector.session.protocol_fault_counter import ProtocolFaultCounter
+from service.collector.session.quarantine import QuarantinePolicy
+from service.collector.session.relay_alarms import RelayAlarms
+from service.collector.session.report_subscription import ReportQueue, ReportSubscription
+from service.collector.session.visit_marks import VisitMark, VisitMarks
 from service.collector.triggers.trigger_queue import TriggerQueue
 from service.configuration.relay_access import AccessError, credentials
 from service.configuration.settings import Settings
@@ -55,13 +56,13 @@ class RelaySession:
         settings: Settings,
         *,
         gateway: str | None = None,
-        visits: VisitMarks | None = None,
+        visit_marks: VisitMarks | None = None,
         on_sample: Callable[[Sample], None] | None = None,
         on_note: Callable[[LinkNote], None] | None = None,
     ) -> None:
         """`gateway`: who holds the relay's lease; None where relays are not shared.
 
-        visits: where a visit is marked, for whoever finds the process dead; None where nobody would look.
+        visit_marks: where a visit is marked, for whoever finds the process dead; None where nobody looks.
         on_sample: takes what the relay measures; None where nobody wants it.
         on_note: takes what goes over a link that stays up; None where it is written at once.
         """
@@ -102,10 +103,10 @@ class RelaySession:
             else Metering(relay, motor, period_s=settings.metering_period_s, on_sample=on_sample)
         )
         self._protocol_faults = ProtocolFaultCounter(
-            relay.name, repository, first_pause_s=settings.quarantine_s
+            relay.name, repository, QuarantinePolicy(settings.quarantine_s)
         )
-        self._visits = visits
-        self._mark: Mark | None = None
+        self._visit_marks = visit_marks
+        self._mark: VisitMark | None = None
         self._client: Client | None = None
         self._stopping = Event()
         self._stirred = Event()
@@ -164,9 +165,9 @@ class RelaySession:
         Raises MmsError; CredentialFileError, AccessError for what is to be shown the relay.
         """
         with ExitStack() as marked:
-            if self._visits is not None:
-                self._mark = marked.enter_context(self._visits.mark(self._relay.name))
-            self._protocol_faults.visited()
+            if self._visit_marks is not None:
+                self._mark = marked.enter_context(self._visit_marks.mark(self._relay.name))
+            self._protocol_faults.visit_begins()
             self._visit_marked()
 
     def _visit_marked(self) -> None:
@@ -186,7 +187,7 @@ class RelaySession:
                 self._asked.clear()
                 waiting = self._work(client)
                 self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
-                self._protocol_faults.answered()
+                self._protocol_faults.round_succeeded()
                 self._wait(client, self._hurried_period_s() if waiting else self._settings.poll_period_s)
             self._link.left()
 
@@ -203,7 +204,7 @@ class RelaySession:
         self._folder.begin()
         if self._metering is not None:
             self._metering.begin(acquisition.measurands)
-        self._subscription.begin(client, Inbox(self._stirred), acquisition)
+        self._subscription.begin(client, ReportQueue(self._stirred), acquisition)
         self._link.connected()
 
     def _remarks(self) -> list[str]:
@@ -222,7 +223,7 @@ class RelaySession:
             if self._metering is not None and due_in_s <= 0:
                 self._metering.sample(client)
                 continue
-            with nullcontext() if self._mark is None else self._mark.waiting():
+            with nullcontext() if self._mark is None else self._mark.idle():
                 self._stirred.wait(min(due_in_s, until_s - time.monotonic()))
             self._stirred.clear()
             if self._handle_reports():
@@ -245,7 +246,7 @@ class RelaySession:
     def _is_set_aside(self, reason: str) -> bool:
         """A visit ended by a broken protocol: whether that was once too often."""
         try:
-            return self._protocol_faults.broke_the_protocol(reason)
+            return self._protocol_faults.count_fault(reason)
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
             return False

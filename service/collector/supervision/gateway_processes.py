@@ -6,9 +6,10 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.collector.gateway.process import gateway_id
-from service.collector.session.protocol_faults import blame_after_end
-from service.collector.session.visit_marks import visits_of
-from service.collector.supervision.supervisor import GatewaySupervisor
+from service.collector.session.quarantine import QuarantinePolicy
+from service.collector.session.visit_marks import VisitMarks
+from service.collector.supervision.crash_blame import blame_after_end
+from service.collector.supervision.gateway_supervisor import GatewaySupervisor
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.storage import Repository, StorageError
@@ -53,10 +54,10 @@ class GatewayProcesses:
             """The process is dead for sure: nobody needs to wait for its leases to run out."""
             try:
                 blame_after_end(
-                    visits_of(self._settings.data_directory, number),
+                    VisitMarks.of_gateway(self._settings.data_directory, number),
                     exit_code,
                     self._repository,
-                    first_pause_s=self._settings.quarantine_s,
+                    QuarantinePolicy(self._settings.quarantine_s),
                 )
             except (SQLAlchemyError, StorageError, OSError) as error:
                 log.warning("nobody is set aside for the gateway's end", error=str(error))

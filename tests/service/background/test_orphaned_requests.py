@@ -8,7 +8,7 @@ import pytest
 
 from service.background.orphaned_requests import TRIGGERED_LIMIT_S, OrphanedRequestEnder
 from service.collector.supervision.gateway_processes import GatewayProcesses
-from service.collector.supervision.supervisor import LONGEST_DELAY_S
+from service.collector.supervision.gateway_supervisor import LONGEST_DELAY_S
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.storage import Repository

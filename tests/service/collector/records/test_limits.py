@@ -7,7 +7,7 @@ import pytest
 
 from mms.binding.prototypes import PROTOTYPES
 from service.collector.records.allowance import BLOCK_BYTES, DAY_NS, DailyAllowance
-from service.collector.session.alarms import AND_MORE, RelayAlarms
+from service.collector.session.relay_alarms import AND_MORE, RelayAlarms
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
@@ -170,7 +170,7 @@ def test_nothing_is_deleted_on_a_relay(bench: Bench, relay: ScriptedRelay) -> No
 def test_a_million_bad_names_are_a_thousand_alarms_and_one(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.session.alarms.MOST_OF_A_KIND", 3)
+    monkeypatch.setattr("service.collector.session.relay_alarms.MOST_OF_A_KIND", 3)
     alarms = RelayAlarms(NAME, bench.repository)
     for number in range(50):
         alarms.raise_alarm(AlarmKind.FILE_REFUSED, f"bad {number}", "outside")

@@ -33,7 +33,7 @@ def gateway(bench: Bench) -> Iterator[None]:
         bench.repository,
         bench.store,
         bench.settings,
-        on_end=lambda: None,
+        on_expiry=lambda: None,
     )
     stop = Event()
     thread = Thread(target=made.run, args=(stop,))

@@ -15,7 +15,7 @@ from testing.relays.simulated import Simulated, scenario_of, simulated
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import NAME
-from tests.service.collector.test_simulated_relays import of
+from tests.service.collector.session.test_simulated_relays import of
 
 PASSWORD = "OTTER-7-by-the-river"  # noqa: S105
 A_DAY = timedelta(days=1)

@@ -42,7 +42,7 @@ REFUSALS = (AccessDenied, NotFound, ProtocolError, ReportControlInUse, Temporari
 """Of one block, the link being fine; ValueError: a reference that is none."""
 
 
-class Inbox(SimpleQueue[Report]):
+class ReportQueue(SimpleQueue[Report]):
     """Reports as they arrive from the MMS layer's thread; whoever waits on `arrival` wakes up."""
 
     def __init__(self, arrival: Event) -> None:
@@ -76,14 +76,14 @@ class ReportSubscription:
         self._link = link
         self._acquisition: Acquisition | None = None
         self._continuity = ReportContinuity(None)
-        self._inbox = Inbox(Event())
+        self._inbox = ReportQueue(Event())
         self._unsaved_entry_id: bytes | None = None
         self._overflow_means_loss = False
         self._next_attempt_s = 0.0
         self.report_control: str | None = None
         self.refusal: str | None = None
 
-    def begin(self, client: Client, inbox: Inbox, acquisition: Acquisition) -> None:
+    def begin(self, client: Client, inbox: ReportQueue, acquisition: Acquisition) -> None:
         """A new connection: reports go on where the last saved one left off. Raises MmsError (the link)."""
         if self._acquisition is None or self._acquisition.record_number != acquisition.record_number:
             self._continuity = ReportContinuity(acquisition.record_number)

@@ -19,10 +19,9 @@ from mms import Server
 from scl import Address
 from scl.model_text import model_text
 from service.collector.gateway.gateway import Gateway, Identity
-from service.collector.gateway.peer_liveness import PeerLiveness
 from service.collector.session.visit_marks import BUSY
 from service.collector.supervision.gateway_processes import GatewayProcesses
-from service.collector.supervision.supervisor import GatewaySupervisor
+from service.collector.supervision.gateway_supervisor import GatewaySupervisor
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
@@ -31,6 +30,7 @@ from service.process.parts import running
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository, connect, migrate
 from service.storage.states import LinkState
+from service.timing.peer_liveness import PeerLiveness
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.waiting import eventually
 
@@ -127,7 +127,7 @@ def gateway(hall: Hall, name: str, *, most: int = 100) -> Iterator[Gateway]:
         Repository(connect(settings.database_url)),
         RecordingStore(settings.recordings_directory),
         settings,
-        on_end=lambda: None,
+        on_expiry=lambda: None,
     )
     stop = Event()
     thread = Thread(target=made.run, args=(stop,))

@@ -10,7 +10,7 @@ from threading import Event, Thread
 
 import pytest
 
-from service.collector.supervision.supervisor import GatewaySupervisor, _hand_over
+from service.collector.supervision.gateway_supervisor import GatewaySupervisor, _hand_over
 from service.configuration.relay_access import RelayAccess, RelayTls
 from service.configuration.settings import Settings
 from testing.waiting import eventually
@@ -59,7 +59,7 @@ def test_a_stop_just_after_the_start_waits_for_the_settings(
         assert not eventually(lambda: stdin.closed, within_s=0.2)
         hand_over(child, settings)
 
-    monkeypatch.setattr("service.collector.supervision.supervisor._hand_over", slowly)
+    monkeypatch.setattr("service.collector.supervision.gateway_supervisor._hand_over", slowly)
     supervised.start()
     assert eventually(lambda: stopping.ident is not None)
     stopping.join(10)
@@ -68,7 +68,7 @@ def test_a_stop_just_after_the_start_waits_for_the_settings(
 
 
 def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.collector.supervision.supervisor.STOP_PATIENCE_S", 0.1)
+    monkeypatch.setattr("service.collector.supervision.gateway_supervisor.STOP_PATIENCE_S", 0.1)
     supervised = supervisor(STUBBORN, tmp_path)
     supervised.start()
     assert eventually(lambda: supervised.process_id is not None)
@@ -79,7 +79,7 @@ def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path, monkeypatch:
 def test_the_settings_of_a_thousand_relays_wait_for_no_collector(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.supervision.supervisor.STOP_PATIENCE_S", 0.2)
+    monkeypatch.setattr("service.collector.supervision.gateway_supervisor.STOP_PATIENCE_S", 0.2)
     tls = RelayTls(certificate=tmp_path, key=tmp_path, pinned=(tmp_path, tmp_path), ca=tmp_path)
     relays = {f"A{number}_SEL710": RelayAccess(tls=tls, password_file=tmp_path) for number in range(1000)}
     settings = Settings(data_directory=tmp_path, relays=relays)
@@ -135,8 +135,8 @@ def test_each_further_end_is_waited_for_longer_until_one_has_run_well(
     ran_for_s = iter([0.0] * 10 + [60.0, 60.5, 0.0, 0.0])
     expected_s = [0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8, 25.6, 30.0, 30.0, 30.0, 0.2, 0.4]
     clock = Clock()
-    monkeypatch.setattr("service.collector.supervision.supervisor.time", clock)
-    monkeypatch.setattr("service.collector.supervision.supervisor.Event", clock.event)
+    monkeypatch.setattr("service.collector.supervision.gateway_supervisor.time", clock)
+    monkeypatch.setattr("service.collector.supervision.gateway_supervisor.Event", clock.event)
     ended = Event()
 
     def run(exit_code: int | None) -> None:

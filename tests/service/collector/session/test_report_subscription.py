@@ -13,7 +13,7 @@ import scl
 from mms import Client, Report
 from service.collector.records.allowance import DailyAllowance
 from service.collector.session.link import Link
-from service.collector.session.reports import Inbox, ReportSubscription
+from service.collector.session.report_subscription import ReportQueue, ReportSubscription
 from service.plant import promised
 from service.storage.states import LinkState
 from testing.waiting import eventually
@@ -71,7 +71,7 @@ def test_the_best_block_that_is_free_tells_of_the_records(
 def test_with_all_blocks_taken_the_directory_is_polled_until_one_is_free(
     here: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.collector.session.reports.RETRY_S", 0.5)
+    monkeypatch.setattr("service.collector.session.report_subscription.RETRY_S", 0.5)
     here.with_settings(poll_period_s=0.2)
     with ExitStack() as others:
         others.enter_context(taken(relay, *BUFFERED, UNBUFFERED))
@@ -128,7 +128,7 @@ def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRel
             relay.write_record("HR_1")
             assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
     with Client.connect("127.0.0.1", relay.port) as client, capture_logs() as logs:
-        subscription.begin(client, Inbox(Event()), promised(bench.relay))
+        subscription.begin(client, ReportQueue(Event()), promised(bench.relay))
         subscription.handle(report)
         assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed)
         subscription.handle(report)

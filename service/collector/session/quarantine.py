@@ -1,0 +1,46 @@
+"""Quarantine: for how long a relay that harms the gateway is left alone, and when it is trusted again.
+
+A relay is quarantined when its answers crash the gateway process, or break the protocol again and again. The
+first pause is the setting `quarantine_s`; each further one is twice as long, up to a day. A relay that works
+for as long as it was quarantined, or is released by a command, starts again with the first pause.
+"""
+
+import time
+from dataclasses import dataclass
+
+import structlog
+
+from service.storage import Repository
+from service.storage.records import Quarantine
+
+log = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class QuarantinePolicy:
+    """How long relays are left alone [s].
+
+    first_pause_s: the first time; each further time is twice as long, up to `longest_pause_s`.
+    probation_s: the least time for which a relay must work until it is trusted again.
+    """
+
+    first_pause_s: float
+    longest_pause_s: float = 86_400.0
+    probation_s: float = 10.0
+
+    def probation_after_s(self, quarantine: Quarantine) -> float:
+        """Return how long a relay must work after this quarantine until it is trusted again [s]."""
+        return max(self.probation_s, (quarantine.until_ns - quarantine.since_ns) / 1e9)
+
+
+def quarantine_relay(repository: Repository, relay: str, reason: str, policy: QuarantinePolicy) -> None:
+    """Leave a relay alone for a while. Raises SQLAlchemyError."""
+    quarantine = repository.set_aside(
+        relay,
+        reason,
+        first_pause_s=policy.first_pause_s,
+        longest_pause_s=policy.longest_pause_s,
+        now_ns=time.time_ns(),
+    )
+    pause_s = (quarantine.until_ns - quarantine.since_ns) / 1e9
+    log.error("relay set aside", relay=relay, reason=reason, times=quarantine.times, pause_s=pause_s)

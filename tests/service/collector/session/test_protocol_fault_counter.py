@@ -1,0 +1,67 @@
+"""A relay that breaks the protocol again and again is quarantined; one that works is trusted again."""
+
+from dataclasses import replace
+
+import pytest
+
+from service.collector.session.protocol_fault_counter import FAULTS_IN_A_ROW, ProtocolFaultCounter
+from service.collector.session.quarantine import QuarantinePolicy
+from service.storage import Repository
+from service.storage.states import LinkState
+from tests.hostile.dialogue import overheard
+from tests.hostile.relay import LIST_OF_NAMES, lying
+from testing.waiting import eventually
+from tests.service.collector.conftest import Bench
+from tests.service.collector.scripted_relay import NAME
+from tests.service.fixtures import database_url, engine, repository
+from testing.service.plants import NOW_NS
+
+__all__ = ["database_url", "engine", "repository"]
+
+A = "A1_SEL710"
+PAUSE_S = 60.0
+POLICY = QuarantinePolicy(PAUSE_S)
+
+
+def test_who_breaks_the_protocol_again_and_again_is_set_aside(repository: Repository) -> None:
+    counter = ProtocolFaultCounter(A, repository, POLICY)
+    told = [counter.count_fault("nonsense") for _ in range(FAULTS_IN_A_ROW)]
+    assert told == [False] * (FAULTS_IN_A_ROW - 1) + [True]
+    assert "broke the protocol 5 times in a row, at last: nonsense" in (repository.ied(A).link_reason or "")
+
+
+def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.session.relay_session.FIRST_RETRY_S", 0.01)
+    with lying(overheard(), {LIST_OF_NAMES: lambda _: b"\xa1\x00"}) as port:
+        bench.relay = replace(bench.relay, port=port)
+        with bench.session():
+            assert eventually(lambda: bench.link() is LinkState.QUARANTINED)
+    reason = bench.repository.ied(NAME).link_reason or ""
+    assert f"broke the protocol {FAULTS_IN_A_ROW} times in a row" in reason
+    assert "connect: malformed message" in reason
+
+
+def test_good_visits_between_count(repository: Repository) -> None:
+    now_s = 0.0
+    counter = ProtocolFaultCounter(A, repository, POLICY, clock=lambda: now_s)
+    for _ in range(3 * FAULTS_IN_A_ROW):
+        counter.visit_begins()
+        now_s += 11.0
+        counter.round_succeeded()
+        assert not counter.count_fault("nonsense")
+
+
+def test_a_relay_that_works_as_long_as_it_was_set_aside_is_trusted(repository: Repository) -> None:
+    repository.set_aside(A, "why", first_pause_s=PAUSE_S, longest_pause_s=86_400.0, now_ns=NOW_NS)
+    now_s = 0.0
+    counter = ProtocolFaultCounter(A, repository, POLICY, clock=lambda: now_s)
+    counter.visit_begins()
+    now_s += PAUSE_S - 1
+    counter.round_succeeded()
+    assert repository.quarantine(A) is not None
+    now_s += 2
+    counter.round_succeeded()
+    assert repository.quarantine(A) is None
+    assert repository.standing_alarms(A) == ()
