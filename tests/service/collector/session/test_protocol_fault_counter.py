@@ -8,13 +8,13 @@ from service.collector.session.protocol_fault_counter import FAULTS_IN_A_ROW, Pr
 from service.collector.session.quarantine import QuarantinePolicy
 from service.storage import Repository
 from service.storage.states import LinkState
+from testing.service.plants import NOW_NS
+from testing.waiting import eventually
 from tests.hostile.dialogue import overheard
 from tests.hostile.relay import LIST_OF_NAMES, lying
-from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
 from tests.service.collector.scripted_relay import NAME
 from tests.service.fixtures import database_url, engine, repository
-from testing.service.plants import NOW_NS
 
 __all__ = ["database_url", "engine", "repository"]
 

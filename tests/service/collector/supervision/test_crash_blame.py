@@ -13,8 +13,8 @@ from service.collector.supervision.crash_blame import blame_after_end
 from service.storage import Repository
 from service.storage.records import Quarantine
 from service.storage.states import AlarmKind, LinkState
-from tests.service.fixtures import database_url, engine, repository
 from testing.service.plants import SECOND_NS
+from tests.service.fixtures import database_url, engine, repository
 
 __all__ = ["database_url", "engine", "repository"]
 
