@@ -52,7 +52,7 @@ lint: install
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 
 bench: install
-	$(BIN)/python -m benchmarks.run
+	$(BIN)/python -m benchmarks
 
 # LIBIEC61850: a source tree of that library, built with its examples (docs/evidence/interoperability.md).
 interop: install
@@ -60,7 +60,7 @@ interop: install
 
 # What it finds is kept in fuzz-findings/.
 fuzz: install
-	$(BIN)/python -m benchmarks.fuzz_recordings --seconds $(or $(SECONDS),60)
+	$(BIN)/python -m benchmarks.recordings.fuzzing --seconds $(or $(SECONDS),60)
 
 lock: install
 	$(BIN)/python -m pip freeze --exclude-editable --exclude pip --exclude setuptools > constraints.txt

@@ -12,7 +12,7 @@ from pathlib import Path
 from mms import Client, ConnectFailed
 from testing.ports import LOOPBACK, free_port
 
-C_CLIENT = Path(__file__).parent.parent / "c_client.c"
+C_CLIENT = Path(__file__).parent / "c_client.c"
 START_LIMIT_S = 10.0
 TOOL_LIMIT_S = 60.0
 
@@ -56,12 +56,12 @@ class Tree:
         return self.file("libiec61850.so")
 
     def c_client(self, directory: Path) -> Path:
-        """benchmarks/c_client.c linked against the tree's library. Raises PeerError."""
+        """c_client.c linked against the tree's library. Raises PeerError."""
         return linked(self.library, directory / "c_client")
 
 
 def linked(library: Path, program: Path) -> Path:
-    """benchmarks/c_client.c linked against a shared library of libiec61850. Raises PeerError."""
+    """c_client.c linked against a shared library of libiec61850. Raises PeerError."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     if compiler is None:
         raise PeerError("no C compiler: expected gcc or cc on the path")

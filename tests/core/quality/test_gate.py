@@ -10,8 +10,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from benchmarks.accuracy_phasors import Condition
-from benchmarks.accuracy_records import Disturbances, disturbed_record, random_harmonics
 from core.diagnosis.stator import diagnose
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import Motor, Nameplate
@@ -19,8 +17,10 @@ from core.quality import Passed, examine
 from core.quality.finding import QualityFinding
 from core.recordings import Recording
 from core.signals.terminals import terminals
+from testing.machines.disturbed_records import Disturbances, disturbed_record, random_harmonics
 from testing.machines.motors import ALL, LARGE, MEDIUM, REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
+from testing.machines.steady_faults import Condition
 from tests.core.diagnosis.spoiling import (
     CURRENTS,
     VOLTAGES,

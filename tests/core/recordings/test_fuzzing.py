@@ -17,7 +17,7 @@ FORBIDDEN = {
 }
 SABOTAGED = """
 import sys
-import benchmarks.fuzz_recordings as fuzz
+import benchmarks.recordings.fuzzing as fuzz
 from core.recordings import read
 
 def bad(path, *, lenient=False):
@@ -47,7 +47,7 @@ def run(*command: str) -> subprocess.CompletedProcess[str]:
 
 def test_a_thousand_mutants(tmp_path: Path) -> None:
     done = run(
-        *("-m", "benchmarks.fuzz_recordings", "--seconds", "60", "--mutants", "1000", "--seed", "4"),
+        *("-m", "benchmarks.recordings.fuzzing", "--seconds", "60", "--mutants", "1000", "--seed", "4"),
         *("--keep", str(tmp_path / "kept")),
     )
     assert done.returncode == 0, done.stderr

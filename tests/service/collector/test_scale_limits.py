@@ -1,11 +1,11 @@
-"""benchmarks/collector_scale.py judges what it measures; here, without the half hour."""
+"""benchmarks/collector/scale.py judges what it measures; here, without the half hour."""
 
 from collections.abc import Iterator
 
 import pytest
 
-from benchmarks import collector_scale
-from benchmarks.collector_scale import JUDGED_MINUTES, LOOK_S, Seen, broken_limits, main
+from benchmarks.collector import scale
+from benchmarks.collector.scale import JUDGED_MINUTES, LOOK_S, Seen, broken_limits, main
 
 MINUTES = 30.0
 PERIOD_MINUTES = 5.0
@@ -58,7 +58,7 @@ def test_the_command_ends_with_what_it_found(
         run.looks, run.missed, run.memory, run.delays_s = good.looks, good.missed, good.memory, good.delays_s
         yield "measured"
 
-    monkeypatch.setattr(collector_scale, "measure", measured)
-    monkeypatch.setattr("sys.argv", ["collector_scale"])
+    monkeypatch.setattr(scale, "measure", measured)
+    monkeypatch.setattr("sys.argv", ["scale"])
     assert main() == exit_code
     assert ("limit broken: missed polls" in capsys.readouterr().out) is bool(missed)

@@ -1,11 +1,14 @@
-"""Connections that come and go leave nothing behind; benchmarks/connection_cycles.py makes a thousand."""
+"""Connections that come and go leave nothing behind.
+
+benchmarks/collector/connection_cycles.py makes a thousand of them.
+"""
 
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from benchmarks.connection_cycles import Visits, closed_by_the_client, cut, grown, unanswered
+from benchmarks.collector.connection_cycles import Visits, closed_by_the_client, cut, grown, unanswered
 from testing.relays.serving import Relaying, RelayProcess, mute_server
 
 pytestmark = pytest.mark.timeout(180)

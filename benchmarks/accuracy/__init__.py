@@ -1,0 +1,1 @@
+"""How exact the diagnosis is, on simulated and on measured records: python -m benchmarks.accuracy."""

@@ -1,0 +1,1 @@
+"""The collector: many relays, many connections, and how fast it pulls files."""

@@ -1,0 +1,1 @@
+"""What a diagnosis of one record costs."""

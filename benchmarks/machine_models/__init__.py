@@ -1,0 +1,1 @@
+"""What the simulation of one candidate costs, beside scipy and motulator."""

@@ -1,0 +1,1 @@
+"""Our optimisers beside those of others: python -m benchmarks.optimisers."""
