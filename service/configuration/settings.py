@@ -13,7 +13,12 @@ from pydantic import Field, ValidationError
 from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDict
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
+from core.units import SECONDS_PER_DAY
 from service.configuration.relay_access import AbsolutePath, RelayAccess
+
+MIB, GIB = 1024**2, 1024**3
+MOST_DAYS = 36_500
+"""A hundred years: in nanoseconds this fits into the integers of the database."""
 
 PATHS = ("data_directory", "recordings_directory", "scd", "motors")
 RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
@@ -38,7 +43,7 @@ def sqlite_url(data_directory: Path) -> str:
 class Settings(BaseSettings):
     """All settings, validated. Times are in seconds, sizes in bytes."""
 
-    model_config = SettingsConfigDict(env_prefix="MCC_", extra="forbid", frozen=True)
+    model_config = SettingsConfigDict(env_prefix="MCC_", extra="forbid", frozen=True, allow_inf_nan=False)
 
     data_directory: AbsolutePath = Field(default=Path("data"), validate_default=True)
     scd: AbsolutePath | None = None
@@ -48,7 +53,7 @@ class Settings(BaseSettings):
     bind_address: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
     port: int = Field(default=8710, ge=0, le=65535)
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "::1")
-    max_upload_bytes: int = Field(default=64 * 1024**2, gt=0)
+    max_upload_bytes: int = Field(default=64 * MIB, ge=1, le=GIB)
 
     recordings_directory: AbsolutePath = Field(
         default_factory=lambda known: known["data_directory"] / "recordings"
@@ -56,25 +61,25 @@ class Settings(BaseSettings):
     database_url: str = Field(default_factory=lambda known: sqlite_url(known["data_directory"]), repr=False)
 
     workers: int = Field(default=2, ge=1, le=256)
-    job_timeout_s: float = Field(default=60.0, gt=0, le=3600)
+    job_timeout_s: float = Field(default=60.0, ge=0.1, le=3600)
     job_attempts: int = Field(default=3, ge=1, le=20)
-    job_retry_delay_s: float = Field(default=2.0, ge=0)
+    job_retry_delay_s: float = Field(default=2.0, ge=0, le=3600)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=100, ge=1, le=1000)
     lease_s: float = Field(default=30.0, ge=1, le=600)
     events_directory: str = "EVENTS"
-    connect_timeout_s: float = Field(default=5.0, gt=0)
-    request_timeout_s: float = Field(default=5.0, gt=0)
-    record_timeout_s: float = Field(default=30.0, gt=0)
-    poll_period_s: float = Field(default=5.0, gt=0)
-    quarantine_s: float = Field(default=60.0, gt=0, le=86_400)
-    metering_period_s: float = Field(default=10.0, ge=0)
-    metering_sample_days: float = Field(default=1.0, gt=0)
-    metering_minute_days: float = Field(default=31.0, gt=0)
-    metering_quarter_hour_days: float = Field(default=3650.0, gt=0)
-    max_file_bytes: int = Field(default=64 * 1024**2, gt=0)
-    max_relay_bytes_per_day: int = Field(default=1024**3, gt=0)
+    connect_timeout_s: float = Field(default=5.0, ge=0.01, le=600)
+    request_timeout_s: float = Field(default=5.0, ge=0.01, le=600)
+    record_timeout_s: float = Field(default=30.0, ge=0.01, le=3600)
+    poll_period_s: float = Field(default=5.0, ge=0.01, le=SECONDS_PER_DAY)
+    quarantine_s: float = Field(default=60.0, ge=0.1, le=SECONDS_PER_DAY)
+    metering_period_s: float = Field(default=10.0, ge=0, le=SECONDS_PER_DAY)
+    metering_sample_days: float = Field(default=1.0, ge=0.01, le=MOST_DAYS)
+    metering_minute_days: float = Field(default=31.0, ge=0.01, le=MOST_DAYS)
+    metering_quarter_hour_days: float = Field(default=3650.0, ge=0.01, le=MOST_DAYS)
+    max_file_bytes: int = Field(default=64 * MIB, ge=1, le=GIB)
+    max_relay_bytes_per_day: int = Field(default=GIB, ge=1, le=1024 * GIB)
 
     @classmethod
     def load(cls, config: Path | None = None, options: Mapping[str, object] | None = None) -> Self:

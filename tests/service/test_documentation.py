@@ -20,6 +20,21 @@ def test_every_setting_is_documented() -> None:
     assert sorted(rows) == sorted(Settings.model_fields)
 
 
+def test_the_documented_ranges_and_defaults_are_those_of_the_settings() -> None:
+    page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
+    number = r"`?([\d.]+)`?(?: \([^|]*\))?"
+    rows = re.findall(rf"^\| `(\w+)` \| {number} \| {number} to {number} \|", page, re.MULTILINE)
+    documented = {
+        name: (float(default), float(least), float(largest)) for name, default, least, largest in rows
+    }
+    schema = Settings.model_json_schema()["properties"]
+    assert documented == {
+        name: (found["default"], found["minimum"], found["maximum"])
+        for name, found in schema.items()
+        if found.get("type") in ("number", "integer")
+    }
+
+
 def test_every_decision_about_a_relay_is_documented() -> None:
     page = (DOCS / "reference" / "relays.md").read_text(encoding="utf-8")
     keys = re.findall(r"^(\w+) = .*$", page.partition("[motor.relay]\n")[2].partition("```")[0], re.MULTILINE)

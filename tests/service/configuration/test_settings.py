@@ -1,8 +1,20 @@
+import math
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
+from annotated_types import Ge, Le
+from pydantic import ValidationError
 
+from service.background.housekeeping import Housekeeping
 from service.configuration.settings import Settings, SettingsError
+from service.storage import Repository
+from testing.service.plants import NOW_NS, SECOND_NS
+from tests.service.fixtures import database_url, engine, repository
+
+__all__ = ["database_url", "engine", "repository"]
+
+NUMBERS = [name for name, field in Settings.model_fields.items() if field.annotation in (int, float)]
 
 
 @pytest.fixture(autouse=True)
@@ -118,3 +130,61 @@ def test_what_is_wrong_with_a_relay_is_named(tmp_path: Path, content: str, messa
     with pytest.raises(SettingsError, match=r"mcc\.toml") as failure:
         Settings.load(config)
     assert message in str(failure.value)
+
+
+def bounds(name: str) -> tuple[float, float]:
+    """The least and the largest value of a setting."""
+    rules = Settings.model_fields[name].metadata
+    (least,) = [float(str(rule.ge)) for rule in rules if isinstance(rule, Ge)]
+    (largest,) = [float(str(rule.le)) for rule in rules if isinstance(rule, Le)]
+    return least, largest
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_a_number_that_is_not_finite_or_out_of_bounds_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    least, largest = bounds(name)
+    config = tmp_path / "mcc.toml"
+    for value in ("inf", "-inf", "nan"):
+        config.write_text(f"{name} = {value}\n")
+        with pytest.raises(SettingsError, match=name):
+            Settings.load(config)
+        with monkeypatch.context() as environment:
+            environment.setenv(f"MCC_{name.upper()}", value)
+            with pytest.raises(SettingsError, match=name):
+                Settings.load()
+    for number in (math.inf, math.nan, largest + 1, 2 * largest, least - 1, -math.inf):
+        with pytest.raises(ValidationError):
+            Settings.model_validate({name: number})
+
+
+def numbers_of(schema: object, path: str = "") -> Iterator[tuple[str, Mapping[str, object]]]:
+    """Every number of a JSON schema, with where it stands."""
+    if isinstance(schema, dict):
+        if schema.get("type") in ("number", "integer"):
+            yield path, schema
+        for key, value in schema.items():
+            yield from numbers_of(value, f"{path}/{key}")
+    if isinstance(schema, list):
+        for number, value in enumerate(schema):
+            yield from numbers_of(value, f"{path}/{number}")
+
+
+def test_no_number_lacks_its_bounds() -> None:
+    found = dict(numbers_of(Settings.model_json_schema()))
+    assert len(found) > len(NUMBERS), "those of the tables of relays too"
+    for path, schema in found.items():
+        assert {"minimum", "maximum"} <= schema.keys(), path
+
+
+@pytest.mark.parametrize("end", [0, 1])
+def test_the_least_and_the_largest_numbers_work(repository: Repository, tmp_path: Path, end: int) -> None:
+    """In a gateway, which is given the settings as JSON, and in sums of time stamps."""
+    numbers = {name: bounds(name)[end] for name in NUMBERS}
+    settings = Settings.model_validate({"data_directory": tmp_path, **numbers})
+    assert Settings.model_validate_json(settings.model_dump_json()) == settings
+    housekeeping = Housekeeping(settings, repository)
+    for hours in range(3):
+        passed_ns = hours * 3600 * SECOND_NS
+        housekeeping.average_and_delete(NOW_NS + passed_ns, passed_ns)
