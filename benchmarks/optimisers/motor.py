@@ -25,7 +25,7 @@ from benchmarks.optimisers.start_problems import LOWER, UPPER, StartProblem, mac
 from benchmarks.reporting import table
 from core.commissioning.commissioning import commission
 from core.commissioning.prior import PARAMETERS
-from core.diagnosis.search import HYBRID_GLOBAL
+from core.diagnosis.search import HYBRID_SETTINGS
 from core.machines.candidates import LoadLaw
 from core.optimisers import least_squares
 from testing.machines.motors import REFERENCE
@@ -163,7 +163,7 @@ def motor(truths: int) -> Iterator[Lines]:
     for seed in range(truths):
         one = random_problem(FIRST_TRUTH + seed)
         problems.append(problem_of(BOUNDS, one.cost, one.residuals, one.truth, (1,)))
-    searches = _searches(tuple(METHODS), periodic=2, hybrid_global=HYBRID_GLOBAL)
+    searches = _searches(tuple(METHODS), periodic=2, hybrid_global=HYBRID_SETTINGS.max_global)
     searches[EACH_WINDING] = _direct_for_each_winding
     yield from _measured(remarks, problems, searches)
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass, replace
 from math import log1p, sqrt
 
 import numpy as np
-from scipy.special import stdtrit
 
 from core.diagnosis.case import Case
 from core.diagnosis.fundamental import axis_phasors, components, fundamental_of
+from core.diagnosis.student_t import student_t_quantile
 from core.machines.base import Array, StatorModel
 from core.machines.candidates import Candidates
 from core.machines.running import SteadyRunning
@@ -103,7 +103,9 @@ class Fit:
         """95 % confidence interval of an unknown; its bound alone where it ended on one."""
         if name in self.at_bound:
             return self.value(name), self.value(name)
-        reach = float(stdtrit(self.degrees_of_freedom, 0.5 + CONFIDENCE / 2.0)) * self.standard_error[name]
+        reach = (
+            student_t_quantile(0.5 + CONFIDENCE / 2.0, self.degrees_of_freedom) * self.standard_error[name]
+        )
         return self.value(name) - reach, self.value(name) + reach
 
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import OptimizeResult
 
 from core.diagnosis.case import Case, thinned
 from core.diagnosis.errors import DiagnosisError
@@ -12,20 +12,30 @@ from core.diagnosis.methods import Method
 from core.machines.base import Array, StatorModel
 from core.machines.candidates import Candidates
 from core.machines.playback import Playback
-from core.optimisers import genetic, hcpa, pattern_search
+from core.optimisers import hcpa
+from core.optimisers.evaluations import SearchResult
+from core.optimisers.hcpa import HcpaSettings
+from core.optimisers.objective import as_batch
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
 
 HIGHEST_FAULT_LEVEL = 0.2
 HIGHEST_LOAD_LEVEL = 1.25
 WINDINGS = (0, 1, 2)
 
-MAX_GLOBAL, MAX_LOCAL = 400, 120
 FINENESS = 18
-ADAPTIVENESS = 0.4
-"""Section 6.5.2's setting, with a fineness that lets single coordinates reach a thousandth of their range."""
-HYBRID_GLOBAL, HYBRID_ADAPTIVENESS = 60, 0.7
+"""Lets single coordinates reach a thousandth of their range."""
+THESIS_SETTINGS = HcpaSettings(
+    adaptiveness=0.4, fineness=FINENESS, max_global=400, max_local=120, allowed=(None, WINDINGS, None, None)
+)
+"""Section 6.5.2's setting, with a greater fineness."""
+HYBRID_SETTINGS = HcpaSettings(
+    adaptiveness=0.7, fineness=FINENESS, max_global=60, max_local=0, allowed=(None, WINDINGS, None, None)
+)
 """Few points, spread widely: each winding's best only has to lie in the right valley.
 
-docs/evidence/optimisers.md compares these settings with others.
+The refinement then makes it precise, on phasors. docs/evidence/optimisers.md compares such settings.
 """
 SAMPLES = 60
 """Latin hypercube points of which the pattern search begins at the best (section 6.5.1)."""
@@ -107,40 +117,24 @@ class Objective:
         return self.bounds(-0.5, 2.5)
 
 
-def _hcpa(objective: Objective) -> OptimizeResult:
-    return hcpa.minimise(
-        objective.cost,
-        objective.choice,
-        adaptiveness=ADAPTIVENESS,
-        fineness=FINENESS,
-        exclusion=0.0,
-        max_global=MAX_GLOBAL,
-        max_local=MAX_LOCAL,
-        allowed=(None, WINDINGS, None, None),
-        batch=True,
-    )
+def _hcpa(objective: Objective) -> SearchResult:
+    return hcpa.search(as_batch(objective.cost, batch=True), objective.choice, THESIS_SETTINGS)
 
 
-def _hybrid(objective: Objective) -> OptimizeResult:
-    """The global stage alone: refinement.py makes every winding's best point precise, on phasors."""
-    return hcpa.minimise(
-        objective.cost,
-        objective.choice,
-        adaptiveness=HYBRID_ADAPTIVENESS,
-        fineness=FINENESS,
-        exclusion=0.0,
-        max_global=HYBRID_GLOBAL,
-        max_local=0,
-        allowed=(None, WINDINGS, None, None),
-        batch=True,
-    )
+def _hybrid(objective: Objective) -> SearchResult:
+    return hcpa.search(as_batch(objective.cost, batch=True), objective.choice, HYBRID_SETTINGS)
 
 
-def _genetic(objective: Objective) -> OptimizeResult:
+# The methods below are chosen rarely, and bring the import of scipy.optimize or scipy.stats with them.
+def _genetic(objective: Objective) -> "OptimizeResult":
+    from core.optimisers import genetic
+
     return genetic.minimise(objective.cost, objective.rounding, seed=SEED, batch=True)
 
 
-def _pattern_search(objective: Objective) -> OptimizeResult:
+def _pattern_search(objective: Objective) -> "OptimizeResult":
+    from core.optimisers import pattern_search
+
     return pattern_search.minimise(
         objective.cost,
         objective.rounding,
@@ -150,7 +144,9 @@ def _pattern_search(objective: Objective) -> OptimizeResult:
     )
 
 
-def _pattern_search_lhs(objective: Objective) -> OptimizeResult:
+def _pattern_search_lhs(objective: Objective) -> "OptimizeResult":
+    from core.optimisers import pattern_search
+
     return pattern_search.minimise(
         objective.cost,
         objective.rounding,
@@ -162,7 +158,7 @@ def _pattern_search_lhs(objective: Objective) -> OptimizeResult:
     )
 
 
-METHODS: dict[str, Callable[[Objective], OptimizeResult]] = {
+METHODS: dict[str, Callable[[Objective], "SearchResult | OptimizeResult"]] = {
     Method.HYBRID: _hybrid,
     Method.HCPA: _hcpa,
     Method.GENETIC: _genetic,
@@ -171,7 +167,7 @@ METHODS: dict[str, Callable[[Objective], OptimizeResult]] = {
 }
 
 
-def _best(result: OptimizeResult, winding: int, cycle: float) -> Candidates:
+def _best(result: "SearchResult | OptimizeResult", winding: int, cycle: float) -> Candidates:
     """The best point of one winding; without any, the best of all moved to it."""
     of_winding = np.round(result.points[:, 1]) == winding
     values = np.where(of_winding, result.costs, np.inf)

@@ -7,9 +7,9 @@ fault can be believed. The contributions are independent and add in squares.
 
 from dataclasses import dataclass
 from math import hypot, sqrt
+from statistics import NormalDist
 
 import numpy as np
-from scipy.special import ndtri
 
 from core.diagnosis.case import Case
 from core.diagnosis.refinement import CHANNEL_RATIO, FAULT_LEVEL, Fit
@@ -20,10 +20,10 @@ PARAMETERS = 0.06
 """Of the machine's negative-sequence impedance: within 10 %, uniformly; windings warm up, data sheets round
 off."""
 
-BELIEF = float(ndtri(0.975))
-ALARM = float(ndtri(1.0 - 0.001 / 3.0))
+BELIEF = NormalDist().inv_cdf(0.975)
+ALARM = NormalDist().inv_cdf(1.0 - 0.001 / 3.0)
 """Standard errors that none of three windings' levels exceeds in 999 of 1,000 healthy records."""
-SEEN = float(ndtri(0.9))
+SEEN = NormalDist().inv_cdf(0.9)
 """Standard errors above the least that is called a fault, at which nine of ten records call it one."""
 PROBE_LEVEL = 0.005
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.base import Array
+from core.signals.spline import refine
 
 COARSEST_STEP_CYCLES = 1 / 80
 """Longest step in cycles of the supply; records sampled more slowly are stepped several times a sample."""
@@ -38,11 +39,7 @@ def supply(
     """Supply from measured Clarke voltages (2, n) [V] and their peak phasors (2,) at sample 0."""
     substeps = ceil(frequency_hz / (sample_rate_hz * COARSEST_STEP_CYCLES))
     if substeps > 1:
-        from scipy.interpolate import CubicSpline  # its import takes 0.1 s, and few records need it
-
-        n = voltage_ab.shape[1]
-        fine = np.arange((n - 1) * substeps + 1) / substeps
-        voltage_ab = CubicSpline(np.arange(n), voltage_ab, axis=1)(fine)
+        voltage_ab = refine(voltage_ab, substeps)
     emphasised = voltage_ab.copy()
     emphasised[:, 1:-1] -= (voltage_ab[:, 2:] - 2.0 * voltage_ab[:, 1:-1] + voltage_ab[:, :-2]) / 12.0
     return Supply(

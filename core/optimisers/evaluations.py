@@ -1,9 +1,54 @@
 """Every point an optimiser has evaluated: counted, never evaluated twice, and handed over in the end."""
 
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
+
 import numpy as np
-from scipy.optimize import OptimizeResult
 
 from core.optimisers.objective import Array, BatchFunction, Box, Callback, OptimiserError
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
+
+
+@dataclass(frozen=True, slots=True)
+class SearchResult:
+    """What a search came to.
+
+    Attributes
+    ----------
+    x : (d,) array
+        The best point.
+    fun : float
+        Its value.
+    nfev, nit : int
+        Numbers of evaluations and of steps.
+    success : bool
+        Whether the best value is finite.
+    message : str
+        Why the search ended.
+    points : (nfev, d) array
+        Every point, in the order of evaluation.
+    costs : (nfev,) array
+        Their values.
+    """
+
+    x: Array
+    fun: float
+    nfev: int
+    nit: int
+    success: bool
+    message: str
+    points: Array
+    costs: Array
+
+    def as_optimize_result(self) -> "OptimizeResult":
+        """Return the same as scipy's type, for callers who compare with scipy's optimisers."""
+        from scipy.optimize import OptimizeResult  # its import takes as long as five diagnoses
+
+        result = OptimizeResult()
+        result.update({field.name: getattr(self, field.name) for field in fields(self)})
+        return result
 
 
 class Stopped(Exception):  # noqa: N818 (no error: the way out of a library's search)
@@ -89,26 +134,26 @@ class Evaluations:
             return np.full(self.box.dimensions, 0.5)
         return self.box.to_unit(self.points[int(np.argmin(self.values))])
 
-    def result(self, message: str, steps: int) -> OptimizeResult:
-        """x, fun, nfev, nit, success, message, points (nfev, d), costs (nfev,)."""
+    def result(self, message: str, steps: int) -> "OptimizeResult":
+        """Return the outcome as scipy's type."""
+        return self.outcome(message, steps).as_optimize_result()
+
+    def outcome(self, message: str, steps: int) -> SearchResult:
+        """Return what the search has come to; raise OptimiserError before the first evaluation."""
         points, values = self.points, self.values
         if not values.size:
             raise OptimiserError("max_evaluations: expected at least one evaluation, found none left")
         best = int(np.argmin(values))
-        result = OptimizeResult()
-        result.update(
-            {
-                "x": points[best],
-                "fun": float(values[best]),
-                "nfev": len(values),
-                "nit": steps,
-                "success": bool(np.isfinite(values[best])),
-                "message": message,
-                "points": points,
-                "costs": values,
-            }
+        return SearchResult(
+            x=points[best],
+            fun=float(values[best]),
+            nfev=len(values),
+            nit=steps,
+            success=bool(np.isfinite(values[best])),
+            message=message,
+            points=points,
+            costs=values,
         )
-        return result
 
     def _evaluate(self, points: Array, keys: list[bytes]) -> None:
         self._keep(points, keys, self._fun(points))

@@ -12,13 +12,15 @@ differ in one coordinate by 2^-(level of that coordinate + D) (4.6).
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from heapq import heappop, heappush
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.optimize import OptimizeResult
+from numpy.typing import NDArray
 from sortedcontainers import SortedList
 
-from core.optimisers.evaluations import Evaluations, Stopped
+from core.optimisers.evaluations import Evaluations, SearchResult, Stopped
 from core.optimisers.exclusion import Exclusion
 from core.optimisers.objective import (
     BatchFunction,
@@ -30,6 +32,9 @@ from core.optimisers.objective import (
     as_batch,
     checked_bounds,
 )
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
 
 RECOMMENDED = {
     1: (14, 0.02, 0.5),
@@ -49,6 +54,43 @@ Point = tuple[int, ...]
 """Coordinates as whole multiples of 2^-DIGITS."""
 
 
+@dataclass(frozen=True, slots=True)
+class HcpaSettings:
+    """How a search goes about it; see `minimise` for what each setting means.
+
+    Raises OptimiserError for impossible values.
+    """
+
+    adaptiveness: float
+    fineness: int
+    exclusion: float = 0.0
+    max_global: int = 500
+    max_local: int = 500
+    allowed: Sequence[Sequence[float] | None] | None = None
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.adaptiveness <= 1.0:
+            raise OptimiserError(f"adaptiveness: expected 0 to 1, found {self.adaptiveness}")
+        if self.fineness < 1 or self.exclusion < 0.0 or self.max_global < 1 or self.max_local < 0:
+            raise OptimiserError(
+                "fineness and max_global must be at least 1, exclusion and max_local at least 0: "
+                f"found {self.fineness}, {self.max_global}, {self.exclusion}, {self.max_local}"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class HcpaResult(SearchResult):
+    """What a search came to.
+
+    Attributes
+    ----------
+    levels : (nfev,) array
+        Level of each point on the sparse grid.
+    """
+
+    levels: NDArray[np.int64]
+
+
 def minimise(
     fun: PointFunction | BatchFunction,
     bounds: Bounds,
@@ -61,7 +103,7 @@ def minimise(
     allowed: Sequence[Sequence[float] | None] | None = None,
     batch: bool = False,
     callback: Callback | None = None,
-) -> OptimizeResult:
+) -> "OptimizeResult":
     """Minimise `fun` over a box. There is no chance in it: the same arguments take the same path.
 
     adaptiveness: alpha in [0, 1]; 0 prefers good values (local), 1 unexplored regions (global).
@@ -79,19 +121,42 @@ def minimise(
     """
     box = checked_bounds(bounds)
     table = RECOMMENDED.get(box.dimensions, RECOMMENDED_BEYOND)
-    fineness = table[0] if fineness is None else fineness
-    exclusion = table[1] if exclusion is None else exclusion
-    adaptiveness = table[2] if adaptiveness is None else adaptiveness
-    if not 0.0 <= adaptiveness <= 1.0:
-        raise OptimiserError(f"adaptiveness: expected 0 to 1, found {adaptiveness}")
-    if fineness < 1 or exclusion < 0.0 or max_global < 1 or max_local < 0:
-        raise OptimiserError(
-            "fineness and max_global must be at least 1, exclusion and max_local at least 0: "
-            f"found {fineness}, {max_global}, {exclusion}, {max_local}"
-        )
-    evaluations = Evaluations(as_batch(fun, batch=batch), box, callback=callback)
-    search = _Search(evaluations, fineness, exclusion, _admitted(allowed, box))
-    return search.run(adaptiveness, max_global, max_local)
+    settings = HcpaSettings(
+        fineness=table[0] if fineness is None else fineness,
+        exclusion=table[1] if exclusion is None else exclusion,
+        adaptiveness=table[2] if adaptiveness is None else adaptiveness,
+        max_global=max_global,
+        max_local=max_local,
+        allowed=allowed,
+    )
+    return search(as_batch(fun, batch=batch), bounds, settings, callback=callback).as_optimize_result()
+
+
+def search(
+    fun: BatchFunction, bounds: Bounds, settings: HcpaSettings, *, callback: Callback | None = None
+) -> HcpaResult:
+    """Search as `minimise` does, for callers in a hurry: without scipy's result type, and its import.
+
+    Parameters
+    ----------
+    fun : callable
+        Takes points (m, d) and returns values (m,).
+    bounds : sequence of (low, high)
+        The box.
+    settings : HcpaSettings
+        How to search.
+    callback : callable, optional
+        Called with the points and values of each step; a true answer stops the search.
+
+    Returns
+    -------
+    HcpaResult
+        The best point, and every point in the order of evaluation.
+    """
+    box = checked_bounds(bounds)
+    evaluations = Evaluations(fun, box, callback=callback)
+    grid = _Search(evaluations, settings.fineness, settings.exclusion, _admitted(settings.allowed, box))
+    return grid.run(settings.adaptiveness, settings.max_global, settings.max_local)
 
 
 def level(digits: int) -> int:
@@ -157,7 +222,7 @@ class _Search:
         self._sorted = SortedList()
         self._heaps: list[list[tuple[float, int]]] = [[] for _ in range(self._fineness)]
 
-    def run(self, adaptiveness: float, max_global: int, max_local: int) -> OptimizeResult:
+    def run(self, adaptiveness: float, max_global: int, max_local: int) -> HcpaResult:
         """The stop logic of Fig. 4.7."""
         budget = max_global + max_local
         steps = 0
@@ -174,9 +239,9 @@ class _Search:
                 steps += 1
         except Stopped as stop:
             message = str(stop)
-        result = self._evaluations.result(message, steps)
-        result["levels"] = np.array(self._levels)
-        return result
+        outcome = self._evaluations.outcome(message, steps)
+        found = {field.name: getattr(outcome, field.name) for field in fields(outcome)}
+        return HcpaResult(**found, levels=np.array(self._levels))
 
     def _least_goodness(self, alpha: float) -> int | None:
         best, least, lowest = None, np.inf, None

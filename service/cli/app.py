@@ -11,6 +11,7 @@ import typer
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, one_line, print_failure
+from service.process.garbage_collection import collection_paused
 
 app = typer.Typer(
     name="mcc",
@@ -154,18 +155,19 @@ def diagnose(
     as_json: Json = False,
 ) -> None:
     """Tell from one recording whether a motor has shorted stator turns."""
-    from service.cli.diagnose import diagnose_recording
+    with collection_paused():
+        from service.cli.diagnose import diagnose_recording
 
-    diagnose_recording(
-        record,
-        motor,
-        method=method.value,
-        model=model.value,
-        baseline=baseline or [],
-        currents_only=currents_only,
-        lenient=lenient,
-        as_json=as_json,
-    )
+        diagnose_recording(
+            record,
+            motor,
+            method=method.value,
+            model=model.value,
+            baseline=baseline or [],
+            currents_only=currents_only,
+            lenient=lenient,
+            as_json=as_json,
+        )
 
 
 @app.command()

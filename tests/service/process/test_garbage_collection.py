@@ -1,0 +1,27 @@
+import gc
+
+import pytest
+
+from service.process.garbage_collection import collection_paused
+
+
+def test_the_collector_runs_again_afterwards() -> None:
+    with collection_paused():
+        assert not gc.isenabled()
+    assert gc.isenabled()
+
+
+def test_and_after_a_failure() -> None:
+    with pytest.raises(ValueError, match="wrong"), collection_paused():
+        raise ValueError("wrong")
+    assert gc.isenabled()
+
+
+def test_one_that_was_off_stays_off() -> None:
+    gc.disable()
+    try:
+        with collection_paused():
+            pass
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
