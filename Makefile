@@ -51,8 +51,10 @@ lint: install
 	$(BIN)/lint-imports
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 
+# The second one ends with 1 where a command answers too slowly.
 bench: install
 	$(BIN)/python -m benchmarks
+	$(BIN)/python -m benchmarks.commands
 
 # LIBIEC61850: a source tree of that library, built with its examples (docs/evidence/interoperability.md).
 interop: install
