@@ -19,7 +19,7 @@ from ied_sim.profiles.standalone import IED_NAME, standalone
 from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.scenario.scenario import healthy_reference, read_scenario
 from ied_sim.simulator import Simulator
-from mms.binding.stderr_filter import keep_tls_notes_off_stderr
+from mms.binding.stderr_filter import filter_tls_log_from_stderr
 from scl import Address
 
 app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})
@@ -123,7 +123,7 @@ def _serve(
     signals = (signal.SIGTERM, signal.SIGINT)
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     if any(scenario.access.tls is not None for scenario in scenarios.values()):
-        keep_tls_notes_off_stderr()
+        filter_tls_log_from_stderr()
     warm_up()
     with (
         tempfile.TemporaryDirectory(prefix="ied-sim-") as temporary,

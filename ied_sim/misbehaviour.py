@@ -40,9 +40,20 @@ PARAMETERS: dict[Kind, tuple[str, float]] = {
 }
 """The one number some kinds have: its name and what it is where none is given."""
 
-ON_THE_WIRE = frozenset(
-    {Kind.SLOW_REPLIES, Kind.CUT_MID_FILE, Kind.PARTIAL_LISTING, Kind.WRONG_SIZE, Kind.NAMES_WITHOUT_PATH}
-    | {Kind.NAMES_WITH_PATH, Kind.EMPTY_RPTID, Kind.FEW_SESSIONS, Kind.FROZEN}
+MADE_BY_PROXY = frozenset(
+    {
+        Kind.SLOW_REPLIES,
+        Kind.CUT_MID_FILE,
+        Kind.PARTIAL_LISTING,
+        Kind.WRONG_SIZE,
+        Kind.NAMES_WITHOUT_PATH,
+    }
+    | {
+        Kind.NAMES_WITH_PATH,
+        Kind.EMPTY_RPTID,
+        Kind.FEW_SESSIONS,
+        Kind.FROZEN,
+    }
 )
 """Kinds that are made between client and server; the others the relay makes itself."""
 
@@ -61,7 +72,7 @@ class Misbehaviour:
     switch: str | None = None
 
 
-class Switchboard:
+class MisbehaviourState:
     """Which kinds are on at present. clock: seconds since the simulator's start. Safe for several threads."""
 
     def __init__(self, known: Iterable[Misbehaviour], clock: Callable[[], float]) -> None:

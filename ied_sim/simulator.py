@@ -8,14 +8,14 @@ from types import TracebackType
 from typing import Self
 
 from ied_sim.errors import SimulatorError
-from ied_sim.front import FrontDoors
+from ied_sim.front import RelayProxies
 from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import healthy_reference
 from mms import ServerPump, ServerStartFailed
 from scl import Address, Scl
 
-LOOK_PERIOD_S = 0.05
+UPDATE_CHECK_PERIOD_S = 0.05
 """Between looks for relays that want to look at their motors; each says when it does."""
 
 
@@ -39,7 +39,7 @@ class Simulator:
         self.addresses: dict[str, Address] = {name: document.address(name) for name in names}
         epoch_ns = time.time_ns()
         self._begin_s = time.monotonic()
-        self._doors = FrontDoors()
+        self._proxies = RelayProxies()
         self.relays: dict[str, Relay] = {}
         for name, address in self.addresses.items():
             relay = Relay(
@@ -49,7 +49,7 @@ class Simulator:
                 address=address,
                 files=files,
                 epoch_ns=epoch_ns,
-                doors=self._doors,
+                proxies=self._proxies,
             )
             self.relays[name] = relay
         self._pump = ServerPump(relay.server for relay in self.relays.values() if not relay.serves_itself)
@@ -65,7 +65,7 @@ class Simulator:
                     relay.server.start()
         except ServerStartFailed as error:
             raise self._start_error(error.host) from error
-        taken = self._doors.start()
+        taken = self._proxies.start()
         if taken is not None:
             self.stop()
             raise self._start_error(str(taken))
@@ -76,7 +76,7 @@ class Simulator:
         self._stopping.set()
         if self._looking.is_alive():
             self._looking.join()
-        self._doors.stop()
+        self._proxies.stop()
         for relay in self.relays.values():
             relay.stop()
             if relay.serves_itself:
@@ -96,10 +96,10 @@ class Simulator:
         """Every relay looks at its motor when it wants to; they begin one after the other."""
         relays = tuple(self.relays.values())
         due_s = [k / max(1, len(relays)) for k in range(len(relays))]
-        while not self._stopping.wait(LOOK_PERIOD_S):
+        while not self._stopping.wait(UPDATE_CHECK_PERIOD_S):
             now_s = time.monotonic() - self._begin_s
             for k, relay in enumerate(relays):
-                if due_s[k] <= now_s or relay.hurries:
+                if due_s[k] <= now_s or relay.needs_update_soon:
                     due_s[k] = now_s + relay.look(time.time_ns())
 
     def _start_error(self, where: str) -> SimulatorError:

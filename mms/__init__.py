@@ -7,6 +7,7 @@ ServerPump  one thread that drives many servers
 
 from mms.client.client import Client, DataSetMember
 from mms.client.files import FileEntry
+from mms.client.limits import ClientLimits
 from mms.client.reports import Reason, Report, ReportMember
 from mms.control_model import AddCause, ControlModel
 from mms.errors import (
@@ -51,6 +52,7 @@ __all__ = [
     "BitString",
     "CertificateRefused",
     "Client",
+    "ClientLimits",
     "ConnectFailed",
     "ConnectionLost",
     "ControlAction",

@@ -23,17 +23,17 @@ EXCERPT = 60
 MOST_FINDINGS = 1000
 
 
-def parse(path: Path) -> etree._ElementTree:
+def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> etree._ElementTree:
     """The XML tree of a file, without comments; SclError when it is no well-formed and safe XML."""
     try:
         with path.open("rb") as file:
-            data = file.read(LARGEST_FILE_BYTES + 1)
+            data = file.read(largest_bytes + 1)
     except OSError as error:
         raise SclError(path, expected="a readable file", found=error.strerror or str(error)) from error
     except ValueError as error:  # a NUL in the path
         raise SclError(path, expected="a file name", found=str(error)) from error
-    if len(data) > LARGEST_FILE_BYTES:
-        raise SclError(path, expected=f"at most {LARGEST_FILE_BYTES} bytes", found="a larger file")
+    if len(data) > largest_bytes:
+        raise SclError(path, expected=f"at most {largest_bytes} bytes", found="a larger file")
     parser = etree.XMLParser(
         resolve_entities=False,
         load_dtd=False,
@@ -65,10 +65,10 @@ def excerpt(element: etree._Element) -> str:
 class Document:
     """An SCL file being read: typed access to elements and attributes, and the findings collected so far."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> None:
         self.path = path
         self.findings: list[Finding] = []
-        self.root = parse(path).getroot()
+        self.root = parse(path, largest_bytes=largest_bytes).getroot()
         name = etree.QName(self.root)
         self._prefix = f"{{{NAMESPACE}}}" if name.namespace else ""
         self._names: dict[tuple[str, ...], tuple[str, ...]] = {}

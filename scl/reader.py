@@ -20,16 +20,16 @@ from scl.configuration import (
 )
 from scl.conformance import check_conformance
 from scl.data_model import Ied
-from scl.document import Document, content
+from scl.document import LARGEST_FILE_BYTES, Document, content
 from scl.ied_section import IedSection
 from scl.instance_values import InstanceValues
 from scl.multicast_addresses import multicast_addresses
 from scl.templates import Templates
 
 
-def read(path: Path | str) -> Scl:
+def read(path: Path | str, *, largest_bytes: int = LARGEST_FILE_BYTES) -> Scl:
     """Read an ICD, CID, IID or SCD; SclError when it is missing, no safe XML or its model is unclear."""
-    document = Document(Path(path))
+    document = Document(Path(path), largest_bytes=largest_bytes)
     check_conformance(document)
     templates, instance_values = Templates(document), InstanceValues(document)
     addresses = multicast_addresses(document)

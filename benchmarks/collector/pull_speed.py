@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.interoperability.peers import PeerError, linked
 from mms import Client, TlsConfiguration
 from mms.binding.library import shared_library
-from mms.binding.stderr_filter import keep_tls_notes_off_stderr
+from mms.binding.stderr_filter import filter_tls_log_from_stderr
 from service.collector.records.listing import understand
 from service.collector.records.pull import pull
 from service.recording_store.store import RecordingStore
@@ -129,6 +129,6 @@ def _stored(directory: Path, port: int, tls: TlsConfiguration | None) -> float:
 
 
 if __name__ == "__main__":
-    keep_tls_notes_off_stderr()
+    filter_tls_log_from_stderr()
     for line in measure():
         print(line)

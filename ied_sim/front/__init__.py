@@ -4,6 +4,6 @@ The MMS library answers at once, lists files its own way and never freezes. A fr
 later, changed or not at all.
 """
 
-from ied_sim.front.proxy import FrontDoors
+from ied_sim.front.proxy import RelayProxies
 
-__all__ = ["FrontDoors"]
+__all__ = ["RelayProxies"]

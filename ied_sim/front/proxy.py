@@ -11,16 +11,16 @@ from dataclasses import dataclass, field
 from ied_sim.front.reserved_address import ReservedAddress
 from ied_sim.front.rewriting import Rewriter
 from ied_sim.front.transport import CONNECT_CONFIRM, DATA, Message, read_message, unit_size, units_of
-from ied_sim.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.profiles.profile import Files
 from mms import MOST_CONNECTIONS
 from scl import Address
 
 log = logging.getLogger(__name__)
 
-_THAW_LOOK_S = 0.02
+_FROZEN_POLL_S = 0.02
 
-Annex = Callable[[], Address | None]
+OpenOverflowServer = Callable[[], Address | None]
 """Opens a second server beside the first where there is none yet; None while the relay is down."""
 
 
@@ -35,30 +35,30 @@ class _Session:
     file_bytes: int = field(default=0)
 
 
-class FrontDoor:
-    """Accepts at `outside` what the server at `inside` answers. Used by the loop of FrontDoors."""
+class RelayProxy:
+    """Accepts at `outside` what the server at `inside` answers. Used by the loop of RelayProxies."""
 
     def __init__(
         self,
         outside: Address,
         inside: Address,
         files: Files | None,
-        switchboard: Switchboard,
+        misbehaviour_state: MisbehaviourState,
         report_ids: Mapping[str, str],
         *,
         sessions: int,
-        annex: Annex,
+        overflow_server: OpenOverflowServer,
     ) -> None:
-        """sessions: clients at once, those beyond the server's own MOST_CONNECTIONS served by the annex."""
+        """sessions: most clients at once. Those beyond MOST_CONNECTIONS go to the overflow server."""
         self.outside = outside
         self._inside = inside
         self._most = sessions
-        self._annex = annex
+        self._overflow_server = overflow_server
         self._opening = asyncio.Lock()
         self._files = files
-        self._switchboard = switchboard
+        self._misbehaviour_state = misbehaviour_state
         self._report_ids = report_ids
-        self._sessions = self._in_annex = 0
+        self._sessions = self._in_overflow = 0
         self._tasks: set[asyncio.Task[None]] = set()
         self._listening: asyncio.Server | None = None
 
@@ -78,7 +78,7 @@ class FrontDoor:
         task = asyncio.current_task()
         assert task is not None  # noqa: S101 - asyncio calls this in one
         self._tasks.add(task)
-        few = self._switchboard.number(Kind.FEW_SESSIONS)
+        few = self._misbehaviour_state.number(Kind.FEW_SESSIONS)
         try:
             if self._sessions < (self._most if few is None else min(few, self._most)):
                 self._sessions += 1
@@ -93,25 +93,27 @@ class FrontDoor:
             self._tasks.discard(task)
 
     async def _serve(self, reader: StreamReader, writer: StreamWriter) -> None:
-        """In the server while that has a session left, else in its annex."""
-        if self._sessions - self._in_annex <= MOST_CONNECTIONS:
+        """Serve a client from the server while that has a session left, else from the overflow server."""
+        if self._sessions - self._in_overflow <= MOST_CONNECTIONS:
             await self._serve_at(self._inside, reader, writer)
             return
-        self._in_annex += 1
+        self._in_overflow += 1
         try:
             async with self._opening:
-                address = await asyncio.to_thread(self._annex)
+                address = await asyncio.to_thread(self._overflow_server)
             if address is not None:
                 await self._serve_at(address, reader, writer)
         finally:
-            self._in_annex -= 1
+            self._in_overflow -= 1
 
     async def _serve_at(self, address: Address, reader: StreamReader, writer: StreamWriter) -> None:
         try:
             from_server, to_server = await asyncio.open_connection(address.host, address.port)
         except OSError:
             return
-        session = _Session(writer, to_server, Rewriter(self._files, self._switchboard, self._report_ids))
+        session = _Session(
+            writer, to_server, Rewriter(self._files, self._misbehaviour_state, self._report_ids)
+        )
         both = (self._requests(reader, session), self._responses(from_server, session))
         tasks = [asyncio.ensure_future(each) for each in both]
         try:
@@ -126,7 +128,7 @@ class FrontDoor:
         with suppress(asyncio.IncompleteReadError, ConnectionError):
             while True:
                 message = await read_message(reader)
-                await self._thawed()
+                await self._wait_while_frozen()
                 if message.kind == DATA:
                     rewritten = session.rewriter.request(message.user_data)
                     session.server.write(_units(message, rewritten, session.unit_size))
@@ -138,10 +140,10 @@ class FrontDoor:
         with suppress(asyncio.IncompleteReadError, ConnectionError):
             while True:
                 message = await read_message(reader)
-                delay_s = self._switchboard.number(Kind.SLOW_REPLIES)
+                delay_s = self._misbehaviour_state.number(Kind.SLOW_REPLIES)
                 if delay_s is not None:
                     await asyncio.sleep(delay_s)
-                await self._thawed()
+                await self._wait_while_frozen()
                 if not self._pass_on(message, session):
                     return
                 await session.client.drain()
@@ -155,7 +157,7 @@ class FrontDoor:
             return True
         rewritten = session.rewriter.response(message.user_data)
         session.file_bytes += rewritten.file_bytes
-        most = self._switchboard.number(Kind.CUT_MID_FILE)
+        most = self._misbehaviour_state.number(Kind.CUT_MID_FILE)
         if most is None:
             session.file_bytes = 0
         elif rewritten.file_bytes and session.file_bytes > most:
@@ -164,10 +166,10 @@ class FrontDoor:
         session.client.write(_units(message, rewritten.user_data, session.unit_size))
         return True
 
-    async def _thawed(self) -> None:
+    async def _wait_while_frozen(self) -> None:
         """Wait while the relay is frozen."""
-        while self._switchboard.is_on(Kind.FROZEN):
-            await asyncio.sleep(_THAW_LOOK_S)
+        while self._misbehaviour_state.is_on(Kind.FROZEN):
+            await asyncio.sleep(_FROZEN_POLL_S)
 
 
 def _units(message: Message, user_data: bytes, size: int) -> bytes:
@@ -175,11 +177,11 @@ def _units(message: Message, user_data: bytes, size: int) -> bytes:
     return b"".join(message.units) if user_data == message.user_data else units_of(user_data, size)
 
 
-class FrontDoors:
-    """All doors of a simulator, on one thread; none, no thread."""
+class RelayProxies:
+    """All proxies of a simulator, on one thread; none, no thread."""
 
     def __init__(self) -> None:
-        self._doors: list[FrontDoor] = []
+        self._proxies: list[RelayProxy] = []
         self._reserved: list[ReservedAddress] = []
         self._running: tuple[asyncio.AbstractEventLoop, threading.Thread] | None = None
 
@@ -187,45 +189,53 @@ class FrontDoors:
         self,
         outside: Address,
         files: Files | None,
-        switchboard: Switchboard,
+        misbehaviour_state: MisbehaviourState,
         report_ids: Mapping[str, str],
         *,
         sessions: int,
-        annex: Annex,
+        overflow_server: OpenOverflowServer,
     ) -> Address:
-        """A door at `outside`; returns where the server behind it is to listen."""
+        """A proxy at `outside`; returns where the server behind it is to listen."""
         inside = ReservedAddress()
         self._reserved.append(inside)
-        self._doors.append(
-            FrontDoor(outside, inside.address, files, switchboard, report_ids, sessions=sessions, annex=annex)
+        self._proxies.append(
+            RelayProxy(
+                outside,
+                inside.address,
+                files,
+                misbehaviour_state,
+                report_ids,
+                sessions=sessions,
+                overflow_server=overflow_server,
+            )
         )
         return inside.address
 
     def start(self) -> Address | None:
-        """Open all doors; None, or the address of the first that cannot be had."""
-        if not self._doors:
+        """Open all proxies; None, or the address of the first that cannot be had."""
+        if not self._proxies:
             return None
         loop = asyncio.new_event_loop()
         thread = threading.Thread(target=loop.run_forever, name="front", daemon=True)
         self._running = (loop, thread)
         thread.start()
-        for door in self._doors:
+        for proxy in self._proxies:
             try:
-                asyncio.run_coroutine_threadsafe(door.open(), loop).result()
+                asyncio.run_coroutine_threadsafe(proxy.open(), loop).result()
             except OSError:
-                return door.outside
+                return proxy.outside
         return None
 
     def stop(self) -> None:
-        """Close all doors; harmless where none was opened."""
+        """Close all proxies; harmless where none was opened."""
         for inside in self._reserved:
             inside.release()
         if self._running is None:
             return
         loop, thread = self._running
         self._running = None
-        for door in self._doors:
-            asyncio.run_coroutine_threadsafe(door.close(), loop).result()
+        for proxy in self._proxies:
+            asyncio.run_coroutine_threadsafe(proxy.close(), loop).result()
         loop.call_soon_threadsafe(loop.stop)
         thread.join()
         loop.close()

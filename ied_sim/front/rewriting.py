@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from ied_sim.front.ber import Element, MalformedError, decode, element, encode, spans
-from ied_sim.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.profiles.profile import Files
 
 _SESSION = bytes([1, 0, 1, 0])
@@ -29,17 +29,19 @@ class Rewritten:
 
 
 class Rewriter:
-    """Rewrites the messages of one association, as the profile's files and the switchboard want it.
+    """Rewrites the messages of one association, as the profile's files and the misbehaviour_state want it.
 
     report_ids: by RptID, the reference of the report control block, "R1CFG/LLN0$BR$BRep01".
     """
 
-    def __init__(self, files: Files | None, switchboard: Switchboard, report_ids: Mapping[str, str]) -> None:
+    def __init__(
+        self, files: Files | None, misbehaviour_state: MisbehaviourState, report_ids: Mapping[str, str]
+    ) -> None:
         self._report_ids = report_ids
         self._files = files
-        self._switchboard = switchboard
+        self._misbehaviour_state = misbehaviour_state
         # A block's RptID stands while it is enabled: for an association it is what it was at its beginning.
-        self._empties_report_ids = switchboard.is_on(Kind.EMPTY_RPTID)
+        self._empties_report_ids = misbehaviour_state.is_on(Kind.EMPTY_RPTID)
         self._directory = ""
 
     def request(self, user_data: bytes) -> bytes:
@@ -97,9 +99,9 @@ class Rewriter:
 
     @property
     def _without_path(self) -> bool:
-        if self._switchboard.is_on(Kind.NAMES_WITHOUT_PATH):
+        if self._misbehaviour_state.is_on(Kind.NAMES_WITHOUT_PATH):
             return True
-        if self._switchboard.is_on(Kind.NAMES_WITH_PATH):
+        if self._misbehaviour_state.is_on(Kind.NAMES_WITH_PATH):
             return False
         return self._files is not None and self._files.listed == "name"
 
@@ -113,10 +115,10 @@ class Rewriter:
 
     @property
     def _show(self) -> "_Show":
-        most = self._switchboard.number(Kind.PARTIAL_LISTING)
+        most = self._misbehaviour_state.number(Kind.PARTIAL_LISTING)
         if most is None and self._files is not None:
             most = self._files.entries_per_listing
-        by_bytes = self._switchboard.number(Kind.WRONG_SIZE)
+        by_bytes = self._misbehaviour_state.number(Kind.WRONG_SIZE)
         return _Show(
             without_path=self._without_path,
             separator="/" if self._files is None else self._files.separator,

@@ -5,7 +5,7 @@ from collections import Counter, deque
 from dataclasses import dataclass, field
 
 from ied_sim.monitoring.metering import Metering
-from ied_sim.monitoring.motor_watch import Start
+from ied_sim.monitoring.motor_monitor import Start
 
 STARTS_KEPT = 5
 LOAD_ROWS_KEPT = 1000
@@ -32,7 +32,7 @@ class LoadRow:
 
 
 @dataclass(frozen=True, slots=True)
-class NotedStart:
+class LoggedStart:
     """A motor start, with the UTC of its closing."""
 
     time_ns: int
@@ -61,39 +61,39 @@ class Journal:
     def __init__(self, capacity: int, *, since_ns: int, profile_every_s: float) -> None:
         self._lock = threading.Lock()
         self._events: deque[Event] = deque(maxlen=capacity)
-        self._starts: deque[NotedStart] = deque(maxlen=STARTS_KEPT)
+        self._starts: deque[LoggedStart] = deque(maxlen=STARTS_KEPT)
         self._load: deque[LoadRow] = deque(maxlen=LOAD_ROWS_KEPT)
         self._every_ns = round(profile_every_s * 1e9)
         self.statistics = Statistics(since_ns)
 
-    def note_event(self, event: Event) -> None:
+    def add_event(self, event: Event) -> None:
         with self._lock:
             self._events.append(event)
 
-    def forget_events(self) -> None:
+    def clear_events(self) -> None:
         with self._lock:
             self._events.clear()
 
-    def note_start(self, time_ns: int, start: Start) -> None:
+    def add_start(self, time_ns: int, start: Start) -> None:
         with self._lock:
-            self._starts.append(NotedStart(time_ns, start))
+            self._starts.append(LoggedStart(time_ns, start))
             statistics = self.statistics
             peak_A = float(start.current_A.max())
             statistics.starts += 1
             statistics.highest_start_current_A = max(statistics.highest_start_current_A, peak_A)
             statistics.longest_start_s = max(statistics.longest_start_s, start.duration_s or 0.0)
 
-    def note_trip(self, element: str) -> None:
+    def add_trip(self, element: str) -> None:
         with self._lock:
             self.statistics.trips[element] += 1
 
-    def note_load(self, time_ns: int, seen: Metering, thermal_capacity: float) -> None:
+    def add_load_row(self, time_ns: int, seen: Metering, thermal_capacity: float) -> None:
         """A row of the load profile, where one is due."""
         with self._lock:
             if not self._load or time_ns - self._load[-1].time_ns >= self._every_ns:
                 self._load.append(LoadRow(time_ns, seen, thermal_capacity))
 
-    def note_operation(self, duration_s: float, seen: Metering, *, running: bool, starting: bool) -> None:
+    def add_operation(self, duration_s: float, seen: Metering, *, running: bool, starting: bool) -> None:
         """The motor has run, or stood, for so long; the current of a start is not one of running."""
         with self._lock:
             if not running:
@@ -112,7 +112,7 @@ class Journal:
         with self._lock:
             return tuple(reversed(self._events))
 
-    def starts(self) -> tuple[NotedStart, ...]:
+    def starts(self) -> tuple[LoggedStart, ...]:
         """Newest first."""
         with self._lock:
             return tuple(reversed(self._starts))

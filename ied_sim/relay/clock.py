@@ -2,14 +2,14 @@
 
 import time
 
-from ied_sim.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, MisbehaviourState
 
 
 class RelayClock:
     """Times inside the simulator are true UTC; these are what the relay makes of them."""
 
-    def __init__(self, switchboard: Switchboard) -> None:
-        self._switchboard = switchboard
+    def __init__(self, misbehaviour_state: MisbehaviourState) -> None:
+        self._misbehaviour_state = misbehaviour_state
 
     @staticmethod
     def now_ns() -> int:
@@ -25,4 +25,4 @@ class RelayClock:
         return self.stamped(time_ns) + self._offset_ns(Kind.LOCAL_TIME)
 
     def _offset_ns(self, kind: Kind) -> int:
-        return round((self._switchboard.number(kind) or 0.0) * 1e9)
+        return round((self._misbehaviour_state.number(kind) or 0.0) * 1e9)

@@ -24,7 +24,8 @@ class Access:
 class RelayConfiguration:
     """What one relay protects, what kind of relay it is, how it records, what it does wrong, whom it lets in.
 
-    load_profile_s: time between rows of the load profile.
+    load_profile_s: time between rows of the load profile.  metering_period_s: time between updates of the
+    metered values.  metering_refresh_s: longest time until unchanged values are published again.
     """
 
     plant: MotorPlant
@@ -35,6 +36,8 @@ class RelayConfiguration:
     misbehaviour: tuple[Misbehaviour, ...] = ()
     load_profile_s: float = LOAD_PROFILE_S
     access: Access = field(default_factory=Access)
+    metering_period_s: float = 1.0
+    metering_refresh_s: float = 30.0
 
     def truth(self, time_s: float) -> dict[str, float | int | None]:
         """The true condition at a time since the start: mu_f (the equivalent level), theta_f, load_level."""

@@ -3,7 +3,7 @@
 import logging
 from queue import SimpleQueue
 
-from ied_sim.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.server import RelayServer
@@ -16,12 +16,16 @@ OCTETS_OF_A_REPORT = 40
 
 
 class RelayMisbehaviour:
-    """Looks at the switchboard from time to time and acts; used by one thread."""
+    """Looks at the misbehaviour_state from time to time and acts; used by one thread."""
 
     def __init__(
-        self, switchboard: Switchboard, server: RelayServer, points: RelayPoints, buffer_bytes: int
+        self,
+        misbehaviour_state: MisbehaviourState,
+        server: RelayServer,
+        points: RelayPoints,
+        buffer_bytes: int,
     ) -> None:
-        self._switchboard = switchboard
+        self._misbehaviour_state = misbehaviour_state
         self._server = server
         self._points = points
         self._buffer_bytes = buffer_bytes
@@ -31,8 +35,8 @@ class RelayMisbehaviour:
 
     def look(self) -> None:
         """Begin and end what has come on or gone off since the last look."""
-        for kind in sorted(self._switchboard.kinds):
-            on = self._switchboard.is_on(kind)
+        for kind in sorted(self._misbehaviour_state.kinds):
+            on = self._misbehaviour_state.is_on(kind)
             if on != (kind in self._on):
                 log.info("%s: %s", "misbehaves" if on else "behaves again", kind)
                 (self._begin if on else self._end)(kind)

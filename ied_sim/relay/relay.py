@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ied_sim.errors import SimulatorError
-from ied_sim.front import FrontDoors
-from ied_sim.misbehaviour import ON_THE_WIRE, Kind, Switchboard
+from ied_sim.front import RelayProxies
+from ied_sim.misbehaviour import MADE_BY_PROXY, Kind, MisbehaviourState
 from ied_sim.monitoring.journal import Journal
 from ied_sim.monitoring.metering import Metering
-from ied_sim.monitoring.motor_watch import MotorWatch
+from ied_sim.monitoring.motor_monitor import MotorMonitor
 from ied_sim.monitoring.relay_word import RelayWord
 from ied_sim.motor.contactor import Closure
 from ied_sim.motor.plant import rated_current
@@ -21,18 +21,17 @@ from ied_sim.relay.event_recorder import Capture, EventRecorder
 from ied_sim.relay.misbehaviour import RelayMisbehaviour
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.protection import Protection
-from ied_sim.relay.record_keeper import Identity, RecordKeeper
+from ied_sim.relay.record_archive import Identity, RecordArchive
 from ied_sim.relay.server import RelayServer
 from ied_sim.relay.settings import relay_settings
 from ied_sim.relay.values import RelayValues
-from ied_sim.texts import Maker, Story, texts
+from ied_sim.texts import RelaySnapshot, TextMaker, texts
 from mms import MOST_CONNECTIONS, AddCause, ControlAction, Server
 from scl import Address, Scl
 from scl.model_text import model_text
 
 log = logging.getLogger(__name__)
 
-METERING_PERIOD_S = 1.0
 WATCHFUL_PERIOD_S = 0.1
 """Between looks while something is about to happen: a start, a trip."""
 
@@ -48,7 +47,7 @@ class Relay:
     """The relay `ied_name` of an SCD file, of the kind and protecting what its scenario says.
 
     address: where clients find it.  files: the simulator's directory; the relay's own files are in
-    files/<IED>.  epoch_ns: UTC of the plant's time zero.  doors: where it gets a front if it needs one.
+    files/<IED>.  epoch_ns: UTC of the plant's time zero.  proxies: where it gets a front if it needs one.
     Raises SimulatorError where the data model is not that of its profile; SclError, ModelError, OSError.
     """
 
@@ -61,7 +60,7 @@ class Relay:
         address: Address,
         files: Path,
         epoch_ns: int,
-        doors: FrontDoors | None = None,
+        proxies: RelayProxies | None = None,
     ) -> None:
         profile = scenario.profile
         self.name = ied_name
@@ -69,30 +68,32 @@ class Relay:
         self._epoch_ns = epoch_ns
         self._rated_A = rated_current(scenario.plant.motor)
         self._points = RelayPoints(document.ied(ied_name), profile, str(document.path))
-        self.switchboard = Switchboard(scenario.misbehaviour, lambda: self._seconds(RelayClock.now_ns()))
+        self.misbehaviour_state = MisbehaviourState(
+            scenario.misbehaviour, lambda: self._seconds(RelayClock.now_ns())
+        )
         self._check_switches()
-        self._clock = RelayClock(self.switchboard)
+        self._clock = RelayClock(self.misbehaviour_state)
         self._word = RelayWord()
         self._bits = dict.fromkeys(self._points.controls, False)
         self._journal = Journal(
             scenario.recorder.capacity, since_ns=epoch_ns, profile_every_s=scenario.load_profile_s
         )
-        self._watch = MotorWatch(scenario.plant, self._rated_A)
+        self._watch = MotorMonitor(scenario.plant, self._rated_A)
         self._protection = Protection(scenario.protection, self._rated_A)
         self._closure: Closure | None = None
         self._start_noted = True
         self._load_is_above = False
         self._looked_ns = epoch_ns
-        self.hurries = False
+        self.needs_update_soon = False
         """Something has happened that the next look should not be late for."""
         self._timers: list[threading.Timer] = []
         self._settings = relay_settings(ied_name, scenario)
-        self._offered: dict[str, Maker] = {}
+        self._offered: dict[str, TextMaker] = {}
         root, staging = files / ied_name, files / _STAGING / ied_name
         self._event_files = self._make_event_files(root, staging)
         identity = Identity(ied_name, profile.firmware, scenario.plant.supply.direction, self._settings)
-        self._keeper = RecordKeeper(
-            identity, self._event_files, self._journal, self._word, self._clock, self.switchboard
+        self._keeper = RecordArchive(
+            identity, self._event_files, self._journal, self._word, self._clock, self.misbehaviour_state
         )
         self._recorder = EventRecorder(
             ied_name, scenario.plant, scenario.recorder, epoch_ns=epoch_ns, keep=self._keep
@@ -103,7 +104,7 @@ class Relay:
             self._points,
             profile,
             self._clock,
-            address=self._listening_at(address, doors),
+            address=self._listening_at(address, proxies),
             root=root,
             staging=staging,
             operated=self._operate,
@@ -111,10 +112,14 @@ class Relay:
             access=scenario.access,
         )
         self._values = RelayValues(
-            self._relay_server, self._points, profile.points.metering, profile.points.sequence
+            self._relay_server,
+            self._points,
+            profile.points.metering,
+            profile.points.sequence,
+            refresh_s=scenario.metering_refresh_s,
         )
         self._misbehaviour = RelayMisbehaviour(
-            self.switchboard, self._relay_server, self._points, profile.report_buffer_bytes
+            self.misbehaviour_state, self._relay_server, self._points, profile.report_buffer_bytes
         )
         self._begin(RelayClock.now_ns())
 
@@ -128,7 +133,7 @@ class Relay:
 
         One that restarts cannot share a pump, and one that shakes hands over TLS would hold the others up.
         """
-        return Kind.RESTART in self.switchboard.kinds or self._scenario.access.tls is not None
+        return Kind.RESTART in self.misbehaviour_state.kinds or self._scenario.access.tls is not None
 
     def stop(self) -> None:
         """Abandon a capture under way; the server itself belongs to its pump."""
@@ -139,7 +144,7 @@ class Relay:
             self._event_files.stop()
         self._recorder.stop()
         self._misbehaviour.stop()
-        self._relay_server.close_annex()
+        self._relay_server.close_overflow_server()
 
     def look(self, time_ns: int) -> float:
         """Look at the motor at UTC `time_ns`: meter, protect, keep the journal. Used by one thread.
@@ -147,13 +152,13 @@ class Relay:
         Returns when it wants to look again [s].
         """
         time_s = self._seconds(time_ns)
-        self.hurries = False
+        self.needs_update_soon = False
         self._misbehaviour.look()
         seen = self._watch.look(time_s)
         self._values.refresh_metering(seen, time_ns)
         closure = self._watch.closure(time_s)
         self._follow_start(closure, time_s)
-        self._journal.note_operation(
+        self._journal.add_operation(
             max(0.0, (time_ns - self._looked_ns) * 1e-9),
             seen,
             running=closure is not None,
@@ -163,9 +168,11 @@ class Relay:
         tripped = self._protection.look(seen, time_s)
         if closure is not None and tripped:
             self._trip(tripped, time_ns)
-        self._journal.note_load(time_ns, seen, self._protection.thermal_capacity)
+        self._journal.add_load_row(time_ns, seen, self._protection.thermal_capacity)
         self._watch_load(seen, time_ns)
-        return METERING_PERIOD_S if self._start_noted and not self._is_watchful else WATCHFUL_PERIOD_S
+        if self._start_noted and not self._is_watchful:
+            return self._scenario.metering_period_s
+        return WATCHFUL_PERIOD_S
 
     def update_metering(self, time_ns: int) -> None:
         """Meter the motor at UTC `time_ns` and publish the values."""
@@ -174,7 +181,7 @@ class Relay:
     @property
     def _is_watchful(self) -> bool:
         protection = self._scenario.protection
-        return bool(self.switchboard.kinds or protection.overcurrent or protection.unbalance)
+        return bool(self.misbehaviour_state.kinds or protection.overcurrent or protection.unbalance)
 
     def _seconds(self, time_ns: int) -> float:
         return (time_ns - self._epoch_ns) * 1e-9
@@ -184,7 +191,7 @@ class Relay:
     def _operate(self, action: ControlAction) -> bool | AddCause:
         """Set or clear a control, unless it is but a test; runs in the pump's thread."""
         switches = self._switches.get(action.reference)
-        if self.switchboard.is_on(Kind.REFUSED_CONTROL) and switches is None:
+        if self.misbehaviour_state.is_on(Kind.REFUSED_CONTROL) and switches is None:
             return AddCause.BLOCKED_BY_INTERLOCKING
         if action.test:
             return True
@@ -193,7 +200,7 @@ class Relay:
         rises = value and not self._bits[action.reference]
         self._set_control(action.reference, now_ns, value=value)
         if switches is not None:
-            self.switchboard.switch(switches, on=value)
+            self.misbehaviour_state.switch(switches, on=value)
         if rises:
             self._on_rise(action.reference, now_ns)
             if action.reference in self._points.pulsed:
@@ -229,7 +236,7 @@ class Relay:
             return
         closed_ns = self._epoch_ns + round(closed_s * 1e9)
         log.info("%s: the motor is started", self.name)
-        self.hurries = True
+        self.needs_update_soon = True
         for bit in ("TRIP", *_TRIP_BITS.values(), "STOPPED"):
             self._word.set(bit, False, closed_ns)  # noqa: FBT003
         self._word.set("STARTING", True, closed_ns)  # noqa: FBT003
@@ -251,7 +258,7 @@ class Relay:
         log.info("%s: trip: %s", self.name, ", ".join(elements))
         self._word.set("TRIP", True, now_ns)  # noqa: FBT003
         for element in elements:
-            self._journal.note_trip(element)
+            self._journal.add_trip(element)
             self._word.set(_TRIP_BITS[element], True, now_ns)  # noqa: FBT003
         self._values.status(dict.fromkeys(("trip", *elements), True), now_ns)
         self._stop_motor(now_ns)
@@ -277,7 +284,7 @@ class Relay:
         lasted_s = float(start.time_s[-1]) if start.duration_s is None else start.duration_s
         if time_s >= closure.closed_s + lasted_s:
             self._start_noted = True
-            self._journal.note_start(self._epoch_ns + round(closure.closed_s * 1e9), start)
+            self._journal.add_start(self._epoch_ns + round(closure.closed_s * 1e9), start)
             end_ns = self._epoch_ns + round((closure.closed_s + lasted_s) * 1e9)
             self._word.set("STARTING", False, end_ns)  # noqa: FBT003
             self._word.set("RUNNING", True, end_ns)  # noqa: FBT003
@@ -329,10 +336,10 @@ class Relay:
             formats=profile.record.written(),
         )
 
-    def _listening_at(self, address: Address, doors: FrontDoors | None) -> Address:
+    def _listening_at(self, address: Address, proxies: RelayProxies | None) -> Address:
         """Where the server listens: behind a front if clients must see what the server cannot do."""
         files = self._scenario.profile.files
-        rewritten = bool(self.switchboard.kinds & ON_THE_WIRE) or (
+        rewritten = bool(self.misbehaviour_state.kinds & MADE_BY_PROXY) or (
             files is not None
             and (files.separator != "/" or files.listed != "path" or files.entries_per_listing is not None)
         )
@@ -345,24 +352,24 @@ class Relay:
             )
         if encrypted or not (rewritten or sessions > MOST_CONNECTIONS):
             return address
-        if doors is None:
+        if proxies is None:
             raise SimulatorError(
                 f"{self.name}: its profile or scenario needs a front, and it has no place for one"
             )
-        return doors.add(
+        return proxies.add(
             address,
             files,
-            self.switchboard,
+            self.misbehaviour_state,
             self._points.report_ids(),
             sessions=sessions,
-            annex=lambda: self._relay_server.open_annex(),
+            overflow_server=lambda: self._relay_server.open_overflow_server(),
         )
 
-    def _text(self, maker: Maker) -> Callable[[], bytes]:
-        return lambda: maker(self._story(RelayClock.now_ns()))
+    def _text(self, maker: TextMaker) -> Callable[[], bytes]:
+        return lambda: maker(self._snapshot(RelayClock.now_ns()))
 
-    def _story(self, now_ns: int) -> Story:
-        return Story(
+    def _snapshot(self, now_ns: int) -> RelaySnapshot:
+        return RelaySnapshot(
             relay=self.name,
             firmware=self._scenario.profile.firmware,
             motor=self._scenario.plant.motor,
@@ -375,7 +382,7 @@ class Relay:
         )
 
     def _check_switches(self) -> None:
-        self._switches = {self._points.reference(each): each for each in self.switchboard.switches()}
+        self._switches = {self._points.reference(each): each for each in self.misbehaviour_state.switches()}
         for unknown in sorted(self._switches.keys() - set(self._points.controls)):
             raise SimulatorError(
                 f"{self.name}: the misbehaviour's switch {unknown} is no control of this relay"

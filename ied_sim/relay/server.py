@@ -28,15 +28,15 @@ from scl import Address
 _ANY_NAME = "RELAY"
 
 Operated = Callable[[ControlAction], "bool | AddCause"]
-TextMaker = Callable[[], bytes]
+TextSource = Callable[[], bytes]
 
 
 class RelayServer:
     """Serves the model text of the IED `name` at one address.
 
-    It keeps the values, so that it can begin anew as after a restart, and so that a second server of the
-    library, the annex, can tell the same to clients beyond the library's most. The annex has report blocks of
-    its own: one that is taken in the server is free there.
+    It keeps the values. So it can begin anew as after a restart, and a second server of the library, the
+    overflow server, can offer the same values to clients beyond the library's limit. The overflow server has
+    report blocks of its own: one that is taken in the server is free there.
     root: the folder clients see.  staging: where files are made before they appear in it.  texts: files made
     at each request, by path under the root.
     """
@@ -53,7 +53,7 @@ class RelayServer:
         root: Path,
         staging: Path,
         operated: Operated,
-        texts: Mapping[str, TextMaker],
+        texts: Mapping[str, TextSource],
         access: Access,
     ) -> None:
         # Under one name for all: relays of one kind then have one text, which is checked once.
@@ -73,8 +73,8 @@ class RelayServer:
         self._lock = threading.Lock()
         self._down = False
         self._changes = 0
-        self._annex: Server | None = None
-        self._annex_address: ReservedAddress | None = None
+        self._overflow_server: Server | None = None
+        self._overflow_address: ReservedAddress | None = None
         for folder in {Path(path).parent for path in texts}:
             (root / folder).mkdir(parents=True, exist_ok=True)
         self.server = self._build(address, min(profile.sessions, MOST_CONNECTIONS))
@@ -95,20 +95,20 @@ class RelayServer:
         self._changes += 1
         if self._down:
             return
-        annex = self._annex
-        for server in (self.server,) if annex is None else (self.server, annex):
+        overflow_server = self._overflow_server
+        for server in (self.server,) if overflow_server is None else (self.server, overflow_server):
             try:
                 server.update_many(changes)
             except RuntimeError:
                 # It went down in between; no lock could be held here that a handler may also want.
-                if not self._down and server in (self.server, self._annex):
+                if not self._down and server in (self.server, self._overflow_server):
                     raise
 
     def go_down(self) -> None:
         """End every connection; what clients had not yet been told is forgotten."""
         self._down = True
         self.server.stop()
-        self.close_annex()
+        self.close_overflow_server()
 
     def come_up(self) -> None:
         """Serve again, with the values as they are, on a thread of its own. Raises ServerStartFailed."""
@@ -116,29 +116,31 @@ class RelayServer:
         self.server.start()
         self._down = False
 
-    def open_annex(self) -> Address | None:
+    def open_overflow_server(self) -> Address | None:
         """Where clients are served for whom the server has no session left; None while it is down.
 
         Raises ServerStartFailed. Used by one thread at a time.
         """
         if self._down:
             return None
-        if self._annex is None:
-            self._annex_address = self._annex_address or ReservedAddress()
-            annex = self._build(self._annex_address.address, self._profile.sessions - MOST_CONNECTIONS)
-            self._annex = annex
+        if self._overflow_server is None:
+            self._overflow_address = self._overflow_address or ReservedAddress()
+            overflow_server = self._build(
+                self._overflow_address.address, self._profile.sessions - MOST_CONNECTIONS
+            )
+            self._overflow_server = overflow_server
             known = -1
             while known != self._changes:  # what was published meanwhile may have been overtaken
                 known = self._changes
-                annex.update_many(dict(self._values))
-            annex.start()
-        return Address(self._annex.address, self._annex.port)
+                overflow_server.update_many(dict(self._values))
+            overflow_server.start()
+        return Address(self._overflow_server.address, self._overflow_server.port)
 
-    def close_annex(self) -> None:
-        annex, self._annex = self._annex, None
-        if annex is not None:
-            annex.stop()
-        address, self._annex_address = self._annex_address, None
+    def close_overflow_server(self) -> None:
+        overflow_server, self._overflow_server = self._overflow_server, None
+        if overflow_server is not None:
+            overflow_server.stop()
+        address, self._overflow_address = self._overflow_address, None
         if address is not None:
             address.release()
 

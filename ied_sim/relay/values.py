@@ -10,16 +10,24 @@ from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.server import RelayServer
 from mms import Value
 
-METERING_REFRESH_S = 30.0
-"""Metered values that have not changed are published so often."""
-
 
 class RelayValues:
-    """Publishes on one relay's server. metering, sequence: the profile's logical nodes, None for none."""
+    """Publishes on one relay's server.
+
+    metering, sequence: the profile's logical nodes, None for none.  refresh_s: longest time until metered
+    values that have not changed are published again.
+    """
 
     def __init__(
-        self, server: RelayServer, points: RelayPoints, metering: str | None, sequence: str | None
+        self,
+        server: RelayServer,
+        points: RelayPoints,
+        metering: str | None,
+        sequence: str | None,
+        *,
+        refresh_s: float,
     ) -> None:
+        self._refresh_s = refresh_s
         self._server = server
         self._points = points
         self._nodes = metering, sequence
@@ -46,7 +54,7 @@ class RelayValues:
 
     def refresh_metering(self, seen: Metering, time_ns: int) -> None:
         """Publish what has changed; what has not, now and then."""
-        if seen is not self._published or time_ns - self._published_ns >= METERING_REFRESH_S * 1e9:
+        if seen is not self._published or time_ns - self._published_ns >= self._refresh_s * 1e9:
             self.metering(seen, time_ns)
 
     def _measurements(self, seen: Metering) -> dict[str, Value]:

@@ -5,14 +5,14 @@ from typing import Final
 
 from ied_sim.profiles.profile import Text
 from ied_sim.texts import history, load_profile, motor_reports, sequence
-from ied_sim.texts.snapshot import Story
+from ied_sim.texts.snapshot import RelaySnapshot
 
 FOLDER: Final = "REPORTS"
 SETTINGS_FOLDER: Final = "SETTINGS"
 
-Maker = Callable[[Story], bytes]
+TextMaker = Callable[[RelaySnapshot], bytes]
 
-MAKERS: Final[Mapping[Text, Maker]] = {
+MAKERS: Final[Mapping[Text, TextMaker]] = {
     "HISTORY": history.history,
     "CHISTORY": history.compressed_history,
     "SER": sequence.sequence,
@@ -24,12 +24,12 @@ MAKERS: Final[Mapping[Text, Maker]] = {
 }
 
 
-def settings_text(story: Story) -> bytes:
+def settings_text(snapshot: RelaySnapshot) -> bytes:
     """SET_ALL.TXT: the settings by name."""
-    return story.report("SETTINGS", [f'{name},"{value}"' for name, value in story.settings])
+    return snapshot.report("SETTINGS", [f'{name},"{value}"' for name, value in snapshot.settings])
 
 
-def texts(offered: Iterable[Text], *, settings: bool) -> dict[str, Maker]:
+def texts(offered: Iterable[Text], *, settings: bool) -> dict[str, TextMaker]:
     """Makers of the text files a relay offers, by path under its root."""
     made = {f"{FOLDER}/{name}.TXT": MAKERS[name] for name in offered}
     if settings:

@@ -1,32 +1,32 @@
 """HISTORY.TXT and CHISTORY.TXT: the stored event reports, newest first."""
 
-from ied_sim.texts.snapshot import DATE_LABELS, Story
+from ied_sim.texts.snapshot import DATE_LABELS, RelaySnapshot
 
 
-def history(story: Story) -> bytes:
+def history(snapshot: RelaySnapshot) -> bytes:
     lines = [" #     RECORD  DATE       TIME          EVENT          CURRENT(A)  FREQ(Hz)  TARGETS"]
     lines += [
-        f"{place:>2}  {event.number:>9}  {story.stamp(event.time_ns)}  {event.kind:<13}  "
+        f"{place:>2}  {event.number:>9}  {snapshot.stamp(event.time_ns)}  {event.kind:<13}  "
         f"{event.seen.current_A:>10.2f}  {event.seen.frequency_Hz:>8.2f}  {event.targets}"
-        for place, event in enumerate(story.journal.events(), 1)
+        for place, event in enumerate(snapshot.journal.events(), 1)
     ]
     if len(lines) == 1:
         lines = ["History Buffer Empty"]
-    return story.report("EVENT HISTORY", lines)
+    return snapshot.report("EVENT HISTORY", lines)
 
 
-def compressed_history(story: Story) -> bytes:
+def compressed_history(snapshot: RelaySnapshot) -> bytes:
     labels = ("REC_NUM", "REF_NUM", *DATE_LABELS, "EVENT", "CURRENT", "FREQ", "TARGETS")
     rows = (
         [
             str(place),
             str(event.number),
-            *story.date_fields(event.time_ns),
+            *snapshot.date_fields(event.time_ns),
             f'"{event.kind}"',
             f"{event.seen.current_A:.2f}",
             f"{event.seen.frequency_Hz:.2f}",
             f'"{event.targets}"',
         ]
-        for place, event in enumerate(story.journal.events(), 1)
+        for place, event in enumerate(snapshot.journal.events(), 1)
     )
-    return story.compressed(labels, rows)
+    return snapshot.compressed(labels, rows)

@@ -1,23 +1,23 @@
 """LDP.TXT and CLDP.TXT: the load profile, what was metered every so often, oldest first."""
 
 from ied_sim.monitoring.journal import LoadRow
-from ied_sim.texts.snapshot import DATE_LABELS, Story
+from ied_sim.texts.snapshot import DATE_LABELS, RelaySnapshot
 
 LABELS = ("IA_MAG", "IB_MAG", "IC_MAG", "UBI_PCT", "VAVE", "P", "Q", "PF", "FREQ", "TCU")
 
 
-def load_profile(story: Story) -> bytes:
+def load_profile(snapshot: RelaySnapshot) -> bytes:
     lines = ["DATE       TIME          " + "".join(f"{label:>12}" for label in LABELS)]
     lines += [
-        f"{story.stamp(row.time_ns)}  " + "".join(f"{value:>12}" for value in _values(row))
-        for row in story.journal.load()
+        f"{snapshot.stamp(row.time_ns)}  " + "".join(f"{value:>12}" for value in _values(row))
+        for row in snapshot.journal.load()
     ]
-    return story.report("LOAD PROFILE", lines)
+    return snapshot.report("LOAD PROFILE", lines)
 
 
-def compressed_load_profile(story: Story) -> bytes:
-    rows = ([*story.date_fields(row.time_ns), *_values(row)] for row in story.journal.load())
-    return story.compressed((*DATE_LABELS, *LABELS), rows)
+def compressed_load_profile(snapshot: RelaySnapshot) -> bytes:
+    rows = ([*snapshot.date_fields(row.time_ns), *_values(row)] for row in snapshot.journal.load())
+    return snapshot.compressed((*DATE_LABELS, *LABELS), rows)
 
 
 def _values(row: LoadRow) -> list[str]:

@@ -2,39 +2,39 @@
 
 from collections.abc import Iterator
 
-from ied_sim.monitoring.journal import NotedStart
-from ied_sim.texts.snapshot import Story
+from ied_sim.monitoring.journal import LoggedStart
+from ied_sim.texts.snapshot import RelaySnapshot
 
 
-def motor_starts(story: Story) -> bytes:
+def motor_starts(snapshot: RelaySnapshot) -> bytes:
     """The last starts, newest first: a summary of each, then current and voltage as they went."""
-    starts = story.journal.starts()
-    lines = [line for noted in starts for line in _start_lines(story, noted)]
-    return story.report("MOTOR START REPORT", lines or ["No Motor Start Data Available"])
+    starts = snapshot.journal.starts()
+    lines = [line for logged in starts for line in _start_lines(snapshot, logged)]
+    return snapshot.report("MOTOR START REPORT", lines or ["No Motor Start Data Available"])
 
 
-def _start_lines(story: Story, noted: NotedStart) -> Iterator[str]:
-    start = noted.start
+def _start_lines(snapshot: RelaySnapshot, logged: LoggedStart) -> Iterator[str]:
+    start = logged.start
     lasted = "did not end" if start.duration_s is None else f"{start.duration_s:.2f} s"
-    yield f"Date of start          {story.stamp(noted.time_ns)}"
+    yield f"Date of start          {snapshot.stamp(logged.time_ns)}"
     yield f"Start time             {lasted}"
     yield f"Maximum start current  {start.current_A.max():.2f} A"
     yield f"Minimum start voltage  {start.voltage_V.min():.1f} V"
     yield ""
     yield "   TIME(s)     I(A)   I(%FLA)     V(V)"
     for time_s, current_A, voltage_V in zip(start.time_s, start.current_A, start.voltage_V, strict=True):
-        share = 100 * current_A / story.rated_current_A
+        share = 100 * current_A / snapshot.rated_current_A
         yield f"{time_s:>10.2f} {current_A:>8.2f} {share:>9.1f} {voltage_V:>8.1f}"
     yield ""
 
 
-def motor_statistics(story: Story) -> bytes:
-    found = story.journal.statistics
+def motor_statistics(snapshot: RelaySnapshot) -> bytes:
+    found = snapshot.journal.statistics
     total_s = found.running_s + found.stopped_s
     share = 100 * found.running_s / total_s if total_s else 0.0
     mean_A = found.current_time_As / found.loaded_s if found.loaded_s else 0.0
     lines = [
-        f"Since                      {story.stamp(found.since_ns)}",
+        f"Since                      {snapshot.stamp(found.since_ns)}",
         f"Running time               {_hours(found.running_s)}",
         f"Stopped time               {_hours(found.stopped_s)}",
         f"Time running               {share:.1f} %",
@@ -47,7 +47,7 @@ def motor_statistics(story: Story) -> bytes:
         f"Trips, current unbalance   {found.trips['unbalance']}",
         f"Trips, thermal overload    {found.trips['thermal']}",
     ]
-    return story.report("MOTOR OPERATING STATISTICS", lines)
+    return snapshot.report("MOTOR OPERATING STATISTICS", lines)
 
 
 def _hours(duration_s: float) -> str:

@@ -15,7 +15,7 @@ DATE_LABELS = ("MONTH", "DAY", "YEAR", "HOUR", "MIN", "SEC", "MSEC")
 
 
 @dataclass(frozen=True, slots=True)
-class Story:
+class RelaySnapshot:
     """offset_ns: what the relay's clock adds to UTC where it writes times, its error included."""
 
     relay: str

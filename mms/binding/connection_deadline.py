@@ -1,8 +1,8 @@
-"""An end for what the MMS library would go on with for ever: a TLS handshake nobody answers, a list of names
-of which more follows each time.
+"""A limit of time for calls that the MMS library would never end by itself.
 
-The library tries again and again, as fast as it can, and offers no way to stop it. What it does heed is the
-end of the TCP connection, which the operating system lets any part of this process bring about.
+The library waits for ever for a TLS handshake that nobody answers, and for a list of names of which more
+follows each time. It offers no way to stop it, but it notices the end of the TCP connection, and the
+operating system lets any part of this process shut a connection down.
 """
 
 import os
@@ -16,36 +16,65 @@ from typing import Final
 _DESCRIPTORS: Final = Path("/proc/self/fd")
 
 
-Chosen = Callable[[socket.socket], bool]
+ConnectionFilter = Callable[[socket.socket], bool]
 
 
-def between(*, own: tuple[str, int] | None = None, peer: tuple[str, int] | None = None) -> Chosen:
-    """Chooses connections by the address and port of either end; None for any."""
+def connections_between(
+    *, own: tuple[str, int] | None = None, peer: tuple[str, int] | None = None
+) -> ConnectionFilter:
+    """Make a filter that selects TCP connections by their ends.
 
-    def chosen(connection: socket.socket) -> bool:
+    Parameters
+    ----------
+    own : tuple of str and int, optional
+        Address and port at this end. Any by default.
+    peer : tuple of str and int, optional
+        Address and port at the other end. Any by default.
+
+    Returns
+    -------
+    ConnectionFilter
+        A function that tells whether a connected socket is selected.
+    """
+
+    def is_selected(connection: socket.socket) -> bool:
         ends = (connection.getsockname(), connection.getpeername())
         return own in (None, ends[0]) and peer in (None, ends[1])
 
-    return chosen
+    return is_selected
 
 
 @contextmanager
-def limited(
-    chosen: Chosen, limit_s: float, *, before: frozenset[str] | None = None
+def end_connections_after(
+    is_selected: ConnectionFilter, limit_s: float, *, before: frozenset[str] | None = None
 ) -> Iterator[threading.Event]:
-    """End those connections `chosen` that are made within the block and still stand when the limit is over.
+    """End selected connections made within the block that still stand when the limit is over.
 
-    One like them that another thread made meanwhile goes with them. before: what `present` gave before they
-    were made, for those that are older than the block. The event tells that the limit was over.
+    A connection that another thread makes meanwhile is ended too if it is selected.
+
+    Parameters
+    ----------
+    is_selected : ConnectionFilter
+        Tells which connections to end.
+    limit_s : float
+        Time after which they are ended [s].
+    before : frozenset of str, optional
+        Result of `open_sockets` before the connections were made, for connections older than the block. By
+        default the sockets that are open when the block begins.
+
+    Yields
+    ------
+    threading.Event
+        Set when the limit is over.
     """
-    older = present() if before is None else before
+    older = open_sockets() if before is None else before
     over = threading.Event()
 
     def end() -> None:
         over.set()
         for descriptor, name in _sockets().items():
             if name not in older:
-                _end(descriptor, chosen)
+                _shut_down(descriptor, is_selected)
 
     timer = threading.Timer(limit_s, end)
     timer.daemon = True
@@ -56,13 +85,19 @@ def limited(
         timer.cancel()
 
 
-def present() -> frozenset[str]:
-    """This process's sockets."""
+def open_sockets() -> frozenset[str]:
+    """List the sockets of this process.
+
+    Returns
+    -------
+    frozenset of str
+        One name "socket:[inode]" for each.
+    """
     return frozenset(_sockets().values())
 
 
 def _sockets() -> dict[int, str]:
-    """Of this process: descriptor and, as "socket:[inode]", the one it stands for."""
+    """Return the descriptors of this process's sockets, each with its name "socket:[inode]"."""
     found = {}
     for entry in _DESCRIPTORS.iterdir():
         with suppress(OSError):  # closed meanwhile
@@ -72,8 +107,8 @@ def _sockets() -> dict[int, str]:
     return found
 
 
-def _end(descriptor: int, chosen: Chosen) -> None:
-    """Shut it down if it is chosen. Looked at in a duplicate, which nobody else closes."""
+def _shut_down(descriptor: int, is_selected: ConnectionFilter) -> None:
+    """Shut a connection down if it is selected. It works on a duplicate, which nobody else closes."""
     with suppress(OSError):
         duplicate = os.dup(descriptor)
         try:
@@ -82,5 +117,5 @@ def _end(descriptor: int, chosen: Chosen) -> None:
             os.close(duplicate)
             return
         with candidate:
-            if chosen(candidate):
+            if is_selected(candidate):
                 candidate.shutdown(socket.SHUT_RDWR)

@@ -16,7 +16,7 @@ _CHUNK: Final = 65_536
 _LAST_LINES_S: Final = 1.0
 
 
-def keep_tls_notes_off_stderr() -> None:
+def filter_tls_log_from_stderr() -> None:
     """From now on; once a process, before anything holds `sys.stderr`.
 
     Python writes to the same place as before. What C code writes passes through a thread, so the last words
@@ -38,11 +38,11 @@ def keep_tls_notes_off_stderr() -> None:
 
 def _pass_on(reading: int, real: int) -> None:
     with os.fdopen(reading, "rb", buffering=_CHUNK) as lines:
-        for line in other_lines(lines):
+        for line in without_tls_log(lines):
             os.write(real, line)
 
 
-def other_lines(lines: Iterator[bytes]) -> Iterator[bytes]:
+def without_tls_log(lines: Iterator[bytes]) -> Iterator[bytes]:
     """Those that are no note of the library's: they begin with TLS, and indented or empty lines go on."""
     in_note = False
     for line in lines:

@@ -1,4 +1,4 @@
-"""Conversion between the library's MmsValue and Python values, after the table in `mms.values`."""
+"""Conversion between the library's MmsValue and Python values, as `mms.values` defines them."""
 
 import ctypes
 import math
@@ -85,7 +85,7 @@ _READERS: Final[dict[int, Callable[[ctypes.CDLL, int], Value]]] = {
 }
 
 
-class Mismatch(ValueError):  # noqa: N818 (what went wrong)
+class TypeMismatchError(ValueError):
     """A Python value does not fit the MMS type it is for."""
 
     def __init__(self, expected: str, found: object) -> None:
@@ -95,7 +95,7 @@ class Mismatch(ValueError):  # noqa: N818 (what went wrong)
 
 
 def assign(lib: ctypes.CDLL, pointer: int, value: Value | Quality, *, longest_string: int = 255) -> None:
-    """Put a Python value into the MmsValue at `pointer`, whose type stands; Mismatch if it does not fit.
+    """Put a Python value into the MmsValue at `pointer`; TypeMismatchError if it does not fit its type.
 
     In a structure or array, None leaves an element as it is.
     """
@@ -105,16 +105,16 @@ def assign(lib: ctypes.CDLL, pointer: int, value: Value | Quality, *, longest_st
         return
     writer = _WRITERS.get(kind)
     if writer is None:
-        raise Mismatch("a type of IEC 61850", f"MMS type {kind}")
+        raise TypeMismatchError("a type of IEC 61850", f"MMS type {kind}")
     writer(lib, pointer, value)
     if isinstance(value, str) and len(value.encode("utf-8")) > longest_string:
-        raise Mismatch(f"a string of at most {longest_string} octets", value)
+        raise TypeMismatchError(f"a string of at most {longest_string} octets", value)
 
 
 def _assign_elements(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     size = int(lib.MmsValue_getArraySize(pointer))
     if not isinstance(value, tuple) or len(value) != size:
-        raise Mismatch(f"a tuple of {size} values", value)
+        raise TypeMismatchError(f"a tuple of {size} values", value)
     for index, element in enumerate(value):
         if element is not None:
             assign(lib, lib.MmsValue_getElement(pointer, index), element)
@@ -122,48 +122,48 @@ def _assign_elements(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> 
 
 def _write_boolean(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     if not isinstance(value, bool):
-        raise Mismatch("a bool", value)
+        raise TypeMismatchError("a bool", value)
     lib.MmsValue_setBoolean(pointer, value)
 
 
 def _write_integer(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     """Through the setter of the width the attribute has: the library silently ignores the wider ones."""
     if not isinstance(value, int) or isinstance(value, bool):
-        raise Mismatch("an int", value)
+        raise TypeMismatchError("an int", value)
     setters = (lib.MmsValue_setInt64, lib.MmsValue_setInt32, lib.MmsValue_setInt16, lib.MmsValue_setInt8)
     for setter, bits in zip(setters, (64, 32, 16, 8), strict=True):
         if -(1 << bits - 1) <= value < 1 << bits - 1:
             setter(pointer, value)
             if int(lib.MmsValue_toInt64(pointer)) == value:
                 return
-    raise Mismatch("an int that fits the attribute's type", value)
+    raise TypeMismatchError("an int that fits the attribute's type", value)
 
 
 def _write_unsigned(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     if not isinstance(value, int) or isinstance(value, bool):
-        raise Mismatch("an int", value)
+        raise TypeMismatchError("an int", value)
     setters = (lib.MmsValue_setUint32, lib.MmsValue_setUint16, lib.MmsValue_setUint8)
     for setter, bits in zip(setters, (32, 16, 8), strict=True):
         if 0 <= value < 1 << bits:
             setter(pointer, value)
             if int(lib.MmsValue_toUint32(pointer)) == value:
                 return
-    raise Mismatch("an int that fits the attribute's type", value)
+    raise TypeMismatchError("an int that fits the attribute's type", value)
 
 
 def _write_float(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     if not isinstance(value, int | float) or isinstance(value, bool):
-        raise Mismatch("a float", value)
+        raise TypeMismatchError("a float", value)
     lib.MmsValue_setDouble(pointer, value)
     if math.isinf(float(lib.MmsValue_toDouble(pointer))) and not math.isinf(value):
-        raise Mismatch("a float within the attribute's 32 bits", value)
+        raise TypeMismatchError("a float within the attribute's 32 bits", value)
 
 
 def _write_bit_string(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     size = int(lib.MmsValue_getBitStringSize(pointer))
     bits = value.bits if isinstance(value, Quality) else value
     if not isinstance(bits, BitString) or len(bits.bits) != size:
-        raise Mismatch(f"a BitString of {size} bits", value)
+        raise TypeMismatchError(f"a BitString of {size} bits", value)
     for position, bit in enumerate(bits.bits):
         lib.MmsValue_setBitStringBit(pointer, position, bit)
 
@@ -171,35 +171,35 @@ def _write_bit_string(lib: ctypes.CDLL, pointer: int, value: Value | Quality) ->
 def _write_octet_string(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     longest = int(lib.MmsValue_getOctetStringMaxSize(pointer))
     if not isinstance(value, bytes) or len(value) > longest:
-        raise Mismatch(f"at most {longest} bytes", value)
+        raise TypeMismatchError(f"at most {longest} bytes", value)
     lib.MmsValue_setOctetString(pointer, value, len(value))
 
 
 def _write_visible_string(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     if not isinstance(value, str) or not value.isascii() or "\0" in value:
-        raise Mismatch("an ASCII str", value)
+        raise TypeMismatchError("an ASCII str", value)
     lib.MmsValue_setVisibleString(pointer, value.encode("ascii"))
 
 
 def _write_string(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     if not isinstance(value, str) or "\0" in value:
-        raise Mismatch("a str", value)
+        raise TypeMismatchError("a str", value)
     lib.MmsValue_setMmsString(pointer, value.encode("utf-8"))
 
 
 def _write_time(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     if not isinstance(value, Timestamp):
-        raise Mismatch("a Timestamp", value)
+        raise TypeMismatchError("a Timestamp", value)
     try:
         octets = value.octets()
     except ValueError as error:
-        raise Mismatch("a Timestamp from 1970 to 2106", value) from error
+        raise TypeMismatchError("a Timestamp from 1970 to 2106", value) from error
     lib.MmsValue_setUtcTimeByBuffer(pointer, octets)
 
 
 def _write_binary_time(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     if not isinstance(value, Timestamp) or value.ns < 0:
-        raise Mismatch("a Timestamp from 1970 on", value)
+        raise TypeMismatchError("a Timestamp from 1970 on", value)
     lib.MmsValue_setBinaryTime(pointer, value.ns // _MILLISECOND_NS)
 
 

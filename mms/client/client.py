@@ -10,17 +10,15 @@ from mms import errors
 from mms.binding.value_conversion import decode
 from mms.client import controls
 from mms.client.connection import Connection
-from mms.client.data_sets import members_of
+from mms.client.data_sets import data_set_members
 from mms.client.files import FileEntry, Sink, download, list_files
+from mms.client.limits import DEFAULT_LIMITS, ClientLimits
 from mms.client.reports import Report, Subscriptions
 from mms.references import FunctionalConstraint, logical_device, object_reference
 from mms.security.tls import TlsConfiguration
 from mms.values import DataAccessError, Value
 
 _DATA_OBJECT, _DATA_SET, _BUFFERED, _UNBUFFERED = range(4)  # the library's ACSIClass
-
-_LONGEST_DIRECTORY_S: Final = 30.0
-"""Of a logical node, whose data sets are told part by part: a thousand over a serial line of 9600 baud."""
 
 _ACCESS_ERRORS: Final[dict[DataAccessError, type[errors.MmsError]]] = {
     DataAccessError.ACCESS_DENIED: errors.AccessDenied,
@@ -56,7 +54,7 @@ class Client:
     def connect(
         cls, host: str, port: int = 102, *, connect_timeout_s: float = 5.0, request_timeout_s: float = 5.0,
         on_closed: Callable[[], None] | None = None, tls: TlsConfiguration | None = None,
-        password: str | None = None,
+        password: str | None = None, limits: ClientLimits = DEFAULT_LIMITS,
     ) -> Self:  # fmt: skip
         """Associate; ConnectFailed, or its kind that says why, if that does not succeed within about
         `connect_timeout_s`.
@@ -71,7 +69,7 @@ class Client:
         return cls(
             Connection(
                 host, port, connect_timeout_s=connect_timeout_s, request_timeout_s=request_timeout_s,
-                on_closed=on_closed, tls=tls, password=password,
+                on_closed=on_closed, tls=tls, password=password, limits=limits,
             )
         )  # fmt: skip
 
@@ -155,7 +153,7 @@ class Client:
                 lib.IedConnection_getLogicalNodeDirectory,
                 object_reference(node),
                 kind,
-                longest_s=_LONGEST_DIRECTORY_S,
+                longest_s=self._connection.limits.directory_s,
             )
         )
 
@@ -182,7 +180,7 @@ class Client:
 
     def data_set_directory(self, reference: str) -> tuple[str, ...]:
         """The members' references "LD/LN.DO.DA[FC]" of the data set "LD/LN.name"."""
-        return members_of(self._connection, reference)
+        return data_set_members(self._connection, reference)
 
     def read_data_set(self, reference: str) -> tuple[DataSetMember, ...]:
         """All members' values in one request; the directory is read once a connection.

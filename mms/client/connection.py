@@ -17,11 +17,12 @@ from typing import Final, Protocol
 
 from mms import errors
 from mms.binding.callbacks import guarded, inside_callback
-from mms.binding.connection_deadline import between, limited, present
+from mms.binding.connection_deadline import connections_between, end_connections_after, open_sockets
 from mms.binding.library import library
 from mms.binding.prototypes import ConnectionClosedHandler
+from mms.client.connect_failure import refused
 from mms.client.credentials import Credentials
-from mms.client.refusals import refused
+from mms.client.limits import DEFAULT_LIMITS, ClientLimits
 from mms.security.tls import TlsConfiguration
 
 log: Final = logging.getLogger("mms")
@@ -29,16 +30,10 @@ log: Final = logging.getLogger("mms")
 _CONNECTION_LOST: Final = 3
 _REJECTED: Final = 5
 _TIMEOUT: Final = 20
-_LOSS_NOTICE_S: Final = 0.1
 _ATTEMPTS: Final = 5
 _PAUSE_BETWEEN_ATTEMPTS_S: Final = 0.02
 
 _ENDLESS: Final = -1
-_LONGEST_PROBE_S: Final = 300.0
-"""Of the first request, by which the library has the names of all the relay offers, part by part.
-
-Some 10 000 names over a serial line of 9600 baud; a motor relay has half of that.
-"""
 
 
 class _State(Enum):
@@ -83,7 +78,7 @@ class Connection:
     def __init__(
         self, host: str, port: int, *, connect_timeout_s: float, request_timeout_s: float,
         on_closed: Callable[[], None] | None = None, tls: TlsConfiguration | None = None,
-        password: str | None = None,
+        password: str | None = None, limits: ClientLimits = DEFAULT_LIMITS,
     ) -> None:  # fmt: skip
         """Associate with the MMS server at `host` (a name or IPv4 address) and `port`.
 
@@ -94,6 +89,7 @@ class Connection:
         """
         self.host: Final = f"{host}:{port}"
         self.request_timeout_s: Final = request_timeout_s
+        self.limits: Final = limits
         self.lib: Final = library()
         self._lock = threading.RLock()
         self._pointer = 0
@@ -132,7 +128,7 @@ class Connection:
             reason = "the relay ends every association at once: no session left?"
             return errors.ConnectFailed(self.host, "connect", code, reason)
         if code == _ENDLESS:
-            reason = f"expected the names of all it offers in {_LONGEST_PROBE_S:g} s, and more follow"
+            reason = f"expected the names of all it offers in {self.limits.names_s:g} s, and more follow"
             return errors.ConnectFailed(self.host, "connect", 0, reason)
         if code not in (_CONNECTION_LOST, _REJECTED):
             found = errors.client_error(self.host, "connect", code)
@@ -180,7 +176,7 @@ class Connection:
     def _attempt(self, address: str, port: int, timeout_s: float) -> int:
         lib = self.lib
         self._pointer = self._credentials.new_connection()
-        self._peer, self._others = (address, port), present()
+        self._peer, self._others = (address, port), open_sockets()
         notice = self._notice
 
         def closed(_parameter: int | None, _connection: int | None) -> None:
@@ -196,23 +192,27 @@ class Connection:
         )  # the association's part, and the probe's
         error = ctypes.c_int(0)
         unlimited = self._credentials.tls is None
-        with nullcontext() if unlimited else limited(between(peer=(address, port)), timeout_s):
+        with (
+            nullcontext()
+            if unlimited
+            else end_connections_after(connections_between(peer=(address, port)), timeout_s)
+        ):
             lib.IedConnection_connect(self._pointer, ctypes.byref(error), address.encode("ascii"), port)
         if error.value == 0:
-            with self._limited(_LONGEST_PROBE_S) as over:
+            with self._limited(self.limits.names_s) as over:
                 names = lib.IedConnection_getLogicalDeviceList(self._pointer, ctypes.byref(error))
             if names:
                 lib.LinkedList_destroy(names)
             if over.is_set():
                 error.value = _ENDLESS
-            elif error.value == _TIMEOUT and notice.event.wait(_LOSS_NOTICE_S):
+            elif error.value == _TIMEOUT and notice.event.wait(self.limits.loss_notice_s):
                 error.value = _CONNECTION_LOST
         lib.IedConnection_setRequestTimeout(self._pointer, round(self.request_timeout_s * 1000))
         return error.value
 
     def _limited(self, limit_s: float) -> AbstractContextManager[threading.Event]:
         """End this connection when that is over; the event tells so."""
-        return limited(between(peer=self._peer), limit_s, before=self._others)
+        return end_connections_after(connections_between(peer=self._peer), limit_s, before=self._others)
 
     @property
     def is_open(self) -> bool:
@@ -266,12 +266,12 @@ class Connection:
             reason = f"expected all names in {longest_s:g} s, and more follow"
             raise errors.Timeout(self.host, operation, 0, reason)
         if error.value:
-            raise self.judged(errors.client_error(self.host, operation, error.value))
+            raise self.resolve_timeout(errors.client_error(self.host, operation, error.value))
         return result if isinstance(result, int) else None
 
-    def judged(self, error: errors.MmsError) -> errors.MmsError:
+    def resolve_timeout(self, error: errors.MmsError) -> errors.MmsError:
         """The error as it is: the library ends a request with a time-out when the association is lost."""
-        if isinstance(error, errors.Timeout) and self._notice.event.wait(_LOSS_NOTICE_S):
+        if isinstance(error, errors.Timeout) and self._notice.event.wait(self.limits.loss_notice_s):
             return errors.ConnectionLost(self.host, error.operation, error.code, "the connection was lost")
         return error
 

@@ -21,7 +21,6 @@ from mms.references import FunctionalConstraint, object_reference
 _REMOTE_CONTROL: Final = 3
 _CONTROL_ROOM: Final = len("$CO$SBOw")
 _LONGEST_ORIGINATOR: Final = 16  # a long orIdent has rebooted relays in the field
-_TERMINATION_WAIT_S: Final = 10.0
 _LOOK_FOR_LOSS_S: Final = 0.1
 
 
@@ -132,13 +131,14 @@ class _Command:
             raise self._refusal("select")
 
     def _wait_for_termination(self) -> None:
-        deadline_s = time.monotonic() + _TERMINATION_WAIT_S
+        longest_s = self._connection.limits.command_termination_s
+        deadline_s = time.monotonic() + longest_s
         while not self._terminated.wait(_LOOK_FOR_LOSS_S):
             host = self._connection.host
             if not self._connection.is_open:
                 raise errors.ConnectionLost(host, self._operation, 0, "lost before the command termination")
             if time.monotonic() > deadline_s:
-                reason = f"no command termination in {_TERMINATION_WAIT_S:g} s"
+                reason = f"no command termination in {longest_s:g} s"
                 raise errors.Timeout(host, self._operation, 0, reason)
         applied = self._lib.ControlObjectClient_getLastApplError(self._control)
         if applied.error or applied.addCause:
@@ -152,7 +152,9 @@ class _Command:
 
     def _refusal(self, step: str) -> errors.MmsError:
         code = self._last_error()
-        error = self._connection.judged(errors.client_error(self._connection.host, self._operation, code))
+        error = self._connection.resolve_timeout(
+            errors.client_error(self._connection.host, self._operation, code)
+        )
         if isinstance(error, errors.ConnectionLost | errors.Timeout):
             return error
         applied = self._lib.ControlObjectClient_getLastApplError(self._control)

@@ -17,7 +17,7 @@ _ITEM = re.compile(r"([^$]+)\$([A-Z]{2})\$([^$]+(?:\$[^$]+)*)")
 _NOT_FOUND: Final = (81, 84)
 
 
-def members_of(connection: Connection, reference: str) -> tuple[str, ...]:
+def data_set_members(connection: Connection, reference: str) -> tuple[str, ...]:
     """The members' references "LD/LN.DO.DA[FC]" of the data set "LD/LN.name".
 
     NotFound, ProtocolError where the relay names a member that is none.
@@ -38,7 +38,7 @@ def members_of(connection: Connection, reference: str) -> tuple[str, ...]:
     if error.value:
         if error.value in _NOT_FOUND:
             raise errors.NotFound(connection.host, operation, error.value, "no such data set")
-        raise connection.judged(errors.file_error(connection.host, operation, error.value))
+        raise connection.resolve_timeout(errors.file_error(connection.host, operation, error.value))
     if found is None:
         raise errors.ProtocolError(connection.host, operation, 0, "no members came")
     try:

@@ -12,16 +12,12 @@ from mms import errors
 from mms.binding.callbacks import guarded
 from mms.binding.prototypes import FileReadHandler
 from mms.client.connection import Connection
-from mms.client.pace import Pace
+from mms.client.throughput import ThroughputLimit
 
 log: Final = logging.getLogger("mms")
 
 _MILLISECOND_NS: Final = 1_000_000
-_LISTING_LIMIT: Final = 100_000
 _LONGEST_NAME: Final = 255
-
-_LONGEST_LISTING_S: Final = 300.0
-"""Of waiting for the parts of one listing: some 5000 names over a serial line of 9600 baud."""
 
 
 class Sink(Protocol):
@@ -47,6 +43,7 @@ def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
     operation = f"list files of {directory or 'the root'!r}"
     entries: dict[str, FileEntry] = {}
     last: str | None = None
+    longest_s = connection.limits.listing_s
     began_s = time.monotonic()
     while True:
         part, more = _listing(connection, operation, directory, last)
@@ -54,12 +51,12 @@ def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
         entries.update((entry.name, entry) for entry in part)
         if not more:
             return tuple(entries.values())
-        if len(entries) == known or len(entries) > _LISTING_LIMIT:
+        if len(entries) == known or len(entries) > connection.limits.listed_files:
             reason = f"the listing never ends ({len(entries)} names so far)"
             raise errors.ProtocolError(connection.host, operation, 0, reason)
-        if time.monotonic() - began_s > _LONGEST_LISTING_S:
+        if time.monotonic() - began_s > longest_s:
             received = f"received {len(entries)} names and more to come"
-            reason = f"expected the whole listing in {_LONGEST_LISTING_S:g} s, {received}"
+            reason = f"expected the whole listing in {longest_s:g} s, {received}"
             raise errors.Timeout(connection.host, operation, 0, reason)
         last = part[-1].name
         if len(last) > _LONGEST_NAME:
@@ -105,13 +102,13 @@ def download(connection: Connection, name: str, sink: Sink, expected_size: int |
 
     FileSizeMismatch unless the bytes are `expected_size`, the size listed. Without it the size announced at
     opening must do, which some relays also have for a directory: give the size wherever there is a listing.
-    Timeout also where the parts come in time and next to nothing with them (`mms.client.pace`).
+    Timeout also where the parts come in time and next to nothing with them (`mms.client.throughput`).
     """
     operation = f"download {name!r}"
     with _open_file(connection, operation, name) as (handle, announced):
         expected = announced if expected_size is None else expected_size
         reader = _Reader(connection, operation, handle)
-        pace = Pace(connection.host, operation)
+        throughput = ThroughputLimit(connection.host, operation, connection.limits)
         received = 0
         more = True
         while more:
@@ -127,7 +124,7 @@ def download(connection: Connection, name: str, sink: Sink, expected_size: int |
                     connection.host, operation, 0, "the relay sends empty parts without end"
                 )
             if more:
-                pace.note(len(chunk), took_s)
+                throughput.add(len(chunk), took_s)
             if connection.closing:
                 raise errors.ConnectionLost(connection.host, operation, 0, "closed during the download")
     if received != expected:
@@ -149,7 +146,7 @@ def _open_file(connection: Connection, operation: str, name: str) -> Iterator[tu
             mms, ctypes.byref(error), file_name(name), 0, ctypes.byref(size), None
         )
     if error.value:
-        raise connection.judged(errors.file_error(connection.host, operation, error.value))
+        raise connection.resolve_timeout(errors.file_error(connection.host, operation, error.value))
     try:
         yield handle, size.value
     finally:
@@ -191,7 +188,7 @@ class _Reader:
             mms = lib.IedConnection_getMmsConnection(pointer)
             more = lib.MmsConnection_fileRead(mms, ctypes.byref(error), self._file, self._handler, None)
         if error.value:
-            raise self._connection.judged(
+            raise self._connection.resolve_timeout(
                 errors.file_error(self._connection.host, self._operation, error.value)
             )
         return b"".join(self._parts), bool(more)

@@ -42,7 +42,7 @@ _UNTRUSTED: Final = {
 }
 """The library's event codes for what is wrong with the peer's certificate."""
 
-_counting: Final = threading.Lock()
+_count_lock: Final = threading.Lock()
 """The library counts its configurations, unguarded, to know when to end its cryptography."""
 
 
@@ -71,11 +71,11 @@ class TlsConfiguration:
 
     def check(self) -> None:
         """Raises CredentialFileError: which file, what was expected and found."""
-        _Material.read(self)
+        _Credentials.read(self)
 
 
 @dataclass(frozen=True, slots=True)
-class _Material:
+class _Credentials:
     """What the files hold."""
 
     chain: tuple[x509.Certificate, ...]
@@ -84,7 +84,7 @@ class _Material:
     authorities: tuple[x509.Certificate, ...]
 
     @classmethod
-    def read(cls, configuration: TlsConfiguration) -> "_Material":
+    def read(cls, configuration: TlsConfiguration) -> "_Credentials":
         if not configuration.pinned:
             raise ValueError("pinned: expected the certificate of the other side, found none")
         chain, key = read_identity(configuration.certificate, configuration.key)
@@ -109,10 +109,10 @@ class TlsContext:
         self._configuration = configuration
         self._incidents: list[int] = []
         self._established: TlsVersion | None = None
-        self._material = material = _Material.read(configuration)
+        self._credentials_read = material = _Credentials.read(configuration)
         self.trusted: Final = tuple(described(certificate) for certificate in material.pinned)
-        self._handler = TlsEventHandler(guarded(self._note, None))
-        with _counting:
+        self._handler = TlsEventHandler(guarded(self._on_event, None))
+        with _count_lock:
             self.pointer = int(lib.TLSConfiguration_create() or 0)
         if not self.pointer:
             raise MemoryError("the MMS library has no memory for a TLS configuration")
@@ -122,7 +122,7 @@ class TlsContext:
             self.destroy()
             raise
 
-    def _fill(self, material: _Material) -> None:
+    def _fill(self, material: _Credentials) -> None:
         lib, given = self._lib, self._configuration
         lib.TLSConfiguration_setEventHandler(self.pointer, self._handler, None)
         yes, no = True, False
@@ -137,7 +137,7 @@ class TlsContext:
             serialization.Encoding.DER, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
         )
         if not lib.TLSConfiguration_setOwnKey(self.pointer, key, len(key), None):
-            raise self._not_taken(given.key)
+            raise self._unsupported_algorithm(given.key)
         for certificate in material.chain:
             self._give(lib.TLSConfiguration_setOwnCertificate, certificate, given.certificate)
         for certificate in material.pinned:
@@ -150,13 +150,13 @@ class TlsContext:
     ) -> None:
         content = certificate.public_bytes(serialization.Encoding.DER)
         if not take(self.pointer, content, len(content)):
-            raise self._not_taken(path)
+            raise self._unsupported_algorithm(path)
 
-    def _not_taken(self, path: Path) -> CredentialFileError:
+    def _unsupported_algorithm(self, path: Path) -> CredentialFileError:
         expected = "RSA, or an elliptic curve of NIST or Brainpool (IEC 62351-3)"
         return CredentialFileError(path, expected, "an algorithm the MMS library does not know")
 
-    def _note(
+    def _on_event(
         self, _parameter: int | None, level: int, code: int, _message: bytes | None, connection: int | None
     ) -> None:
         if level == _INCIDENT:
@@ -164,12 +164,12 @@ class TlsContext:
         elif code == _ESTABLISHED:
             self._established = TlsVersion(self._lib.TLSConnection_getTLSVersion(connection))
 
-    def distrust(self) -> str | None:
+    def certificate_fault(self) -> str | None:
         """What is wrong with the certificate the peer showed; None where nothing was found wrong with it."""
         return next((_UNTRUSTED[code] for code in self._incidents if code in _UNTRUSTED), None)
 
     @property
-    def undisturbed(self) -> TlsVersion | None:
+    def established_version(self) -> TlsVersion | None:
         """The version of a handshake that succeeded, where nothing has gone wrong since that was noticed.
 
         With TLS 1.2 the peer has taken our certificate then; with 1.3 it says so, or not, only afterwards.
@@ -181,8 +181,10 @@ class TlsContext:
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
         context.check_hostname = False
         context.verify_mode = ssl.CERT_NONE
-        identity = b"".join(each.public_bytes(serialization.Encoding.PEM) for each in self._material.chain)
-        identity += self._material.key.private_bytes(
+        identity = b"".join(
+            each.public_bytes(serialization.Encoding.PEM) for each in self._credentials_read.chain
+        )
+        identity += self._credentials_read.key.private_bytes(
             serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
         )
         memory = os.memfd_create("identity")  # the ssl module takes files only, and none is to hold the key
@@ -195,7 +197,7 @@ class TlsContext:
 
     def is_pinned(self, certificate: bytes | None) -> bool:
         """Whether it, in DER, is one of those we trust."""
-        pinned = (each.public_bytes(serialization.Encoding.DER) for each in self._material.pinned)
+        pinned = (each.public_bytes(serialization.Encoding.DER) for each in self._credentials_read.pinned)
         return certificate is not None and certificate in pinned
 
     def forget(self) -> None:
@@ -207,5 +209,5 @@ class TlsContext:
         """Free it, once its connection or server has been destroyed; harmless twice."""
         pointer, self.pointer = self.pointer, 0
         if pointer:
-            with _counting:
+            with _count_lock:
                 self._lib.TLSConfiguration_destroy(pointer)

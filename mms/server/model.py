@@ -6,7 +6,7 @@ import threading
 from enum import IntEnum
 from typing import Final
 
-from mms.binding.value_conversion import Mismatch, assign
+from mms.binding.value_conversion import TypeMismatchError, assign
 from mms.errors import ModelError
 from mms.server.model_text import checked
 from mms.values import Quality, Value
@@ -91,7 +91,7 @@ class Model:
         try:
             _check_range(kind, value)
             assign(self._lib, target, value, longest_string=_LONGEST_STRINGS.get(kind, _LONGEST_STRING))
-        except Mismatch as error:
+        except TypeMismatchError as error:
             raise ModelError(reference, error.expected, error.found) from error
 
     def destroy(self) -> None:
@@ -107,7 +107,7 @@ def _check_range(kind: int, value: Value | Quality) -> None:
     if kind in _INTEGER_RANGES and isinstance(value, int):
         lowest, highest = _INTEGER_RANGES[kind]
         if not lowest <= value <= highest:
-            raise Mismatch(f"an int from {lowest} to {highest}", value)
+            raise TypeMismatchError(f"an int from {lowest} to {highest}", value)
 
 
 def _ied_name(text: str) -> str:

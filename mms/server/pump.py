@@ -37,11 +37,11 @@ class PumpedServer(Protocol):
     def connections(self) -> int: ...
 
     @property
-    def patience_s(self) -> float: ...
+    def turn_delay_s(self) -> float: ...
 
     def listen(self) -> None: ...
 
-    def serve_ready(self) -> bool: ...
+    def serve_pending(self) -> bool: ...
 
     def take_turn(self) -> bool: ...
 
@@ -129,7 +129,7 @@ class ServerPump:
         for looks in self._looks:
             if looks.due_s > now_s:
                 continue
-            if looks.server.serve_ready():
+            if looks.server.serve_pending():
                 busy = True
                 looks.due_s = looks.interval_s = 0.0
                 looks.lonely = looks.server.connections == 0  # clients come and go only where something came
@@ -145,9 +145,9 @@ class ServerPump:
         now_s = time.monotonic()
         due = []
         for turns in self._turns:
-            patience_s = turns.server.patience_s
-            if patience_s < _SHORTEST_INTERVAL_S:
-                turns.due_s = min(turns.due_s, now_s + patience_s)
+            turn_delay_s = turns.server.turn_delay_s
+            if turn_delay_s < _SHORTEST_INTERVAL_S:
+                turns.due_s = min(turns.due_s, now_s + turn_delay_s)
                 turns.interval_s = _SHORTEST_INTERVAL_S
             if turns.due_s <= now_s:
                 due.append(turns)

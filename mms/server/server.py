@@ -15,7 +15,7 @@ from types import TracebackType
 from typing import Final, Self
 
 from mms.binding.callbacks import guarded
-from mms.binding.connection_deadline import between, limited
+from mms.binding.connection_deadline import connections_between, end_connections_after
 from mms.binding.library import library
 from mms.binding.prototypes import ControlHandler, FileAccessHandler, WaitForExecutionHandler
 from mms.binding.value_conversion import decode
@@ -31,8 +31,7 @@ from mms.values import Quality, Value
 
 _DENY: Final = 1  # AccessPolicy
 _FAILED, _OK = 0, 1  # ControlHandlerResult
-_PATIENCE_AFTER_REQUEST_S: Final = 0.01  # only enabling a block or an interrogation makes reports
-_LONGEST_HANDSHAKE_S: Final = 5.0
+_TURN_DELAY_AFTER_REQUEST_S: Final = 0.01  # only enabling a block or an interrogation makes reports
 MOST_CONNECTIONS: Final = 5
 """Clients of one server; compiled into the wheel's library."""
 
@@ -71,6 +70,7 @@ class Server:
         file_root: Path | None = None, max_connections: int = MOST_CONNECTIONS,
         report_buffer_bytes: int = 65_536, on_file_request: FileHook | None = None,
         tls: TlsConfiguration | None = None, passwords: Iterable[str] = (),
+        tls_handshake_timeout_s: float = 5.0,
     ) -> None:  # fmt: skip
         """Build the model and the server; `start` or a ServerPump makes it listen.
 
@@ -92,7 +92,8 @@ class Server:
         self._lib: Final = library()
         self._lock = threading.RLock()
         self._state = _State.CREATED
-        self._patience_s = 0.0
+        self._turn_delay_s = 0.0
+        self._tls_handshake_timeout_s = tls_handshake_timeout_s
         self._library_holds_model = False
         self._handlers: list[object] = []
         self._pump: ServerPump | None = None
@@ -225,7 +226,7 @@ class Server:
             lib.IedServer_updateAttributeValue(self._server, node, new)
         if lock_model:
             lib.IedServer_unlockDataModel(self._server)
-        self._patience_s = 0.0
+        self._turn_delay_s = 0.0
 
     def read(self, reference: str) -> Value:
         """The present value of one of this server's own data attributes."""
@@ -306,14 +307,14 @@ class Server:
                 raise ServerStartFailed(where, "start the server", 0, reason)
             self._state = _State.RUNNING
 
-    def serve_ready(self) -> bool:
+    def serve_pending(self) -> bool:
         """Serve what clients have sent; False if nothing had come. For ServerPump."""
         with self._lock:
             if self._state is not _State.RUNNING or self._lib.IedServer_waitReady(self._server, 0) <= 0:
                 return False
             self._process_incoming()
             self._lib.IedServer_performPeriodicTasks(self._server)
-            self._patience_s = min(self._patience_s, _PATIENCE_AFTER_REQUEST_S)
+            self._turn_delay_s = min(self._turn_delay_s, _TURN_DELAY_AFTER_REQUEST_S)
             return True
 
     def take_turn(self) -> bool:
@@ -322,7 +323,7 @@ class Server:
         The library sends reports only while it looks for data, and there it waits 1 ms for some to come.
         """
         with self._lock:
-            self._patience_s = math.inf
+            self._turn_delay_s = math.inf
             if self._state is not _State.RUNNING:
                 return False
             self._lib.IedServer_performPeriodicTasks(self._server)
@@ -333,17 +334,19 @@ class Server:
 
     def _process_incoming(self) -> None:
         """Accept, read and answer. A handshake of TLS is waited for, with everything else at a stand."""
-        ours = between(own=(self.address, self.port))
-        with nullcontext() if self._tls is None else limited(ours, _LONGEST_HANDSHAKE_S):
+        ours = connections_between(own=(self.address, self.port))
+        with (
+            nullcontext() if self._tls is None else end_connections_after(ours, self._tls_handshake_timeout_s)
+        ):
             self._lib.IedServer_processIncomingData(self._server)
 
     @property
-    def patience_s(self) -> float:
+    def turn_delay_s(self) -> float:
         """How long the next turn may wait [s]: not at all after an update, for ever if nothing happened.
 
         For ServerPump.
         """
-        return self._patience_s
+        return self._turn_delay_s
 
     def close(self) -> None:
         """Free the server once no pump drives it: stop, destroy the server, then its model."""

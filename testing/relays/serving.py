@@ -18,14 +18,14 @@ from testing.relays.model import MODEL_TEXT
 def start_relay(
     *, file_root: Path | None = None, max_connections: int = 5, report_buffer_bytes: int = 65_536,
     on_file_request: Callable[[FileRequest], FileAnswer] | None = None, tls: TlsConfiguration | None = None,
-    passwords: Iterable[str] = (),
+    passwords: Iterable[str] = (), tls_handshake_timeout_s: float = 5.0,
 ) -> Server:  # fmt: skip
     """A running server on a free port; tries again if another process was faster."""
     for attempt in range(5):
         server = Server(
             MODEL_TEXT, port=free_port(), file_root=file_root, max_connections=max_connections,
             report_buffer_bytes=report_buffer_bytes, on_file_request=on_file_request,
-            tls=tls, passwords=passwords,
+            tls=tls, passwords=passwords, tls_handshake_timeout_s=tls_handshake_timeout_s,
         )  # fmt: skip
         try:
             server.start()

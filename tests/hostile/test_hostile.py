@@ -8,8 +8,7 @@ from random import Random
 
 import pytest
 
-from mms import AssociationBroken, Client, FileSizeMismatch, ProtocolError, Timeout
-from mms.client import files
+from mms import AssociationBroken, Client, ClientLimits, FileSizeMismatch, ProtocolError, Timeout
 from testing.ports import LOOPBACK
 from tests.hostile import bulk, crafted, spoiling
 from tests.hostile.dialogue import CON, PRO, Dialogue, overheard, tlv
@@ -65,9 +64,7 @@ def test_nothing_a_relay_answers_is_more_than_an_error(dialogue: Dialogue, tmp_p
         assert strangers(client) == []
 
 
-def test_a_million_files_are_too_many(dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(files, "_LISTING_LIMIT", 5_000)
-
+def test_a_million_files_are_too_many(dialogue: Dialogue) -> None:
     def endless(number: int) -> bytes:
         entries = b"".join(
             tlv(
@@ -79,7 +76,10 @@ def test_a_million_files_are_too_many(dialogue: Dialogue, monkeypatch: pytest.Mo
         content = tlv(0xA0, tlv(0x30, entries)) + tlv(0x81, b"\xff")
         return crafted.FILE_DIRECTORY + tlv(0x30, content)[1:]
 
-    with lying(dialogue, {crafted.FILE_DIRECTORY: endless}) as port, Client.connect(LOOPBACK, port) as client:
+    with (
+        lying(dialogue, {crafted.FILE_DIRECTORY: endless}) as port,
+        Client.connect(LOOPBACK, port, limits=ClientLimits(listed_files=5_000)) as client,
+    ):
         with pytest.raises(ProtocolError, match="never ends"):
             client.files("EVENTS")
         assert client.logical_devices(), "the association stands"

@@ -8,8 +8,7 @@ from threading import Timer
 
 import pytest
 
-from mms import Client, ConnectFailed, ConnectionLost, MmsError, Timeout
-from mms.client import files, pace
+from mms import Client, ClientLimits, ConnectFailed, ConnectionLost, MmsError, Timeout
 from service.collector.records.directory import LINK_FAILURES
 from service.storage.states import LinkState, RecordingState
 from testing.ports import LOOPBACK
@@ -50,10 +49,13 @@ def names(number: int) -> bytes:
     return crafted.FILE_DIRECTORY + tlv(0x30, tlv(0xA0, tlv(0x30, entry)) + tlv(0x81, b"\xff"))[1:]
 
 
-def test_a_file_of_a_byte_a_part_ends_in_words(dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pace, "WINDOW_S", 0.5)
+def test_a_file_of_a_byte_a_part_ends_in_words(dialogue: Dialogue) -> None:
     began_s = time.monotonic()
-    with lying(dialogue, {crafted.FILE_READ: parts_of(1)}) as port, Client.connect(LOOPBACK, port) as client:
+    limits = ClientLimits(throughput_window_s=0.5)
+    with (
+        lying(dialogue, {crafted.FILE_READ: parts_of(1)}) as port,
+        Client.connect(LOOPBACK, port, limits=limits) as client,
+    ):
         with pytest.raises(
             Timeout, match=r"expected at least 100 bytes a second, received \d+ bytes in 0\.\d s"
         ):
@@ -62,24 +64,23 @@ def test_a_file_of_a_byte_a_part_ends_in_words(dialogue: Dialogue, monkeypatch: 
         assert client.read_data_set(f"{PRO}/LLN0.DSet01"), "the association stands"
 
 
-def test_a_file_over_a_slow_line_is_not_given_up(dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_over_a_slow_line_is_not_given_up(dialogue: Dialogue) -> None:
     """48 bytes each twentieth of a second at most: a line of 9600 baud."""
-    monkeypatch.setattr(pace, "WINDOW_S", 0.2)
     received = io.BytesIO()
     with (
         lying(dialogue, {crafted.FILE_READ: parts_of(48)}) as port,
-        Client.connect(LOOPBACK, port) as client,
+        Client.connect(LOOPBACK, port, limits=ClientLimits(throughput_window_s=0.2)) as client,
         pytest.raises(MmsError, match="expected 960 bytes, received 1008"),
     ):
         client.download(NAME, received, expected_size=960)
     assert len(received.getvalue()) == 960
 
 
-def test_a_listing_of_a_name_a_part_ends_in_words(
-    dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(files, "_LONGEST_LISTING_S", 0.5)
-    with lying(dialogue, {crafted.FILE_DIRECTORY: names}) as port, Client.connect(LOOPBACK, port) as client:
+def test_a_listing_of_a_name_a_part_ends_in_words(dialogue: Dialogue) -> None:
+    with (
+        lying(dialogue, {crafted.FILE_DIRECTORY: names}) as port,
+        Client.connect(LOOPBACK, port, limits=ClientLimits(listing_s=0.5)) as client,
+    ):
         with pytest.raises(Timeout, match=r"expected the whole listing in 0\.5 s, received \d+ names"):
             client.files("EVENTS")
         assert client.read_data_set(f"{PRO}/LLN0.DSet01"), "the association stands"
@@ -91,22 +92,16 @@ def device(number: int) -> bytes:
     return tlv(0xA1, tlv(0xA0, tlv(0x1A, b"DEVICE%06d" % number)) + tlv(0x81, b"\xff"))
 
 
-def test_a_relay_whose_names_never_end_is_no_association(
-    dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_relay_whose_names_never_end_is_no_association(dialogue: Dialogue) -> None:
     """The library asks for part after part within one call."""
-    monkeypatch.setattr("mms.client.connection._LONGEST_PROBE_S", 0.4)
     with (
         lying(dialogue, {LIST_OF_NAMES: device}) as port,
         pytest.raises(ConnectFailed, match=r"expected the names of all it offers in 0\.4 s, and more follow"),
     ):
-        Client.connect(LOOPBACK, port)
+        Client.connect(LOOPBACK, port, limits=ClientLimits(names_s=0.4))
 
 
-def test_data_sets_that_never_end_end_their_own_association(
-    dialogue: Dialogue, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("mms.client.client._LONGEST_DIRECTORY_S", 0.4)
+def test_data_sets_that_never_end_end_their_own_association(dialogue: Dialogue) -> None:
     at_connecting = [answer for answer in dialogue.answers.values() if answer[:1] == LIST_OF_NAMES][:3]
 
     def later(number: int) -> bytes:
@@ -116,7 +111,7 @@ def test_data_sets_that_never_end_end_their_own_association(
         lying(dialogue, {}) as port,
         Client.connect(LOOPBACK, port) as other,
         lying(dialogue, {LIST_OF_NAMES: later}) as port,
-        Client.connect(LOOPBACK, port) as client,
+        Client.connect(LOOPBACK, port, limits=ClientLimits(directory_s=0.4)) as client,
     ):
         with pytest.raises(Timeout, match=r"expected all names in 0\.4 s, and more follow"):
             client.data_sets(f"{PRO}/LLN0")
@@ -146,11 +141,9 @@ def test_whoever_closes_waits_for_one_part_alone(
         closing.join()
 
 
-def test_a_session_puts_the_trickle_off_and_says_so(
-    dialogue: Dialogue, bench: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_session_puts_the_trickle_off_and_says_so(dialogue: Dialogue, bench: Bench) -> None:
     assert Timeout in LINK_FAILURES
-    monkeypatch.setattr(pace, "WINDOW_S", 0.5)
+    bench.client_limits = ClientLimits(throughput_window_s=0.5)
     with lying(dialogue, {crafted.FILE_READ: parts_of(1)}) as port:
         bench.relay = replace(bench.relay, port=port)
         with bench.session():

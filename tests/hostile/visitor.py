@@ -13,13 +13,13 @@ from random import Random
 
 from mms import (
     Client,
+    ClientLimits,
     ConnectFailed,
     ConnectionLost,
     FunctionalConstraint,
     MmsError,
     Report,
 )
-from mms.client import connection, controls
 from service.collector.records.listing import understand
 from service.collector.records.pull import pull
 from service.recording_store.store import RecordingStore, RecordingStoreError
@@ -27,6 +27,7 @@ from testing.ports import LOOPBACK
 from tests.hostile.dialogue import CON, PRO
 
 REQUEST_TIMEOUT_S = 0.06
+LIMITS = ClientLimits(command_termination_s=0.05, loss_notice_s=0.02)
 REQUESTS_A_CONNECTION = 60
 MAX_FILE_BYTES = 1_000_000
 
@@ -43,7 +44,11 @@ class Visitor:
     def visit(self) -> None:
         """One association. Raises MmsError."""
         with Client.connect(
-            LOOPBACK, self._port, connect_timeout_s=0.5, request_timeout_s=REQUEST_TIMEOUT_S
+            LOOPBACK,
+            self._port,
+            connect_timeout_s=0.5,
+            request_timeout_s=REQUEST_TIMEOUT_S,
+            limits=LIMITS,
         ) as client:
             requests: tuple[Callable[[Client], object], ...] = (
                 lambda c: c.logical_nodes(PRO),
@@ -81,8 +86,6 @@ class Visitor:
 
 
 def main(port: int, seed: str, directory: Path) -> None:
-    controls._TERMINATION_WAIT_S = 0.05  # type: ignore[misc]
-    connection._LOSS_NOTICE_S = 0.02  # type: ignore[misc]
     visitor = Visitor(port, seed, directory)
     campaign = os.getppid()
     while os.getppid() == campaign:  # however that ends

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -138,12 +139,9 @@ def test_a_directory_that_cannot_be_made_is_named(plant: Path, tmp_path: Path) -
     assert "taken" in error
 
 
-def test_meters_are_updated_while_serving(
-    plant: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("ied_sim.relay.relay.METERING_PERIOD_S", 0.05)
-    monkeypatch.setattr("ied_sim.relay.values.METERING_REFRESH_S", 0.05)
-    scenarios = {"A1_SEL710": healthy_reference("A1_SEL710")}
+def test_meters_are_updated_while_serving(plant: Path, tmp_path: Path) -> None:
+    often = replace(healthy_reference("A1_SEL710"), metering_period_s=0.05, metering_refresh_s=0.05)
+    scenarios = {"A1_SEL710": often}
     with Simulator(scl.read(plant), scenarios, files=tmp_path, ieds=["A1_SEL710"]) as simulator:
         server = simulator.relays["A1_SEL710"].server
         first = server.read("A1_SEL710MET/METMMXU1.Hz.t")

@@ -340,7 +340,7 @@ def test_a_frozen_relay_stays_connected_and_answers_nothing(tmp_path: Path) -> N
         with pytest.raises(MmsError):
             client.read(f"{TRIGGER}.stVal", FunctionalConstraint.ST)
         assert client.is_open
-        wait_until(lambda: not served.relay.switchboard.is_on(Kind.FROZEN), "the thaw")
+        wait_until(lambda: not served.relay.misbehaviour_state.is_on(Kind.FROZEN), "the thaw")
         wait_until(lambda: _answers(served), "an answer")
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from ied_sim.errors import ScenarioError, SimulatorError
-from ied_sim.misbehaviour import Kind, Misbehaviour, Switchboard
+from ied_sim.misbehaviour import Kind, Misbehaviour, MisbehaviourState
 from ied_sim.scenario.scenario import read_scenario
 from testing.relays.simulated import scenario_of, simulated
 from tests.ied_sim.test_scenario import MINIMAL
@@ -16,7 +16,7 @@ SWITCH = "CON/RBGGIO1.SPCSO30"
 def test_time_switches_too() -> None:
     now = [0.0]
     timed = Misbehaviour(Kind.FROZEN, at_s=10.0, for_s=5.0, switch=SWITCH)
-    board = Switchboard([timed, Misbehaviour(Kind.SLOW_REPLIES, 2.0, at_s=0.0)], lambda: now[0])
+    board = MisbehaviourState([timed, Misbehaviour(Kind.SLOW_REPLIES, 2.0, at_s=0.0)], lambda: now[0])
     seen = []
     for now[0] in (9.9, 10.0, 14.9, 15.0):
         seen.append(board.is_on(Kind.FROZEN))

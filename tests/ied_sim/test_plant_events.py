@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.machines.parameters import Connection
 from ied_sim.monitoring.metering import meter
-from ied_sim.monitoring.motor_watch import MotorWatch
+from ied_sim.monitoring.motor_monitor import MotorMonitor
 from ied_sim.motor.contactor import Contactor
 from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import MotorPlant, rated_current
@@ -81,7 +81,7 @@ def test_a_contactor_is_closed_and_opened_once() -> None:
 
 def test_a_start_is_seen_with_its_peak_and_its_length() -> None:
     motor = switched(5.0)
-    watch = MotorWatch(motor, rated_current(REFERENCE))
+    watch = MotorMonitor(motor, rated_current(REFERENCE))
     closure = watch.closure(5.5)
     assert closure is not None
     start = watch.start(closure)

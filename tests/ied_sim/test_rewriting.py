@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from ied_sim.front.ber import Element, decode, encode
 from ied_sim.front.rewriting import Rewriter
-from ied_sim.misbehaviour import Switchboard
+from ied_sim.misbehaviour import MisbehaviourState
 from ied_sim.profiles.profile import Files
 
 SESSION = bytes([1, 0, 1, 0])
@@ -51,7 +51,7 @@ def names_in(user_data: bytes) -> list[str]:
 
 
 def rewriter(files: Files | None) -> Rewriter:
-    return Rewriter(files, Switchboard((), lambda: 0.0), {})
+    return Rewriter(files, MisbehaviourState((), lambda: 0.0), {})
 
 
 @pytest.mark.parametrize(

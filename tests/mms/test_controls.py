@@ -9,6 +9,7 @@ import pytest
 from mms import (
     AddCause,
     Client,
+    ClientLimits,
     ConnectionLost,
     ControlAction,
     ControlRefused,
@@ -19,7 +20,6 @@ from mms import (
     Server,
     Timeout,
 )
-from mms.client import controls
 from mms.control_model import words_of
 from testing.ports import LOOPBACK
 
@@ -110,10 +110,7 @@ def test_an_object_another_client_selected_is_refused(relay: Server, client: Cli
         lib.ControlObjectClient_destroy(control)
 
 
-def test_a_missing_command_termination_times_out(
-    relay: Server, client: Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(controls, "_TERMINATION_WAIT_S", 0.2)
+def test_a_missing_command_termination_times_out(relay: Server) -> None:
     release = threading.Event()
 
     def hold(_action: ControlAction) -> bool:
@@ -122,7 +119,10 @@ def test_a_missing_command_termination_times_out(
 
     relay.on_operate(OBJECT.format(3), hold)
     try:
-        with pytest.raises(Timeout, match="no command termination"):
+        with (
+            Client.connect(LOOPBACK, relay.port, limits=ClientLimits(command_termination_s=0.2)) as client,
+            pytest.raises(Timeout, match="no command termination"),
+        ):
             client.operate(OBJECT.format(3), value=True)
     finally:
         release.set()

@@ -166,7 +166,6 @@ def test_types_resolved_from_the_leaves_up_are_still_counted(tmp_path: Path) -> 
         scl.read(write_scl(tmp_path / "chain.icd", scl_text(templates=templates, nodes=nodes)))
 
 
-def test_a_file_too_large_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("scl.document.LARGEST_FILE_BYTES", 100)
+def test_a_file_too_large_is_refused(tmp_path: Path) -> None:
     with pytest.raises(SclError, match="at most 100 bytes"):
-        scl.read(write_scl(tmp_path / "large.scd", scl_text()))
+        scl.read(write_scl(tmp_path / "large.scd", scl_text()), largest_bytes=100)

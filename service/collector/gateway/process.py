@@ -13,7 +13,7 @@ from typing import BinaryIO, NoReturn
 
 import structlog
 
-from mms.binding.stderr_filter import keep_tls_notes_off_stderr
+from mms.binding.stderr_filter import filter_tls_log_from_stderr
 from service.collector.gateway.gateway import Gateway, Identity
 from service.collector.session.visit_marks import VisitMarks
 from service.configuration.settings import Settings
@@ -42,7 +42,7 @@ def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
     settings = Settings.model_validate_json(settings_pipe.readline())
     number = int(sys.argv[1])
     if any(access.tls is not None for access in settings.relays.values()):
-        keep_tls_notes_off_stderr()
+        filter_tls_log_from_stderr()
     configure_logging("collector")
     service_gone = Event()
     Thread(

@@ -12,7 +12,7 @@ from threading import Event
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from mms import Client, CredentialFileError, MmsError, ProtocolError
+from mms import Client, ClientLimits, CredentialFileError, MmsError, ProtocolError
 from service.collector.records.allowance import DailyAllowance
 from service.collector.records.directory import RecordDirectory, Scan
 from service.collector.records.event_folder import EventFolder
@@ -59,16 +59,19 @@ class RelaySession:
         visit_marks: VisitMarks | None = None,
         on_sample: Callable[[Sample], None] | None = None,
         on_note: Callable[[LinkNote], None] | None = None,
+        client_limits: ClientLimits | None = None,
     ) -> None:
         """`gateway`: who holds the relay's lease; None where relays are not shared.
 
         visit_marks: where a visit is marked, for whoever finds the process dead; None where nobody looks.
         on_sample: takes what the relay measures; None where nobody wants it.
         on_note: takes what goes over a link that stays up; None where it is written at once.
+        client_limits: how much the MMS client takes from a relay that keeps answering; its own by default.
         """
         self._relay = relay
         self._repository = repository
         self._settings = settings
+        self._client_limits = client_limits or ClientLimits()
         figures = repository.link_figures(relay.name)
         allowance = DailyAllowance(
             settings.max_relay_bytes_per_day, day=figures.day, used_bytes=figures.day_bytes
@@ -179,6 +182,7 @@ class RelaySession:
             request_timeout_s=self._settings.request_timeout_s,
             tls=shown.tls,
             password=shown.spoken_password,
+            limits=self._client_limits,
         ) as client:
             self._client = client
             self._begin(client)

@@ -3,12 +3,13 @@
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from threading import Thread
 
 import pytest
 
+from mms import ClientLimits
 from service.collector.session.relay_session import RelaySession
 from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
@@ -40,6 +41,7 @@ class Bench:
     store: RecordingStore
     settings: Settings
     relay_root: Path
+    client_limits: ClientLimits = field(default_factory=ClientLimits)
 
     def start_relay(self) -> ScriptedRelay:
         return ScriptedRelay(self.relay_root, self.relay.port)
@@ -47,7 +49,14 @@ class Bench:
     @contextmanager
     def session(self) -> Iterator[RelaySession]:
         """A running session; the block's end is the collector's end."""
-        session = RelaySession(self.relay, MOTOR, self.repository, self.store, self.settings)
+        session = RelaySession(
+            self.relay,
+            MOTOR,
+            self.repository,
+            self.store,
+            self.settings,
+            client_limits=self.client_limits,
+        )
         thread = Thread(target=session.run)
         thread.start()
         try:

@@ -7,7 +7,7 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mms.binding.stderr_filter import other_lines
+from mms.binding.stderr_filter import without_tls_log
 from testing.relays.pki import Pki
 from testing.relays.serving import RelayProcess
 
@@ -15,8 +15,8 @@ SCRIPT = """
 import os, sys
 from pathlib import Path
 from mms import Client, TlsConfiguration
-from mms.binding.stderr_filter import keep_tls_notes_off_stderr
-keep_tls_notes_off_stderr()
+from mms.binding.stderr_filter import filter_tls_log_from_stderr
+filter_tls_log_from_stderr()
 folder = Path(sys.argv[2])
 names = ("client.pem", "client.key", "relay.pem", "authority.pem")
 certificate, key, pinned, ca = (folder / name for name in names)
@@ -42,9 +42,9 @@ def test_the_librarys_notes_are_left_out_and_everything_else_is_kept(tmp_path: P
 
 def test_a_note_ends_where_another_line_begins() -> None:
     lines = [b"first\n", b"TLS: cert\n", b"  serial\n", b"\n", b"next\n", b"  indented\n", b"\n", b"TLS: x\n"]
-    assert list(other_lines(iter(lines))) == [b"first\n", b"next\n", b"  indented\n", b"\n"]
+    assert list(without_tls_log(iter(lines))) == [b"first\n", b"next\n", b"  indented\n", b"\n"]
 
 
 @given(st.lists(st.binary(max_size=20).map(lambda text: b"log " + text.replace(b"\n", b"") + b"\n")))
 def test_lines_of_a_log_all_pass(lines: list[bytes]) -> None:
-    assert list(other_lines(iter(lines))) == lines
+    assert list(without_tls_log(iter(lines))) == lines

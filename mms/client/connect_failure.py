@@ -41,10 +41,10 @@ def refused(
     host: the relay as the user named it.  deadline: when its time is over [s, monotonic].
     """
     look = _Look(address, deadline)
-    distrust = None if tls is None else tls.distrust()
-    if tls is not None and distrust is not None:
+    fault = None if tls is None else tls.certificate_fault()
+    if tls is not None and fault is not None:
         reason = (
-            f"the relay's certificate is not trusted: {distrust}. Expected {', '.join(tls.trusted)}. If the "
+            f"the relay's certificate is not trusted: {fault}. Expected {', '.join(tls.trusted)}. If the "
             "relay has a new certificate, pin that one; else somebody else answers there"
         )
         return errors.RelayNotTrusted(host, "connect", 0, reason)
@@ -52,7 +52,7 @@ def refused(
         return _no_relay(host, _Answer.NONE)
     if tls is None:
         return _without_tls(host, look, password=password)
-    version = tls.undisturbed
+    version = tls.established_version
     if version is TlsVersion.TLS_1_2 or (version is TlsVersion.TLS_1_3 and look.is_let_in(tls)):
         return errors.AssociationRejected(host, "connect", 0, _rejected(password=password))
     return _with_tls(host, look)
@@ -119,17 +119,17 @@ class _Look:
         return time.monotonic() >= self._deadline
 
     @property
-    def _patience_s(self) -> float:
+    def _turn_delay_s(self) -> float:
         return min(_LONGEST_LOOK_S, self._deadline - time.monotonic())
 
     def is_let_in(self, tls: TlsContext) -> bool:
         """Whether a relay with a pinned certificate answers to ours."""
-        patience_s = self._patience_s
-        if patience_s <= 0:
+        turn_delay_s = self._turn_delay_s
+        if turn_delay_s <= 0:
             return False
         try:
             with (
-                socket.create_connection(self._address, patience_s) as connection,
+                socket.create_connection(self._address, turn_delay_s) as connection,
                 tls.again().wrap_socket(connection) as secured,
             ):
                 if not tls.is_pinned(secured.getpeercert(binary_form=True)):
@@ -141,11 +141,11 @@ class _Look:
 
     def at(self, message: bytes) -> _Answer:
         """The kind of the answer; NONE too where no time is left to ask."""
-        patience_s = self._patience_s
-        if patience_s <= 0:
+        turn_delay_s = self._turn_delay_s
+        if turn_delay_s <= 0:
             return _Answer.NONE
         try:
-            connection = socket.create_connection(self._address, patience_s)
+            connection = socket.create_connection(self._address, turn_delay_s)
         except ConnectionRefusedError:
             return _Answer.REFUSED
         except OSError:

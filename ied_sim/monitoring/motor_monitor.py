@@ -40,7 +40,7 @@ class Start:
     voltage_V: NDArray[np.float64]
 
 
-class MotorWatch:
+class MotorMonitor:
     """Looks at one plant; used by one thread at a time. Times are seconds since the simulator's start."""
 
     def __init__(self, plant: MotorPlant, rated_current_A: float) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from core.recordings import Recording
 from core.recordings.cev_writer import EventSummary
 from core.recordings.waveform import Digitals
-from ied_sim.misbehaviour import Kind, Switchboard
+from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.monitoring.journal import Event, Journal
 from ied_sim.monitoring.metering import METERING_CYCLES, Metering, metered
 from ied_sim.monitoring.relay_word import BITS, RelayWord
@@ -30,7 +30,7 @@ class Identity:
     settings: tuple[tuple[str, str], ...]
 
 
-class RecordKeeper:
+class RecordArchive:
     """Keeps the captures of one relay, one at a time. Without `files` it only counts."""
 
     def __init__(
@@ -40,14 +40,14 @@ class RecordKeeper:
         journal: Journal,
         word: RelayWord,
         clock: RelayClock,
-        switchboard: Switchboard,
+        misbehaviour_state: MisbehaviourState,
     ) -> None:
         self._identity = identity
         self._files = files
         self._journal = journal
         self._word = word
         self._clock = clock
-        self._switchboard = switchboard
+        self._misbehaviour_state = misbehaviour_state
         self.last_number = None if files is None else files.last_number
 
     def keep(self, capture: Capture) -> int:
@@ -62,18 +62,18 @@ class RecordKeeper:
                 record,
                 self._header(record, capture.kind, seen),
                 self._summary(record, capture.kind, targets, seen),
-                utc_offset_min=round((self._switchboard.number(Kind.LOCAL_TIME) or 0.0) / 60),
-                grow_s=self._switchboard.number(Kind.GROWING_FILE) or 0.0,
+                utc_offset_min=round((self._misbehaviour_state.number(Kind.LOCAL_TIME) or 0.0) / 60),
+                grow_s=self._misbehaviour_state.number(Kind.GROWING_FILE) or 0.0,
             )
         self.last_number = number
-        self._journal.note_event(Event(number, capture.time_ns, capture.kind, seen, targets))
+        self._journal.add_event(Event(number, capture.time_ns, capture.kind, seen, targets))
         return number
 
     def clear(self) -> None:
         """Forget all records."""
         if self._files is not None:
             self._files.clear()
-        self._journal.forget_events()
+        self._journal.clear_events()
 
     def _complete(self, recording: Recording) -> Recording:
         """With the relay word beside the samples, and in the relay's own time."""
@@ -89,7 +89,7 @@ class RecordKeeper:
         """The .HDR file: what a relay's event summary tells, in plain text."""
         seconds, nanoseconds = divmod(record.trigger_time_ns, 1_000_000_000)
         trigger = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S")
-        zone = "local" if self._switchboard.is_on(Kind.LOCAL_TIME) else "UTC"
+        zone = "local" if self._misbehaviour_state.is_on(Kind.LOCAL_TIME) else "UTC"
         return (
             f"RELAY     {self._identity.relay}\r\n"
             f"FID       {self._identity.firmware}\r\n"
