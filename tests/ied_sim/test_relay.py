@@ -170,7 +170,8 @@ def test_a_record_that_cannot_be_written_is_logged_and_the_next_one_made(
     wait_until(lambda: "cannot be written" in caplog.text, "the log to tell of the lost record")
     staging.mkdir()
     wait_until(lambda: _made(served), "a record")
-    assert len(served.names()) == 3
+    # A second record may be there as well: a trigger follows at once where the first was just complete.
+    assert served.names()[:3] == ["HR_10000.CFG", "HR_10000.DAT", "HR_10000.HDR"]
 
 
 def _made(served: ServedRelay) -> bool:
