@@ -6,13 +6,13 @@ from benchmarks.machine_models import speed as machine_models
 from benchmarks.optimisers import many_points
 from benchmarks.recordings import reading_speed
 from benchmarks.simulator import plant
-from mms.binding.stderr_filter import keep_tls_notes_off_stderr
+from mms.binding.stderr_filter import filter_tls_log_from_stderr
 
 SUBJECTS = (machine_models, diagnosis, many_points, reading_speed, plant, pull_speed)
 
 
 def main() -> None:
-    keep_tls_notes_off_stderr()
+    filter_tls_log_from_stderr()
     for subject in SUBJECTS:
         print(f"\n{(subject.__doc__ or '').splitlines()[0]}")
         for line in subject.measure():
