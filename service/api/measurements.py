@@ -1,6 +1,5 @@
 """What the relays measure all the time, over time."""
 
-from enum import IntEnum
 from typing import Annotated
 
 from fastapi import APIRouter, Query
@@ -11,16 +10,10 @@ from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, pa
 from service.api.problems import problems
 from service.api.schemas import Measurement
 from service.api.times import TimeParameter
+from service.plant import AveragingStep
+from service.storage.records import Measurement as StoredMeasurement
 
 router = APIRouter(tags=["condition"])
-
-
-class Step(IntEnum):
-    """Seconds that one item stands for; 0: as sampled."""
-
-    AS_SAMPLED = 0
-    MINUTE = 60
-    QUARTER_HOUR = 900
 
 
 @router.get("/motors/{name}/measurements", responses=problems(404))
@@ -28,8 +21,8 @@ def list_measurements(
     context: Context,
     name: Name,
     step: Annotated[
-        Step, Query(description="0: as sampled; 60, 900: means of so many seconds, kept for longer.")
-    ] = Step.AS_SAMPLED,
+        AveragingStep, Query(description="0: as sampled; 60, 900: means of so many seconds, kept for longer.")
+    ] = AveragingStep.AS_SAMPLED,
     from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
     to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
     limit: Limit = DEFAULT_LIMIT,
@@ -39,4 +32,8 @@ def list_measurements(
     measurements = context.repository.measurements(
         name, int(step), from_ns=from_, to_ns=to, limit=limit, after=decode(cursor, int)
     )
-    return page(measurements, Measurement.model_validate)
+    return page(measurements, _document)
+
+
+def _document(stored: StoredMeasurement) -> Measurement:
+    return Measurement.model_validate({"time_ns": stored.time_ns, "samples": stored.samples, **stored.values})

@@ -1,10 +1,10 @@
 """Documents of the API. Fields that are null are not known (yet)."""
 
 from collections.abc import Iterable
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 from uuid import UUID
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.search import METHODS
@@ -14,6 +14,7 @@ from core.recordings import Quantity
 from service.api.document import Document
 from service.api.relay_schemas import RelayClock
 from service.api.times import Time
+from service.plant import MeteredQuantity
 from service.storage.states import (
     JobState,
     LinkState,
@@ -234,45 +235,25 @@ class TrendPoint(Document):
     recording_id: str
 
 
-class Measurement(Document):
-    """What the relay measured: at `time`, or means of `samples` values from then on."""
+class MeasurementTime(Document):
+    """When it was measured: at `time`, or `samples` times from then on."""
 
     time: Time = Field(validation_alias="time_ns")
     samples: int
-    ia_A: float | None
-    ib_A: float | None
-    ic_A: float | None
-    vab_V: float | None
-    vbc_V: float | None
-    vca_V: float | None
-    va_V: float | None
-    vb_V: float | None
-    vc_V: float | None
-    power_W: float | None
-    reactive_power_var: float | None
-    power_factor: float | None
-    frequency_Hz: float | None
-    average_current_A: float | None
-    maximum_current_A: float | None
-    minimum_current_A: float | None
-    average_voltage_V: float | None
-    maximum_voltage_V: float | None
-    minimum_voltage_V: float | None
-    average_power_W: float | None
-    maximum_power_W: float | None
-    minimum_power_W: float | None
-    maximum_ia_A: float | None
-    maximum_ib_A: float | None
-    maximum_ic_A: float | None
-    minimum_ia_A: float | None
-    minimum_ib_A: float | None
-    minimum_ic_A: float | None
-    maximum_vab_V: float | None
-    maximum_vbc_V: float | None
-    maximum_vca_V: float | None
-    minimum_vab_V: float | None
-    minimum_vbc_V: float | None
-    minimum_vca_V: float | None
+
+
+if TYPE_CHECKING:
+    _Measurement = MeasurementTime
+else:
+    _Measurement = create_model(
+        "_Measurement",
+        __base__=MeasurementTime,
+        **{quantity.value: (float | None, ...) for quantity in MeteredQuantity},
+    )
+
+
+class Measurement(_Measurement):
+    """What the relay measured: at `time`, or means of `samples` values from then on."""
 
 
 class WaveformChannel(Document):

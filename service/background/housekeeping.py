@@ -2,6 +2,7 @@
 
 from core.units import NANOSECONDS_PER_DAY
 from service.configuration.settings import Settings
+from service.plant import AveragingStep
 from service.storage import Repository
 from service.timing.wall_clock import WallClock
 
@@ -19,9 +20,9 @@ class Housekeeping:
     def __init__(self, settings: Settings, repository: Repository) -> None:
         self._repository = repository
         self._kept_days = {
-            0: settings.metering_sample_days,
-            60: settings.metering_minute_days,
-            900: settings.metering_quarter_hour_days,
+            AveragingStep.AS_SAMPLED: settings.metering_sample_days,
+            AveragingStep.MINUTE: settings.metering_minute_days,
+            AveragingStep.QUARTER_HOUR: settings.metering_quarter_hour_days,
         }
         self._clock = WallClock()
 
@@ -33,5 +34,7 @@ class Housekeeping:
         self._repository.average_measurements(now_ns=now_ns)
         if not self._clock.is_settled:
             return
-        for step_s, days in self._kept_days.items():
-            self._repository.forget_measurements(step_s, before_ns=now_ns - round(days * NANOSECONDS_PER_DAY))
+        for step, days in self._kept_days.items():
+            self._repository.forget_measurements(
+                step.value, before_ns=now_ns - round(days * NANOSECONDS_PER_DAY)
+            )

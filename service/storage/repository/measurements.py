@@ -2,65 +2,25 @@
 
 from collections.abc import Iterable
 from itertools import pairwise
+from typing import Any
 
 from sqlalchemy import ColumnElement, bindparam, case, delete, func, insert, literal, select
-from sqlalchemy.orm import InstrumentedAttribute, Session
+from sqlalchemy.orm import Session
 
+from core.units import NANOSECONDS_PER_SECOND
+from service.plant import AveragingStep, MeteredQuantity
 from service.storage.models import MeasurementRow, MotorRow
 from service.storage.records import Cursor, Measurement, Page, Sample
-from service.storage.repository.sessions import Order, Sessions, found, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, found, page_of
 
-AS_SAMPLED = 0
-STEPS_S = (AS_SAMPLED, 60, 900)
-"""Each but the first is made of the one before it [s]."""
-
-SECOND_NS = 1_000_000_000
-LATENESS_NS = 120 * SECOND_NS
+LATENESS_NS = 120 * NANOSECONDS_PER_SECOND
 """A mean is made when its interval ended this long ago: samples may be on their way until then."""
 
-FIGURES: tuple[InstrumentedAttribute[float | None], ...] = (
-    MeasurementRow.ia_A,
-    MeasurementRow.ib_A,
-    MeasurementRow.ic_A,
-    MeasurementRow.vab_V,
-    MeasurementRow.vbc_V,
-    MeasurementRow.vca_V,
-    MeasurementRow.va_V,
-    MeasurementRow.vb_V,
-    MeasurementRow.vc_V,
-    MeasurementRow.power_W,
-    MeasurementRow.reactive_power_var,
-    MeasurementRow.power_factor,
-    MeasurementRow.frequency_Hz,
-    MeasurementRow.average_current_A,
-    MeasurementRow.maximum_current_A,
-    MeasurementRow.minimum_current_A,
-    MeasurementRow.average_voltage_V,
-    MeasurementRow.maximum_voltage_V,
-    MeasurementRow.minimum_voltage_V,
-    MeasurementRow.average_power_W,
-    MeasurementRow.maximum_power_W,
-    MeasurementRow.minimum_power_W,
-    MeasurementRow.maximum_ia_A,
-    MeasurementRow.maximum_ib_A,
-    MeasurementRow.maximum_ic_A,
-    MeasurementRow.minimum_ia_A,
-    MeasurementRow.minimum_ib_A,
-    MeasurementRow.minimum_ic_A,
-    MeasurementRow.maximum_vab_V,
-    MeasurementRow.maximum_vbc_V,
-    MeasurementRow.maximum_vca_V,
-    MeasurementRow.minimum_vab_V,
-    MeasurementRow.minimum_vbc_V,
-    MeasurementRow.minimum_vca_V,
-)
-
-
-NAMES = tuple(figure.key for figure in FIGURES)
+_COLUMNS = {quantity: MeasurementRow.__table__.c[quantity.value] for quantity in MeteredQuantity}
 
 _OF_A_TIME = delete(MeasurementRow).where(
     MeasurementRow.motor == bindparam("of"),
-    MeasurementRow.step_s == AS_SAMPLED,
+    MeasurementRow.step_s == AveragingStep.AS_SAMPLED.value,
     MeasurementRow.time_ns == bindparam("at"),
 )
 
@@ -79,10 +39,10 @@ class MeasurementRows(Sessions):
                 [
                     {
                         "motor": sample.motor,
-                        "step_s": AS_SAMPLED,
+                        "step_s": AveragingStep.AS_SAMPLED.value,
                         "time_ns": sample.time_ns,
                         "samples": 1,
-                        **dict.fromkeys(NAMES),
+                        **dict.fromkeys(quantity.value for quantity in MeteredQuantity),
                         **sample.values,
                     }
                     for sample in latest.values()
@@ -94,9 +54,9 @@ class MeasurementRows(Sessions):
 
         A mean that a clock made while it was ahead holds up none of those before it.
         """
-        for finer, step_s in pairwise(STEPS_S):
+        for finer, step_s in pairwise(step.value for step in AveragingStep):
             with self._write() as session:
-                step_ns = step_s * SECOND_NS
+                step_ns = step_s * NANOSECONDS_PER_SECOND
                 to_ns = (now_ns - LATENESS_NS) // step_ns * step_ns
                 latest = session.scalar(
                     select(func.max(MeasurementRow.time_ns)).where(
@@ -139,7 +99,7 @@ class MeasurementRows(Sessions):
 
 def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int) -> None:
     """Means of the rows of step `finer` in [from_ns, to_ns), each row weighted with its samples."""
-    step_ns = step_s * SECOND_NS
+    step_ns = step_s * NANOSECONDS_PER_SECOND
     begin = (MeasurementRow.time_ns - MeasurementRow.time_ns % step_ns).label("begin")
     means = (
         select(
@@ -147,30 +107,28 @@ def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int
             literal(step_s),
             begin,
             func.sum(MeasurementRow.samples),
-            *(_of_an_interval(figure) for figure in FIGURES),
+            *(_of_an_interval(quantity) for quantity in MeteredQuantity),
         )
         .where(
             MeasurementRow.step_s == finer, MeasurementRow.time_ns >= from_ns, MeasurementRow.time_ns < to_ns
         )
         .group_by(MeasurementRow.motor, begin)
     )
-    names = ["motor", "step_s", "time_ns", "samples", *(figure.key for figure in FIGURES)]
+    names = ["motor", "step_s", "time_ns", "samples", *MeteredQuantity]
     session.execute(insert(MeasurementRow).from_select(names, means))
 
 
-def _of_an_interval(figure: InstrumentedAttribute[float | None]) -> ColumnElement[float | None]:
-    """The mean; of a relay's own maxima and minima, the largest and the smallest."""
-    if figure.key.startswith("maximum_"):
-        return func.max(figure)
-    if figure.key.startswith("minimum_"):
-        return func.min(figure)
-    return _mean(figure)
-
-
-def _mean(figure: InstrumentedAttribute[float | None]) -> ColumnElement[float | None]:
-    weight = case((figure.is_not(None), MeasurementRow.samples), else_=0)
-    return func.sum(figure * MeasurementRow.samples) / func.nullif(func.sum(weight), 0)
+def _of_an_interval(quantity: MeteredQuantity) -> ColumnElement[Any]:
+    """The mean, weighted by samples; for a relay's own maxima and minima, the largest and the smallest."""
+    column = _COLUMNS[quantity]
+    if quantity.is_maximum:
+        return func.max(column)
+    if quantity.is_minimum:
+        return func.min(column)
+    weight = case((column.is_not(None), MeasurementRow.samples), else_=0)
+    return func.sum(column * MeasurementRow.samples) / func.nullif(func.sum(weight), 0)
 
 
 def _measurement(row: MeasurementRow) -> Measurement:
-    return record_of(Measurement, row)
+    values = {quantity.value: getattr(row, quantity.value) for quantity in MeteredQuantity}
+    return Measurement(row.time_ns, row.samples, values)

@@ -62,4 +62,4 @@ def test_a_clock_that_is_set_ahead_cuts_no_interval_short(repository: Repository
     repository.add_samples([Sample("PUMP-A1", BEGIN_NS + 600 * SECOND_NS, {"ia_A": 3.0})])
     for at_s in (3700, 3800):
         housekeeping.average_and_delete(BEGIN_NS + at_s * SECOND_NS, at_s * SECOND_NS)
-    assert [(quarter.ia_A, quarter.samples) for quarter in measured(repository, 900)] == [(2.0, 2)]
+    assert [(quarter.values["ia_A"], quarter.samples) for quarter in measured(repository, 900)] == [(2.0, 2)]

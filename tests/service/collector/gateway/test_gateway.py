@@ -163,7 +163,7 @@ def test_a_gateway_writes_down_what_its_relays_measure(hall: Hall) -> None:
             lambda: all(hall.repository.measurements(m.name, 0, limit=1).items for m in hall.plant.motors)
         )
     (*_, latest) = hall.repository.measurements("PUMP-A1", 0, limit=5).items
-    assert latest.frequency_Hz == pytest.approx(50.5)
+    assert latest.values["frequency_Hz"] == pytest.approx(50.5)
 
 
 def test_a_gateway_takes_no_more_than_it_may(hall: Hall) -> None:
