@@ -9,7 +9,7 @@ WARM := .venv/.compiled
 export OPENBLAS_NUM_THREADS ?= 1
 COMPOSE ?= docker compose
 
-.PHONY: install demo test chaos compose-test lint bench interop fuzz lock clean
+.PHONY: install demo test chaos compose-test lint docs bench interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -51,6 +51,10 @@ lint: install
 	$(BIN)/lint-imports
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/ci.yml
+
+# The drawings of docs/explanation/architecture.md, from the code.
+docs: install
+	$(BIN)/python -m tests.docs.architecture_drawing
 
 # The second one ends with 1 where a command answers too slowly.
 bench: install

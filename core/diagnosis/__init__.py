@@ -1,0 +1,1 @@
+"""Diagnose one recording: quality gate, search, refinement, verdict."""

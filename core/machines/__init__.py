@@ -1,0 +1,1 @@
+"""Induction machine models with and without shorted turns, and their parameters."""
