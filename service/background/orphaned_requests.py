@@ -14,7 +14,6 @@ from collections.abc import Callable
 
 import structlog
 
-from service.collector.supervision.gateway_supervisor import LONGEST_DELAY_S
 from service.configuration.settings import Settings
 from service.storage import Repository
 from service.storage.records import RecordingRequest
@@ -38,7 +37,7 @@ class OrphanedRequestEnder:
         repository: Repository,
         *,
         gateway_problem: Callable[[], str | None],
-        restart_delay_s: float = LONGEST_DELAY_S,
+        restart_delay_s: float,
     ) -> None:
         """
         gateway_problem: why gateways of this service do not run; None while all do.

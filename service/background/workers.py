@@ -32,15 +32,19 @@ def background_workers(
     repository: Repository,
     *,
     gateway_problem: Callable[[], str | None],
+    restart_delay_s: float,
     periods: Periods = PERIODS,
 ) -> Mapping[str, PeriodicWorker]:
     """Return one worker for each periodic work, not started yet.
 
-    gateway_problem: why gateways of this service do not run; None while all do.
+    gateway_problem: why gateways of this service do not run; None while all do.  restart_delay_s: the longest
+    pause before a gateway that ended is started again.
     """
     scheduler = Scheduler(plant.motors, repository)
     keeper = Housekeeping(settings, repository)
-    ender = OrphanedRequestEnder(settings, repository, gateway_problem=gateway_problem)
+    ender = OrphanedRequestEnder(
+        settings, repository, gateway_problem=gateway_problem, restart_delay_s=restart_delay_s
+    )
     return {
         "schedules": PeriodicWorker(
             "scheduling", lambda: scheduler.request_due(time.time_ns()), period_s=periods.scheduling_s

@@ -21,6 +21,7 @@ from service.api.app import create_app
 from service.api.context import ApiContext
 from service.background.workers import background_workers
 from service.collector.supervision.gateway_processes import GatewayProcesses
+from service.collector.supervision.gateway_supervisor import RESTART_POLICY
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings
 from service.jobs import JobRunner
@@ -142,7 +143,13 @@ def _parts(
         ),
         prepare_worker=prepare_worker,
     )
-    workers = background_workers(settings, plant, repository, gateway_problem=gateways.problem)
+    workers = background_workers(
+        settings,
+        plant,
+        repository,
+        gateway_problem=gateways.problem,
+        restart_delay_s=RESTART_POLICY.backoff.longest_s,
+    )
     return jobs, {"collector": gateways, "jobs": jobs, **workers}
 
 

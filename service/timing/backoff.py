@@ -19,3 +19,22 @@ class Backoff:
             return 0.0
         doublings = min(failures - 1, 64)  # beyond that a float would overflow before it is limited
         return min(self.first_s * 2.0**doublings, self.longest_s)
+
+
+class RestartDelay:
+    """The pause before something that is meant to run for long is started again.
+
+    A run that lasted longer than `stable_after_s` was a good one: the failures are counted anew after it.
+    """
+
+    def __init__(self, backoff: Backoff, *, stable_after_s: float) -> None:
+        self._backoff = backoff
+        self._stable_after_s = stable_after_s
+        self._failures = 0
+
+    def after_run_s(self, lasted_s: float) -> float:
+        """Return the pause after a run that lasted so long and ended [s]."""
+        if lasted_s > self._stable_after_s:
+            self._failures = 0
+        self._failures += 1
+        return self._backoff.pause_s(self._failures)

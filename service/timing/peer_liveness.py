@@ -1,23 +1,32 @@
-"""Which other gateways are dead, told by their counters and our own clock."""
+"""Which other processes are dead, told by the counters they raise and by a clock of our own."""
 
 
 class PeerLiveness:
-    """Remembers since when each gateway's counter has stood still."""
+    """Remembers for how long each peer's heartbeat counter has stood still.
+
+    It wants a clock that stands still while this machine is suspended, `time.monotonic`: time in which nobody
+    looked is no evidence against a peer. A peer that was suspended together with this machine thus gets the
+    time to renew its lease, or to end itself (`LeaseWatchdog`), before it is declared dead.
+    """
 
     def __init__(self, lease_s: float) -> None:
+        """lease_s: a counter that stands still for so long is that of a dead peer [s]."""
         self._lease_s = lease_s
         self._seen: dict[str, tuple[int, float]] = {}
 
-    def dead(self, beats: dict[str, int], now_s: float) -> dict[str, int]:
-        """Those, with their counters, that stood still for a whole lease. `now_s` is monotonic [s]."""
+    def dead(self, heartbeats: dict[str, int], now_s: float) -> dict[str, int]:
+        """Return the peers, with their counters, that have stood still for a whole lease.
+
+        heartbeats: the counter of every peer at `now_s`, which is monotonic [s].
+        """
         self._seen = {
-            gateway: self._seen[gateway]
-            if gateway in self._seen and self._seen[gateway][0] == count
-            else (count, now_s)
-            for gateway, count in beats.items()
+            peer: self._seen[peer]
+            if peer in self._seen and self._seen[peer][0] == counter
+            else (counter, now_s)
+            for peer, counter in heartbeats.items()
         }
         return {
-            gateway: count
-            for gateway, (count, since_s) in self._seen.items()
+            peer: counter
+            for peer, (counter, since_s) in self._seen.items()
             if now_s - since_s >= self._lease_s
         }

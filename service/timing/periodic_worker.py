@@ -17,13 +17,20 @@ class PeriodicWorker:
     """
 
     def __init__(
-        self, name: str, work: Callable[[], None], *, period_s: float, at_once: bool = False
+        self,
+        name: str,
+        work: Callable[[], None],
+        *,
+        period_s: float,
+        at_once: bool = False,
+        once_more: bool = False,
     ) -> None:
-        """at_once: begin with the work, not with a pause."""
+        """at_once: begin with the work, not with a pause.  once_more: do the work again after `stop`."""
         self._name = name
         self._work = work
         self._period_s = period_s
         self._at_once = at_once
+        self._once_more = once_more
         self._stopping = Event()
         self._thread = Thread(target=self._run, name=name, daemon=True)
         self._started = False
@@ -52,6 +59,8 @@ class PeriodicWorker:
         if self._at_once:
             self._attempt()
         while not self._stopping.wait(self._period_s):
+            self._attempt()
+        if self._once_more:
             self._attempt()
 
     def _attempt(self) -> None:

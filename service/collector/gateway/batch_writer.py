@@ -1,4 +1,4 @@
-"""What is written often and matters little one by one: in one transaction a second for all relays together.
+"""Writes what comes often and matters little one by one: all relays together, in one transaction a second.
 
 With a transaction for each, hundreds of relays would wait for the one writer that SQLite allows, and so would
 what cannot wait: the renewal of their leases.
@@ -6,7 +6,6 @@ what cannot wait: the renewal of their leases.
 
 from collections.abc import Callable, Sequence
 from queue import SimpleQueue
-from threading import Event, Thread
 from typing import Generic, TypeVar
 
 import structlog
@@ -14,6 +13,7 @@ from sqlalchemy.exc import InterfaceError, OperationalError, TimeoutError  # noq
 
 from service.storage import Repository
 from service.storage.records import LinkNote, Sample
+from service.timing.periodic_worker import PeriodicWorker
 
 log = structlog.get_logger(__name__)
 
@@ -23,48 +23,43 @@ PERIOD_S = 1.0
 """Between transactions."""
 
 MOST_UNWRITTEN = 100_000
-"""Of a kind, kept while the database does not answer; then the oldest go."""
-
+"""So many items of a kind are kept while the database does not answer; beyond that the oldest are dropped."""
 
 NO_ANSWER = (OperationalError, InterfaceError, TimeoutError)
-"""Of a database that is locked, full or away."""
+"""Errors of a database that is locked, full or away."""
 
 
 class BatchWriter:
-    """Filled by the relays' sessions, from their threads; written by a thread of its own."""
+    """Collects items from the threads of the sessions, and writes them from a thread of its own."""
 
     def __init__(self, repository: Repository) -> None:
         self._samples = _Batch(repository.add_samples)
         self._notes = _Batch(repository.note_links)
-        self._closed = Event()
-        self._thread = Thread(target=self._run, name="batches", daemon=True)
+        self._worker = PeriodicWorker("batch-writer", self._write, period_s=PERIOD_S, once_more=True)
 
     def add_sample(self, sample: Sample) -> None:
-        """What a relay measured."""
+        """Write what a relay measured."""
         self._samples.add(sample)
 
     def add_note(self, note: LinkNote) -> None:
-        """What went over a link that is up, and still is."""
+        """Write what went over a link that is up, and stays up."""
         self._notes.add(note)
 
     def start(self) -> None:
-        self._thread.start()
+        """Start the thread."""
+        self._worker.start()
 
-    def stop(self, patience_s: float) -> None:
-        """Write what there is, wait so long for it at most."""
-        self._closed.set()
-        self._thread.join(patience_s)
+    def stop(self, timeout_s: float) -> None:
+        """Write what is left and end the thread; wait at most `timeout_s` for that."""
+        self._worker.stop(timeout_s)
 
-    def _run(self) -> None:
-        closed = False
-        while not closed:
-            closed = self._closed.wait(PERIOD_S)
-            self._samples.write_or_keep()
-            self._notes.write_or_keep()
+    def _write(self) -> None:
+        self._samples.write_or_keep()
+        self._notes.write_or_keep()
 
 
 class _Batch(Generic[Item]):
-    """Of one kind."""
+    """The items of one kind."""
 
     def __init__(self, write: Callable[[Sequence[Item]], None]) -> None:
         self._write = write
@@ -75,7 +70,7 @@ class _Batch(Generic[Item]):
         self._arrived.put(item)
 
     def write_or_keep(self) -> None:
-        """In one transaction; while the database does not answer, it is kept for the next time."""
+        """Write all items in one transaction; keep them while the database does not answer."""
         while not self._arrived.empty():
             self._unwritten.append(self._arrived.get())
         del self._unwritten[:-MOST_UNWRITTEN]
@@ -86,6 +81,6 @@ class _Batch(Generic[Item]):
         except NO_ANSWER as error:
             log.warning("database does not answer, trying again", error=str(error))
             return
-        except Exception:  # one that will never be taken must not hold up all that come after it
+        except Exception:  # items the database never takes must not hold up all that come after them
             log.exception("lost, the database refuses it", number=len(self._unwritten))
         self._unwritten.clear()

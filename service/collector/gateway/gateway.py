@@ -1,4 +1,4 @@
-"""A gateway: visits the relays it holds leases of, one session a relay, and shares with other gateways."""
+"""A gateway: visits the relays whose leases it holds, one session a relay, and shares with other gateways."""
 
 import time
 from collections.abc import Callable
@@ -18,22 +18,23 @@ from service.configuration.settings import Settings
 from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository
+from service.timing.boot_clock import boot_time_s
 from service.timing.peer_liveness import PeerLiveness
 
 log = structlog.get_logger(__name__)
 
 REQUEST_PERIOD_S = 0.2
-"""Between looks into the database for event reports somebody asked for."""
+"""Between two queries for the recordings somebody has requested."""
 
-BEATS_OF_A_LEASE = 10
+RENEWALS_PER_LEASE = 10
 """How often leases are renewed in the time they last."""
 
-STOP_PATIENCE_S = 2.0
+STOP_TIMEOUT_S = 2.0
 """A session may be inside a request that lasts up to its time limit; nothing is lost by leaving it there."""
 
 
 @dataclass(frozen=True, slots=True)
-class Identity:
+class GatewayIdentity:
     """Who a gateway is. `id` is never that of two processes that live at the same time."""
 
     id: str
@@ -42,7 +43,9 @@ class Identity:
 
 
 @dataclass(frozen=True, slots=True)
-class _Visit:
+class _SessionThread:
+    """A relay's session, and the thread it runs on."""
+
     session: RelaySession
     thread: Thread
 
@@ -52,7 +55,7 @@ class Gateway:
 
     def __init__(
         self,
-        identity: Identity,
+        identity: GatewayIdentity,
         plant: Plant,
         repository: Repository,
         store: RecordingStore,
@@ -73,36 +76,39 @@ class Gateway:
         self._settings = settings
         self._names = frozenset(relay.name for relay in plant.relays)
         self._peers = PeerLiveness(settings.lease_s)
-        self._visits: dict[str, _Visit] = {}
-        self._leaving: dict[str, _Visit] = {}
-        self._aside: dict[str, UnansweredRequests] = {}
+        self._sessions: dict[str, _SessionThread] = {}
+        self._ending: dict[str, _SessionThread] = {}
+        self._quarantined: dict[str, UnansweredRequests] = {}
         self._batches = BatchWriter(repository)
         self._registered = False
         self._watchdog = LeaseWatchdog(settings.lease_s, on_expiry=on_expiry)
 
     def run(self, stop: Event) -> list[str]:
-        """Visit relays until `stop` is set. Returns the threads that did not end in time."""
+        """Visit relays until `stop` is set. Returns the names of the threads that did not end in time."""
         self._watchdog.start()
         self._batches.start()
-        next_beat_s = 0.0
+        next_renewal_s = 0.0
         while not stop.wait(REQUEST_PERIOD_S):
             try:
-                if time.monotonic() >= next_beat_s:
-                    self._beat()
-                    next_beat_s = time.monotonic() + self._settings.lease_s / BEATS_OF_A_LEASE
-                self._let_go()
-                for ied in self._repository.ieds_with_requests():
-                    if ied in self._visits:
-                        self._visits[ied].session.wake()
+                if boot_time_s() >= next_renewal_s:
+                    self._renew_leases()
+                    next_renewal_s = boot_time_s() + self._settings.lease_s / RENEWALS_PER_LEASE
+                self._give_back_ended()
+                for relay in self._repository.ieds_with_requests():
+                    if relay in self._sessions:
+                        self._sessions[relay].session.wake()
             except SQLAlchemyError as error:
                 log.warning("database does not answer, trying again", error=str(error))
-        return self._end()
+        return self._stop_all()
 
-    def _beat(self) -> None:
-        """Renew the leases; take and give back what the others' number makes fair."""
-        began_s = time.monotonic()
+    def _renew_leases(self) -> None:
+        """Renew the leases; start and stop sessions as the fair share of this gateway changes.
+
+        Raises SQLAlchemyError.
+        """
+        began_s = boot_time_s()
         if not self._registered:
-            if self._leaving:  # what it visited for its former self must have ended before
+            if self._ending:  # sessions of its former registration must have ended before the next one
                 self._watchdog.renewed(began_s)
                 return
             self._register()
@@ -116,36 +122,42 @@ class Gateway:
             self._abandon_all()
             return
         self._watchdog.renewed(began_s)
-        self._forget_ended()
-        self._leave_alone(share.held)
-        busy = self._visits.keys() | self._leaving.keys() | self._aside.keys()
-        for ied in share.held - share.surplus - busy:
-            self._visit(ied)
-        for ied in share.surplus & self._visits.keys():
-            self._visits[ied].session.stop()
-            self._leaving[ied] = self._visits.pop(ied)
-        unvisited = share.surplus - self._leaving.keys()
+        self._remove_ended()
+        self._update_quarantined(share.held)
+        busy = self._sessions.keys() | self._ending.keys() | self._quarantined.keys()
+        for relay in share.held - share.surplus - busy:
+            self._start_session(relay)
+        for relay in share.surplus & self._sessions.keys():
+            self._sessions[relay].session.stop()
+            self._ending[relay] = self._sessions.pop(relay)
+        unvisited = share.surplus - self._ending.keys()
         if unvisited:
             self._repository.give_back_relays(self._identity.id, unvisited)
-        others = {gateway: beats for gateway, beats in share.beats.items() if gateway != self._identity.id}
-        for gateway, beats in self._peers.dead(others, time.monotonic()).items():
-            if self._repository.end_gateway(gateway, beats=beats, now_ns=time.time_ns()):
+        self._end_dead_peers(share.beats)
+
+    def _end_dead_peers(self, heartbeats: dict[str, int]) -> None:
+        """Free the relays of the gateways whose counters stand still."""
+        peers = {gateway: count for gateway, count in heartbeats.items() if gateway != self._identity.id}
+        for gateway, count in self._peers.dead(peers, time.monotonic()).items():
+            if self._repository.end_gateway(gateway, beats=count, now_ns=time.time_ns()):
                 log.warning("a gateway is dead, its relays are shared out", gateway=gateway)
 
-    def _leave_alone(self, held: frozenset[str]) -> None:
-        """Relays set aside are not visited; what somebody asks of them fails in time, with the reason."""
+    def _update_quarantined(self, held: frozenset[str]) -> None:
+        """Note which relays are set aside. They are not visited; requests for them fail in time."""
         now_ns = time.time_ns()
-        aside = {
+        reasons = {
             each.ied: each.reason
             for each in self._repository.quarantines()
             if each.ied in held and each.holds(now_ns)
         }
-        self._aside = {ied: self._aside.get(ied) or self._unanswered(ied) for ied in aside}
-        for ied, reason in aside.items():
-            self._aside[ied].fail_overdue(f"it is set aside, {reason}")
+        self._quarantined = {
+            relay: self._quarantined.get(relay) or self._unanswered_requests(relay) for relay in reasons
+        }
+        for relay, reason in reasons.items():
+            self._quarantined[relay].fail_overdue(f"it is set aside, {reason}")
 
-    def _unanswered(self, ied: str) -> UnansweredRequests:
-        return UnansweredRequests(ied, self._repository, RequestDeadlines(self._settings.record_timeout_s))
+    def _unanswered_requests(self, relay: str) -> UnansweredRequests:
+        return UnansweredRequests(relay, self._repository, RequestDeadlines(self._settings.record_timeout_s))
 
     def _register(self) -> None:
         self._repository.register_gateway(
@@ -156,10 +168,10 @@ class Gateway:
         )
         self._registered = True
 
-    def _visit(self, ied: str) -> None:
+    def _start_session(self, relay: str) -> None:
         session = RelaySession(
-            self._plant.relay(ied),
-            self._plant.motor_of(ied).name,
+            self._plant.relay(relay),
+            self._plant.motor_of(relay).name,
             self._repository,
             self._store,
             self._settings,
@@ -168,37 +180,37 @@ class Gateway:
             on_sample=self._batches.add_sample,
             on_note=self._batches.add_note,
         )
-        thread = Thread(target=session.run, name=f"relay-{ied}", daemon=True)
+        thread = Thread(target=session.run, name=f"relay-{relay}", daemon=True)
         thread.start()
-        self._visits[ied] = _Visit(session, thread)
+        self._sessions[relay] = _SessionThread(session, thread)
 
-    def _let_go(self) -> None:
-        """Give back what is not visited any more; others may visit it from then on."""
-        ended = [ied for ied, visit in self._leaving.items() if not visit.thread.is_alive()]
+    def _give_back_ended(self) -> None:
+        """Give back the relays whose stopped sessions have ended; others may visit them from now on."""
+        ended = [relay for relay, visit in self._ending.items() if not visit.thread.is_alive()]
         if not ended:
             return
         if self._registered:
             self._repository.give_back_relays(self._identity.id, ended)
-        for ied in ended:
-            del self._leaving[ied]
+        for relay in ended:
+            del self._ending[relay]
 
-    def _forget_ended(self) -> None:
-        """Sessions that ended by themselves; the relay is visited anew if its lease stands."""
-        for ied in [ied for ied, visit in self._visits.items() if not visit.thread.is_alive()]:
-            del self._visits[ied]
+    def _remove_ended(self) -> None:
+        """Remove the sessions that ended by themselves; a relay whose lease is held gets a new one."""
+        for relay in [relay for relay, visit in self._sessions.items() if not visit.thread.is_alive()]:
+            del self._sessions[relay]
 
     def _abandon_all(self) -> None:
-        for ied in list(self._visits):
-            visit = self._visits.pop(ied)
+        for relay in list(self._sessions):
+            visit = self._sessions.pop(relay)
             visit.session.abandon()
-            self._leaving[ied] = visit
+            self._ending[relay] = visit
 
-    def _end(self) -> list[str]:
-        """Stop every session, free the relays; which threads are left."""
-        visits = [*self._visits.values(), *self._leaving.values()]
+    def _stop_all(self) -> list[str]:
+        """Stop every session and free the relays. Returns the names of the threads that are left."""
+        visits = [*self._sessions.values(), *self._ending.values()]
         for visit in visits:
             visit.session.stop()
-        deadline_s = time.monotonic() + STOP_PATIENCE_S
+        deadline_s = time.monotonic() + STOP_TIMEOUT_S
         for visit in visits:
             visit.thread.join(max(0.0, deadline_s - time.monotonic()))
         left = [visit.thread.name for visit in visits if visit.thread.is_alive()]
@@ -208,5 +220,5 @@ class Gateway:
             try:
                 self._repository.end_gateway(self._identity.id, now_ns=time.time_ns())
             except SQLAlchemyError as error:
-                log.warning("the leases run out by themselves", error=str(error))
+                log.warning("the leases expire by themselves", error=str(error))
         return left

@@ -1,45 +1,56 @@
-"""Ends a gateway's visits before anybody else may think it dead.
+"""Ends a gateway before anybody else may think it dead.
 
-Whoever has seen a gateway's counter stand still for `lease_s` takes its relays. A gateway that has not
+Whoever has seen a gateway's counter stand still for `lease_s` takes over its relays. A gateway that has not
 renewed its leases for four fifths of that ends as a process, whatever its threads are doing, and the system
-closes its connections. One that was frozen ends as soon as it wakes.
+closes its connections. A gateway that was frozen, or whose machine was suspended, ends as soon as it runs
+again.
 """
 
-import time
 from collections.abc import Callable
-from threading import Event, Thread
 
-END = 0.8
-LOOKS = 20
-"""A lease: so many looks of the fence, for a margin between the fraction above and the whole."""
+from service.timing.boot_clock import boot_time_s
+from service.timing.periodic_worker import PeriodicWorker
+
+USABLE_FRACTION = 0.8
+"""Of the lease; the rest is the margin in which the process ends."""
+
+CHECKS_PER_LEASE = 20
+LONGEST_CHECK_PERIOD_S = 0.1
+"""A thread's wait stands still while the machine is suspended: the rest of it comes after the resume."""
 
 
 class LeaseWatchdog:
-    """A thread that counts from the beginning of the latest renewal that succeeded.
+    """A thread that watches how long ago the leases were renewed.
 
-    on_expiry: called when they stay away for too long.
+    Times are those of the boot clock, which goes on while the machine is suspended.
     """
 
-    def __init__(self, lease_s: float, *, on_expiry: Callable[[], None]) -> None:
-        self._lease_s = lease_s
+    def __init__(
+        self, lease_s: float, *, on_expiry: Callable[[], None], clock: Callable[[], float] = boot_time_s
+    ) -> None:
+        """on_expiry: called when the latest renewal is too long ago; it has to end the process."""
+        self._usable_s = USABLE_FRACTION * lease_s
         self._on_expiry = on_expiry
-        self._renewed_s = time.monotonic()
-        self._closed = Event()
-        self._thread = Thread(target=self._watch, name="fence", daemon=True)
+        self._clock = clock
+        self._renewed_s = clock()
+        period_s = min(lease_s / CHECKS_PER_LEASE, LONGEST_CHECK_PERIOD_S)
+        self._worker = PeriodicWorker("lease-watchdog", self._check, period_s=period_s)
 
     def start(self) -> None:
-        self._thread.start()
-
-    def renewed(self, began_s: float) -> None:
-        """A renewal succeeded that began at this monotonic time [s]."""
-        self._renewed_s = began_s
+        """Start the thread."""
+        self._worker.start()
 
     def stop(self) -> None:
-        self._closed.set()
-        self._thread.join()
+        """End the thread, and wait for that."""
+        self._worker.stop()
 
-    def _watch(self) -> None:
-        while not self._closed.wait(self._lease_s / LOOKS):
-            if time.monotonic() - self._renewed_s > END * self._lease_s:
-                self._on_expiry()
-                return
+    def renewed(self, began_s: float) -> None:
+        """Note that a renewal succeeded which began at this time of the clock [s].
+
+        The beginning counts: others may have seen the counter from then on.
+        """
+        self._renewed_s = began_s
+
+    def _check(self) -> None:
+        if self._clock() - self._renewed_s > self._usable_s:
+            self._on_expiry()

@@ -14,7 +14,7 @@ from typing import BinaryIO, NoReturn
 import structlog
 
 from mms.binding.stderr_filter import filter_tls_log_from_stderr
-from service.collector.gateway.gateway import Gateway, Identity
+from service.collector.gateway.gateway import Gateway, GatewayIdentity
 from service.collector.session.visit_marks import VisitMarks
 from service.configuration.settings import Settings
 from service.plant import read_plant
@@ -64,7 +64,7 @@ def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
     marks = VisitMarks.of_gateway(settings.data_directory, number)
     marks.clear()  # left by a gateway whose service ended with it
     gateway = Gateway(
-        Identity(name, socket.gethostname(), os.getpid()),
+        GatewayIdentity(name, socket.gethostname(), os.getpid()),
         read_plant(settings),
         Repository(connect(settings.database_url)),
         store,

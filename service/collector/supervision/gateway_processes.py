@@ -1,6 +1,7 @@
 """The gateway processes of this installation: as many as its relays need, each kept running."""
 
 import time
+from functools import partial
 
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
@@ -18,7 +19,7 @@ log = structlog.get_logger(__name__)
 
 
 class GatewayProcesses:
-    """Started and stopped together; one that ends frees its relays and is started again.
+    """Starts and stops all gateways together. One that ends frees its relays and is started again.
 
     Raises OSError where the installation's name cannot be kept.
     """
@@ -26,44 +27,50 @@ class GatewayProcesses:
     def __init__(self, settings: Settings, plant: Plant, repository: Repository) -> None:
         self._settings = settings
         self._repository = repository
-        number = -(-len(plant.relays) // settings.relays_per_gateway)
-        self._supervisors = [self._supervisor(of) for of in range(number)]
+        gateways = -(-len(plant.relays) // settings.relays_per_gateway)
+        self._supervisors = [
+            GatewaySupervisor(
+                settings,
+                number=number,
+                on_exit=partial(self._handle_exit, number, gateway_id(settings, number)),
+            )
+            for number in range(gateways)
+        ]
 
     def start(self) -> None:
+        """Start all gateways, and the threads that keep them running."""
         for supervisor in self._supervisors:
             supervisor.start()
 
     def stop(self) -> None:
-        """Ask all to end, then wait for each."""
+        """Ask all gateways to end, then wait for each."""
         for supervisor in self._supervisors:
             supervisor.ask_to_end()
         for supervisor in self._supervisors:
             supervisor.stop()
 
     def problem(self) -> str | None:
-        """How many do not run at present; None while all do."""
+        """Return how many gateways do not run at present; None while all do."""
         failing = [found for found in (each.problem() for each in self._supervisors) if found is not None]
         if not failing:
             return None
         return f"{len(failing)} of {len(self._supervisors)}: {failing[0]}"
 
-    def _supervisor(self, number: int) -> GatewaySupervisor:
-        gateway = gateway_id(self._settings, number)
+    def _handle_exit(self, number: int, gateway: str, exit_code: int | None) -> None:
+        """Find the relay that brought the process down, if one did, and free the process's relays.
 
-        def ended(exit_code: int | None) -> None:
-            """The process is dead for sure: nobody needs to wait for its leases to run out."""
-            try:
-                blame_after_end(
-                    VisitMarks.of_gateway(self._settings.data_directory, number),
-                    exit_code,
-                    self._repository,
-                    QuarantinePolicy(self._settings.quarantine_s),
-                )
-            except (SQLAlchemyError, StorageError, OSError) as error:
-                log.warning("nobody is set aside for the gateway's end", error=str(error))
-            try:
-                self._repository.end_gateway(gateway, now_ns=time.time_ns())
-            except SQLAlchemyError as error:
-                log.warning("the leases run out by themselves", error=str(error))
-
-        return GatewaySupervisor(self._settings, number=number, on_end=ended)
+        The process is dead for sure, so nobody needs to wait until its leases expire.
+        """
+        try:
+            blame_after_end(
+                VisitMarks.of_gateway(self._settings.data_directory, number),
+                exit_code,
+                self._repository,
+                QuarantinePolicy(self._settings.quarantine_s),
+            )
+        except (SQLAlchemyError, StorageError, OSError) as error:
+            log.warning("no relay is set aside for the gateway's end", error=str(error))
+        try:
+            self._repository.end_gateway(gateway, now_ns=time.time_ns())
+        except SQLAlchemyError as error:
+            log.warning("the leases expire by themselves", error=str(error))

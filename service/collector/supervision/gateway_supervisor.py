@@ -1,33 +1,50 @@
-"""Keeps the collector process running. A crash in the C library costs a restart, not the service."""
+"""Keeps one gateway process running. A crash in the C library costs a restart, not the service."""
 
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import dataclass
 from threading import Event, Lock, Thread
 
 import structlog
 
 from service.configuration.settings import Settings
+from service.timing.backoff import Backoff, RestartDelay
 
 log = structlog.get_logger(__name__)
 
+BACKOFF = Backoff(first_s=0.2, longest_s=30.0)
 COMMAND = (sys.executable, "-m", "service.collector")
-SHORTEST_DELAY_S, LONGEST_DELAY_S = 0.2, 30.0
-STABLE_AFTER_S = 60.0
-STOP_PATIENCE_S = 5.0
 
 PIPE_BYTES = 1024**2
 """Room for the settings of a few thousand relays: the system's usual 64 kB would be too little for 200."""
 
 
-def _nothing(_exit_code: int | None) -> None:
-    """For a collector whose end nobody needs to know."""
+@dataclass(frozen=True, slots=True)
+class RestartPolicy:
+    """When a gateway that ended is started again, and how long one may take to end.
+
+    backoff: the pauses before further starts.  stable_after_s: a gateway that ran for longer than this ran
+    well, and the next pause is the first one again.  stop_timeout_s: a gateway that takes longer to end is
+    killed.
+    """
+
+    backoff: Backoff = BACKOFF
+    stable_after_s: float = 60.0
+    stop_timeout_s: float = 5.0
+
+
+RESTART_POLICY = RestartPolicy()
+
+
+def _ignore(_exit_code: int | None) -> None:
+    """Do nothing about the end of a gateway."""
 
 
 class GatewaySupervisor:
-    """Starts the collector as a child process, and starts it again when it ends.
+    """Starts a gateway as a child process, and starts it again when it ends.
 
     The child reads its settings from its standard input and ends when that closes: it cannot outlive this
     process, however this process dies, and no setting appears in a command line or an environment.
@@ -39,55 +56,58 @@ class GatewaySupervisor:
         command: tuple[str, ...] = COMMAND,
         *,
         number: int = 0,
-        on_end: Callable[[int | None], None] = _nothing,
+        policy: RestartPolicy = RESTART_POLICY,
+        on_exit: Callable[[int | None], None] = _ignore,
     ) -> None:
-        """`number`: its own among the collectors of one service.  on_end: called after each of its ends.
+        """number: tells the gateway from the others of this service.
 
-        It is given the exit code, None where the collector did not start.
+        on_exit: called after each end of the process with its exit code; None where it did not start.
         """
         self._settings = settings
         self._command = (*command, str(number))
-        self._on_end = on_end
+        self._policy = policy
+        self._on_exit = on_exit
         self._lock = Lock()
         self._stopping = Event()
         self._child: subprocess.Popen[bytes] | None = None
-        self._thread = Thread(target=self._run, name="collector-supervisor", daemon=True)
+        self._thread = Thread(target=self._run, name="gateway-supervisor", daemon=True)
 
     @property
     def process_id(self) -> int | None:
-        """Of the running collector; None while there is none."""
+        """Of the running gateway; None while there is none."""
         child = self._child
         return child.pid if child is not None and child.poll() is None else None
 
     def problem(self) -> str | None:
-        """Why nothing is collected at present; None while all is well."""
+        """Return why nothing is collected at present; None while all is well."""
         return "the collector process is not running" if self.process_id is None else None
 
     def start(self) -> None:
+        """Start the gateway, and the thread that keeps it running."""
         self._thread.start()
 
     def ask_to_end(self) -> None:
-        """Ask the collector to end, and wait for nothing. Safe to call twice."""
+        """Ask the gateway to end, and wait for nothing. Safe to call twice."""
         with self._lock:
             self._stopping.set()
             if self._child is not None:
                 _close_input(self._child)
 
     def stop(self) -> None:
-        """Ask the collector to end, wait for it, kill it if it does not go. Safe to call twice."""
+        """Ask the gateway to end, wait for it, kill it if it does not end in time. Safe to call twice."""
         self.ask_to_end()
         child = self._child
-        if child is None:
-            return
-        try:
-            child.wait(STOP_PATIENCE_S)
-        except subprocess.TimeoutExpired:
-            log.warning("the collector did not end by itself and is killed")
-            child.kill()
-        self._thread.join()
+        if child is not None:
+            try:
+                child.wait(self._policy.stop_timeout_s)
+            except subprocess.TimeoutExpired:
+                log.warning("the collector did not end by itself and is killed")
+                child.kill()
+        if self._thread.ident is not None:
+            self._thread.join()
 
     def _run(self) -> None:
-        delay_s = SHORTEST_DELAY_S
+        delay = RestartDelay(self._policy.backoff, stable_after_s=self._policy.stable_after_s)
         while not self._stopping.is_set():
             started_s = time.monotonic()
             exit_code = None
@@ -96,17 +116,16 @@ class GatewaySupervisor:
                 ended = f"exit code {exit_code}"
             except OSError as error:  # no process or memory left at the moment
                 ended = f"it does not start: {error}"
-            self._on_end(exit_code)
+            lasted_s = time.monotonic() - started_s
+            self._on_exit(exit_code)
             if self._stopping.is_set():
                 return
-            if time.monotonic() - started_s > STABLE_AFTER_S:
-                delay_s = SHORTEST_DELAY_S
+            delay_s = delay.after_run_s(lasted_s)
             log.error("the collector ended and is started again", reason=ended, delay_s=delay_s)
             self._stopping.wait(delay_s)
-            delay_s = min(2 * delay_s, LONGEST_DELAY_S)
 
     def _run_once(self) -> int | None:
-        """One collector from start to end. Returns its exit code, None when none is wanted any more."""
+        """Run one gateway from start to end. Returns its exit code; None when none is wanted any more."""
         with self._lock:
             if self._stopping.is_set():
                 return None
@@ -116,15 +135,15 @@ class GatewaySupervisor:
                 stdout=subprocess.DEVNULL,
                 pipesize=PIPE_BYTES,
             )
-            # Before anybody may close that pipe. One line fits into it, so this waits for no child.
-            _hand_over(child, self._settings)
+            # The settings are sent before anybody may close that pipe. They fit into it, so this never waits.
+            _send_settings(child, self._settings)
         exit_code = child.wait()
         with self._lock:
             _close_input(child)
         return exit_code
 
 
-def _hand_over(child: subprocess.Popen[bytes], settings: Settings) -> None:
+def _send_settings(child: subprocess.Popen[bytes], settings: Settings) -> None:
     assert child.stdin is not None  # noqa: S101 - it was opened as a pipe
     # A child that is dead already reports itself by its exit code.
     with suppress(BrokenPipeError):

@@ -8,7 +8,6 @@ import pytest
 
 from service.background.orphaned_requests import TRIGGERED_LIMIT_S, OrphanedRequestEnder
 from service.collector.supervision.gateway_processes import GatewayProcesses
-from service.collector.supervision.gateway_supervisor import LONGEST_DELAY_S
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.storage import Repository
@@ -21,7 +20,8 @@ __all__ = ["database_url", "engine", "repository"]
 
 MOTOR, RELAY, OTHER = "PUMP-A1", "A1_SEL710", "A2_SEL710"
 RECORD_S, LEASE_S = 20.0, 10.0
-LIMIT_S = RECORD_S + LEASE_S + LONGEST_DELAY_S
+RESTART_S = 30.0
+LIMIT_S = RECORD_S + LEASE_S + RESTART_S
 STEP_S = 2.0
 
 
@@ -32,7 +32,9 @@ class Watch:
         self.repository = repository
         self.problem: str | None = None
         settings = Settings(data_directory=directory, record_timeout_s=RECORD_S, lease_s=LEASE_S)
-        self.ender = OrphanedRequestEnder(settings, repository, gateway_problem=lambda: self.problem)
+        self.ender = OrphanedRequestEnder(
+            settings, repository, gateway_problem=lambda: self.problem, restart_delay_s=RESTART_S
+        )
         self.now_s = 1000.0
         self.beating: list[str] = []
 

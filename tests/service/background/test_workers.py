@@ -67,6 +67,7 @@ def serving_workers(repository: Repository, store: RecordingStore, directory: Pa
         replace(plant, motors=often),
         repository,
         gateway_problem=lambda: None,
+        restart_delay_s=0.0,
         periods=OFTEN,
     )
     readiness = {name: worker.problem for name, worker in workers.items()}

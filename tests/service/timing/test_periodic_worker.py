@@ -56,3 +56,11 @@ def test_a_failure_is_told_and_the_work_is_tried_again(error: Exception) -> None
 
 def test_one_that_has_not_started_says_so() -> None:
     assert PeriodicWorker("idle", lambda: None, period_s=1.0).problem() == "idle has not started"
+
+
+def test_what_is_left_to_do_is_done_once_more_at_the_end() -> None:
+    done: list[str] = []
+    worker = PeriodicWorker("writing", lambda: done.append("written"), period_s=LIMIT_S, once_more=True)
+    with running(worker):
+        assert not done
+    assert done == ["written"]

@@ -18,7 +18,7 @@ import scl
 from mms import Server
 from scl import Address
 from scl.model_text import model_text
-from service.collector.gateway.gateway import Gateway, Identity
+from service.collector.gateway.gateway import Gateway, GatewayIdentity
 from service.collector.session.visit_marks import BUSY
 from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.gateway_supervisor import GatewaySupervisor
@@ -30,7 +30,6 @@ from service.process.parts import running
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository, connect, migrate
 from service.storage.states import LinkState
-from service.timing.peer_liveness import PeerLiveness
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.waiting import eventually
 
@@ -122,7 +121,7 @@ def gateway(hall: Hall, name: str, *, most: int = 100) -> Iterator[Gateway]:
     """A gateway on a thread; the block's end is its ordinary end."""
     settings = hall.settings.model_copy(update={"relays_per_gateway": most})
     made = Gateway(
-        Identity(name, "here", os.getpid()),
+        GatewayIdentity(name, "here", os.getpid()),
         hall.plant,
         Repository(connect(settings.database_url)),
         RecordingStore(settings.recordings_directory),
@@ -324,12 +323,3 @@ def test_a_trigger_needs_the_lease(hall: Hall) -> None:
     assert repository.end_gateway("a", now_ns=NOW_NS, beats=1)
     with pytest.raises(LeaseLostError):
         repository.share_relays("a", [motor.relay], most=10)
-
-
-def test_who_stands_still_for_a_lease_is_dead() -> None:
-    neighbours = PeerLiveness(10.0)
-    assert neighbours.dead({"a": 5, "b": 5}, now_s=100.0) == {}
-    assert neighbours.dead({"a": 5, "b": 6}, now_s=109.9) == {}
-    assert neighbours.dead({"a": 5, "b": 6}, now_s=110.0) == {"a": 5}
-    assert neighbours.dead({"a": 6, "b": 6}, now_s=119.9) == {"b": 6}
-    assert neighbours.dead({"a": 6}, now_s=125.0) == {}

@@ -6,13 +6,16 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from threading import Event, Thread
+from threading import Thread
 
 import pytest
+from structlog.testing import capture_logs
 
-from service.collector.supervision.gateway_supervisor import GatewaySupervisor, _hand_over
+from service.collector.supervision import gateway_supervisor
+from service.collector.supervision.gateway_supervisor import GatewaySupervisor, RestartPolicy
 from service.configuration.relay_access import RelayAccess, RelayTls
 from service.configuration.settings import Settings
+from service.timing.backoff import Backoff
 from testing.waiting import eventually
 
 OBEDIENT = "import sys; sys.stdin.readline(); sys.stdin.read()"
@@ -50,16 +53,16 @@ def test_a_stop_just_after_the_start_waits_for_the_settings(
 ) -> None:
     supervised = supervisor(OBEDIENT, tmp_path)
     stopping = Thread(target=supervised.stop)
-    hand_over = _hand_over
+    send_settings = gateway_supervisor._send_settings
 
     def slowly(child: "subprocess.Popen[bytes]", settings: Settings) -> None:
         stopping.start()
         assert child.stdin is not None
         stdin = child.stdin
         assert not eventually(lambda: stdin.closed, within_s=0.2)
-        hand_over(child, settings)
+        send_settings(child, settings)
 
-    monkeypatch.setattr("service.collector.supervision.gateway_supervisor._hand_over", slowly)
+    monkeypatch.setattr(gateway_supervisor, "_send_settings", slowly)
     supervised.start()
     assert eventually(lambda: stopping.ident is not None)
     stopping.join(10)
@@ -67,23 +70,25 @@ def test_a_stop_just_after_the_start_waits_for_the_settings(
     assert supervised.process_id is None
 
 
-def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.collector.supervision.gateway_supervisor.STOP_PATIENCE_S", 0.1)
-    supervised = supervisor(STUBBORN, tmp_path)
+def test_a_collector_that_does_not_listen_is_killed(tmp_path: Path) -> None:
+    supervised = GatewaySupervisor(
+        Settings(data_directory=tmp_path),
+        (sys.executable, "-c", STUBBORN),
+        policy=RestartPolicy(stop_timeout_s=0.1),
+    )
     supervised.start()
     assert eventually(lambda: supervised.process_id is not None)
     supervised.stop()
     assert supervised.process_id is None
 
 
-def test_the_settings_of_a_thousand_relays_wait_for_no_collector(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.supervision.gateway_supervisor.STOP_PATIENCE_S", 0.2)
+def test_the_settings_of_a_thousand_relays_wait_for_no_collector(tmp_path: Path) -> None:
     tls = RelayTls(certificate=tmp_path, key=tmp_path, pinned=(tmp_path, tmp_path), ca=tmp_path)
     relays = {f"A{number}_SEL710": RelayAccess(tls=tls, password_file=tmp_path) for number in range(1000)}
     settings = Settings(data_directory=tmp_path, relays=relays)
-    supervised = GatewaySupervisor(settings, (sys.executable, "-c", STUBBORN))
+    supervised = GatewaySupervisor(
+        settings, (sys.executable, "-c", STUBBORN), policy=RestartPolicy(stop_timeout_s=0.2)
+    )
     supervised.start()
     assert eventually(lambda: supervised.process_id is not None)
     stopping = Thread(target=supervised.stop, daemon=True)
@@ -97,7 +102,7 @@ def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> No
     supervised = GatewaySupervisor(
         Settings(data_directory=tmp_path),
         (str(tmp_path / "missing"),),
-        on_end=lambda _: ends.append(time.monotonic()),
+        on_exit=lambda _: ends.append(time.monotonic()),
     )
     supervised.start()
     assert eventually(lambda: len(ends) >= 2)
@@ -105,50 +110,31 @@ def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> No
     supervised.stop()
 
 
-class Clock:
-    """In the supervisor's place of `time`: it goes on where somebody waits, and nobody waits really."""
-
-    def __init__(self) -> None:
-        self.now_s = 0.0
-        self.waits_s: list[float] = []
-
-    def monotonic(self) -> float:
-        return self.now_s
-
-    def event(self) -> Event:
-        clock = self
-
-        class Passing(Event):
-            def wait(self, timeout: float | None = None) -> bool:
-                assert timeout is not None
-                clock.waits_s.append(timeout)
-                clock.now_s += timeout
-                return self.is_set()
-
-        return Passing()
-
-
+@pytest.mark.parametrize(
+    ("stable_after_s", "expected_s"),
+    [(60.0, [0.001, 0.002, 0.004, 0.004]), (-1.0, [0.001, 0.001, 0.001, 0.001])],
+    ids=["it ends at once", "it has run well before each end"],
+)
 def test_each_further_end_is_waited_for_longer_until_one_has_run_well(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, stable_after_s: float, expected_s: list[float]
 ) -> None:
     """A collector that ends at once must not keep the machine busy with starting it."""
-    ran_for_s = iter([0.0] * 10 + [60.0, 60.5, 0.0, 0.0])
-    expected_s = [0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8, 25.6, 30.0, 30.0, 30.0, 0.2, 0.4]
-    clock = Clock()
-    monkeypatch.setattr("service.collector.supervision.gateway_supervisor.time", clock)
-    monkeypatch.setattr("service.collector.supervision.gateway_supervisor.Event", clock.event)
-    ended = Event()
-
-    def run(exit_code: int | None) -> None:
-        assert exit_code is None
-        clock.now_s += next(ran_for_s)
-        if len(clock.waits_s) == len(expected_s):
-            supervised.ask_to_end()
-            ended.set()
-
+    ends: list[int | None] = []
     supervised = GatewaySupervisor(
-        Settings(data_directory=tmp_path), (str(tmp_path / "missing"),), on_end=run
+        Settings(data_directory=tmp_path),
+        (str(tmp_path / "missing"),),
+        policy=RestartPolicy(Backoff(first_s=0.001, longest_s=0.004), stable_after_s=stable_after_s),
+        on_exit=ends.append,
     )
-    supervised.start()
-    assert ended.wait(10)
-    assert clock.waits_s == pytest.approx(expected_s)
+    with capture_logs() as logs:
+        supervised.start()
+        assert eventually(lambda: len(ends) > len(expected_s))
+        supervised.stop()
+    delays_s = [entry["delay_s"] for entry in logs if "delay_s" in entry]
+    assert delays_s[: len(expected_s)] == expected_s
+
+
+def test_the_pauses_of_the_service_begin_short_and_reach_half_a_minute() -> None:
+    policy = RestartPolicy()
+    assert [policy.backoff.pause_s(failures) for failures in (1, 2, 3, 9, 99)] == [0.2, 0.4, 0.8, 30.0, 30.0]
+    assert policy.stable_after_s == 60.0

@@ -7,7 +7,7 @@ from threading import Event, Thread
 
 import pytest
 
-from service.collector.gateway.gateway import Gateway, Identity
+from service.collector.gateway.gateway import Gateway, GatewayIdentity
 from service.plant import Plant, PlantMotor, Site
 from service.storage.states import LinkState, RecordingRequestState
 from testing.service.plants import SECOND_NS, motor
@@ -24,7 +24,7 @@ AT_ONCE_S = 1.5
 def gateway(bench: Bench) -> Iterator[None]:
     """A gateway on a thread that visits the bench's relay."""
     made = Gateway(
-        Identity("a", "here", os.getpid()),
+        GatewayIdentity("a", "here", os.getpid()),
         Plant(
             sites=(Site("FACTORY_A", "Factory A"),),
             relays=(bench.relay,),
