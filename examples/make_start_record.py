@@ -15,6 +15,7 @@ import numpy as np
 
 from core.machines.motor_file import read_motor
 from core.recordings import Channel, Quantity, Recording, comtrade
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.motor.load import Load
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import Sensors
@@ -54,7 +55,7 @@ def start_record() -> Recording:
     return Recording(
         samples,
         SAMPLE_RATE_HZ,
-        SWITCHED_ON_NS - round(BEFORE_S * 1e9),
+        SWITCHED_ON_NS - round(BEFORE_S * NANOSECONDS_PER_SECOND),
         _channels(),
         trigger_index=before,
         nominal_frequency_hz=plate.rated_frequency_Hz,

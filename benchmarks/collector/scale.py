@@ -23,6 +23,7 @@ from pathlib import Path
 from lxml import etree
 
 from benchmarks.simulator.plant import cpu_s, plant_of, resident_mb
+from core.units import NANOSECONDS_PER_SECOND
 from scl.document import Document
 from scl.instantiation import write
 from service.client.rest_client import ServiceClient, ServiceError
@@ -47,7 +48,6 @@ P95_LIMIT_S = 2.0
 LIMITS = (
     f"limits: no missed poll, below {MEMORY_LIMIT_MB_A_MINUTE:g} MB a minute, p95 at most {P95_LIMIT_S:g} s"
 )
-SECOND_NS = 1e9
 UNDER_WAY = ("requested", "triggered", "recorded")
 
 
@@ -151,7 +151,7 @@ def _note_delays(client: ServiceClient, files: Path, seen: Seen) -> None:
         if recording["fetched_time"] is None:
             continue
         made = (files / str(recording["ied"]) / "EVENTS").glob(f"{recording['name']}.*")
-        changed_s = [path.stat().st_ctime_ns / SECOND_NS for path in made]
+        changed_s = [path.stat().st_ctime_ns / NANOSECONDS_PER_SECOND for path in made]
         if changed_s:
             seen.delays_s[str(recording["id"])] = _seconds(recording["fetched_time"]) - max(changed_s)
 

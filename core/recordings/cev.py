@@ -31,6 +31,7 @@ from core.recordings.comtrade_lines import quoted
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
 from core.recordings.waveform import Channel, Recording
+from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 
 MAX_BYTES = 32 << 20
 MAX_HEAD_ROWS = 100
@@ -142,6 +143,7 @@ def _recording(
     _check_count(path, samples.count, round(per_cycle * cycles), repairs)
     rate_hz = frequency_hz * per_cycle
     trigger_index = _trigger_index(path, samples, repairs)
+    before_trigger_ns = round((trigger_index or 0) / rate_hz * NANOSECONDS_PER_SECOND)
     values = samples.values()
     roles = channel_roles([(name, "", unit) for name, unit in samples.channels])
     values *= np.array([[role.scale] for role in roles])
@@ -149,7 +151,7 @@ def _recording(
     return Recording(
         samples=values,
         sample_rate_hz=rate_hz,
-        start_time_ns=_trigger_time_ns(head, labels) - round((trigger_index or 0) / rate_hz * 1e9),
+        start_time_ns=_trigger_time_ns(head, labels) - before_trigger_ns,
         channels=tuple(
             Channel(name, role.quantity, role.phase, role.unit)
             for (name, _), role in zip(samples.channels, roles, strict=True)
@@ -222,7 +224,8 @@ def _trigger_time_ns(head: Mapping[str, _Field], labels: Row) -> int:
     except ValueError as error:
         raise row.refuse("date", "a date of the calendar", f"{error}") from None
     elapsed = moment - _EPOCH
-    return (elapsed.days * 86_400 + elapsed.seconds) * 1_000_000_000 + parts["MSEC"] * 1_000_000
+    elapsed_s = elapsed.days * SECONDS_PER_DAY + elapsed.seconds
+    return elapsed_s * NANOSECONDS_PER_SECOND + parts["MSEC"] * 1_000_000
 
 
 def _settings(row: Row, content: bytes, repairs: Repairs) -> str:

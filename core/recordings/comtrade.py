@@ -36,6 +36,7 @@ from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
 from core.recordings.skew import even_stretches, without_skew
 from core.recordings.waveform import Channel, Digitals, Quantity, Recording
+from core.units import NANOSECONDS_PER_SECOND
 
 __all__ = ["configuration_text", "data_bytes", "read_combined_comtrade", "read_comtrade", "write"]
 
@@ -213,7 +214,7 @@ def _trigger_index(
     path: Path, configuration: Configuration, base: TimeBase, samples: int, repairs: Repairs
 ) -> int | None:
     """The sample next to the trigger."""
-    elapsed_s = (configuration.trigger_time_ns - configuration.start_time_ns) / 1e9
+    elapsed_s = (configuration.trigger_time_ns - configuration.start_time_ns) / NANOSECONDS_PER_SECOND
     if base.instants_s is None:
         index, duration_s = round(elapsed_s * base.rate_hz), samples / base.rate_hz
         within = 0 <= index < samples

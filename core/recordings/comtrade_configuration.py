@@ -12,6 +12,7 @@ from pathlib import Path
 from core.recordings.comtrade_lines import Line, Lines, quoted
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
+from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 
 REVISIONS = {"1991": 1991, "1997": 1999, "1999": 1999, "2001": 1999, "2013": 2013}
 """Revision year in the file -> edition whose layout holds. IEC 60255-24:2001 is the 1999 edition;
@@ -275,7 +276,8 @@ def _date_time(line: Line, revision: int) -> tuple[int, int]:
         ) from None
     elapsed = moment - _EPOCH
     fraction = time[4] or ""
-    ns = (elapsed.days * 86_400 + elapsed.seconds) * 1_000_000_000 + int(fraction.ljust(9, "0"))
+    elapsed_s = elapsed.days * SECONDS_PER_DAY + elapsed.seconds
+    ns = elapsed_s * NANOSECONDS_PER_SECOND + int(fraction.ljust(9, "0"))
     return ns, len(fraction)
 
 
@@ -298,7 +300,7 @@ def _utc_offset(line: Line) -> int:
             "local code", "hours ahead of UTC such as 0, +1 or -5h30, or x", quoted(line.fields[1])
         )
     minutes = int(offset[2]) * 60 + int(offset[3] or 0)
-    return (-minutes if offset[1] == "-" else minutes) * 60 * 1_000_000_000
+    return (-minutes if offset[1] == "-" else minutes) * 60 * NANOSECONDS_PER_SECOND
 
 
 def _check_time_quality(line: Line) -> None:

@@ -6,6 +6,8 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from core.units import NANOSECONDS_PER_SECOND
+
 
 class Quantity(StrEnum):
     """What a channel measures. Voltages are told apart by their reference, because Clarke needs to know."""
@@ -126,8 +128,8 @@ class Recording:
         """UTC of the trigger; of the first sample where the file names no trigger [ns]."""
         index = self.trigger_index or 0
         if self.instants_s is not None:
-            return self.start_time_ns + round(float(self.instants_s[index]) * 1e9)
-        return self.start_time_ns + round(index / self.sample_rate_hz * 1e9)
+            return self.start_time_ns + round(float(self.instants_s[index]) * NANOSECONDS_PER_SECOND)
+        return self.start_time_ns + round(index / self.sample_rate_hz * NANOSECONDS_PER_SECOND)
 
 
 def _last_step(instants_s: NDArray[np.float64], sample_rate_hz: float) -> float:

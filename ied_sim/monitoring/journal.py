@@ -4,6 +4,7 @@ import threading
 from collections import Counter, deque
 from dataclasses import dataclass, field
 
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.monitoring.metering import Metering
 from ied_sim.monitoring.motor_monitor import Start
 
@@ -63,7 +64,7 @@ class Journal:
         self._events: deque[Event] = deque(maxlen=capacity)
         self._starts: deque[LoggedStart] = deque(maxlen=STARTS_KEPT)
         self._load: deque[LoadRow] = deque(maxlen=LOAD_ROWS_KEPT)
-        self._every_ns = round(profile_every_s * 1e9)
+        self._every_ns = round(profile_every_s * NANOSECONDS_PER_SECOND)
         self.statistics = Statistics(since_ns)
 
     def add_event(self, event: Event) -> None:

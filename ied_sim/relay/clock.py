@@ -2,6 +2,7 @@
 
 import time
 
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.misbehaviour import Kind, MisbehaviourState
 
 
@@ -25,4 +26,4 @@ class RelayClock:
         return self.stamped(time_ns) + self._offset_ns(Kind.LOCAL_TIME)
 
     def _offset_ns(self, kind: Kind) -> int:
-        return round((self._misbehaviour_state.number(kind) or 0.0) * 1e9)
+        return round((self._misbehaviour_state.number(kind) or 0.0) * NANOSECONDS_PER_SECOND)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from core.recordings import Channel, Quantity, Recording
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import CHANNELS
 
@@ -101,7 +102,7 @@ class EventRecorder:
         """Simulate at once, wait for the samples' own time, and again if the motor was switched meanwhile."""
         switched = self._switching(trigger_ns)
         recording = self._record(trigger_ns)
-        complete_ns = trigger_ns + round(self._settings.post_trigger_s * 1e9)
+        complete_ns = trigger_ns + round(self._settings.post_trigger_s * NANOSECONDS_PER_SECOND)
         if self._stopping.wait(max(0.0, (complete_ns - time.time_ns()) * 1e-9)):
             return None
         return recording if self._switching(trigger_ns) == switched else self._record(trigger_ns)
@@ -115,7 +116,7 @@ class EventRecorder:
         settings, plant = self._settings, self._plant
         rate_hz = settings.sample_rate_hz
         before = round(settings.pre_trigger_s * rate_hz)
-        start_ns = trigger_ns - round(before / rate_hz * 1e9)
+        start_ns = trigger_ns - round(before / rate_hz * NANOSECONDS_PER_SECOND)
         duration_s = settings.pre_trigger_s + settings.post_trigger_s
         return Recording(
             samples=plant.window((start_ns - self._epoch_ns) * 1e-9, duration_s, rate_hz),

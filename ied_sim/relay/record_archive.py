@@ -8,6 +8,7 @@ import numpy as np
 from core.recordings import Recording
 from core.recordings.cev_writer import EventSummary
 from core.recordings.waveform import Digitals
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.monitoring.journal import Event, Journal
 from ied_sim.monitoring.metering import METERING_CYCLES, Metering, metered
@@ -77,7 +78,8 @@ class RecordArchive:
 
     def _complete(self, recording: Recording) -> Recording:
         """With the relay word beside the samples, and in the relay's own time."""
-        times_ns = recording.start_time_ns + np.rint(recording.time_s * 1e9).astype(np.int64)
+        elapsed_ns = np.rint(recording.time_s * NANOSECONDS_PER_SECOND).astype(np.int64)
+        times_ns = recording.start_time_ns + elapsed_ns
         return replace(
             recording,
             device=self._identity.firmware,
@@ -87,7 +89,7 @@ class RecordArchive:
 
     def _header(self, record: Recording, kind: str, seen: Metering) -> str:
         """The .HDR file: what a relay's event summary tells, in plain text."""
-        seconds, nanoseconds = divmod(record.trigger_time_ns, 1_000_000_000)
+        seconds, nanoseconds = divmod(record.trigger_time_ns, NANOSECONDS_PER_SECOND)
         trigger = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S")
         zone = "local" if self._misbehaviour_state.is_on(Kind.LOCAL_TIME) else "UTC"
         return (

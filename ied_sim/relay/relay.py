@@ -5,6 +5,7 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.errors import SimulatorError
 from ied_sim.front import RelayProxies
 from ied_sim.misbehaviour import MADE_BY_PROXY, Kind, MisbehaviourState
@@ -234,7 +235,7 @@ class Relay:
         closed_s = None if contactor is None else contactor.close(self._seconds(now_ns))
         if closed_s is None:
             return
-        closed_ns = self._epoch_ns + round(closed_s * 1e9)
+        closed_ns = self._epoch_ns + round(closed_s * NANOSECONDS_PER_SECOND)
         log.info("%s: the motor is started", self.name)
         self.needs_update_soon = True
         for bit in ("TRIP", *_TRIP_BITS.values(), "STOPPED"):
@@ -284,8 +285,8 @@ class Relay:
         lasted_s = float(start.time_s[-1]) if start.duration_s is None else start.duration_s
         if time_s >= closure.closed_s + lasted_s:
             self._start_noted = True
-            self._journal.add_start(self._epoch_ns + round(closure.closed_s * 1e9), start)
-            end_ns = self._epoch_ns + round((closure.closed_s + lasted_s) * 1e9)
+            self._journal.add_start(self._epoch_ns + round(closure.closed_s * NANOSECONDS_PER_SECOND), start)
+            end_ns = self._epoch_ns + round((closure.closed_s + lasted_s) * NANOSECONDS_PER_SECOND)
             self._word.set("STARTING", False, end_ns)  # noqa: FBT003
             self._word.set("RUNNING", True, end_ns)  # noqa: FBT003
 

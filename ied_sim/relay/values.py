@@ -5,6 +5,7 @@ from math import degrees
 
 import numpy as np
 
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.monitoring.metering import Metering, metered_values
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.server import RelayServer
@@ -54,7 +55,8 @@ class RelayValues:
 
     def refresh_metering(self, seen: Metering, time_ns: int) -> None:
         """Publish what has changed; what has not, now and then."""
-        if seen is not self._published or time_ns - self._published_ns >= self._refresh_s * 1e9:
+        refresh_ns = self._refresh_s * NANOSECONDS_PER_SECOND
+        if seen is not self._published or time_ns - self._published_ns >= refresh_ns:
             self.metering(seen, time_ns)
 
     def _measurements(self, seen: Metering) -> dict[str, Value]:

@@ -4,11 +4,18 @@ from typing import Annotated
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, StringConstraints
 
+from core.units import NANOSECONDS_PER_SECOND
+
 Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00/]+$")]
 """Name of a site, IED or motor in a path."""
 
-Seconds = Annotated[float, BeforeValidator(lambda value: value / 1e9 if isinstance(value, int) else value)]
-"""Kept as nanoseconds inside."""
+
+def _seconds(value: object) -> object:
+    return value / NANOSECONDS_PER_SECOND if isinstance(value, int) else value
+
+
+Seconds = Annotated[float, BeforeValidator(_seconds)]
+"""Made from an integer of nanoseconds."""
 
 
 class Document(BaseModel):

@@ -5,13 +5,13 @@ from collections.abc import Iterator
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 
+from core.units import NANOSECONDS_PER_SECOND
 from service.storage.records import IedEntry
 from service.storage.repository import Repository
 from service.storage.states import LinkState
 
 PAGE = 1000
 LABELS = ["ied"]
-SECOND_NS = 1e9
 
 
 class LinkMetrics(Collector):
@@ -30,7 +30,7 @@ class LinkMetrics(Collector):
         for ied in self._ieds():
             up.add_metric([ied.name], ied.link_state is LinkState.UP)
             if ied.last_success_ns is not None:
-                success.add_metric([ied.name], ied.last_success_ns / SECOND_NS)
+                success.add_metric([ied.name], ied.last_success_ns / NANOSECONDS_PER_SECOND)
         held = GaugeMetricFamily("mcc_gateway_relays", "Relays held by the gateway", labels=["gateway"])
         for gateway in self._repository.gateways():
             held.add_metric([gateway.id], gateway.relays)

@@ -6,7 +6,8 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, WithJsonSchema
 
-SECOND_NS = 1_000_000_000
+from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
+
 MAX_NS = 2**63 - 1
 """Largest time the database can hold, in the year 2262."""
 
@@ -15,7 +16,7 @@ _RFC3339 = re.compile(r"(\d{4}-\d\d-\d\d)[Tt](\d\d:\d\d:\d\d)(?:\.(\d+))?([Zz]|[
 
 def rfc3339(time_ns: int) -> str:
     """2026-01-31T12:00:00.123456789Z; all nine digits, so that nothing is lost on the way out and in."""
-    seconds, nanoseconds = divmod(time_ns, SECOND_NS)
+    seconds, nanoseconds = divmod(time_ns, NANOSECONDS_PER_SECOND)
     return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%dT%H:%M:%S}.{nanoseconds:09d}Z"
 
 
@@ -31,8 +32,8 @@ def nanoseconds(text: str) -> int:
     leap = clock.endswith(":60")
     whole = datetime.fromisoformat(f"{date}T{clock[:-2] + '59' if leap else clock}{zone.upper()}")
     since_1970 = whole - datetime(1970, 1, 1, tzinfo=UTC)
-    seconds = since_1970.days * 86_400 + since_1970.seconds + leap
-    time_ns = seconds * SECOND_NS + int((fraction or "0")[:9].ljust(9, "0"))
+    seconds = since_1970.days * SECONDS_PER_DAY + since_1970.seconds + leap
+    time_ns = seconds * NANOSECONDS_PER_SECOND + int((fraction or "0")[:9].ljust(9, "0"))
     return max(-MAX_NS, min(MAX_NS, time_ns))
 
 

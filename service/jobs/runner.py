@@ -14,6 +14,7 @@ from sqlalchemy.exc import DBAPIError, SQLAlchemyError, StatementError
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
+from core.units import NANOSECONDS_PER_SECOND
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import WorkerPool, WorkersEndedError
 from service.jobs.worker_process import follow_service
@@ -206,7 +207,7 @@ class JobRunner:
             error,
             now_ns=time.time_ns(),
             max_attempts=self._limits.attempts,
-            retry_delay_ns=round(self._limits.retry_delay_s * 1e9),
+            retry_delay_ns=round(self._limits.retry_delay_s * NANOSECONDS_PER_SECOND),
         )
         log.warning("diagnosis failed", recording=claimed.job.recording_id, error=error, job=str(state))
 

@@ -6,8 +6,9 @@ from typing import Self
 
 from cronsim import CronSim, CronSimError
 
+from core.units import NANOSECONDS_PER_SECOND
+
 FIELDS = 5
-SECOND_NS = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,5 +34,5 @@ class Schedule:
 
     def next_after(self, time_ns: int) -> int:
         """The first time later than `time_ns` [ns UTC]."""
-        after = datetime.fromtimestamp(time_ns // SECOND_NS, UTC)
-        return int(next(CronSim(self.expression, after)).timestamp()) * SECOND_NS
+        after = datetime.fromtimestamp(time_ns // NANOSECONDS_PER_SECOND, UTC)
+        return int(next(CronSim(self.expression, after)).timestamp()) * NANOSECONDS_PER_SECOND

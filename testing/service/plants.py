@@ -5,10 +5,11 @@ from dataclasses import replace
 from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.parameters import Motor
 from core.quality.finding import QualityFinding
+from core.units import NANOSECONDS_PER_SECOND
 from service.plant import Plant, PlantMotor, Relay, Site
 from testing.machines.motors import REFERENCE
 
-SECOND_NS = 1_000_000_000
+SECOND_NS = NANOSECONDS_PER_SECOND
 NOW_NS = 1_760_000_000 * SECOND_NS
 
 

@@ -9,6 +9,7 @@ from contextlib import suppress
 from pathlib import Path
 from threading import Lock
 
+from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, MmsError
 from tests.chaos.disk import Disk
 from tests.chaos.history import History
@@ -175,7 +176,7 @@ class Faults:
         folder = self._plant.relay(action.relay).folder(self._files)
         if folder is None:
             return
-        jump_ns = FILE_TIMES_JUMPS_S[action.number % len(FILE_TIMES_JUMPS_S)] * 1_000_000_000
+        jump_ns = FILE_TIMES_JUMPS_S[action.number % len(FILE_TIMES_JUMPS_S)] * NANOSECONDS_PER_SECOND
         for path in folder.iterdir():
             with suppress(FileNotFoundError):
                 before = path.stat()

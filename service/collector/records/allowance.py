@@ -1,6 +1,6 @@
 """How much a relay may send in a day, so that one relay gone wild cannot fill the disk for all."""
 
-DAY_NS = 86_400 * 1_000_000_000
+from core.units import NANOSECONDS_PER_DAY
 
 BLOCK_BYTES = 4096
 """What even the smallest file takes on a disk, and counts for."""
@@ -28,7 +28,7 @@ class DailyAllowance:
         self.used_bytes += number_of_bytes
 
     def _begin_day(self, now_ns: int) -> None:
-        day = now_ns // DAY_NS
+        day = now_ns // NANOSECONDS_PER_DAY
         if day != self.day:
             self.day, self.used_bytes = day, 0
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import structlog
 
+from core.units import NANOSECONDS_PER_DAY
 from mms import (
     AccessDenied,
     Client,
@@ -23,7 +24,7 @@ from mms import (
     Timeout,
 )
 from service.collector.records.alarms import RecordAlarms
-from service.collector.records.allowance import DAY_NS, DailyAllowance, beyond_its_end
+from service.collector.records.allowance import DailyAllowance, beyond_its_end
 from service.collector.records.event_folder import Contents, EventFolder
 from service.collector.records.formats import Chosen, one_format_an_event
 from service.collector.records.ledger import RecordLedger
@@ -259,7 +260,7 @@ class RecordDirectory:
         self, settled: Settled
     ) -> tuple[tuple[ListedRecord, ...], tuple[ListedRecord, ...]]:
         """Ready and unsteady ones; those whose listing proved wrong too often today are not asked for."""
-        today = time.time_ns() // DAY_NS
+        today = time.time_ns() // NANOSECONDS_PER_DAY
         if self._attempts_day != today:
             self._attempts_day = today
             self._attempts.clear()

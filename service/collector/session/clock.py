@@ -11,6 +11,7 @@ from collections import deque
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from core.units import NANOSECONDS_PER_SECOND
 from mms import (
     AccessDenied,
     Client,
@@ -29,8 +30,6 @@ FRACTION_BITS = 0x1F
 """Of the quality octet: significant bits of the fraction of a second; more than 24 means unspecified."""
 
 MOST_BITS = 24
-SECOND_NS = 1_000_000_000
-
 
 PERIOD_S = 1800.0
 """Between two readings of a clock."""
@@ -51,7 +50,7 @@ def stamp_of(client: Client, reference: str, constraint: FunctionalConstraint) -
 def reading(stamp: Timestamp, *, asked_ns: int, answered_ns: int) -> ClockReading:
     """The relay's clock less ours, from the stamp of what happened between two times [ns UTC, our clock]."""
     bits = stamp.quality & FRACTION_BITS
-    resolution_ns = SECOND_NS >> bits if bits <= MOST_BITS else 0
+    resolution_ns = NANOSECONDS_PER_SECOND >> bits if bits <= MOST_BITS else 0
     if stamp.clock_failure:
         quality = ClockQuality.FAILED
     elif stamp.clock_not_synchronised:
@@ -146,6 +145,6 @@ def _between(before: _Look, after: _Look) -> ClockReading:
     now_ns, now_s = time.time_ns(), time.monotonic()
     return reading(
         after.stamp,
-        asked_ns=now_ns - round((now_s - before.asked_s) * SECOND_NS),
-        answered_ns=now_ns - round((now_s - after.answered_s) * SECOND_NS),
+        asked_ns=now_ns - round((now_s - before.asked_s) * NANOSECONDS_PER_SECOND),
+        answered_ns=now_ns - round((now_s - after.answered_s) * NANOSECONDS_PER_SECOND),
     )

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import structlog
 
+from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 from service.storage import Repository
 from service.storage.records import Quarantine
 
@@ -25,12 +26,12 @@ class QuarantinePolicy:
     """
 
     first_pause_s: float
-    longest_pause_s: float = 86_400.0
+    longest_pause_s: float = SECONDS_PER_DAY
     probation_s: float = 10.0
 
     def probation_after_s(self, quarantine: Quarantine) -> float:
         """Return how long a relay must work after this quarantine until it is trusted again [s]."""
-        return max(self.probation_s, (quarantine.until_ns - quarantine.since_ns) / 1e9)
+        return max(self.probation_s, (quarantine.until_ns - quarantine.since_ns) / NANOSECONDS_PER_SECOND)
 
 
 def quarantine_relay(repository: Repository, relay: str, reason: str, policy: QuarantinePolicy) -> None:
@@ -42,5 +43,5 @@ def quarantine_relay(repository: Repository, relay: str, reason: str, policy: Qu
         longest_pause_s=policy.longest_pause_s,
         now_ns=time.time_ns(),
     )
-    pause_s = (quarantine.until_ns - quarantine.since_ns) / 1e9
+    pause_s = (quarantine.until_ns - quarantine.since_ns) / NANOSECONDS_PER_SECOND
     log.error("relay set aside", relay=relay, reason=reason, times=quarantine.times, pause_s=pause_s)

@@ -3,13 +3,13 @@
 Clocks drift and are set: a reading says little of what a relay stamped long before or after.
 """
 
+from core.units import NANOSECONDS_PER_SECOND
 from service.storage.models import IedRow, RecordingRow
 
-SECOND_NS = 1_000_000_000
-NEAR_NS = 3600 * SECOND_NS
+NEAR_NS = 3600 * NANOSECONDS_PER_SECOND
 """Between a reading and the recording it is given to."""
 
-ZONE_NS = 14 * 3600 * SECOND_NS
+ZONE_NS = 14 * 3600 * NANOSECONDS_PER_SECOND
 """UTC+14 is the farthest local time; records do not always tell that theirs is local."""
 
 

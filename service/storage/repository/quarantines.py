@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from core.units import NANOSECONDS_PER_SECOND
 from service.storage.models import IedRow, QuarantineRow
 from service.storage.records import Quarantine
 from service.storage.repository.alarms import clear_standing, raised
@@ -13,7 +14,6 @@ from service.storage.repository.links import change_link
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmKind, LinkState
 
-SECOND_NS = 1_000_000_000
 RELEASED = "released from quarantine"
 
 
@@ -75,9 +75,9 @@ def _put(session: Session, ied: str, reason: str, times: int, now_ns: int, pause
         row = QuarantineRow(ied=ied)
         session.add(row)
     row.reason, row.times, row.since_ns = reason, times, now_ns
-    row.until_ns = now_ns + round(pause_s * SECOND_NS)
+    row.until_ns = now_ns + round(pause_s * NANOSECONDS_PER_SECOND)
     if pause_s > 0:
-        until = datetime.fromtimestamp(row.until_ns // SECOND_NS, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+        until = f"{datetime.fromtimestamp(row.until_ns // NANOSECONDS_PER_SECOND, UTC):%Y-%m-%dT%H:%M:%SZ}"
         change_link(session, relay, LinkState.QUARANTINED, f"set aside until {until}: {reason}", now_ns)
     session.flush()
     return row

@@ -11,9 +11,10 @@ import pytest
 from core.recordings import Quantity, Recording, RecordingError, read
 from core.recordings.cev import read_event_report
 from core.recordings.compressed_ascii import checksum
+from core.units import NANOSECONDS_PER_SECOND
 from tests.core.recordings.cev_files import REPORT, ROWS, CevFile, line
 
-TRIGGER_NS = int(datetime(2024, 11, 21, 6, 30, tzinfo=UTC).timestamp()) * 1_000_000_000 + 250_000_000
+TRIGGER_NS = int(datetime(2024, 11, 21, 6, 30, tzinfo=UTC).timestamp()) * NANOSECONDS_PER_SECOND + 250_000_000
 EXPECTED = np.array(
     [
         [100, -20.5, -100, 20.5, 100, -20.5, -100, 20.5],

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from core.recordings import Quantity, Recording, read
+from core.units import NANOSECONDS_PER_SECOND
 from tests.core.recordings.comtrade_files import (
     ANALOG_LINES,
     RECORD_1991,
@@ -16,7 +17,7 @@ from tests.core.recordings.comtrade_files import (
     ComtradeFile,
 )
 
-START_NS = int(datetime(2024, 11, 21, 6, 30, tzinfo=UTC).timestamp()) * 1_000_000_000 + 250_000_000
+START_NS = int(datetime(2024, 11, 21, 6, 30, tzinfo=UTC).timestamp()) * NANOSECONDS_PER_SECOND + 250_000_000
 EXPECTED = np.array(
     [
         [0, 10, -20, 30, 0.01],
@@ -175,7 +176,7 @@ def test_nanoseconds_of_2013(tmp_path: Path) -> None:
 def test_years_of_1991(tmp_path: Path, year: str, century: int) -> None:
     record = RECORD_1991.but(start=f"11/21/{year},00:00:00.0", trigger=f"11/21/{year},00:00:00.0")
     start_s = datetime(century, 11, 21, tzinfo=UTC).timestamp()
-    assert read(record.write(tmp_path)).start_time_ns == start_s * 1e9
+    assert read(record.write(tmp_path)).start_time_ns == start_s * NANOSECONDS_PER_SECOND
 
 
 @pytest.mark.parametrize(

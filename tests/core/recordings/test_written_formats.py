@@ -14,6 +14,7 @@ from core.recordings import Channel, Digitals, Quantity, Recording, comtrade, re
 from core.recordings.cev import read_event_report
 from core.recordings.cev_writer import EventSummary, cev_bytes, write_cev
 from core.recordings.comtrade_writer import DataFormat, Revision
+from core.units import NANOSECONDS_PER_SECOND
 
 FORMATS: list[tuple[Revision, DataFormat, str]] = [
     (1991, "ASCII", ".cfg"), (1991, "BINARY", ".cfg"), (1999, "ASCII", ".cfg"), (1999, "BINARY", ".CFG"),
@@ -214,8 +215,9 @@ def test_editions_and_their_formats(
 ) -> None:
     with pytest.raises(ValueError, match=reason):
         comtrade.write(tmp_path / f"r{suffix}", SMALL, revision=revision, data_format=data_format)
+    late = replace(SMALL, start_time_ns=4_750_000_000 * NANOSECONDS_PER_SECOND)
     with pytest.raises(ValueError, match="two digits of 1991 do not tell the year 2120"):
-        comtrade.write(tmp_path / "r.cfg", replace(SMALL, start_time_ns=4_750_000_000 * 10**9), revision=1991)
+        comtrade.write(tmp_path / "r.cfg", late, revision=1991)
     assert not list(tmp_path.iterdir())
 
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from core.units import NANOSECONDS_PER_DAY
 from service.background.scheduling import LONGEST_DELAY_NS, Scheduler
 from service.plant import Schedule
 from service.storage import Repository
@@ -88,10 +89,10 @@ def test_a_clock_that_jumps_back_repeats_nothing(repository: Repository) -> None
     scheduled.request_due(DUE_NS - 10 * SECOND_NS)
     scheduled.request_due(DUE_NS + SECOND_NS)
     assert len(reports(repository)) == 1
-    scheduled.request_due(DUE_NS - 86_400 * SECOND_NS)
-    scheduled.request_due(DUE_NS - 86_400 * SECOND_NS + SECOND_NS)
+    scheduled.request_due(DUE_NS - NANOSECONDS_PER_DAY)
+    scheduled.request_due(DUE_NS - NANOSECONDS_PER_DAY + SECOND_NS)
     assert len(reports(repository)) == 1
-    scheduled.request_due(DUE_NS - 86_400 * SECOND_NS + MINUTE_NS)
+    scheduled.request_due(DUE_NS - NANOSECONDS_PER_DAY + MINUTE_NS)
     assert len(reports(repository)) == 2, "it goes on by the new time, not in a day"
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import scl
+from core.units import NANOSECONDS_PER_SECOND
 from mms import (
     AddCause,
     ControlAction,
@@ -147,7 +148,7 @@ class ScriptedRelay:
         self.is_set = action.value is True
         changes: dict[str, Value] = {f"{CONTROL}.stVal": self.is_set}
         if self.clock_offset_s is not None:
-            now_ns = time.time_ns() + round(self.clock_offset_s * 1e9)
+            now_ns = time.time_ns() + round(self.clock_offset_s * NANOSECONDS_PER_SECOND)
             changes[f"{CONTROL}.t"] = Timestamp(now_ns, self.clock_quality)
         self.server.update_many(changes)
         if rising:

@@ -5,6 +5,7 @@ from statistics import fmean
 
 import pytest
 
+from core.units import NANOSECONDS_PER_DAY
 from service.plant import MeteredQuantity
 from service.storage import NotFoundError, Repository
 from service.storage.models import MeasurementRow
@@ -13,7 +14,7 @@ from testing.service.plants import SECOND_NS
 
 QUARTER_NS = 900 * SECOND_NS
 BEGIN_NS = 1_760_000_000 * SECOND_NS // QUARTER_NS * QUARTER_NS
-DAY_NS = 86_400 * SECOND_NS
+DAY_NS = NANOSECONDS_PER_DAY
 
 
 def measured(repository: Repository, step_s: int, motor: str = "PUMP-A1") -> list[Measurement]:

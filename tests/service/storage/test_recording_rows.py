@@ -1,5 +1,6 @@
 import pytest
 
+from core.units import NANOSECONDS_PER_DAY
 from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import NotFoundError, Repository
 from service.storage.records import ClockReading, RecordingEntry, RemoteRecord
@@ -210,7 +211,7 @@ def test_nothing_is_added_when_a_part_fails(repository: Repository, store: Recor
         repository.add_recording(record(store), motor="PUMP-A1", remote=REMOTE, now_ns=NOW_NS)
 
 
-OFFSET_NS = 5 * 86_400 * SECOND_NS
+OFFSET_NS = 5 * NANOSECONDS_PER_DAY
 
 
 def stored_with_a_clock(

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from core.units import NANOSECONDS_PER_DAY
 from mms.binding.prototypes import PROTOTYPES
-from service.collector.records.allowance import BLOCK_BYTES, DAY_NS, DailyAllowance
+from service.collector.records.allowance import BLOCK_BYTES, DailyAllowance
 from service.collector.session.relay_alarms import AND_MORE, RelayAlarms
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.waiting import eventually
@@ -59,8 +60,8 @@ def test_an_allowance_begins_anew_each_day_of_utc() -> None:
     assert allowance.allows((10 * BLOCK_BYTES,), now_ns=0), "the first record of a day"
     allowance.charge(1, now_ns=0)
     assert allowance.allows((BLOCK_BYTES, 1), now_ns=1)
-    assert not allowance.allows((BLOCK_BYTES + 1, 1), now_ns=DAY_NS - 1)
-    assert allowance.allows((BLOCK_BYTES + 1, 1), now_ns=DAY_NS)
+    assert not allowance.allows((BLOCK_BYTES + 1, 1), now_ns=NANOSECONDS_PER_DAY - 1)
+    assert allowance.allows((BLOCK_BYTES + 1, 1), now_ns=NANOSECONDS_PER_DAY)
     assert (allowance.day, allowance.used_bytes) == (1, 0)
 
 

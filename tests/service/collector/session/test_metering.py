@@ -8,6 +8,7 @@ from threading import Thread
 import pytest
 
 import scl
+from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError, FunctionalConstraint, ProtocolError, Server, Value
 from scl.model_text import model_text
 from service.collector.session.browsing import browse
@@ -205,7 +206,7 @@ def test_a_session_samples_while_it_waits(bench: Bench, relay: ScriptedRelay, me
     finally:
         session.stop()
         thread.join(15)
-    periods = (samples[-1].time_ns - samples[0].time_ns) / 1e9 / settings.metering_period_s
+    periods = (samples[-1].time_ns - samples[0].time_ns) / NANOSECONDS_PER_SECOND / settings.metering_period_s
     assert len(samples) <= periods + 2, "a period that was missed is not made up for"
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from structlog.testing import capture_logs
 
+from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError
 from service.collector.session.relay_session import RelaySession
 from service.recording_store.store import Incoming
@@ -180,13 +181,13 @@ def test_a_clock_that_is_set_ends_no_report(
     report_id = bench.request()
     with bench.session():
         assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
-        monkeypatch.setattr(time, "time_ns", lambda: right_ns() + 3600 * 1_000_000_000)
+        monkeypatch.setattr(time, "time_ns", lambda: right_ns() + 3600 * NANOSECONDS_PER_SECOND)
         relay.write_record("HR_10001", b"after the clock was set")
         assert bench.reaches(report_id, RecordingRequestState.FETCHED)
 
 
 def test_a_cut_ends_no_wish_that_waits_for_its_turn(bench: Bench, relay: ScriptedRelay) -> None:
-    long_ago_ns = time.time_ns() - 3600 * 1_000_000_000
+    long_ago_ns = time.time_ns() - 3600 * NANOSECONDS_PER_SECOND
     wishes = [bench.repository.request_recording(MOTOR, now_ns=long_ago_ns).id for _ in range(3)]
     relay.stop()
     with bench.session():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from core.recordings import Recording, read
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.misbehaviour import Kind, Misbehaviour
 from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import rated_current
@@ -171,5 +172,6 @@ def test_the_clock_of_a_relay_that_cannot_be_triggered_is_known(bench: Bench, tm
     ied = here.repository.ied(NAME)
     assert ied.clock_offset_ns is not None
     assert ied.clock_uncertainty_ns is not None
-    assert abs(ied.clock_offset_ns / 1e9 - offset_s) <= ied.clock_uncertainty_ns / 1e9 + 0.5
+    error_ns = abs(ied.clock_offset_ns - offset_s * NANOSECONDS_PER_SECOND)
+    assert error_ns <= ied.clock_uncertainty_ns + NANOSECONDS_PER_SECOND / 2
     assert ied.clock_uncertainty_ns < 10e9
