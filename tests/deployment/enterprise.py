@@ -5,8 +5,6 @@ of its relays records (for 20 s, and for so long that records are lost), restart
 what may be wrong on a host, backs up, restores, brings an older database up to date, takes all down.
 """
 
-import json
-import re
 import shlex
 import signal
 import socket
@@ -26,13 +24,13 @@ from service.demo.addresses import free_ports
 from testing.service.processes import MOTOR_NAMES
 from tests.deployment.composing import BUILD_LIMIT_S, ROOT, Compose, ComposeError
 from tests.deployment.documented import blocks
+from tests.deployment.image import health_check
 from tests.deployment.long_outage import (
     a_link_down_for_long_costs_what_the_relay_discards,
     an_upload_of_what_is_known_changes_nothing,
 )
 from tests.deployment.observed import START_LIMIT_S, Enterprise
 
-DOCKERFILE = (ROOT / "Dockerfile").read_text(encoding="utf-8")
 SERVICES = yaml.safe_load((ROOT / "docker-compose.yml").read_text(encoding="utf-8"))["services"]
 OUTAGE_S = 20.0
 LARGEST_IMAGE_MB = 700
@@ -149,9 +147,7 @@ def ends_where_make_demo_ends(enterprise: Enterprise) -> None:
 
 def health_checks_tell_well_from_ill(enterprise: Enterprise) -> None:
     checks = {name: SERVICES[name]["healthcheck"]["test"] for name in ("router-a", "relay-a1")}
-    of_the_image = re.search(r"^HEALTHCHECK (?:.*\\\n)*\s*CMD (\[.*\])$", DOCKERFILE, re.MULTILINE)
-    assert of_the_image
-    checks["mcc"] = shlex.join(json.loads(of_the_image[1]))
+    checks["mcc"] = shlex.join(health_check())
     for owner, check in checks.items():
         for service in checks:
             told = enterprise.compose.attempt("exec", "-T", service, "sh", "-c", f"({check}) && echo healthy")
