@@ -1,4 +1,4 @@
-"""`mcc`: the front door for people and scripts."""
+"""The command line `mcc`, for people and scripts."""
 
 from service.cli.app import main
 

@@ -4,11 +4,11 @@ from pathlib import Path
 
 from sqlalchemy.exc import SQLAlchemyError
 
+from service.application.serve import ServeError, collect, serve
 from service.cli.output import failing_clearly
 from service.configuration.settings import Settings, SettingsError
 from service.plant import PlantError
 from service.process.logs import configure_logging
-from service.process.serve import ServeError, collect, serve
 from service.process.single_instance import AlreadyRunningError
 from service.storage import StorageError
 

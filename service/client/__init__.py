@@ -1,1 +1,1 @@
-"""The REST API seen from a client: requests, and answers in words."""
+"""A client of the REST API, and its answers in words."""

@@ -1,1 +1,1 @@
-"""Settings of the service, and what is shown to relays."""
+"""The settings of the service, and the credentials that it shows to relays."""

@@ -1,4 +1,4 @@
-"""The demo: a simulated plant, the service that watches it, and what the one finds out about the other."""
+"""The demo: a simulated plant, a service that watches it, and its diagnoses beside the truth."""
 
 from pathlib import Path
 

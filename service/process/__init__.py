@@ -1,1 +1,1 @@
-"""What the service is as a process: its start and stop, its lock, its name, its logs."""
+"""What every process of the service needs: logs, the lock on its data, the name of the installation."""

@@ -1,1 +1,1 @@
-"""The files of recordings on disk."""
+"""The files of recordings on disk, each set once, in a folder named by its content."""

@@ -1,1 +1,1 @@
-"""Time as the service uses it: periodic work, pauses after failures, trust in the wall clock."""
+"""Time as the service uses it: periodic work, pauses after failures, clocks, signs of life."""

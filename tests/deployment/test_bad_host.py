@@ -7,10 +7,10 @@ import pytest
 
 import scl
 from scl.demo_enterprise import write_demo_enterprise
+from service.application.serve import ServeError, _require_writable
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.plant import PlantError, read_plant
-from service.process.serve import ServeError, _require_writable
 
 
 def test_a_data_directory_that_cannot_be_written_to() -> None:

@@ -10,10 +10,10 @@ import pytest
 from sqlalchemy import Engine
 
 from service.api import ApiContext, create_app
+from service.application.parts import running
 from service.background.workers import Periods, background_workers
 from service.configuration.settings import Settings
 from service.plant import Schedule
-from service.process.parts import running
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import RecordingRequest

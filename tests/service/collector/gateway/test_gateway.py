@@ -18,6 +18,7 @@ import scl
 from mms import Server
 from scl import Address
 from scl.model_text import model_text
+from service.application.parts import running
 from service.collector.gateway.gateway import Gateway, GatewayIdentity
 from service.collector.session.visit_marks import BUSY
 from service.collector.supervision.gateway_processes import GatewayProcesses
@@ -26,7 +27,6 @@ from service.configuration.settings import Settings
 from service.demo import MOTORS
 from service.demo.addresses import free_ports
 from service.plant import Plant, read_plant
-from service.process.parts import running
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository, connect, migrate
 from service.storage.states import LinkState

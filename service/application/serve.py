@@ -19,6 +19,7 @@ from sqlalchemy.exc import OperationalError
 
 from service.api.app import create_app
 from service.api.context import ApiContext
+from service.application.parts import Part, running
 from service.background.workers import background_workers
 from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.gateway_supervisor import RESTART_POLICY
@@ -29,7 +30,6 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.plant import Plant, read_plant
 from service.process.installation import installation_id
-from service.process.parts import Part, running
 from service.process.single_instance import exclusive
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
