@@ -1,4 +1,4 @@
-"""A thin, safe layer over libiec61850: MMS clients and servers, and the only place that touches C.
+"""Thin, safe layer over libiec61850: MMS clients and servers, and the only package that touches C.
 
 Client      one association with a relay: browse, read, operate, subscribe to reports, fetch files
 Server      one simulated IED made from a model text

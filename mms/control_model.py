@@ -5,7 +5,7 @@ from typing import Final
 
 
 class ControlModel(IntEnum):
-    """IEC 61850-7-2 ctlModel."""
+    """Control model of a controllable object (IEC 61850-7-2, ctlModel)."""
 
     STATUS_ONLY = 0
     DIRECT_NORMAL = 1
@@ -15,7 +15,7 @@ class ControlModel(IntEnum):
 
     @property
     def words(self) -> str:
-        """As SCL files write it."""
+        """Name of the model as SCL files write it."""
         return _WORDS[self]
 
 
@@ -62,11 +62,23 @@ class AddCause(IntEnum):
 
     @property
     def words(self) -> str:
+        """The cause in words."""
         return self.name.lower().replace("_", " ")
 
 
 def words_of(add_cause: int) -> str:
-    """An add cause in words, also one the standard does not know."""
+    """Put an add cause into words, also one that the standard does not know.
+
+    Parameters
+    ----------
+    add_cause : int
+        Number of the cause.
+
+    Returns
+    -------
+    str
+        The cause in words.
+    """
     try:
         return AddCause(add_cause).words
     except ValueError:

@@ -1,7 +1,7 @@
 # ruff: noqa: N818 (these names are what went wrong, in the words of the field)
 """Errors of the MMS layer: what failed, at which relay, why, and the service code behind it.
 
-Service errors are those of ISO 9506-2 as IEC 61850-8-1 maps them; the numbers kept in `code` are
+Service errors are those of ISO 9506-2 as IEC 61850-8-1 maps them. The numbers kept in `code` are
 libiec61850's.
 """
 
@@ -11,8 +11,16 @@ from pathlib import Path
 class MmsError(Exception):
     """An MMS service did not do what was asked.
 
-    `host` is the peer as "address:port", `operation` the service and its object, `code` the library's number
-    (0 where the failure was found on our side) and `message` the reason in words.
+    Parameters
+    ----------
+    host : str
+        The peer as "address:port".
+    operation : str
+        The service and its object.
+    code : int
+        The library's error number; 0 where the failure was found on our side.
+    message : str
+        The reason in words.
     """
 
     def __init__(self, host: str, operation: str, code: int, message: str) -> None:
@@ -27,7 +35,7 @@ class MmsError(Exception):
 
 
 class ConnectFailed(MmsError):
-    """No association: name unknown, port refused, nobody answered, or the relay has no session left."""
+    """No association came about: name unknown, port refused, no answer, or no session left in the relay."""
 
 
 class RelayNotTrusted(ConnectFailed):
@@ -35,11 +43,11 @@ class RelayNotTrusted(ConnectFailed):
 
 
 class CertificateRefused(ConnectFailed):
-    """The relay speaks TLS and ended the handshake: it does not take our certificate."""
+    """The relay speaks TLS and ended the handshake: it does not accept our certificate."""
 
 
 class TlsNotSpoken(ConnectFailed):
-    """TLS is configured for the relay, and it answers without."""
+    """TLS is configured for the relay, and it answers without TLS."""
 
 
 class TlsRequired(ConnectFailed):
@@ -47,11 +55,11 @@ class TlsRequired(ConnectFailed):
 
 
 class AssociationRejected(ConnectFailed):
-    """The relay answers and rejects the association (ACSE): a wrong password, or one is missing."""
+    """The relay answers and rejects the association (ACSE): the password is wrong or missing."""
 
 
 class ConnectionLost(MmsError):
-    """The association ended; nothing more can be asked of this client."""
+    """The association ended; this client can make no more requests."""
 
 
 class Timeout(MmsError):
@@ -75,20 +83,36 @@ class ProtocolError(MmsError):
 
 
 class FileServiceFailed(ProtocolError):
-    """The peer's file service answered with another error (ISO 9506-2): not this file; the link is fine."""
+    """The peer's file service reports another error (ISO 9506-2) for this file; the link is in order."""
 
 
 class ValueRefused(ProtocolError):
-    """The peer answers in good order that it gives or takes no value of this one object.
+    """The peer answers that it gives or takes no value of this one object.
 
-    A hardware fault, a type that does not fit (ISO 9506-2, DataAccessError); the others are none the worse.
+    The cause may be a hardware fault or a type that does not fit (ISO 9506-2, DataAccessError). Other objects
+    are not affected.
     """
 
 
 class ControlRefused(MmsError):
-    """The relay refused to select, operate or complete a control; `add_cause` says why in words.
+    """The relay refused to select, operate or complete a control.
 
-    Source: IEC 61850-7-2, AddCause of the control class model.
+    Parameters
+    ----------
+    host : str
+        The peer as "address:port".
+    operation : str
+        The service and its object.
+    code : int
+        The library's error number.
+    message : str
+        The reason in words.
+    add_cause : str
+        The relay's add cause in words.
+
+    References
+    ----------
+    IEC 61850-7-2, AddCause of the control class model.
     """
 
     def __init__(self, host: str, operation: str, code: int, message: str, add_cause: str) -> None:
@@ -98,7 +122,7 @@ class ControlRefused(MmsError):
 
 
 class ReportControlInUse(MmsError):
-    """The report control block is reserved or enabled by another client: one client a block."""
+    """The report control block is reserved or enabled by another client; a block serves one client."""
 
 
 class EntryNotFound(MmsError):
@@ -106,7 +130,23 @@ class EntryNotFound(MmsError):
 
 
 class FileSizeMismatch(MmsError):
-    """A transfer ended with another number of bytes than announced."""
+    """A transfer ended with another number of bytes than announced.
+
+    Parameters
+    ----------
+    host : str
+        The peer as "address:port".
+    operation : str
+        The service and its object.
+    code : int
+        The library's error number.
+    message : str
+        The reason in words.
+    expected : int
+        Number of bytes announced.
+    received : int
+        Number of bytes received.
+    """
 
     def __init__(
         self, host: str, operation: str, code: int, message: str, expected: int, received: int
@@ -122,13 +162,20 @@ class ServerStartFailed(MmsError):
 
 
 class AssociationBroken(ConnectFailed, ProtocolError):
-    """The relay associates, and answers the first request with what the service does not allow."""
+    """The relay associates, and answers the first request with something the service does not allow."""
 
 
 class CredentialFileError(ValueError):
     """A file with a certificate, a key or a password cannot be used.
 
-    `path` names it, `expected` and `found` say why; never what is in it.
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    expected : str
+        What the file should be.
+    found : str
+        What it is; never its content.
     """
 
     def __init__(self, path: Path, expected: str, found: str) -> None:
@@ -144,7 +191,14 @@ class CredentialFileError(ValueError):
 class ModelError(ValueError):
     """A data model text, a reference into it, or a value for one of its attributes is wrong.
 
-    `where` names the line or the reference, `expected` and `found` say why.
+    Parameters
+    ----------
+    where : str
+        The line or the reference.
+    expected : str
+        What should be there.
+    found : str
+        What is there.
     """
 
     def __init__(self, where: str, expected: str, found: str) -> None:
@@ -205,17 +259,51 @@ _FILE_ERRORS: dict[int, tuple[type[MmsError], str]] = {
 
 _HARDWARE_FAULT = 5
 _SERVICE_ERRORS = range(9, 100)
-"""MmsError numbers of the relay's ServiceErrors; above are its rejects, below what is found on our side."""
+"""MmsError numbers of the relay's ServiceErrors. Higher ones are rejects, lower ones are of our side."""
 
 
 def client_error(host: str, operation: str, code: int) -> MmsError:
-    """The error for an IedClientError number of the library."""
+    """Make the error for a number of the library's client functions.
+
+    Parameters
+    ----------
+    host : str
+        The peer as "address:port".
+    operation : str
+        The service and its object.
+    code : int
+        The library's IedClientError.
+
+    Returns
+    -------
+    MmsError
+        The kind of error that belongs to the number.
+    """
     kind, message = _CLIENT_ERRORS.get(code, (ProtocolError, f"the service failed (client error {code})"))
     return kind(host, operation, code, message)
 
 
 def file_error(host: str, operation: str, code: int) -> MmsError:
-    """The error for an MmsError number of the library's file services (ISO 9506-2 ServiceError)."""
+    """Make the error for a number of the library's file services.
+
+    Parameters
+    ----------
+    host : str
+        The peer as "address:port".
+    operation : str
+        The service and its object.
+    code : int
+        The library's MmsError.
+
+    Returns
+    -------
+    MmsError
+        The kind of error that belongs to the number.
+
+    References
+    ----------
+    ISO 9506-2, ServiceError.
+    """
     of_a_file = code == _HARDWARE_FAULT or code in _SERVICE_ERRORS
     other = FileServiceFailed if of_a_file else ProtocolError
     kind, message = _FILE_ERRORS.get(code, (other, f"the file service failed (MMS error {code})"))

@@ -1,7 +1,7 @@
 """Object references of IEC 61850-7-2 and the functional constraints, checked before they reach C.
 
-The library copies names into buffers sized by the standard and trusts them to fit: a name from a relay or a
-configuration file is checked here first.
+The library copies names into buffers of the standard's sizes and relies on them to fit. A name may come from
+a relay or a configuration file, so it is checked here first.
 """
 
 import re
@@ -10,7 +10,7 @@ from typing import Final
 
 
 class FunctionalConstraint(IntEnum):
-    """IEC 61850-7-2 functional constraints, with the library's numbers."""
+    """Functional constraints of IEC 61850-7-2, with the library's numbers."""
 
     ST = 0
     MX = 1
@@ -39,7 +39,23 @@ _OBJECT = re.compile(r"([A-Za-z0-9_]{1,64})/([A-Za-z0-9_]+(?:[.$][A-Za-z0-9_]+|\
 
 
 def logical_device(name: str) -> bytes:
-    """A logical device (MMS domain) name for C; ValueError if it is none."""
+    """Encode the name of a logical device (MMS domain) for C.
+
+    Parameters
+    ----------
+    name : str
+        The name.
+
+    Returns
+    -------
+    bytes
+        The name in ASCII.
+
+    Raises
+    ------
+    ValueError
+        It is no such name.
+    """
     if not _LOGICAL_DEVICE.fullmatch(name):
         raise ValueError(
             f"not a logical device name: {name!r} (letters, digits and _, at most {_NAME_LIMIT})"
@@ -48,9 +64,30 @@ def logical_device(name: str) -> bytes:
 
 
 def object_reference(reference: str, *, names: int = 1, room: int = len("$ST")) -> bytes:
-    """An object reference "LD/LN.DO.DA" for C; ValueError if it is none.
+    """Encode an object reference for C.
 
-    `names` is the least number of names after the slash, `room` what the service adds to the item name.
+    Parameters
+    ----------
+    reference : str
+        Reference "LD/LN.DO.DA".
+    names : int
+        Least number of names after the slash.
+    room : int
+        Number of characters that the service adds to the item name.
+
+    Returns
+    -------
+    bytes
+        The reference in ASCII.
+
+    Raises
+    ------
+    ValueError
+        It is no reference, or is too long or too short.
+
+    References
+    ----------
+    IEC 61850-8-1 clause 8, lengths of MMS names.
     """
     match = _OBJECT.fullmatch(reference)
     if not match:

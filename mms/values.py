@@ -13,7 +13,7 @@ _FRACTION_BITS: Final = 24
 
 
 class DataAccessError(Enum):
-    """Why a peer gave no value for one member of a data set or structure (ISO 9506-2 DataAccessError)."""
+    """Why a peer gave no value for one member of a data set or structure (ISO 9506-2, DataAccessError)."""
 
     OBJECT_INVALIDATED = 0
     HARDWARE_FAULT = 1
@@ -32,17 +32,37 @@ class DataAccessError(Enum):
 
 @dataclass(frozen=True, slots=True)
 class BitString:
-    """An MMS bit string; `bits[0]` is the first bit sent, bit 0 of IEC 61850-8-1."""
+    """An MMS bit string.
+
+    Parameters
+    ----------
+    bits : tuple of bool
+        The bits in the order they are sent; the first is bit 0 of IEC 61850-8-1.
+    """
 
     bits: tuple[bool, ...]
 
     @classmethod
     def of(cls, integer: int, size: int) -> "BitString":
-        """The `size` bits of `integer`, the least significant first."""
+        """Make a bit string from an integer.
+
+        Parameters
+        ----------
+        integer : int
+            The bits, the least significant first.
+        size : int
+            Number of bits.
+
+        Returns
+        -------
+        BitString
+            The bit string.
+        """
         return cls(tuple(bool(integer >> position & 1) for position in range(size)))
 
     @property
     def integer(self) -> int:
+        """The bits as an integer, the first as its least significant."""
         return sum(1 << position for position, bit in enumerate(self.bits) if bit)
 
     def __str__(self) -> str:
@@ -50,7 +70,7 @@ class BitString:
 
 
 class Validity(IntEnum):
-    """IEC 61850-7-3 validity, as the two bits are sent."""
+    """Validity of a value (IEC 61850-7-3), as its two bits are sent."""
 
     GOOD = 0b00
     RESERVED = 0b10
@@ -63,7 +83,39 @@ class Validity(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Quality:
-    """IEC 61850-7-3 quality of a value: 13 bits, all clear when good."""
+    """Quality of a value (IEC 61850-7-3): 13 bits, all clear when good.
+
+    Parameters
+    ----------
+    validity : Validity
+        Whether the value may be used.
+    overflow : bool
+        The value is beyond what its type can hold.
+    out_of_range : bool
+        The value is beyond its predefined range.
+    bad_reference : bool
+        The reference of the measurement is not calibrated.
+    oscillatory : bool
+        The value changes too often.
+    failure : bool
+        A supervision function found a failure.
+    old_data : bool
+        The value has not been updated for too long.
+    inconsistent : bool
+        An evaluation found the value inconsistent.
+    inaccurate : bool
+        The value does not have the stated accuracy.
+    substituted : bool
+        The value is substituted, not from the process.
+    test : bool
+        The value is not to be used for operation.
+    operator_blocked : bool
+        An operator has blocked the update of the value.
+
+    References
+    ----------
+    IEC 61850-7-3, Quality.
+    """
 
     validity: Validity = Validity.GOOD
     overflow: bool = False
@@ -80,13 +132,30 @@ class Quality:
 
     @property
     def bits(self) -> BitString:
+        """The quality as the bit string that is sent."""
         first, second = bool(self.validity >> 1), bool(self.validity & 1)
         flags = (getattr(self, name) for name in self.__slots__[1:])
         return BitString((first, second, *flags))
 
     @classmethod
     def of(cls, bits: BitString) -> "Quality":
-        """The quality in a bit string read from a peer; ValueError unless it has 13 bits."""
+        """Make a quality from a bit string of a peer.
+
+        Parameters
+        ----------
+        bits : BitString
+            The bit string.
+
+        Returns
+        -------
+        Quality
+            The quality.
+
+        Raises
+        ------
+        ValueError
+            The bit string has other than 13 bits.
+        """
         if len(bits.bits) != 13:
             raise ValueError(f"a quality has 13 bits, not {len(bits.bits)}")
         return cls(Validity(bits.bits[0] << 1 | bits.bits[1]), *bits.bits[2:])
@@ -97,11 +166,21 @@ GOOD: Final = Quality()
 
 @dataclass(frozen=True, slots=True)
 class Timestamp:
-    """A point in time, integer nanoseconds UTC, with the clock's own quality (IEC 61850-8-1 UtcTime).
+    """Point in time with the quality of the clock (IEC 61850-8-1, UtcTime).
 
-    UtcTime resolves 2**-24 s (60 ns); `quality` is its last octet: bit 7 leap seconds known, bit 6 clock
-    failure, bit 5 clock not synchronised, bits 0..4 the number of significant bits in the fraction (31:
-    unspecified).
+    UtcTime resolves 2**-24 s (60 ns).
+
+    Parameters
+    ----------
+    ns : int
+        Time since 1970 [ns, UTC].
+    quality : int
+        Last octet of UtcTime. Bit 7: leap seconds known; bit 6: clock failure; bit 5: clock not synchronised;
+        bits 0 to 4: number of significant bits in the fraction (31: unspecified).
+
+    References
+    ----------
+    IEC 61850-8-1 clause 8, TimeStamp and TimeQuality.
     """
 
     ns: int
@@ -109,18 +188,32 @@ class Timestamp:
 
     @property
     def leap_seconds_known(self) -> bool:
+        """Whether the clock takes leap seconds into account."""
         return bool(self.quality & 0x80)
 
     @property
     def clock_failure(self) -> bool:
+        """Whether the time source is unreliable."""
         return bool(self.quality & 0x40)
 
     @property
     def clock_not_synchronised(self) -> bool:
+        """Whether the clock is not synchronised with an external source."""
         return bool(self.quality & 0x20)
 
     def octets(self) -> bytes:
-        """The eight octets of UtcTime; ValueError outside 1970..2106."""
+        """Encode the time as UtcTime.
+
+        Returns
+        -------
+        bytes
+            Eight octets.
+
+        Raises
+        ------
+        ValueError
+            The time is outside 1970 to 2106, or the quality is no octet.
+        """
         seconds, rest = divmod(self.ns, _SECOND_NS)
         fraction = round(rest * (1 << _FRACTION_BITS) / _SECOND_NS)
         seconds += fraction >> _FRACTION_BITS
@@ -131,6 +224,18 @@ class Timestamp:
 
     @classmethod
     def of(cls, octets: bytes) -> "Timestamp":
+        """Decode a UtcTime.
+
+        Parameters
+        ----------
+        octets : bytes
+            Its eight octets.
+
+        Returns
+        -------
+        Timestamp
+            The time.
+        """
         fraction = int.from_bytes(octets[4:7], "big")
         ns = int.from_bytes(octets[:4], "big") * _SECOND_NS + round(
             fraction * _SECOND_NS / (1 << _FRACTION_BITS)

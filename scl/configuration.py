@@ -17,7 +17,15 @@ HOST_NAME = re.compile(r"(?=.{1,253}$)[A-Za-z0-9]([A-Za-z0-9-]{0,62})(\.[A-Za-z0
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """Where an IED's MMS server listens: an IP address, or a name the network knows, and a TCP port."""
+    """Address of an IED's MMS server.
+
+    Parameters
+    ----------
+    host : str
+        IP address, or a name that the network knows.
+    port : int
+        TCP port.
+    """
 
     host: str
     port: int = MMS_PORT
@@ -28,7 +36,21 @@ class Address:
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """edition: "1", "2" or "2.1", from the version, revision and release of the SCL element."""
+    """Header of a file.
+
+    Parameters
+    ----------
+    id : str
+        Identification of the file.
+    version : str
+        Version of the content.
+    revision : str
+        Revision of the version.
+    tool : str
+        Tool that wrote the file.
+    edition : str
+        Edition of SCL, "1", "2" or "2.1", from the version, revision and release of the SCL element.
+    """
 
     id: str
     version: str
@@ -39,7 +61,21 @@ class Header:
 
 @dataclass(frozen=True, slots=True)
 class ConnectedAccessPoint:
-    """An access point on a subnetwork; `parameters` are its P elements by type ("IP", "MMS-Port")."""
+    """An access point on a subnetwork.
+
+    Parameters
+    ----------
+    ied : str
+        Name of the IED.
+    access_point : str
+        Name of the access point.
+    subnetwork : str
+        Name of the subnetwork.
+    parameters : mapping of str to str
+        Contents of its P elements by type ("IP", "MMS-Port").
+    line : int
+        Line of the element in the file.
+    """
 
     ied: str
     access_point: str
@@ -50,6 +86,18 @@ class ConnectedAccessPoint:
 
 @dataclass(frozen=True, slots=True)
 class SubNetwork:
+    """A subnetwork of the communication section.
+
+    Parameters
+    ----------
+    name : str
+        Name of the subnetwork.
+    type : str
+        Protocol, such as "8-MMS".
+    connected_access_points : tuple of ConnectedAccessPoint
+        Access points on it.
+    """
+
     name: str
     type: str
     connected_access_points: tuple[ConnectedAccessPoint, ...]
@@ -57,7 +105,19 @@ class SubNetwork:
 
 @dataclass(frozen=True, slots=True)
 class Equipment:
-    """Primary equipment and the IEDs whose logical nodes are attached to it; type "MOT" is a motor."""
+    """Primary equipment of a bay.
+
+    Parameters
+    ----------
+    name : str
+        Name of the equipment.
+    type : str
+        Type; "MOT" is a motor.
+    description : str
+        Description for people.
+    ieds : tuple of str
+        IEDs whose logical nodes are attached to the equipment.
+    """
 
     name: str
     type: str
@@ -67,7 +127,21 @@ class Equipment:
 
 @dataclass(frozen=True, slots=True)
 class Bay:
-    """A bay; `ieds` are those attached to the bay itself."""
+    """A bay of a substation.
+
+    Parameters
+    ----------
+    name : str
+        Name of the bay.
+    description : str
+        Description for people.
+    voltage_level : str
+        Name of its voltage level.
+    equipment : tuple of Equipment
+        Its conducting equipment.
+    ieds : tuple of str
+        IEDs attached to the bay itself.
+    """
 
     name: str
     description: str
@@ -78,6 +152,18 @@ class Bay:
 
 @dataclass(frozen=True, slots=True)
 class Substation:
+    """A substation, which stands for a site.
+
+    Parameters
+    ----------
+    name : str
+        Name of the substation.
+    description : str
+        Description for people.
+    bays : tuple of Bay
+        Bays of all its voltage levels.
+    """
+
     name: str
     description: str
     bays: tuple[Bay, ...]
@@ -85,7 +171,23 @@ class Substation:
 
 @dataclass(frozen=True, slots=True)
 class MotorFeeder:
-    """A motor, the relay that protects it, and the site and bay they stand in."""
+    """A motor, the relay that protects it, and the site and bay they stand in.
+
+    Parameters
+    ----------
+    site : str
+        Name of the substation.
+    site_description : str
+        Its description.
+    bay : str
+        Name of the bay.
+    motor : str
+        Name of the motor.
+    motor_description : str
+        Its description.
+    ied : str
+        Name of the relay's IED.
+    """
 
     site: str
     site_description: str
@@ -97,7 +199,27 @@ class MotorFeeder:
 
 @dataclass(frozen=True, slots=True)
 class Scl:
-    """An SCL file (ICD, CID, IID, SCD). `warnings` are oddities that did not keep it from being read."""
+    """An SCL file (ICD, CID, IID, SCD).
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    header : Header
+        Its header.
+    ieds : tuple of Ied
+        Its IEDs.
+    communication : tuple of SubNetwork
+        Its subnetworks.
+    substations : tuple of Substation
+        Its substations.
+    warnings : tuple of Finding
+        Oddities that did not keep the file from being read.
+
+    References
+    ----------
+    IEC 61850-6, configuration description language.
+    """
 
     path: Path
     header: Header
@@ -107,7 +229,23 @@ class Scl:
     warnings: tuple[Finding, ...]
 
     def ied(self, name: str) -> Ied:
-        """The IED of a name; SclError when the file has none."""
+        """Find an IED by its name.
+
+        Parameters
+        ----------
+        name : str
+            Name of the IED.
+
+        Returns
+        -------
+        Ied
+            The IED.
+
+        Raises
+        ------
+        SclError
+            The file has no such IED.
+        """
         for ied in self.ieds:
             if ied.name == name:
                 return ied
@@ -115,10 +253,26 @@ class Scl:
         raise SclError(self.path, element="<IED>", expected=f'an IED with name="{name}"', found=known)
 
     def address(self, ied_name: str) -> Address:
-        """Where the IED's MMS server is reached: the P elements IP, or else DNSName, and MMS-Port (or 102).
+        """Find where the IED's MMS server is reached.
 
-        An IED on several subnetworks is reached where an access point has a server and an address; of
-        several such, on the subnetwork that comes first. `seen_from` chooses another.
+        The address is the P element IP, or else DNSName, with MMS-Port (or 102). An IED on several
+        subnetworks is reached where an access point has a server and an address; of several such, on the
+        subnetwork that comes first. `seen_from` chooses another.
+
+        Parameters
+        ----------
+        ied_name : str
+            Name of the IED.
+
+        Returns
+        -------
+        Address
+            The address.
+
+        Raises
+        ------
+        SclError
+            The file has no such IED, or no usable address for it.
         """
         connected = self.connected_access_point(ied_name)
         host = self._host(connected)
@@ -128,7 +282,23 @@ class Scl:
         return Address(host, int(port))
 
     def connected_access_point(self, ied_name: str) -> ConnectedAccessPoint:
-        """The ConnectedAP whose address clients use; SclError when no access point has an address."""
+        """Find the ConnectedAP whose address clients use.
+
+        Parameters
+        ----------
+        ied_name : str
+            Name of the IED.
+
+        Returns
+        -------
+        ConnectedAccessPoint
+            The access point.
+
+        Raises
+        ------
+        SclError
+            No access point of the IED has an address.
+        """
         ied = self.ied(ied_name)
         serving = {point.name for point in ied.access_points if point.logical_devices}
         candidates = [
@@ -148,9 +318,22 @@ class Scl:
         return candidates[0]
 
     def seen_from(self, subnetwork: str) -> "Scl":
-        """The same configuration for who stands on this subnetwork: IEDs have the addresses they have there.
+        """Restrict the configuration to one subnetwork, so that IEDs have the addresses they have there.
 
-        Raises SclError when the file has no such subnetwork.
+        Parameters
+        ----------
+        subnetwork : str
+            Name of the subnetwork.
+
+        Returns
+        -------
+        Scl
+            The configuration as seen from the subnetwork.
+
+        Raises
+        ------
+        SclError
+            The file has no such subnetwork.
         """
         networks = tuple(network for network in self.communication if network.name == subnetwork)
         if not networks:
@@ -163,7 +346,23 @@ class Scl:
         return replace(self, communication=networks)
 
     def shared_addresses(self, ied_names: Iterable[str]) -> dict[Address, tuple[str, ...]]:
-        """Addresses that several of these IEDs have, and which ones do; SclError as for `address`."""
+        """Find addresses that several IEDs have.
+
+        Parameters
+        ----------
+        ied_names : iterable of str
+            Names of the IEDs to compare.
+
+        Returns
+        -------
+        dict of Address to tuple of str
+            Names of the IEDs by shared address.
+
+        Raises
+        ------
+        SclError
+            An IED has no usable address.
+        """
         holders: dict[Address, list[str]] = {}
         for name in ied_names:
             address = self.address(name)
@@ -171,7 +370,15 @@ class Scl:
         return {address: tuple(names) for address, names in holders.items() if len(names) > 1}
 
     def feeders(self) -> tuple[MotorFeeder, ...]:
-        """Every motor (ConductingEquipment, type MOT) with the IED attached to it or else to its bay."""
+        """List every motor with the IED attached to it or else to its bay.
+
+        A motor is a ConductingEquipment of type MOT.
+
+        Returns
+        -------
+        tuple of MotorFeeder
+            The motors in file order.
+        """
         return tuple(self._feeders())
 
     def _feeders(self) -> Iterator[MotorFeeder]:
@@ -212,7 +419,7 @@ class Scl:
 
 
 def _canonical(host: str) -> str:
-    """One address may be written in several ways: ::1 is 0:0:0:0:0:0:0:1, PUMPS.PLANT is pumps.plant."""
+    """Return one spelling of a host: ::1 is 0:0:0:0:0:0:0:1, PUMPS.PLANT is pumps.plant."""
     try:
         return str(ip_address(host))
     except ValueError:

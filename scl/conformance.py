@@ -1,4 +1,4 @@
-"""Where a document departs from the SCL schema: findings with lines, never a refusal."""
+"""Departures of a document from the SCL schema: findings with lines, never a refusal."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,12 @@ _Shape = tuple[_Tag, tuple[_Tag, ...]]
 def check_conformance(document: Document) -> None:
     """Note what is missing, misplaced or unknown in the SCL namespace, and values the schema does not allow.
 
-    Other namespaces and Private elements are vendors' own and passed over.
+    Other namespaces and Private elements belong to vendors and are passed over.
+
+    Parameters
+    ----------
+    document : Document
+        The document; it collects the findings.
     """
     _Checker(document).check()
 
@@ -49,7 +54,10 @@ class _Checker:
             pending.extend(children)
 
     def _checked_children(self, element: etree._Element, rule: Rule, shape: _Shape) -> list[etree._Element]:
-        """Those of a known tag; the shape is sound where there was nothing to note or to leave out."""
+        """Check the children and return those of a known tag.
+
+        The shape counts as sound if there was nothing to note or to leave out.
+        """
         noted = len(self._document.findings)
         children = self._children(element)
         self._check_children(element, rule, children)
@@ -58,7 +66,10 @@ class _Checker:
         return [child for child, _ in children]
 
     def _children(self, element: etree._Element) -> list[tuple[etree._Element, str]]:
-        """Children of the SCL namespace and their tags; those of no known tag are noted and left out."""
+        """Return the children of known tags with their tags.
+
+        Unknown ones of the SCL namespace are noted and left out.
+        """
         found = []
         for child in element:
             tag = self._tags.get(str(child.tag))

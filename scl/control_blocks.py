@@ -25,7 +25,23 @@ SAMPLE_MODES = ("SmpPerPeriod", "SmpPerSec", "SecPerSmp")
 
 
 class ControlBlockReader:
-    """Reads the control blocks of one logical node. device: inst of its logical device."""
+    """Reads the control blocks of one logical node.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+    addresses : MulticastAddresses
+        Multicast addresses of its communication section.
+    ied : str
+        Name of the IED.
+    device : str
+        The inst of the logical device.
+    node : str
+        Reference of the logical node.
+    data_sets : mapping of str to DataSet
+        Data sets of the logical node by name.
+    """
 
     def __init__(
         self,
@@ -47,7 +63,7 @@ class ControlBlockReader:
     def _named(
         self, elements: Iterator[etree._Element] | list[etree._Element]
     ) -> Iterator[tuple[str, etree._Element]]:
-        """Control blocks of one kind by name, each name once."""
+        """Iterate over control blocks of one kind with their names, each name once."""
         seen: set[str] = set()
         for element in elements:
             name = self._document.usable_name(element, "name")
@@ -60,20 +76,79 @@ class ControlBlockReader:
             yield name, element
 
     def reports(self, elements: list[etree._Element]) -> tuple[ReportControl, ...]:
+        """Read report controls.
+
+        Parameters
+        ----------
+        elements : list of lxml.etree._Element
+            ReportControl elements.
+
+        Returns
+        -------
+        tuple of ReportControl
+            The report controls that clients can address.
+        """
         return tuple(self._report(name, element) for name, element in self._named(elements))
 
     def logs(self, elements: list[etree._Element]) -> tuple[LogControl, ...]:
+        """Read log controls.
+
+        Parameters
+        ----------
+        elements : list of lxml.etree._Element
+            LogControl elements.
+
+        Returns
+        -------
+        tuple of LogControl
+            The log controls that clients can address.
+        """
         return tuple(self._log(name, element) for name, element in self._named(elements))
 
     def goose(self, elements: list[etree._Element]) -> tuple[GooseControl, ...]:
-        """GOOSE; its forerunner GSSE carries no data set and is passed over."""
+        """Read GOOSE controls. GSSE, the forerunner of GOOSE, carries no data set and is passed over.
+
+        Parameters
+        ----------
+        elements : list of lxml.etree._Element
+            GSEControl elements.
+
+        Returns
+        -------
+        tuple of GooseControl
+            The GOOSE controls that clients can address.
+        """
         kept = (element for element in elements if element.get("type", "GOOSE") == "GOOSE")
         return tuple(self._goose(name, element) for name, element in self._named(kept))
 
     def sampled_values(self, elements: list[etree._Element]) -> tuple[SampledValueControl, ...]:
+        """Read sampled value controls.
+
+        Parameters
+        ----------
+        elements : list of lxml.etree._Element
+            SampledValueControl elements.
+
+        Returns
+        -------
+        tuple of SampledValueControl
+            The sampled value controls that clients can address.
+        """
         return tuple(self._sampled_values(name, element) for name, element in self._named(elements))
 
     def setting_groups(self, elements: list[etree._Element]) -> SettingGroups | None:
+        """Read the setting groups.
+
+        Parameters
+        ----------
+        elements : list of lxml.etree._Element
+            SettingControl elements, at most one by the schema.
+
+        Returns
+        -------
+        SettingGroups or None
+            The setting groups; None without an element.
+        """
         if not elements:
             return None
         number = self._document.integer(elements[0], "numOfSGs", 1, maximum=255)

@@ -48,7 +48,7 @@ class TriggerOptions(Flag):
 
 
 class OptionalFields(Flag):
-    """What a report carries besides the values (IEC 61850-7-2, PACKED LIST OptFlds)."""
+    """What a report carries besides the values (IEC 61850-7-2, OptFlds)."""
 
     NONE = 0
     SEQUENCE_NUMBER = 1
@@ -63,13 +63,32 @@ class OptionalFields(Flag):
 
 @dataclass(frozen=True, slots=True)
 class Enumeration:
-    """An EnumType: names by ordinal."""
+    """An EnumType: names by ordinal.
+
+    Parameters
+    ----------
+    id : str
+        The type's id.
+    literals : tuple of tuple of int and str
+        Ordinals and names.
+    """
 
     id: str
     literals: tuple[tuple[int, str], ...]
 
     def ordinal(self, text: str) -> int | None:
-        """Ordinal of a literal, or of an ordinal written as a number; None when it is neither."""
+        """Find the ordinal of a literal, or of an ordinal written as a number.
+
+        Parameters
+        ----------
+        text : str
+            The literal or number.
+
+        Returns
+        -------
+        int or None
+            The ordinal; None if the text is neither.
+        """
         for number, literal in self.literals:
             if literal == text:
                 return number
@@ -78,11 +97,26 @@ class Enumeration:
 
 @dataclass(frozen=True, slots=True)
 class DataAttribute:
-    """An attribute with its functional constraint; `attributes` are the components of a Struct.
+    """A data attribute with its functional constraint.
 
-    basic_type: the SCL's bType ("BOOLEAN", "FLOAT32", "Enum", "Struct" ...).
-    value: initial value as written in the file; None where the file gives none.
-    count: number of array elements, 0 for no array.
+    Parameters
+    ----------
+    name : str
+        Name of the attribute.
+    fc : FunctionalConstraint
+        Its functional constraint.
+    basic_type : str
+        The SCL's bType ("BOOLEAN", "FLOAT32", "Enum", "Struct" and so on).
+    trigger_options : TriggerOptions
+        Changes that make a report.
+    value : str or None
+        Initial value as written in the file; None where the file gives none.
+    enumeration : Enumeration or None
+        Type of an Enum.
+    attributes : tuple of DataAttribute
+        Components of a Struct.
+    count : int
+        Number of array elements, 0 for no array.
     """
 
     name: str
@@ -96,7 +130,7 @@ class DataAttribute:
 
     @property
     def ordinal(self) -> int | None:
-        """Ordinal of an enumeration's initial value."""
+        """Ordinal of an enumeration's initial value; None where there is none."""
         if self.enumeration is None or self.value is None:
             return None
         return self.enumeration.ordinal(self.value)
@@ -104,7 +138,23 @@ class DataAttribute:
 
 @dataclass(frozen=True, slots=True)
 class DataObject:
-    """A data object of a common data class; `objects` are its sub data objects (phsA of a WYE)."""
+    """A data object of a common data class.
+
+    Parameters
+    ----------
+    name : str
+        Name of the object.
+    common_data_class : str
+        Its CDC, such as "SPC".
+    objects : tuple of DataObject
+        Sub data objects, such as phsA of a WYE.
+    attributes : tuple of DataAttribute
+        Its attributes.
+    count : int
+        Number of array elements, 0 for no array.
+    transient : bool
+        Whether the object is transient: it falls back by itself.
+    """
 
     name: str
     common_data_class: str
@@ -114,7 +164,18 @@ class DataObject:
     transient: bool = False
 
     def find(self, path: str) -> "DataObject | DataAttribute | None":
-        """Sub object or attribute at a path below this object, such as "phsA.cVal.mag.f"."""
+        """Find a sub object or attribute below this object.
+
+        Parameters
+        ----------
+        path : str
+            Path such as "phsA.cVal.mag.f".
+
+        Returns
+        -------
+        DataObject or DataAttribute or None
+            What was found; None where there is nothing.
+        """
         node: DataObject | DataAttribute | None = self
         for name in path.split("."):
             if node is None:
@@ -133,16 +194,35 @@ class DataObject:
         return CONTROL_MODELS[ordinal] if ordinal is not None and ordinal in range(5) else None
 
     def constraints(self) -> frozenset[FunctionalConstraint]:
-        """Functional constraints that occur anywhere in the object."""
+        """Collect the functional constraints that occur anywhere in the object.
+
+        Returns
+        -------
+        frozenset of FunctionalConstraint
+            The constraints.
+        """
         below = (child.constraints() for child in self.objects)
         return frozenset(attribute.fc for attribute in self.attributes).union(*below)
 
 
 @dataclass(frozen=True, slots=True)
 class DataSetMember:
-    """An FCDA. reference: full reference of the object or attribute.
+    """A member of a data set (FCDA).
 
-    logical_device: inst; path: below the logical node, without array index; index: array element or None.
+    Parameters
+    ----------
+    reference : str
+        Full reference of the object or attribute.
+    fc : FunctionalConstraint
+        Its functional constraint.
+    logical_device : str
+        The inst of its logical device.
+    logical_node : str
+        Name of its logical node.
+    path : str
+        Path below the logical node, without array index.
+    index : int or None
+        Array element; None for none.
     """
 
     reference: str
@@ -153,7 +233,18 @@ class DataSetMember:
     index: int | None = None
 
     def covers(self, reference: str) -> bool:
-        """Whether a report of this member carries the referenced object, or part of it."""
+        """Tell whether a report of this member carries a referenced object, or part of it.
+
+        Parameters
+        ----------
+        reference : str
+            Full reference of the object or attribute.
+
+        Returns
+        -------
+        bool
+            True if it does.
+        """
         return f"{self.reference}.".startswith(f"{reference}.") or f"{reference}.".startswith(
             f"{self.reference}."
         )
@@ -161,23 +252,68 @@ class DataSetMember:
 
 @dataclass(frozen=True, slots=True)
 class DataSet:
-    """An ordered list of members; reference as in "A1_SEL710CFG/LLN0.DSet01"."""
+    """An ordered list of members.
+
+    Parameters
+    ----------
+    name : str
+        Name of the data set.
+    reference : str
+        Reference such as "A1_SEL710CFG/LLN0.DSet01".
+    members : tuple of DataSetMember
+        The members in order.
+    """
 
     name: str
     reference: str
     members: tuple[DataSetMember, ...]
 
     def covers(self, reference: str) -> bool:
-        """Whether a member carries the referenced object, or part of it."""
+        """Tell whether a member carries a referenced object, or part of it.
+
+        Parameters
+        ----------
+        reference : str
+            Full reference of the object or attribute.
+
+        Returns
+        -------
+        bool
+            True if one does.
+        """
         return any(member.covers(reference) for member in self.members)
 
 
 @dataclass(frozen=True, slots=True)
 class ReportControl:
-    """A report control: one SCL element, `instances` control blocks, each for one client at a time.
+    """A report control: one SCL element for one or more control blocks, each for one client at a time.
 
-    references: of the control blocks as clients address them ("A1_SEL710CFG/LLN0.BR.BRep01").
-    data_set: the data set's own name, or None.  buffer_time_ms, integrity_period_ms [ms].
+    Parameters
+    ----------
+    name : str
+        Name of the report control.
+    references : tuple of str
+        References of the control blocks as clients address them ("A1_SEL710CFG/LLN0.BR.BRep01").
+    buffered : bool
+        Whether the blocks buffer reports while no client has them.
+    data_set : DataSet or None
+        The data set that is reported.
+    report_id : str or None
+        RptID.
+    configuration_revision : int
+        ConfRev.
+    trigger_options : TriggerOptions
+        What makes a report.
+    optional_fields : OptionalFields
+        What a report carries besides the values.
+    buffer_time_ms : int
+        Time in which changes are collected into one report [ms].
+    integrity_period_ms : int
+        Period of reports of all members [ms]; 0 for none.
+
+    References
+    ----------
+    IEC 61850-7-2 clause 17; IEC 61850-6 clause 9.3.8.
     """
 
     name: str
@@ -199,6 +335,26 @@ class ReportControl:
 
 @dataclass(frozen=True, slots=True)
 class LogControl:
+    """A log control block.
+
+    Parameters
+    ----------
+    name : str
+        Name of the block.
+    data_set : str or None
+        Name of the data set that is logged.
+    log : str or None
+        Name of the log.
+    trigger_options : TriggerOptions
+        What makes an entry.
+    integrity_period_ms : int
+        Period of entries of all members [ms]; 0 for none.
+    enabled : bool
+        Whether logging is on at first.
+    reason_code : bool
+        Whether entries carry the reason.
+    """
+
     name: str
     data_set: str | None
     log: str | None
@@ -210,7 +366,23 @@ class LogControl:
 
 @dataclass(frozen=True, slots=True)
 class MulticastAddress:
-    """mac: six bytes. Times in ms, None where the file gives none."""
+    """Multicast address of a GOOSE or sampled value control block.
+
+    Parameters
+    ----------
+    mac : bytes
+        Six octets of the MAC address.
+    application_id : int
+        APPID.
+    vlan_id : int
+        Virtual LAN.
+    vlan_priority : int
+        Priority in the virtual LAN, 0 to 7.
+    minimum_time_ms : int or None
+        Shortest time between retransmissions [ms]; None where the file gives none.
+    maximum_time_ms : int or None
+        Longest time between retransmissions [ms]; None where the file gives none.
+    """
 
     mac: bytes
     application_id: int
@@ -222,7 +394,23 @@ class MulticastAddress:
 
 @dataclass(frozen=True, slots=True)
 class GooseControl:
-    """A GOOSE control block; the multicast address is None where the communication section has none."""
+    """A GOOSE control block.
+
+    Parameters
+    ----------
+    name : str
+        Name of the block.
+    application_id : str
+        Identification of the application, appID.
+    data_set : str or None
+        Name of the data set that is sent.
+    configuration_revision : int
+        ConfRev.
+    fixed_offsets : bool
+        Whether the encoding has fixed offsets.
+    address : MulticastAddress or None
+        Where it is sent; None where the communication section has no address.
+    """
 
     name: str
     application_id: str
@@ -234,7 +422,27 @@ class GooseControl:
 
 @dataclass(frozen=True, slots=True)
 class SampledValueControl:
-    """sample_mode: what sample_rate counts: 0 samples a period, 1 samples a second, 2 seconds a sample."""
+    """A sampled value control block.
+
+    Parameters
+    ----------
+    name : str
+        Name of the block.
+    stream_id : str
+        Identification of the stream, smvID.
+    data_set : str or None
+        Name of the data set that is sent.
+    configuration_revision : int
+        ConfRev.
+    sample_mode : int
+        What the sample rate counts: 0 samples a period, 1 samples a second, 2 seconds a sample.
+    sample_rate : int
+        Sample rate in the unit of the mode.
+    multicast : bool
+        Whether the stream is multicast.
+    address : MulticastAddress or None
+        Where it is sent; None where the communication section has no address.
+    """
 
     name: str
     stream_id: str
@@ -248,13 +456,53 @@ class SampledValueControl:
 
 @dataclass(frozen=True, slots=True)
 class SettingGroups:
+    """Setting groups of a logical device.
+
+    Parameters
+    ----------
+    number : int
+        Number of groups.
+    active : int
+        The active group, from 1.
+    """
+
     number: int
     active: int
 
 
 @dataclass(frozen=True, slots=True)
 class LogicalNode:
-    """A logical node; `reference` as in "A1_SEL710PRO/FLTRDRE1", `ln_class` as in "RDRE"."""
+    """A logical node with its data and control blocks.
+
+    Parameters
+    ----------
+    reference : str
+        Reference such as "A1_SEL710PRO/FLTRDRE1".
+    prefix : str
+        Prefix of the name.
+    ln_class : str
+        Class, such as "RDRE".
+    inst : str
+        Instance number.
+    description : str
+        Description for people.
+    data_objects : tuple of DataObject
+        Its data objects.
+    data_sets : tuple of DataSet
+        Its data sets.
+    report_controls : tuple of ReportControl
+        Its report controls.
+    log_controls : tuple of LogControl
+        Its log controls.
+    logs : tuple of str
+        Names of its logs.
+    goose_controls : tuple of GooseControl
+        Its GOOSE controls.
+    sampled_value_controls : tuple of SampledValueControl
+        Its sampled value controls.
+    setting_groups : SettingGroups or None
+        The setting groups, of LLN0 only.
+    """
 
     reference: str
     prefix: str
@@ -272,22 +520,55 @@ class LogicalNode:
 
     @property
     def name(self) -> str:
+        """Name of the node: prefix, class and instance number."""
         return f"{self.prefix}{self.ln_class}{self.inst}"
 
     def find(self, path: str) -> DataObject | DataAttribute | None:
-        """Data object or attribute at a path below the node, such as "A.phsA.cVal.mag.f"."""
+        """Find a data object or attribute below the node.
+
+        Parameters
+        ----------
+        path : str
+            Path such as "A.phsA.cVal.mag.f".
+
+        Returns
+        -------
+        DataObject or DataAttribute or None
+            What was found; None where there is nothing.
+        """
         name, _, rest = path.partition(".")
         found = next((child for child in self.data_objects if child.name == name), None)
         return found.find(rest) if found is not None and rest else found
 
     def holds(self, path: str, constraint: FunctionalConstraint) -> bool:
-        """Whether there is data of a constraint at a path below the node."""
+        """Tell whether there is data of a constraint at a path below the node.
+
+        Parameters
+        ----------
+        path : str
+            Path such as "A.phsA".
+        constraint : FunctionalConstraint
+            Functional constraint of the data.
+
+        Returns
+        -------
+        bool
+            True if there is.
+        """
         return _has(self.find(path), constraint)
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedObject:
-    """A data object with the reference clients address it by."""
+    """A data object with the reference that clients address it by.
+
+    Parameters
+    ----------
+    reference : str
+        Reference of the object.
+    data_object : DataObject
+        The object.
+    """
 
     reference: str
     data_object: DataObject
@@ -295,7 +576,21 @@ class PlacedObject:
 
 @dataclass(frozen=True, slots=True)
 class LogicalDevice:
-    """inst: its name in the IED; name: the MMS domain, the file's ldName (`named`) or IED name and inst."""
+    """A logical device of an IED.
+
+    Parameters
+    ----------
+    inst : str
+        Its name in the IED.
+    name : str
+        The MMS domain: the file's ldName, or the IED's name and the inst.
+    description : str
+        Description for people.
+    logical_nodes : tuple of LogicalNode
+        Its logical nodes, LLN0 first.
+    named : bool
+        Whether the file gives an ldName.
+    """
 
     inst: str
     name: str
@@ -304,11 +599,35 @@ class LogicalDevice:
     named: bool = False
 
     def logical_node(self, name: str) -> LogicalNode | None:
+        """Find a logical node by its name.
+
+        Parameters
+        ----------
+        name : str
+            Name such as "FLTRDRE1".
+
+        Returns
+        -------
+        LogicalNode or None
+            The node; None where there is none of this name.
+        """
         return next((node for node in self.logical_nodes if node.name == name), None)
 
 
 @dataclass(frozen=True, slots=True)
 class AccessPoint:
+    """An access point of an IED with the logical devices of its server.
+
+    Parameters
+    ----------
+    name : str
+        Name of the access point.
+    description : str
+        Description for people.
+    logical_devices : tuple of LogicalDevice
+        Logical devices of its server; empty without one.
+    """
+
     name: str
     description: str
     logical_devices: tuple[LogicalDevice, ...]
@@ -316,7 +635,25 @@ class AccessPoint:
 
 @dataclass(frozen=True, slots=True)
 class Ied:
-    """An intelligent electronic device: here a motor protection relay."""
+    """An intelligent electronic device; here a motor protection relay.
+
+    Parameters
+    ----------
+    name : str
+        Name of the IED.
+    manufacturer : str
+        Its manufacturer.
+    type : str
+        Its type.
+    description : str
+        Description for people.
+    configuration_version : str
+        Version of its configuration.
+    access_points : tuple of AccessPoint
+        Its access points.
+    reports_show_owner : bool
+        Whether report control blocks tell which client has them.
+    """
 
     name: str
     manufacturer: str
@@ -328,11 +665,22 @@ class Ied:
 
     @property
     def logical_devices(self) -> tuple[LogicalDevice, ...]:
-        """Of every access point's server."""
+        """Logical devices of the servers of all access points."""
         return tuple(device for point in self.access_points for device in point.logical_devices)
 
     def logical_nodes(self, ln_class: str | None = None) -> tuple[LogicalNode, ...]:
-        """All logical nodes, or those of one class ("RDRE")."""
+        """List the logical nodes.
+
+        Parameters
+        ----------
+        ln_class : str, optional
+            Class of the nodes, such as "RDRE". All by default.
+
+        Returns
+        -------
+        tuple of LogicalNode
+            The nodes in file order.
+        """
         return tuple(
             node
             for device in self.logical_devices
@@ -343,7 +691,22 @@ class Ied:
     def data_objects(
         self, *, ln_class: str | None = None, name: str | None = None, common_data_class: str | None = None
     ) -> tuple[PlacedObject, ...]:
-        """Data objects by logical node class ("RDRE"), name ("RcdMade") and CDC ("SPC"), in file order."""
+        """List data objects.
+
+        Parameters
+        ----------
+        ln_class : str, optional
+            Class of their logical node, such as "RDRE".
+        name : str, optional
+            Their name, such as "RcdMade".
+        common_data_class : str, optional
+            Their CDC, such as "SPC".
+
+        Returns
+        -------
+        tuple of PlacedObject
+            Matching objects with their references, in file order.
+        """
         return tuple(
             PlacedObject(f"{node.reference}.{data_object.name}", data_object)
             for node in self.logical_nodes(ln_class)
@@ -352,7 +715,18 @@ class Ied:
         )
 
     def find(self, reference: str) -> DataObject | DataAttribute | None:
-        """Object or attribute by full reference; a logical device's inst may stand for its domain."""
+        """Find a data object or attribute by its full reference.
+
+        Parameters
+        ----------
+        reference : str
+            Full reference; the inst of a logical device may stand for its domain.
+
+        Returns
+        -------
+        DataObject or DataAttribute or None
+            What was found; None where there is nothing.
+        """
         domain, _, rest = reference.partition("/")
         node_name, _, path = rest.partition(".")
         for device in self.logical_devices:
@@ -362,12 +736,34 @@ class Ied:
         return None
 
     def resolve(self, member: DataSetMember) -> DataObject | DataAttribute | None:
-        """What a data set member names; None when the data model has no such data of its constraint."""
+        """Find what a data set member names.
+
+        Parameters
+        ----------
+        member : DataSetMember
+            The member.
+
+        Returns
+        -------
+        DataObject or DataAttribute or None
+            What was found; None when the data model has no such data of the member's constraint.
+        """
         found = self.find(f"{member.logical_device}/{member.logical_node}.{member.path}")
         return found if _has(found, member.fc) else None
 
     def data_sets(self, *, covering: str | None = None) -> tuple[DataSet, ...]:
-        """All data sets, or those with a member that covers a reference."""
+        """List data sets.
+
+        Parameters
+        ----------
+        covering : str, optional
+            Full reference that a member must cover. All data sets by default.
+
+        Returns
+        -------
+        tuple of DataSet
+            The data sets in file order.
+        """
         return tuple(
             data_set
             for node in self.logical_nodes()
@@ -378,7 +774,20 @@ class Ied:
     def report_controls(
         self, *, buffered: bool | None = None, covering: str | None = None
     ) -> tuple[ReportControl, ...]:
-        """Report controls, buffered or not, whose data set covers a reference, in file order."""
+        """List report controls.
+
+        Parameters
+        ----------
+        buffered : bool, optional
+            Whether they are buffered. Both kinds by default.
+        covering : str, optional
+            Full reference that their data set must cover.
+
+        Returns
+        -------
+        tuple of ReportControl
+            Matching report controls in file order.
+        """
         return tuple(self._matching_reports(buffered, covering))
 
     def _matching_reports(self, buffered: bool | None, covering: str | None) -> Iterator[ReportControl]:
@@ -391,7 +800,7 @@ class Ied:
 
 
 def _has(found: DataObject | DataAttribute | None, constraint: FunctionalConstraint) -> bool:
-    """Whether what was found has data of a constraint; an editable setting is read as the active one too."""
+    """Tell whether what was found has data of a constraint; an editable setting also counts as active."""
     constraints = found.constraints() if isinstance(found, DataObject) else {found.fc} if found else set()
     editable = constraint is FunctionalConstraint.SG and FunctionalConstraint.SE in constraints
     return constraint in constraints or editable

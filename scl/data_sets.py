@@ -14,7 +14,15 @@ ARRAY_INDEX = re.compile(r"\(([0-9]{1,6})\)")
 
 
 class DataSetReader:
-    """Reads the data sets of one IED. domains: MMS domain by logical device inst."""
+    """Reads the data sets of one IED.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+    domains : dict of str to str
+        MMS domain by inst of the logical device.
+    """
 
     def __init__(self, document: Document, domains: dict[str, str]) -> None:
         self._document = document
@@ -22,7 +30,22 @@ class DataSetReader:
         self._members: list[tuple[etree._Element, DataSetMember]] = []
 
     def data_sets(self, elements: list[etree._Element], reference: str, device: str) -> dict[str, DataSet]:
-        """The data sets of a logical node of a device, by name; those no client could name are left out."""
+        """Read the data sets of a logical node; those no client could name are left out.
+
+        Parameters
+        ----------
+        elements : list of lxml.etree._Element
+            DataSet elements.
+        reference : str
+            Reference of the logical node.
+        device : str
+            The inst of its logical device.
+
+        Returns
+        -------
+        dict of str to DataSet
+            The data sets by name.
+        """
         document = self._document
         data_sets: dict[str, DataSet] = {}
         for element in elements:
@@ -39,7 +62,13 @@ class DataSetReader:
         return data_sets
 
     def check(self, ied: Ied) -> None:
-        """Findings for members that name no data of the IED, once all of it has been read."""
+        """Note members that name no data of the IED. Call it once all of the IED has been read.
+
+        Parameters
+        ----------
+        ied : Ied
+            The IED.
+        """
         nodes = {
             (device.inst, node.name): node for device in ied.logical_devices for node in device.logical_nodes
         }
@@ -90,7 +119,7 @@ class DataSetReader:
 # Relays of one make repeat the same members thousands of times.
 @lru_cache(maxsize=8192)
 def _logical_node(prefix: str, ln_class: str, inst: str) -> str | None:
-    """The node's name, None where a part of it is none."""
+    """Return the node's name, None where a part of it is no name."""
     return (
         prefix + ln_class + inst
         if all(NAME.fullmatch(word or "x") for word in (prefix, ln_class, inst))
@@ -100,7 +129,7 @@ def _logical_node(prefix: str, ln_class: str, inst: str) -> str | None:
 
 @lru_cache(maxsize=8192)
 def _path(do_name: str, da_name: str, ix: str) -> tuple[str, str]:
-    """The path below the node without array index, and the index as it is written.
+    """Return the path below the node without array index, and the index as it is written.
 
     Edition 1 writes it into the name, "phsAHar(2)"; edition 2 has the attribute ix.
     """

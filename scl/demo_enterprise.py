@@ -1,7 +1,7 @@
 """The demo enterprise's SCD: the demo plant's relays, each a host of its own behind its factory's router.
 
-On its factory's network a relay has a name of its own and the standard's port. From the wide-area network
-it is reached at its router, at the port the relay has in the demo plant. Names are host names (P element
+On its factory's network a relay has a name of its own and the standard's port. From the wide-area network it
+is reached at its router, at the port the relay has in the demo plant. Names are host names (P element
 DNSName, IEC 61850-6 edition 2.1), so that whoever runs the hosts may give them any IP address.
 
 `python -m scl.demo_enterprise FILE` writes it.
@@ -23,7 +23,13 @@ ROUTERS = {"FACTORY_A": "router-a", "FACTORY_B": "router-b"}
 
 
 def write_demo_enterprise(path: Path | str) -> None:
-    """Write the SCD: that of the demo plant with one more subnetwork and other addresses."""
+    """Write the SCD: that of the demo plant with one more subnetwork and other addresses.
+
+    Parameters
+    ----------
+    path : pathlib.Path or str
+        The file to write.
+    """
     enterprise = Document(DEMO_PLANT_SCD)
     enterprise.root.set("release", "4")
     header = next(enterprise.children(enterprise.root, "Header"))
@@ -47,7 +53,7 @@ def write_demo_enterprise(path: Path | str) -> None:
 
 
 def _set_host(document: Document, connected: etree._Element, name: str, port: int | None = None) -> None:
-    """A host name instead of an IP address; the port as it was where none is given."""
+    """Replace the IP address by a host name, and the port where one is given."""
     (address,) = document.children(connected, "Address")
     for parameter in list(document.children(address, "P")):
         match parameter.get("type"):

@@ -19,7 +19,19 @@ FIRST_PORT = 10210
 
 @dataclass(frozen=True, slots=True)
 class Drive:
-    """A motor and the relay that protects it."""
+    """A motor and the relay that protects it.
+
+    Parameters
+    ----------
+    motor : str
+        Name of the motor.
+    description : str
+        Its description.
+    bay : str
+        Name of its bay.
+    ied : str
+        Name of the relay's IED.
+    """
 
     motor: str
     description: str
@@ -51,7 +63,13 @@ ATTACHED = (("PRO", "TRIP", "PTRC"), ("PRO", "FLT", "RDRE"), ("MET", "MET", "MMX
 
 
 def write_demo_plant(path: Path | str) -> None:
-    """Write the SCD: substations, communication, six IEDs and the data types they share."""
+    """Write the SCD: substations, communication, six IEDs and the data types they share.
+
+    Parameters
+    ----------
+    path : pathlib.Path or str
+        The file to write.
+    """
     plant = Document(SEL710_ICD)
     header, communication, template, types = plant.root
     header.set("id", "Demo plant")
@@ -97,7 +115,7 @@ def _substation(plant: Document, name: str, description: str, drives: tuple[Driv
 
 
 def _relay(drive: Drive, address: Address) -> tuple[etree._Element, etree._Element]:
-    """The ConnectedAP and the IED of a drive's relay, made from the ICD."""
+    """Make the ConnectedAP and the IED of a drive's relay from the ICD."""
     relay = Document(SEL710_ICD)
     rename_ied(relay, drive.ied)
     set_address(relay, drive.ied, address)

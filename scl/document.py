@@ -1,6 +1,7 @@
 """One XML file of the Substation Configuration Language: safe parsing, and places in it for messages.
 
-The file is hostile until proven otherwise: no document type, no entities, no network, bounded size and depth.
+The file may be hostile, so the parser allows no document type, no entities and no network, and bounds size
+and depth.
 """
 
 import re
@@ -24,7 +25,25 @@ MOST_FINDINGS = 1000
 
 
 def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> etree._ElementTree:
-    """The XML tree of a file, without comments; SclError when it is no well-formed and safe XML."""
+    """Parse an XML file without its comments.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    largest_bytes : int
+        Size above which the file is refused [byte].
+
+    Returns
+    -------
+    lxml.etree._ElementTree
+        The XML tree.
+
+    Raises
+    ------
+    SclError
+        The file cannot be read, is too large, or is no well-formed and safe XML.
+    """
     try:
         with path.open("rb") as file:
             data = file.read(largest_bytes + 1)
@@ -55,7 +74,18 @@ def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> etree._Elem
 
 
 def excerpt(element: etree._Element) -> str:
-    """The start tag for a message: its name and the attributes that identify it, shortened."""
+    """Shorten a start tag for a message: its name and the attributes that identify it.
+
+    Parameters
+    ----------
+    element : lxml.etree._Element
+        The element.
+
+    Returns
+    -------
+    str
+        The start tag, about 60 characters at most.
+    """
     name = etree.QName(element).localname
     identity = [f'{key}="{element.get(key)}"' for key in IDENTITY if element.get(key) is not None]
     text = " ".join([name, *identity])
@@ -63,7 +93,20 @@ def excerpt(element: etree._Element) -> str:
 
 
 class Document:
-    """An SCL file being read: typed access to elements and attributes, and the findings collected so far."""
+    """An SCL file being read: typed access to elements and attributes, and the findings collected so far.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    largest_bytes : int
+        Size above which the file is refused [byte].
+
+    Raises
+    ------
+    SclError
+        The file is no safe XML, or its root element is no SCL.
+    """
 
     def __init__(self, path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> None:
         self.path = path
@@ -79,6 +122,22 @@ class Document:
             self.note(self.root, f"no namespace: read as {NAMESPACE}")
 
     def error(self, element: etree._Element, expected: str, found: str) -> SclError:
+        """Make an error that names the file, the line and the element.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The element at fault.
+        expected : str
+            What should be there.
+        found : str
+            What is there.
+
+        Returns
+        -------
+        SclError
+            The error.
+        """
         return SclError(
             self.path,
             line=_line(element),
@@ -88,23 +147,66 @@ class Document:
         )
 
     def note(self, element: etree._Element, message: str) -> None:
-        """Add a finding; of very many only the first are kept, and the last of those says so."""
+        """Add a finding. Of very many only the first are kept, and the last of those says so.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The odd element.
+        message : str
+            What is odd.
+        """
         if len(self.findings) < MOST_FINDINGS:
             self.findings.append(Finding(_line(element), excerpt(element), message))
         elif len(self.findings) == MOST_FINDINGS:
             self.findings.append(Finding(_line(element), excerpt(element), "more is odd: not listed"))
 
     def is_own(self, element: etree._Element) -> bool:
-        """Whether an element is of the SCL namespace, not a vendor's."""
+        """Tell whether an element is of the SCL namespace, not a vendor's.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The element.
+
+        Returns
+        -------
+        bool
+            True if it is.
+        """
         tag = str(element.tag)
         return tag.startswith(self._prefix) if self._prefix else not tag.startswith("{")
 
     def qualified(self, tag: str) -> str:
-        """A tag as the parser gives it in this document, with its namespace."""
+        """Qualify a tag with the namespace, as the parser gives it in this document.
+
+        Parameters
+        ----------
+        tag : str
+            Tag without namespace.
+
+        Returns
+        -------
+        str
+            The qualified tag.
+        """
         return self._prefix + tag
 
     def children(self, element: etree._Element | None, *tags: str) -> Iterator[etree._Element]:
-        """Children of the SCL namespace with one of the tags, in file order."""
+        """Iterate over the children with one of the tags, in file order.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element or None
+            The parent; None has no children.
+        *tags : str
+            Tags of the SCL namespace.
+
+        Returns
+        -------
+        iterator of lxml.etree._Element
+            The children.
+        """
         if element is None:
             return iter(())
         names = self._names.get(tags)
@@ -113,7 +215,18 @@ class Document:
         return element.iterchildren(*names)
 
     def grouped(self, element: etree._Element) -> defaultdict[str, list[etree._Element]]:
-        """Children of the SCL namespace by tag, in file order."""
+        """Group the children of the SCL namespace by tag, in file order.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The parent.
+
+        Returns
+        -------
+        defaultdict of str to list of lxml.etree._Element
+            The children by tag.
+        """
         groups: defaultdict[str, list[etree._Element]] = defaultdict(list)
         for child in element:
             if self.is_own(child):
@@ -121,7 +234,20 @@ class Document:
         return groups
 
     def descendants(self, element: etree._Element, tag: str) -> Iterator[etree._Element]:
-        """Elements of a tag at any depth, in file order, but for those inside a Private element."""
+        """Iterate over elements of a tag at any depth, in file order, except those inside a Private element.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The element below which to search.
+        tag : str
+            Tag of the SCL namespace.
+
+        Yields
+        ------
+        lxml.etree._Element
+            The elements.
+        """
         pending = [element]
         while pending:
             current = pending.pop()
@@ -131,20 +257,88 @@ class Document:
                 pending.extend(current.iterchildren(etree.Element, reversed=True))
 
     def child(self, element: etree._Element | None, tag: str) -> etree._Element | None:
+        """Find the first child with a tag.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element or None
+            The parent; None has no children.
+        tag : str
+            Tag of the SCL namespace.
+
+        Returns
+        -------
+        lxml.etree._Element or None
+            The child; None where there is none.
+        """
         return next(self.children(element, tag), None)
 
     def add(self, parent: etree._Element, tag: str, **attributes: str) -> etree._Element:
-        """Append a child of the SCL namespace."""
+        """Append a child of the SCL namespace.
+
+        Parameters
+        ----------
+        parent : lxml.etree._Element
+            The parent.
+        tag : str
+            Tag of the child.
+        **attributes : str
+            Its attributes.
+
+        Returns
+        -------
+        lxml.etree._Element
+            The child.
+        """
         return etree.SubElement(parent, self._prefix + tag, attributes)
 
     def required(self, element: etree._Element, attribute: str) -> str:
+        """Read an attribute that must be there.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The element.
+        attribute : str
+            Name of the attribute.
+
+        Returns
+        -------
+        str
+            Its value.
+
+        Raises
+        ------
+        SclError
+            The attribute is missing.
+        """
         value = element.get(attribute)
         if value is None:
             raise self.error(element, f"an attribute {attribute}", "none")
         return value
 
     def name(self, element: etree._Element, attribute: str, *, default: str | None = None) -> str:
-        """An attribute that becomes part of a reference: letters, digits, _ and - only."""
+        """Read an attribute that becomes part of a reference: letters, digits, _ and - only.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The element.
+        attribute : str
+            Name of the attribute.
+        default : str, optional
+            Value where the attribute is missing. Without it a missing attribute is an error.
+
+        Returns
+        -------
+        str
+            The name.
+
+        Raises
+        ------
+        SclError
+            The attribute is missing or is no such name.
+        """
         value = element.get(attribute, default)
         if value is None:
             raise self.error(element, f"an attribute {attribute}", "none")
@@ -162,7 +356,20 @@ class Document:
         return value
 
     def usable_name(self, element: etree._Element, attribute: str) -> str | None:
-        """A name as `name` gives it; None, with a finding, where there is none a client could use."""
+        """Read a name as `name` does, with a finding in place of an error.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The element.
+        attribute : str
+            Name of the attribute.
+
+        Returns
+        -------
+        str or None
+            The name; None where there is none that a client could use.
+        """
         value = element.get(attribute, "").strip()
         if NAME.fullmatch(value):
             return value
@@ -172,7 +379,24 @@ class Document:
     def integer(
         self, element: etree._Element, attribute: str, default: int, *, maximum: int = 2**32 - 1
     ) -> int:
-        """A number from 0 to maximum; the default, with a finding, where it cannot be one."""
+        """Read a number, with a finding where it cannot be one.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The element.
+        attribute : str
+            Name of the attribute.
+        default : int
+            Value where the attribute is missing or no number.
+        maximum : int
+            Highest number allowed; the lowest is 0.
+
+        Returns
+        -------
+        int
+            The number.
+        """
         text = element.get(attribute)
         number = default if text is None else decimal(text)
         if number is None or not 0 <= number <= maximum:
@@ -181,6 +405,22 @@ class Document:
         return number
 
     def boolean(self, element: etree._Element | None, attribute: str, *, default: bool = False) -> bool:
+        """Read a boolean, with a finding where it cannot be one.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element or None
+            The element; None has no attributes.
+        attribute : str
+            Name of the attribute.
+        default : bool
+            Value where the attribute is missing or no boolean.
+
+        Returns
+        -------
+        bool
+            The value.
+        """
         text = None if element is None else element.get(attribute)
         if element is None or text is None:
             return default
@@ -196,7 +436,26 @@ class Document:
 
 
 def node_name(document: Document, element: etree._Element, inst: str) -> tuple[str, str, str]:
-    """Prefix, class and instance number of an LN, LN0, LNode or FCDA; `inst` is the number's attribute."""
+    """Read the parts of a logical node's name from an LN, LN0, LNode or FCDA.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+    element : lxml.etree._Element
+        The element.
+    inst : str
+        Name of the attribute with the instance number.
+
+    Returns
+    -------
+    prefix : str
+        Prefix of the name.
+    ln_class : str
+        Class of the node.
+    number : str
+        Instance number.
+    """
     is_node_zero = etree.QName(element).localname == "LN0"
     return (
         document.name(element, "prefix", default=""),
@@ -207,13 +466,35 @@ def node_name(document: Document, element: etree._Element, inst: str) -> tuple[s
 
 @lru_cache(maxsize=8192)
 def decimal(text: str) -> int | None:
-    """A decimal number of at most 19 digits; None for anything else."""
+    """Read a decimal number of at most 19 digits.
+
+    Parameters
+    ----------
+    text : str
+        The text, perhaps between blanks.
+
+    Returns
+    -------
+    int or None
+        The number; None for anything else.
+    """
     stripped = text.strip()
     return int(stripped) if re.fullmatch(r"[0-9]{1,19}", stripped) else None
 
 
 def content(element: etree._Element) -> str:
-    """Text of an element, without surrounding blanks."""
+    """Read the text of an element, without surrounding blanks.
+
+    Parameters
+    ----------
+    element : lxml.etree._Element
+        The element.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     return (element.text or "").strip()
 
 

@@ -7,8 +7,18 @@ from pathlib import Path
 class SclError(ValueError):
     """A configuration file cannot be used; nothing of it was repaired or guessed.
 
-    `path` is the file, `line` the line in it (None where no line is at fault), `element` the XML element
-    as it stands there (`<LN lnType="RDRE1">`); `expected` and `found` say why in words a person can act on.
+    Parameters
+    ----------
+    path : pathlib.Path or str
+        The file.
+    expected : str
+        What should be there, in words a person can act on.
+    found : str
+        What is there.
+    line : int, optional
+        Line in the file; None where no line is at fault.
+    element : str
+        XML element as it stands there (`<LN lnType="RDRE1">`).
     """
 
     def __init__(
@@ -32,7 +42,17 @@ def _rebuild(path: Path, expected: str, found: str, line: int | None, element: s
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Something odd in a file that is clear enough to be used all the same."""
+    """Something odd in a file that is clear enough to be used all the same.
+
+    Parameters
+    ----------
+    line : int
+        Line in the file.
+    element : str
+        XML element as it stands there, shortened.
+    message : str
+        What is odd.
+    """
 
     line: int
     element: str

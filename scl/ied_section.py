@@ -15,7 +15,26 @@ DEFAULT_LOG = "GeneralLog"
 
 
 class IedSection:
-    """Reads one IED element."""
+    """Reads one IED element.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+    element : lxml.etree._Element
+        The IED element.
+    templates : Templates
+        Data types of the document.
+    instance_values : InstanceValues
+        Sets the values of instances over the defaults of the types.
+    addresses : MulticastAddresses
+        Multicast addresses of the communication section.
+
+    Raises
+    ------
+    SclError
+        A name is missing, unusable or used twice.
+    """
 
     def __init__(
         self,
@@ -40,6 +59,18 @@ class IedSection:
         self._data_sets = DataSetReader(document, self._domains)
 
     def read(self) -> Ied:
+        """Read the IED.
+
+        Returns
+        -------
+        Ied
+            The IED with its resolved data model.
+
+        Raises
+        ------
+        SclError
+            The data model is unclear.
+        """
         document, element = self._document, self._element
         services = document.child(element, "Services")
         ied = Ied(
@@ -114,7 +145,7 @@ class IedSection:
             ln_class=ln_class,
             inst=inst,
             description=element.get("desc", ""),
-            data_objects=self._instance_values.laid_over(
+            data_objects=self._instance_values.apply(
                 element, self._templates.data_objects(element, ln_class, self._type)
             ),
             data_sets=tuple(data_sets.values()),

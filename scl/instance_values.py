@@ -7,10 +7,15 @@ from scl.document import Document, content
 
 
 class InstanceValues:
-    """Lays the instance values of a document over the data objects of its types.
+    """Sets the instance values of a document over the data objects of its types.
 
-    Relays of one make repeat the same values thousands of times: an attribute with a value is made once and
+    Relays of one make repeat the same values thousands of times. An attribute with a value is made once and
     shared by all that have it.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
     """
 
     def __init__(self, document: Document) -> None:
@@ -20,15 +25,29 @@ class InstanceValues:
         # by the identity of the type's own attribute, which the templates keep as long as they read
         self._valued: dict[tuple[int, str], DataAttribute] = {}
 
-    def laid_over(self, node: etree._Element, objects: tuple[DataObject, ...]) -> tuple[DataObject, ...]:
-        """The data objects of a logical node with its instance values; those without any stay shared."""
+    def apply(self, node: etree._Element, objects: tuple[DataObject, ...]) -> tuple[DataObject, ...]:
+        """Set the instance values of a logical node over its data objects.
+
+        Parameters
+        ----------
+        node : lxml.etree._Element
+            The LN or LN0 element.
+        objects : tuple of DataObject
+            Data objects of the node's type.
+
+        Returns
+        -------
+        tuple of DataObject
+            The objects with their values; those without any stay shared.
+        """
         instances, _ = self._content(node)
         return self._objects(instances, objects, last=True) if instances else objects
 
     def _content(self, element: etree._Element) -> tuple[dict[str, etree._Element], str | None]:
-        """The instances within an instance by name, and its value; of values by setting group, the first's.
+        """Return the instances within an instance by name, and its value.
 
-        One pass over the children: a large substation has hundreds of thousands of these elements.
+        Of values by setting group, the first group's counts. The children are passed once: a large substation
+        has hundreds of thousands of these elements.
         """
         instances: dict[str, etree._Element] = {}
         value: etree._Element | None = None
@@ -42,7 +61,7 @@ class InstanceValues:
         return instances, None if value is None else content(value)
 
     def _add(self, instances: dict[str, etree._Element], child: etree._Element) -> None:
-        """Elements of an array's single members have no place in the data model."""
+        """Add an instance. Elements of an array's single members have no place in the data model."""
         name = child.get("name")
         if name is None:
             self._document.note(child, "an instance without name: left out")
@@ -54,7 +73,7 @@ class InstanceValues:
     def _objects(
         self, instances: dict[str, etree._Element], objects: tuple[DataObject, ...], *, last: bool
     ) -> tuple[DataObject, ...]:
-        """Objects with their instances applied; what was applied is taken out of `instances`."""
+        """Apply the instances to the objects; what was applied is taken out of `instances`."""
         result = tuple(
             self._object(instances.pop(each.name), each) if each.name in instances else each
             for each in objects
@@ -81,7 +100,7 @@ class InstanceValues:
     def _attributes(
         self, instances: dict[str, etree._Element], attributes: tuple[DataAttribute, ...]
     ) -> tuple[DataAttribute, ...]:
-        """Attributes with their instances applied; instances that are left over are noted."""
+        """Apply the instances to the attributes; instances that are left over are noted."""
         result = tuple(
             self._attribute(instances.pop(each.name), each) if each.name in instances else each
             for each in attributes
@@ -111,7 +130,11 @@ class InstanceValues:
 def _changed(
     attribute: DataAttribute, value: str | None, components: tuple[DataAttribute, ...]
 ) -> DataAttribute:
-    """As dataclasses.replace, in a third of its time: a large file has hundreds of thousands of values."""
+    """Copy an attribute with another value and other components.
+
+    It does what dataclasses.replace does in a third of the time: a large file has hundreds of thousands of
+    values.
+    """
     return DataAttribute(
         attribute.name,
         attribute.fc,

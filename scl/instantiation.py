@@ -1,4 +1,4 @@
-"""Writing configuration files: the IED of an ICD under a new name, and copies with other addresses."""
+"""Writing of configuration files: the IED of an ICD under a new name, and copies with other addresses."""
 
 from collections.abc import Mapping
 from ipaddress import ip_address
@@ -18,6 +18,22 @@ def instantiate(
     """Write a CID: the one IED of an ICD under a name, and at an address, of its own.
 
     The name replaces the ICD's (TEMPLATE by convention) wherever the file refers to it.
+
+    Parameters
+    ----------
+    path_in : pathlib.Path or str
+        The ICD.
+    path_out : pathlib.Path or str
+        The CID to write.
+    ied_name : str
+        Name of the IED.
+    address : Address, optional
+        Its address. Without it the ICD's stays.
+
+    Raises
+    ------
+    SclError
+        The file has not exactly one IED, or the name or address is unusable.
     """
     document = Document(Path(path_in))
     rename_ied(document, ied_name)
@@ -29,7 +45,21 @@ def instantiate(
 def with_addresses(path_in: Path | str, path_out: Path | str, addresses: Mapping[str, Address]) -> None:
     """Write a copy of an SCL file in which the named IEDs have other addresses (P elements IP and MMS-Port).
 
-    Every named IED must be in the file; of its access points the one that `Scl.address` reports is changed.
+    Of an IED's access points the one that `Scl.address` reports is changed.
+
+    Parameters
+    ----------
+    path_in : pathlib.Path or str
+        The file.
+    path_out : pathlib.Path or str
+        The copy to write.
+    addresses : mapping of str to Address
+        New addresses by name of the IED.
+
+    Raises
+    ------
+    SclError
+        A named IED is not in the file, or an address is unusable.
     """
     document = Document(Path(path_in))
     scl = read(path_in)
@@ -39,7 +69,20 @@ def with_addresses(path_in: Path | str, path_out: Path | str, addresses: Mapping
 
 
 def rename_ied(document: Document, name: str) -> None:
-    """Give the only IED of a document (an ICD) another name, in the IED and wherever it is referred to."""
+    """Give the only IED of a document (an ICD) another name, in the IED and wherever it is referred to.
+
+    Parameters
+    ----------
+    document : Document
+        The document, which is changed.
+    name : str
+        The new name.
+
+    Raises
+    ------
+    SclError
+        The document has not exactly one IED, or the name is unusable.
+    """
     if not IED_NAME.fullmatch(name):
         raise SclError(
             document.path,
@@ -58,7 +101,24 @@ def rename_ied(document: Document, name: str) -> None:
 
 
 def set_address(document: Document, ied_name: str, address: Address, access_point: str | None = None) -> None:
-    """Change the address of an IED's ConnectedAP, of one access point or of all."""
+    """Change the address of an IED's ConnectedAP, of one access point or of all.
+
+    Parameters
+    ----------
+    document : Document
+        The document, which is changed.
+    ied_name : str
+        Name of the IED.
+    address : Address
+        The new address.
+    access_point : str, optional
+        Name of the access point. All by default.
+
+    Raises
+    ------
+    SclError
+        There is no such ConnectedAP, or the address is unusable.
+    """
     _check(document.path, address)
     found = [
         element
@@ -73,7 +133,15 @@ def set_address(document: Document, ied_name: str, address: Address, access_poin
 
 
 def write(document: Document, path: Path) -> None:
-    """Write a document as UTF-8; comments are not kept."""
+    """Write a document as UTF-8. Comments are not kept.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+    path : pathlib.Path
+        The file to write.
+    """
     path.write_bytes(etree.tostring(document.root, xml_declaration=True, encoding="UTF-8", pretty_print=True))
 
 

@@ -99,9 +99,24 @@ STRING_LENGTHS = {
 
 
 def model_text(scl: Scl, ied_name: str) -> str:
-    """The .cfg text of one IED's servers, every access point's logical devices together.
+    """Write the .cfg text of one IED: the logical devices of all its access points together.
 
-    SclError when the file has no such IED, it serves no data, or a name is too long for the parser.
+    Parameters
+    ----------
+    scl : Scl
+        The configuration.
+    ied_name : str
+        Name of the IED.
+
+    Returns
+    -------
+    str
+        The text.
+
+    Raises
+    ------
+    SclError
+        The file has no such IED, it serves no data, or a name is too long for the parser.
     """
     ied = scl.ied(ied_name)
     if not ied.logical_devices:
@@ -132,9 +147,9 @@ def _is_too_long(line: str) -> bool:
 
 
 def _model(ied: Ied) -> Iterator[str]:
-    """A domain is called by IED name and inst, or by an ldName of its own.
+    """Yield the lines of a model. A domain is called by IED name and inst, or by an ldName of its own.
 
-    The library cannot lead a data set of a domain with a name of its own to members in another: with such a
+    The library cannot lead a data set of a domain with a name of its own to members in another. With such a
     domain in the IED the model has no name, and every logical device carries its domain's whole name as inst.
     """
     own_names = any(device.named for device in ied.logical_devices)
@@ -190,7 +205,7 @@ def _object_parts(data_object: DataObject, *, transient: bool) -> Iterator[str]:
 
 
 def _elements(count: int, parts: list[str]) -> Iterator[str]:
-    """The parts of an object or struct; of an array, once for each element."""
+    """Yield the parts of an object or struct; of an array, once for each element."""
     if not count:
         yield from parts
     for index in range(count):
@@ -225,7 +240,10 @@ def _attribute(
 
 
 def _initial_value(attribute: DataAttribute) -> str | None:
-    """The value in the parser's notation; None where there is none, or none of its type, or no notation."""
+    """Return the value in the parser's notation.
+
+    It is None for no value, a value not of its type, or one that has no notation.
+    """
     text, kind = attribute.value, attribute.basic_type
     if text is None:
         return None
@@ -260,7 +278,10 @@ def _float(text: str) -> str | None:
 
 
 def _string(text: str, longest: int, *, ascii_only: bool) -> str:
-    """A string without what would end it early; VisibleString is ISO 646, cut to its length in bytes."""
+    """Return a string without what would end it early.
+
+    VisibleString is ISO 646. The string is cut to its length in bytes.
+    """
     clean = "".join("'" if char == '"' else char for char in text.strip() if char.isprintable())
     encoded = clean.encode("ascii", "replace") if ascii_only else clean.encode()
     return f'"{encoded[:longest].decode(errors="ignore").rstrip("{")}"'
@@ -269,7 +290,7 @@ def _string(text: str, longest: int, *, ascii_only: bool) -> str:
 def _member(
     ied: Ied, device: LogicalDevice, member: DataSetMember, domains: Mapping[str, str]
 ) -> Iterator[str]:
-    """A data set entry, LN$FC$DO$DA [array element [component]]; one that names no data is left out."""
+    """Yield a data set entry, LN$FC$DO$DA [array element [component]]; one that names no data is left out."""
     if ied.resolve(member) is None:
         return
     names = member.path.split(".")
@@ -283,7 +304,7 @@ def _member(
 
 
 def _array_depth(ied: Ied, member: DataSetMember, names: list[str]) -> int | None:
-    """How many names of a member's path lead to the array its index counts in; None without an array."""
+    """Count the names of a member's path down to the array of its index; None without an array."""
     if member.index is None:
         return None
     node = f"{member.logical_device}/{member.logical_node}"
@@ -341,7 +362,7 @@ def _multicast_address(address: MulticastAddress | None) -> Iterator[str]:
 
 
 def _word(text: str | None) -> str:
-    """A free text as one word of the parser; "-", which is none, where it cannot be one."""
+    """Return a free text as one word of the parser; "-", which means none, where it cannot be one."""
     if (
         text is None
         or len(text) > LONGEST_WORD

@@ -15,7 +15,18 @@ MulticastAddresses = Mapping[tuple[str, str, str, str], MulticastAddress]
 
 
 def multicast_addresses(document: Document) -> MulticastAddresses:
-    """The addresses of a document; unusable ones become findings."""
+    """Read the multicast addresses of a document; unusable ones become findings.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+
+    Returns
+    -------
+    MulticastAddresses
+        The addresses by element, IED, logical device and control block.
+    """
     addresses: dict[tuple[str, str, str, str], MulticastAddress] = {}
     for section in document.children(document.root, "Communication"):
         for connected in document.descendants(section, "ConnectedAP"):

@@ -1,4 +1,4 @@
-"""Reads SCL files of editions 1, 2 and 2.1 (IEC 61850-6) into plain frozen dataclasses.
+"""Reader of SCL files of editions 1, 2 and 2.1 (IEC 61850-6), which makes plain frozen dataclasses of them.
 
 Private elements and foreign namespaces are passed over. What is odd but clear becomes a finding with its
 line; what leaves the data model in doubt is an SclError.
@@ -28,7 +28,29 @@ from scl.templates import Templates
 
 
 def read(path: Path | str, *, largest_bytes: int = LARGEST_FILE_BYTES) -> Scl:
-    """Read an ICD, CID, IID or SCD; SclError when it is missing, no safe XML or its model is unclear."""
+    """Read an ICD, CID, IID or SCD.
+
+    Parameters
+    ----------
+    path : pathlib.Path or str
+        The file.
+    largest_bytes : int
+        Size above which the file is refused [byte].
+
+    Returns
+    -------
+    Scl
+        The configuration.
+
+    Raises
+    ------
+    SclError
+        The file is missing or no safe XML, or its data model is unclear.
+
+    References
+    ----------
+    IEC 61850-6, editions 1, 2 and 2.1.
+    """
     document = Document(Path(path), largest_bytes=largest_bytes)
     check_conformance(document)
     templates, instance_values = Templates(document), InstanceValues(document)
@@ -101,7 +123,7 @@ def _connected_access_point(
 
 
 def _address_parameters(document: Document, element: etree._Element) -> dict[str, str]:
-    """The P elements of an Address by type, with or without xsi:type; the first of a type counts."""
+    """Return the P elements of an Address by type, with or without xsi:type; the first of a type counts."""
     parameters: dict[str, str] = {}
     for parameter in document.children(document.child(element, "Address"), "P"):
         parameters.setdefault(parameter.get("type", ""), content(parameter))
@@ -156,7 +178,10 @@ def _equipment(
 
 
 def _attached(document: Document, nodes: Iterable[etree._Element], ieds: dict[str, Ied]) -> tuple[str, ...]:
-    """IEDs that LNodes name, each once; "None" is the standard's word for a function not yet assigned."""
+    """Return the IEDs that LNodes name, each once.
+
+    "None" is the standard's word for a function not yet assigned.
+    """
     names: dict[str, None] = {}
     for node in nodes:
         name = node.get("iedName", "None")

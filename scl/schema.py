@@ -1,10 +1,11 @@
 """What may stand in an SCL file: elements, attributes and their order, as one table.
 
-From the tables of IEC 61850-6, editions 1, 2 and 2.1 together: what any of them allows is allowed, what all
-of them require is required. Values the reader itself makes sense of (numbers, booleans) are not described.
+It joins the tables of IEC 61850-6, editions 1, 2 and 2.1: what any of them allows is allowed, what all of
+them require is required. Values that the reader itself makes sense of (numbers, booleans) are not described.
 
 A line is `element: attributes | children`. After an attribute `!` says required. After a child `!` says one,
-`+` one or more, `?` at most one; children stand in the order of the table, those joined by `/` in any order.
+`+` one or more, `?` at most one. Children stand in the order of the table; those joined by `/` may stand in
+any order.
 """
 
 import re
@@ -119,7 +120,21 @@ UNDESCRIBED: Final = frozenset(("Text", "Private", "Services"))
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What an element has. order: place of each child's tag; least, most: how many of a child."""
+    """What an element may and must have.
+
+    Parameters
+    ----------
+    attributes : frozenset of str
+        Attributes allowed.
+    required : tuple of str
+        Attributes required.
+    order : mapping of str to int
+        Place of each child's tag.
+    least : tuple of str
+        Tags of children required.
+    most : frozenset of str
+        Tags of children that may stand once only.
+    """
 
     attributes: frozenset[str]
     required: tuple[str, ...]
@@ -162,6 +177,16 @@ RULES: Final[Mapping[str, Rule]] = _rules()
 
 @dataclass(frozen=True, slots=True)
 class ValueRule:
+    """What values an attribute may have.
+
+    Parameters
+    ----------
+    pattern : re.Pattern
+        Pattern that a value matches as a whole.
+    expected : str
+        The rule in words.
+    """
+
     pattern: re.Pattern[str]
     expected: str
 

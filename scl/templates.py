@@ -1,7 +1,7 @@
 """Data type templates (IEC 61850-6 clause 9.5), resolved: types become trees of data objects and attributes.
 
-A type is resolved once and its tree shared by all that use it, so a large substation costs little memory and
-types that multiply (a type of ten members of a type of ten members ...) cannot fill it.
+A type is resolved once and its tree is shared by all that use it. So a large substation costs little memory,
+and types that multiply (a type of ten members of a type of ten members ...) cannot fill it.
 """
 
 from collections.abc import Iterator
@@ -35,14 +35,14 @@ BASIC_TYPES = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class _Extent:
-    """attributes: how many; depth: levels; characters: of the longest path."""
+    """Size of a type: its number of attributes, its levels, and the characters of its longest path."""
 
     attributes: int = 0
     depth: int = 1
     characters: int = 0
 
     def plus(self, name: str, count: int, part: "_Extent | None") -> "_Extent":
-        """With one more member: a name, its array elements, and the extent of its type."""
+        """Return the extent with one more member: a name, its array elements, and the extent of its type."""
         elements = max(count, 1)
         if part is None:
             return replace(
@@ -66,7 +66,13 @@ class _Resolved:
 
 
 class Templates:
-    """The DataTypeTemplates of one document; types are resolved when an IED first uses them."""
+    """The DataTypeTemplates of one document; types are resolved when an IED first uses them.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+    """
 
     def __init__(self, document: Document) -> None:
         self._document = document
@@ -96,7 +102,27 @@ class Templates:
                     self._elements[key] = element
 
     def data_objects(self, node: etree._Element, ln_class: str, ied_type: str) -> tuple[DataObject, ...]:
-        """The data objects of a logical node (an LN or LN0 element) as its LNodeType defines them."""
+        """Resolve the data objects of a logical node as its LNodeType defines them.
+
+        Parameters
+        ----------
+        node : lxml.etree._Element
+            The LN or LN0 element.
+        ln_class : str
+            Class of the node.
+        ied_type : str
+            Type of the IED.
+
+        Returns
+        -------
+        tuple of DataObject
+            The data objects.
+
+        Raises
+        ------
+        SclError
+            A type is missing, contains itself, or is too large.
+        """
         definition = self._node_type(node, ln_class, ied_type)
         if definition not in self._nodes:
             objects: list[DataObject] = []
@@ -108,7 +134,7 @@ class Templates:
         return self._nodes[definition]
 
     def _node_type(self, node: etree._Element, ln_class: str, ied_type: str) -> etree._Element:
-        """The LNodeType a node names. Types of several classes and of several IED types may share an id."""
+        """Return the LNodeType that a node names. Types of several classes and IED types may share an id."""
         type_id = self._document.required(node, "lnType")
         found = self._node_types.get(type_id)
         if not found:
@@ -127,7 +153,7 @@ class Templates:
         return element
 
     def _named(self, element: etree._Element, *tags: str) -> Iterator[tuple[str, etree._Element]]:
-        """Members of a type with their names; a name that comes twice counts once."""
+        """Iterate over members of a type with their names; a name that comes twice counts once."""
         seen: set[str] = set()
         for member in self._document.children(element, *tags):
             name = self._document.name(member, "name")
@@ -138,7 +164,10 @@ class Templates:
             yield name, member
 
     def _resolve(self, kind: str, user: etree._Element, path: tuple[str, ...]) -> _Resolved:
-        """The type a member names. path: the types being resolved around it, to find one inside itself."""
+        """Resolve the type that a member names.
+
+        `path` holds the types being resolved around it, so that a type inside itself is found.
+        """
         type_id = self._document.required(user, "type")
         name = f"{kind} {type_id}"
         if name in path:
@@ -153,7 +182,10 @@ class Templates:
         return self._resolved[kind, type_id]
 
     def _members(self, definition: etree._Element, path: tuple[str, ...]) -> _Resolved:
-        """Members of a DOType or DAType. Components (BDA) get their constraint where the struct is used."""
+        """Resolve the members of a DOType or DAType.
+
+        Components (BDA) get their constraint where the struct is used.
+        """
         objects: list[DataObject] = []
         attributes: list[DataAttribute] = []
         extent = _Extent()
@@ -225,7 +257,7 @@ class Templates:
         constraint: FunctionalConstraint,
         triggers: TriggerOptions,
     ) -> tuple[DataAttribute, ...]:
-        """A struct's components with the constraint and triggers of the attribute that uses it."""
+        """Return a struct's components with the constraint and triggers of the attribute that uses it."""
         struct_id = self._document.required(element, "type")
         key = struct_id, constraint, triggers
         if key not in self._inherited:
@@ -276,7 +308,22 @@ class Templates:
 def trigger_options(
     document: Document, element: etree._Element | None, *, general_interrogation: bool
 ) -> TriggerOptions:
-    """dchg, qchg, dupd, period and gi of a DA or TrgOps element; gi is set by default in TrgOps."""
+    """Read dchg, qchg, dupd, period and gi of a DA or TrgOps element.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+    element : lxml.etree._Element or None
+        The element; None has the defaults.
+    general_interrogation : bool
+        Whether to read gi, which is set by default in TrgOps.
+
+    Returns
+    -------
+    TriggerOptions
+        The options.
+    """
     options = 0
     for attribute, option in (
         ("dchg", TriggerOptions.DATA_CHANGE),
@@ -292,7 +339,20 @@ def trigger_options(
 
 
 def initial_value(document: Document, element: etree._Element) -> str | None:
-    """Text of Val; of values by setting group, the first group's."""
+    """Read the text of Val; of values by setting group, the first group's.
+
+    Parameters
+    ----------
+    document : Document
+        The document.
+    element : lxml.etree._Element
+        The element that holds Val.
+
+    Returns
+    -------
+    str or None
+        The text; None without Val.
+    """
     chosen: etree._Element | None = None
     for value in document.children(element, "Val"):
         if value.get("sGroup") is None:

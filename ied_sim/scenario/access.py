@@ -9,7 +9,7 @@ from ied_sim.relay.configuration import Access
 from ied_sim.toml_tables import Table
 from mms import CredentialFileError, TlsConfiguration, TlsVersion
 from mms.security.credential_files import read_secret
-from mms.security.passwords import EXPECTED, is_password
+from mms.security.passwords import PASSWORD_RULE, is_password
 
 
 class TlsTable(Table):
@@ -49,5 +49,5 @@ def _passwords(path: Path) -> tuple[str, ...]:
     """One a line."""
     lines = tuple(read_secret(path).decode("latin-1").splitlines())
     if not lines or not all(map(is_password, lines)):
-        raise CredentialFileError(path, f"on each line {EXPECTED}", "something else")
+        raise CredentialFileError(path, f"on each line {PASSWORD_RULE}", "something else")
     return lines

@@ -10,13 +10,26 @@ R = TypeVar("R")
 
 log: Final = logging.getLogger("mms")
 _inside: Final[set[int]] = set()
-"""Threads inside a callback. Thread-local data would be made anew at every call of a C thread."""
+"""Threads inside a callback. Thread-local data would be created anew at every call from a C thread."""
 
 
 def guarded(function: Callable[P, R], failure: R) -> Callable[P, R]:
-    """`function` for C: an exception is logged and `failure` returned in its place.
+    """Wrap a function for C, so that no exception reaches C.
 
-    Without this, ctypes prints the exception and hands C an undefined value.
+    An exception is logged and `failure` returned in its place. Without this, ctypes prints the exception and
+    hands C an undefined value.
+
+    Parameters
+    ----------
+    function : callable
+        The function.
+    failure : object
+        Return value in place of an exception.
+
+    Returns
+    -------
+    callable
+        The wrapped function.
     """
 
     def called_from_c(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -25,7 +38,7 @@ def guarded(function: Callable[P, R], failure: R) -> Callable[P, R]:
         _inside.add(thread)
         try:
             return function(*args, **kwargs)
-        except Exception:  # whatever it is, C cannot carry it
+        except Exception:  # C can carry no exception of any kind
             log.exception("exception in a callback from the MMS library")
             return failure
         finally:
@@ -36,8 +49,13 @@ def guarded(function: Callable[P, R], failure: R) -> Callable[P, R]:
 
 
 def inside_callback() -> bool:
-    """Whether this thread is the library's, inside one of our callbacks.
+    """Tell whether this thread is the library's, inside one of our callbacks.
 
-    A synchronous request there would wait for an answer only this same thread can receive.
+    A synchronous request there would wait for an answer that only this same thread can receive.
+
+    Returns
+    -------
+    bool
+        True inside a callback.
     """
     return threading.get_ident() in _inside

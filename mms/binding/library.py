@@ -15,7 +15,18 @@ _WHEEL = "pyiec61850-ng"
 
 
 def shared_library() -> Path:
-    """Where the wheel keeps it. Raises ImportError."""
+    """Find the shared library in the wheel.
+
+    Returns
+    -------
+    pathlib.Path
+        Path of the file.
+
+    Raises
+    ------
+    ImportError
+        The wheel is not installed, or has not exactly one such file.
+    """
     spec = importlib.util.find_spec("pyiec61850")
     if spec is None or not spec.submodule_search_locations:
         raise ImportError(f"the package {_WHEEL} is not installed: it carries the MMS library")
@@ -28,7 +39,18 @@ def shared_library() -> Path:
 
 @functools.cache
 def library() -> ctypes.CDLL:
-    """The loaded library, every function of ours with its result and argument types declared."""
+    """Load the library, with result and argument types declared for every function used here.
+
+    Returns
+    -------
+    ctypes.CDLL
+        The library, the same object at each call.
+
+    Raises
+    ------
+    ImportError
+        The library cannot be found or lacks a function.
+    """
     loaded = ctypes.CDLL(str(shared_library()))
     for name, (result, arguments) in PROTOTYPES.items():
         try:

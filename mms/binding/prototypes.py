@@ -32,7 +32,7 @@ class LastApplError(Structure):
 
 
 class VariableAccessSpecification(Structure):
-    """The library's MmsVariableAccessSpecification; index -1: none."""
+    """The library's MmsVariableAccessSpecification; the index is -1 where there is none."""
 
     _fields_ = [("domain", c_char_p), ("item", c_char_p), ("index", c_int32), ("component", c_char_p)]
 

@@ -1,6 +1,6 @@
-"""Standard error without what the library writes there about certificates, some thirty lines a handshake.
+"""Filter that keeps the library's log of certificates out of standard error: some thirty lines a handshake.
 
-The wheel's library is built with that on, and there is no switch.
+The wheel's library is built with that log on, and there is no switch.
 """
 
 import atexit
@@ -17,10 +17,11 @@ _LAST_LINES_S: Final = 1.0
 
 
 def filter_tls_log_from_stderr() -> None:
-    """From now on; once a process, before anything holds `sys.stderr`.
+    """Filter the library's TLS log from standard error from now on.
 
-    Python writes to the same place as before. What C code writes passes through a thread, so the last words
-    of a process that dies in C may be lost; whoever waits for it still learns the signal.
+    Call it once a process, before anything holds `sys.stderr`. Python writes to the same place as before.
+    What C code writes passes through a thread, so the last words of a process that dies in C may be lost;
+    whoever waits for the process still learns the signal.
     """
     real = os.dup(_STDERR)
     reading, writing = os.pipe()
@@ -43,7 +44,20 @@ def _pass_on(reading: int, real: int) -> None:
 
 
 def without_tls_log(lines: Iterator[bytes]) -> Iterator[bytes]:
-    """Those that are no note of the library's: they begin with TLS, and indented or empty lines go on."""
+    """Leave out the lines of the library's TLS log.
+
+    A log entry begins with "TLS: "; indented or empty lines continue it.
+
+    Parameters
+    ----------
+    lines : iterator of bytes
+        Lines of standard error.
+
+    Yields
+    ------
+    bytes
+        The other lines.
+    """
     in_note = False
     for line in lines:
         in_note = line.startswith(_MARK) or (in_note and (line.startswith(b"  ") or not line.strip()))

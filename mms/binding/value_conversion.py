@@ -9,7 +9,7 @@ from typing import Final
 from mms.values import BitString, DataAccessError, Quality, Timestamp, Value
 
 _MILLISECOND_NS: Final = 1_000_000
-_NESTING_LIMIT: Final = 16  # IEC 61850-7-3 needs 4; a hostile peer may send thousands
+_NESTING_LIMIT: Final = 16  # IEC 61850-7-3 needs 4 levels; a hostile peer may send thousands
 
 
 class _Type(IntEnum):
@@ -31,9 +31,32 @@ class _Type(IntEnum):
 
 
 def decode(lib: ctypes.CDLL, pointer: int | None, nesting: int = 0) -> Value:
-    """The Python value of the MmsValue at `pointer`; ValueError for a type of no use in IEC 61850.
+    """Convert the library's value to a Python value.
 
-    Visible strings are read as Latin-1: a relay's bytes, whatever they are, survive.
+    Visible strings are read as Latin-1, so that a relay's octets survive whatever they are.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    pointer : int or None
+        Pointer to the MmsValue.
+    nesting : int
+        Depth of the structure that holds the value.
+
+    Returns
+    -------
+    Value
+        The Python value; None for no pointer.
+
+    Raises
+    ------
+    ValueError
+        The type has no use in IEC 61850, or structures are nested too deep.
+
+    References
+    ----------
+    IEC 61850-8-1 clause 8.
     """
     if pointer is None:
         return None
@@ -86,7 +109,15 @@ _READERS: Final[dict[int, Callable[[ctypes.CDLL, int], Value]]] = {
 
 
 class TypeMismatchError(ValueError):
-    """A Python value does not fit the MMS type it is for."""
+    """A Python value does not fit the MMS type it is for.
+
+    Parameters
+    ----------
+    expected : str
+        What the type takes.
+    found : object
+        The value.
+    """
 
     def __init__(self, expected: str, found: object) -> None:
         super().__init__(f"expected {expected}, found {found!r}")
@@ -95,9 +126,25 @@ class TypeMismatchError(ValueError):
 
 
 def assign(lib: ctypes.CDLL, pointer: int, value: Value | Quality, *, longest_string: int = 255) -> None:
-    """Put a Python value into the MmsValue at `pointer`; TypeMismatchError if it does not fit its type.
+    """Put a Python value into the library's value, whose type is fixed.
 
     In a structure or array, None leaves an element as it is.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    pointer : int
+        Pointer to the MmsValue.
+    value : Value or Quality
+        The Python value.
+    longest_string : int
+        Longest string that the attribute takes [octet].
+
+    Raises
+    ------
+    TypeMismatchError
+        The value does not fit the type.
     """
     kind = int(lib.MmsValue_getType(pointer))
     if kind in (_Type.STRUCTURE, _Type.ARRAY):
@@ -127,7 +174,7 @@ def _write_boolean(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> No
 
 
 def _write_integer(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
-    """Through the setter of the width the attribute has: the library silently ignores the wider ones."""
+    """Write through the setter of the attribute's width, because the library silently ignores wider ones."""
     if not isinstance(value, int) or isinstance(value, bool):
         raise TypeMismatchError("an int", value)
     setters = (lib.MmsValue_setInt64, lib.MmsValue_setInt32, lib.MmsValue_setInt16, lib.MmsValue_setInt8)

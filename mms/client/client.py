@@ -1,4 +1,4 @@
-"""The MMS client of one relay: ACSI services of IEC 61850-7-2 as methods, mapped by IEC 61850-8-1."""
+"""MMS client of one relay: the ACSI services of IEC 61850-7-2 as methods, mapped by IEC 61850-8-1."""
 
 import queue
 from collections.abc import Callable
@@ -32,17 +32,37 @@ _ACCESS_ERRORS: Final[dict[DataAccessError, type[errors.MmsError]]] = {
 
 @dataclass(frozen=True, slots=True)
 class DataSetMember:
-    """One member of a data set: its reference "LD/LN.DO.DA[FC]" and its value."""
+    """One member of a data set and its value.
+
+    Parameters
+    ----------
+    reference : str
+        Reference of the member, "LD/LN.DO.DA[FC]".
+    value : Value
+        The member's value; a DataAccessError where the relay gave none.
+    """
 
     reference: str
     value: Value
 
 
 class Client:
-    """An association with one relay; a context manager, which closes it.
+    """Association with one relay.
 
-    Safe to use from several threads: one request is under way at a time. Methods raise MmsError's kinds, and
-    ValueError for a malformed reference. Never call one from `on_closed`.
+    A client is a context manager that closes its association. It may be used from several threads; one
+    request is under way at a time. Methods raise the kinds of MmsError, and ValueError for a malformed
+    reference. No method may be called from `on_closed`.
+
+    Use `Client.connect` to make one.
+
+    Parameters
+    ----------
+    connection : Connection
+        The open association.
+
+    References
+    ----------
+    IEC 61850-7-2, abstract communication service interface; IEC 61850-8-1, mapping to MMS.
     """
 
     def __init__(self, connection: Connection) -> None:
@@ -56,15 +76,47 @@ class Client:
         on_closed: Callable[[], None] | None = None, tls: TlsConfiguration | None = None,
         password: str | None = None, limits: ClientLimits = DEFAULT_LIMITS,
     ) -> Self:  # fmt: skip
-        """Associate; ConnectFailed, or its kind that says why, if that does not succeed within about
-        `connect_timeout_s`.
+        """Associate with a relay.
 
-        With `tls`, over TLS (usually at port 3782), and with nobody but the pinned: RelayNotTrusted,
-        CertificateRefused, TlsNotSpoken, or CredentialFileError before anything is sent; TlsRequired without.
-        `password` is ACSE's, printable ASCII, in clear unless there is `tls`: AssociationRejected.
+        Parameters
+        ----------
+        host : str
+            Host name or IPv4 address.
+        port : int
+            TCP port: 102 by convention, 3782 with TLS.
+        connect_timeout_s : float
+            Time within which the association is to stand, approximately [s].
+        request_timeout_s : float
+            Longest wait for the answer to one request [s].
+        on_closed : callable, optional
+            Called once, on a thread of the library, when the association has ended, whoever ended it. A
+            frozen relay ends nothing: only a successful read shows that it works.
+        tls : TlsConfiguration, optional
+            Our certificate and those we trust. Without it the association is not encrypted.
+        password : str, optional
+            Password of ACSE, printable ASCII. It is sent in clear unless `tls` is given.
+        limits : ClientLimits
+            Limits on exchanges that a request's timeout does not end.
 
-        `on_closed` is called once, on a thread of the library, when the association has ended, whoever ended
-        it. A frozen relay ends nothing: only a successful read shows health.
+        Returns
+        -------
+        Client
+            The client with its open association.
+
+        Raises
+        ------
+        ConnectFailed
+            No association came about. Its subclasses say why: RelayNotTrusted, CertificateRefused,
+            TlsNotSpoken, TlsRequired, AssociationRejected, AssociationBroken.
+        CredentialFileError
+            A file of `tls` cannot be used; nothing was sent.
+        ValueError
+            The password cannot be sent.
+
+        References
+        ----------
+        IEC 61850-7-2 clause 8, Associate; ISO 8650-1 clause 8.1, authentication by password; IEC 62351-3,
+        TLS.
         """
         return cls(
             Connection(
@@ -75,31 +127,48 @@ class Client:
 
     @property
     def host(self) -> str:
-        """The peer as "address:port"."""
+        """Peer as "address:port"."""
         return self._connection.host
 
     @property
     def is_open(self) -> bool:
+        """Whether the association stands, as far as the library knows."""
         return self._connection.is_open
 
     @property
     def round_trip_s(self) -> float | None:
-        """How long the latest answer took [s]; None before the first."""
+        """Duration of the latest exchange [s]; None before the first."""
         return self._connection.round_trip_s
 
     def abandon(self) -> None:
-        """From any thread, without waiting: the request under way is the last, a download ends early.
+        """Let no further request begin, without waiting.
 
-        Further ones raise ConnectionLost. Whoever opened the client still closes it.
+        The request under way is the last; a download ends with its current part. Further requests raise
+        ConnectionLost. Any thread may call this. Whoever opened the client still closes it.
         """
         self._connection.abandon()
 
     def wait_closed(self, timeout_s: float | None = None) -> bool:
-        """Wait until the association has ended; False if it still stands after `timeout_s`."""
+        """Wait until the association has ended.
+
+        Parameters
+        ----------
+        timeout_s : float, optional
+            Longest wait [s]. Without limit by default.
+
+        Returns
+        -------
+        bool
+            False if the association still stands after `timeout_s`.
+        """
         return self._connection.wait_closed(timeout_s)
 
     def close(self) -> None:
-        """End the association; harmless when ended. Waits for a request under way; a download ends early."""
+        """End the association.
+
+        It waits for a request under way; a download ends with its current part. Closing a closed client does
+        nothing.
+        """
         self._connection.close()
 
     def __enter__(self) -> Self:
@@ -113,14 +182,49 @@ class Client:
     # GetServerDirectory, GetLogicalDeviceDirectory, GetLogicalNodeDirectory
 
     def logical_devices(self) -> list[str]:
-        """The logical devices (MMS domains), e.g. A1_SEL710CON."""
+        """List the logical devices of the relay (MMS domains).
+
+        Returns
+        -------
+        list of str
+            Names such as "A1_SEL710CON".
+
+        Raises
+        ------
+        MmsError
+            The relay gave no list.
+
+        References
+        ----------
+        IEC 61850-7-2, GetServerDirectory.
+        """
         lib = self._connection.lib
         return self._connection.strings(
             self._connection.request("list logical devices", lib.IedConnection_getLogicalDeviceList)
         )
 
     def logical_nodes(self, device: str) -> list[str]:
-        """The logical nodes of one logical device, e.g. RBGGIO1; NotFound if there is no such device."""
+        """List the logical nodes of one logical device.
+
+        Parameters
+        ----------
+        device : str
+            Name of the logical device.
+
+        Returns
+        -------
+        list of str
+            Names such as "RBGGIO1".
+
+        Raises
+        ------
+        NotFound
+            There is no such logical device.
+
+        References
+        ----------
+        IEC 61850-7-2, GetLogicalDeviceDirectory.
+        """
         name = logical_device(device)
         lib = self._connection.lib
         return self._connection.strings(
@@ -130,19 +234,79 @@ class Client:
         )
 
     def data_objects(self, node: str) -> list[str]:
-        """The data objects of a logical node "LD/LN"."""
+        """List the data objects of a logical node.
+
+        Parameters
+        ----------
+        node : str
+            Reference "LD/LN".
+
+        Returns
+        -------
+        list of str
+            Names of the data objects.
+
+        References
+        ----------
+        IEC 61850-7-2, GetLogicalNodeDirectory.
+        """
         return self._node_directory(node, _DATA_OBJECT)
 
     def data_sets(self, node: str) -> list[str]:
-        """The data sets of a logical node "LD/LN"."""
+        """List the data sets of a logical node.
+
+        Parameters
+        ----------
+        node : str
+            Reference "LD/LN".
+
+        Returns
+        -------
+        list of str
+            Names of the data sets.
+
+        References
+        ----------
+        IEC 61850-7-2, GetLogicalNodeDirectory.
+        """
         return self._node_directory(node, _DATA_SET)
 
     def buffered_reports(self, node: str) -> list[str]:
-        """The buffered report control blocks of a logical node "LD/LN"."""
+        """List the buffered report control blocks of a logical node.
+
+        Parameters
+        ----------
+        node : str
+            Reference "LD/LN".
+
+        Returns
+        -------
+        list of str
+            Names of the blocks.
+
+        References
+        ----------
+        IEC 61850-7-2, GetLogicalNodeDirectory.
+        """
         return self._node_directory(node, _BUFFERED)
 
     def unbuffered_reports(self, node: str) -> list[str]:
-        """The unbuffered report control blocks of a logical node "LD/LN"."""
+        """List the unbuffered report control blocks of a logical node.
+
+        Parameters
+        ----------
+        node : str
+            Reference "LD/LN".
+
+        Returns
+        -------
+        list of str
+            Names of the blocks.
+
+        References
+        ----------
+        IEC 61850-7-2, GetLogicalNodeDirectory.
+        """
         return self._node_directory(node, _UNBUFFERED)
 
     def _node_directory(self, node: str, kind: int) -> list[str]:
@@ -160,9 +324,30 @@ class Client:
     # GetDataValues, GetDataSetValues, GetDataSetDirectory
 
     def read(self, reference: str, constraint: FunctionalConstraint) -> Value:
-        """The value of a data object or attribute; a structure is a tuple in the order of the model.
+        """Read a data object or attribute.
 
-        AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused: the relay says that it gives none.
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO" or "LD/LN.DO.DA".
+        constraint : FunctionalConstraint
+            Functional constraint of what is read.
+
+        Returns
+        -------
+        Value
+            The value. A structure is a tuple in the order of the model.
+
+        Raises
+        ------
+        AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused
+            The relay answers that it gives no value.
+        ProtocolError
+            The relay answers with something that is no value.
+
+        References
+        ----------
+        IEC 61850-7-2, GetDataValues.
         """
         operation = f"read {reference}[{constraint.name}]"
         lib = self._connection.lib
@@ -179,13 +364,54 @@ class Client:
         return value
 
     def data_set_directory(self, reference: str) -> tuple[str, ...]:
-        """The members' references "LD/LN.DO.DA[FC]" of the data set "LD/LN.name"."""
+        """List the members of a data set.
+
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.name".
+
+        Returns
+        -------
+        tuple of str
+            References of the members, "LD/LN.DO.DA[FC]".
+
+        Raises
+        ------
+        NotFound
+            There is no such data set.
+        ProtocolError
+            The relay names a member that is none.
+
+        References
+        ----------
+        IEC 61850-7-2, GetDataSetDirectory.
+        """
         return data_set_members(self._connection, reference)
 
     def read_data_set(self, reference: str) -> tuple[DataSetMember, ...]:
-        """All members' values in one request; the directory is read once a connection.
+        """Read the values of all members of a data set in one request.
 
-        A member the relay cannot give has a DataAccessError for its value.
+        The directory of a data set is read once for each association.
+
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.name".
+
+        Returns
+        -------
+        tuple of DataSetMember
+            The members in order. One that the relay cannot give has a DataAccessError for its value.
+
+        Raises
+        ------
+        ProtocolError
+            The values do not match the directory.
+
+        References
+        ----------
+        IEC 61850-7-2, GetDataSetValues.
         """
         if reference not in self._directories:
             self._directories[reference] = self.data_set_directory(reference)
@@ -216,9 +442,27 @@ class Client:
     # Operate, reports, files
 
     def operate(self, reference: str, value: bool, *, originator: str = "mcc") -> None:
-        """Operate the controllable object "LD/LN.DO" by the control model it declares.
+        """Operate a controllable object by the control model that it declares.
 
-        ControlRefused says why in words. Keep the originator short: long ones have rebooted relays.
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO".
+        value : bool
+            The value to bring the object to.
+        originator : str
+            Identification of the originator, at most 16 ASCII characters: long ones have rebooted relays.
+
+        Raises
+        ------
+        ControlRefused
+            The relay refuses; the error says why in words.
+        Timeout
+            The command termination does not come.
+
+        References
+        ----------
+        IEC 61850-7-2 clause 20, control.
         """
         controls.operate(self._connection, reference, value=value, originator=originator)
 
@@ -226,27 +470,99 @@ class Client:
         self, rcb_reference: str, reports: "queue.SimpleQueue[Report]", *, entry_id: bytes | None = None,
         general_interrogation: bool = False,
     ) -> None:  # fmt: skip
-        """Enable the block "LD/LLN0.BR.BRep01" (or RP.URep01, unbuffered); its reports come to the queue.
+        """Enable a report control block and deliver its reports to a queue.
 
-        With `entry_id`, the last entry received, a buffered block resumes right after it: EntryNotFound if
-        the relay no longer holds it. ReportControlInUse if another client has the block.
+        Parameters
+        ----------
+        rcb_reference : str
+            Reference of the block: "LD/LLN0.BR.BRep01", or "LD/LLN0.RP.URep01" if it is unbuffered.
+        reports : queue.SimpleQueue of Report
+            Receives the reports.
+        entry_id : bytes, optional
+            The last entry received, 8 octets. A buffered block resumes right after it.
+        general_interrogation : bool
+            Whether to ask for a report of all members at once.
+
+        Raises
+        ------
+        ReportControlInUse
+            Another client has the block.
+        EntryNotFound
+            The relay no longer holds the entry `entry_id`.
+
+        References
+        ----------
+        IEC 61850-7-2 clause 17, reporting.
         """
         self._subscriptions.subscribe(
             rcb_reference, reports, entry_id=entry_id, general_interrogation=general_interrogation
         )
 
     def unsubscribe(self, rcb_reference: str) -> None:
-        """Disable a report control block of this client."""
+        """Disable a report control block of this client.
+
+        Parameters
+        ----------
+        rcb_reference : str
+            Reference of the block.
+        """
         self._subscriptions.unsubscribe(rcb_reference)
 
     def files(self, directory: str = "") -> tuple[FileEntry, ...]:
-        """All files of a directory, "" for the root; names are the relay's octets read as Latin-1."""
+        """List all files of a directory.
+
+        Parameters
+        ----------
+        directory : str
+            Name of the directory, "" for the root.
+
+        Returns
+        -------
+        tuple of FileEntry
+            The files. Names are the relay's octets read as Latin-1.
+
+        Raises
+        ------
+        Timeout
+            The listing takes longer than the limits allow, though each of its parts comes in time.
+
+        References
+        ----------
+        IEC 61850-7-2 clause 23, file transfer.
+        """
         return list_files(self._connection, directory)
 
     def download(self, name: str, sink: Sink, *, expected_size: int | None = None) -> int:
-        """Stream a file to `sink.write`; returns the number of bytes.
+        """Stream a file to a sink.
 
-        NotFound, AccessDenied, FileSizeMismatch (short, long, or not a file). Other threads' requests go
-        between the parts.
+        Requests of other threads may go between the parts of the file.
+
+        Parameters
+        ----------
+        name : str
+            Name of the file as the relay lists it.
+        sink : Sink
+            Receives the bytes in order.
+        expected_size : int, optional
+            Size of the file as it was listed [byte]. Without it, the size that the relay announces at opening
+            must do.
+
+        Returns
+        -------
+        int
+            Number of bytes received.
+
+        Raises
+        ------
+        NotFound, AccessDenied
+            The relay does not give the file.
+        FileSizeMismatch
+            The bytes are fewer or more than expected, or the name is no file's.
+        Timeout
+            A part does not come in time, or the throughput is too low.
+
+        References
+        ----------
+        IEC 61850-7-2 clause 23, GetFile; ISO 9506-2, FileOpen, FileRead, FileClose.
         """
         return download(self._connection, name, sink, expected_size)

@@ -1,9 +1,9 @@
-"""Why a relay did not let us in, in words: the library tells only that.
+"""Explanation of a failed connect: the library tells only that it failed.
 
-After a failure, and only then, a connection of our own or two look at what answers there. They send what any
-client begins with: a transport connect request (ISO 8073, in TPKT) or a TLS ClientHello. They send no
-password, and our certificate only to a relay that the library trusts and that has not said what it thinks of
-it.
+After a failure, and only then, one or two connections of our own look at what answers there. They send what
+any client begins with: a transport connect request (ISO 8073, in TPKT) or a TLS ClientHello. They send no
+password. They show our certificate only to a relay that the library trusts and that has not said whether it
+accepts the certificate.
 """
 
 import socket
@@ -17,7 +17,7 @@ from mms.security.tls import TLS_PORT, TlsContext, TlsVersion
 
 _CONNECT_REQUEST: Final = bytes.fromhex("0300001611e00000000100c0010dc2020001c1020000")
 _TPKT, _TLS_ALERT, _TLS_HANDSHAKE = 3, 21, 22
-_LONGEST_LOOK_S: Final = 1.0
+_LONGEST_PROBE_S: Final = 1.0
 
 
 class _Answer(Enum):
@@ -33,14 +33,30 @@ class _Answer(Enum):
     UNREACHABLE = "no connection"
 
 
-def refused(
+def explain_failure(
     host: str, address: tuple[str, int], tls: TlsContext | None, *, password: bool, deadline: float
 ) -> errors.MmsError:
-    """The error for a connect that failed.
+    """Find out why a connect failed.
 
-    host: the relay as the user named it.  deadline: when its time is over [s, monotonic].
+    Parameters
+    ----------
+    host : str
+        The relay as the user named it, "host:port".
+    address : tuple of str and int
+        IPv4 address and port that were tried.
+    tls : TlsContext or None
+        What the library noticed of the TLS handshake; None without TLS.
+    password : bool
+        Whether a password was sent.
+    deadline : float
+        End of the time for the connect [s, monotonic].
+
+    Returns
+    -------
+    MmsError
+        The kind of ConnectFailed that says why, in words for the user.
     """
-    look = _Look(address, deadline)
+    probe = _Probe(address, deadline)
     fault = None if tls is None else tls.certificate_fault()
     if tls is not None and fault is not None:
         reason = (
@@ -48,30 +64,30 @@ def refused(
             "relay has a new certificate, pin that one; else somebody else answers there"
         )
         return errors.RelayNotTrusted(host, "connect", 0, reason)
-    if look.is_late:
+    if probe.is_over:
         return _no_relay(host, _Answer.NONE)
     if tls is None:
-        return _without_tls(host, look, password=password)
+        return _without_tls(host, probe, password=password)
     version = tls.established_version
-    if version is TlsVersion.TLS_1_2 or (version is TlsVersion.TLS_1_3 and look.is_let_in(tls)):
+    if version is TlsVersion.TLS_1_2 or (version is TlsVersion.TLS_1_3 and probe.is_accepted(tls)):
         return errors.AssociationRejected(host, "connect", 0, _rejected(password=password))
-    return _with_tls(host, look)
+    return _with_tls(host, probe)
 
 
-def _without_tls(host: str, look: "_Look", *, password: bool) -> errors.MmsError:
-    answer = look.at(_CONNECT_REQUEST)
+def _without_tls(host: str, probe: "_Probe", *, password: bool) -> errors.MmsError:
+    answer = probe.send(_CONNECT_REQUEST)
     if answer is _Answer.MMS:
         return errors.AssociationRejected(host, "connect", 0, _rejected(password=password))
     if answer is _Answer.END:
-        answer = look.at(_client_hello())
+        answer = probe.send(_client_hello())
     if answer in (_Answer.TLS, _Answer.ALERT):
         reason = "the relay speaks TLS at this port: configure certificates for it (tls)"
         return errors.TlsRequired(host, "connect", 0, reason)
     return _no_relay(host, answer)
 
 
-def _with_tls(host: str, look: "_Look") -> errors.MmsError:
-    answer = look.at(_client_hello())
+def _with_tls(host: str, probe: "_Probe") -> errors.MmsError:
+    answer = probe.send(_client_hello())
     if answer is _Answer.TLS:
         reason = (
             "the relay ended the TLS handshake: it does not take our certificate. Expected: one that the "
@@ -81,7 +97,7 @@ def _with_tls(host: str, look: "_Look") -> errors.MmsError:
     if answer is _Answer.ALERT:
         reason = "the relay speaks TLS, but no version or cipher that we do (TLS 1.2 and 1.3, IEC 62351-3)"
         return errors.ConnectFailed(host, "connect", 0, reason)
-    if answer is _Answer.END and look.at(_CONNECT_REQUEST) is _Answer.MMS:
+    if answer is _Answer.END and probe.send(_CONNECT_REQUEST) is _Answer.MMS:
         reason = (
             "the relay answers at this port without TLS: expected TLS. Turn it on in the relay, or give its "
             f"TLS port (usually {TLS_PORT}), or take tls out of the relay's configuration"
@@ -107,30 +123,30 @@ def _no_relay(host: str, answer: _Answer) -> errors.MmsError:
     return errors.ConnectFailed(host, "connect", 0, reasons.get(answer, default))
 
 
-class _Look:
-    """First messages to one address, and what comes back."""
+class _Probe:
+    """Sends first messages to one address and tells what kind of answer comes back."""
 
     def __init__(self, address: tuple[str, int], deadline: float) -> None:
         self._address = address
         self._deadline = deadline
 
     @property
-    def is_late(self) -> bool:
+    def is_over(self) -> bool:
         return time.monotonic() >= self._deadline
 
     @property
-    def _turn_delay_s(self) -> float:
-        return min(_LONGEST_LOOK_S, self._deadline - time.monotonic())
+    def _timeout_s(self) -> float:
+        return min(_LONGEST_PROBE_S, self._deadline - time.monotonic())
 
-    def is_let_in(self, tls: TlsContext) -> bool:
-        """Whether a relay with a pinned certificate answers to ours."""
-        turn_delay_s = self._turn_delay_s
-        if turn_delay_s <= 0:
+    def is_accepted(self, tls: TlsContext) -> bool:
+        """Whether a relay with a pinned certificate accepts ours."""
+        timeout_s = self._timeout_s
+        if timeout_s <= 0:
             return False
         try:
             with (
-                socket.create_connection(self._address, turn_delay_s) as connection,
-                tls.again().wrap_socket(connection) as secured,
+                socket.create_connection(self._address, timeout_s) as connection,
+                tls.ssl_context().wrap_socket(connection) as secured,
             ):
                 if not tls.is_pinned(secured.getpeercert(binary_form=True)):
                     return False
@@ -139,13 +155,13 @@ class _Look:
         except OSError:
             return False
 
-    def at(self, message: bytes) -> _Answer:
-        """The kind of the answer; NONE too where no time is left to ask."""
-        turn_delay_s = self._turn_delay_s
-        if turn_delay_s <= 0:
+    def send(self, message: bytes) -> _Answer:
+        """Return the kind of the answer to a message; NONE too where no time is left to ask."""
+        timeout_s = self._timeout_s
+        if timeout_s <= 0:
             return _Answer.NONE
         try:
-            connection = socket.create_connection(self._address, turn_delay_s)
+            connection = socket.create_connection(self._address, timeout_s)
         except ConnectionRefusedError:
             return _Answer.REFUSED
         except OSError:
@@ -165,7 +181,7 @@ class _Look:
 def _client_hello() -> bytes:
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
     context.check_hostname = False
-    context.verify_mode = ssl.CERT_NONE  # it ends before any certificate
+    context.verify_mode = ssl.CERT_NONE  # the handshake ends before any certificate comes
     outgoing = ssl.MemoryBIO()
     handshake = context.wrap_bio(ssl.MemoryBIO(), outgoing)
     try:

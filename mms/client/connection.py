@@ -1,7 +1,8 @@
-"""The owner of one MMS association on the client side (IEC 61850-7-2 clause 8, Associate, Release, Abort).
+"""One MMS association on the client side (IEC 61850-7-2 clause 8: Associate, Release, Abort).
 
-One lock, one state, the C object destroyed exactly once. One request at a time: real relays get confused by
-parallel ones. What the other modules do with the association goes through `request` and `exclusive`.
+A Connection has one lock and one state, and destroys its C object exactly once. It lets one request at a time
+through, because real relays are confused by parallel ones. The other client modules use the association
+through `request` and `exclusive`.
 """
 
 import atexit
@@ -20,7 +21,7 @@ from mms.binding.callbacks import guarded, inside_callback
 from mms.binding.connection_deadline import connections_between, end_connections_after, open_sockets
 from mms.binding.library import library
 from mms.binding.prototypes import ConnectionClosedHandler
-from mms.client.connect_failure import refused
+from mms.client.connect_failure import explain_failure
 from mms.client.credentials import Credentials
 from mms.client.limits import DEFAULT_LIMITS, ClientLimits
 from mms.security.tls import TlsConfiguration
@@ -43,13 +44,14 @@ class _State(Enum):
 
 
 class ServiceFunction(Protocol):
-    """A function of the library whose first arguments are the connection and a cell for the error number."""
+    """Function of the library whose first arguments are the connection and a cell for the error number."""
 
-    def __call__(self, connection: int, error: object, *arguments: object) -> object: ...
+    def __call__(self, connection: int, error: object, *arguments: object) -> object:
+        """Call the function."""
 
 
 class _ClosedNotice:
-    """Tells once that an association ended: an event for those who wait, then the callback."""
+    """Notice that an association has ended: an event for threads that wait, then the callback, once."""
 
     def __init__(self, callback: Callable[[], None] | None) -> None:
         self.event = threading.Event()
@@ -58,12 +60,13 @@ class _ClosedNotice:
         self._armed = False
 
     def arm(self) -> bool:
-        """From now on call the callback; False if the association has ended already."""
+        """Call the callback from now on; return False if the association has ended already."""
         with self._lock:
             self._armed = not self.event.is_set()
             return self._armed
 
-    def give(self) -> None:
+    def notify(self) -> None:
+        """Set the event, and call the callback the first time."""
         with self._lock:
             first = self._armed
             self._armed = False
@@ -73,20 +76,46 @@ class _ClosedNotice:
 
 
 class Connection:
-    """An open association with one relay."""
+    """Open association with one relay.
+
+    A host name may have several addresses, some of them dead: each is tried in its share of the time. The
+    library may report success and lose the association at the first request. So a first request follows every
+    connect, and the whole is tried again when just that happens.
+
+    Parameters
+    ----------
+    host : str
+        Host name or IPv4 address of the MMS server.
+    port : int
+        TCP port.
+    connect_timeout_s : float
+        Time within which the association is to stand, approximately [s].
+    request_timeout_s : float
+        Longest wait for the answer to one request [s].
+    on_closed : callable, optional
+        Called once when the association has ended.
+    tls : TlsConfiguration, optional
+        Our certificate and those we trust.
+    password : str, optional
+        Password of ACSE.
+    limits : ClientLimits
+        Limits on exchanges that a request's timeout does not end.
+
+    Raises
+    ------
+    ConnectFailed
+        No association came about; its subclasses say why.
+    CredentialFileError
+        A file of `tls` cannot be used.
+    ValueError
+        The password cannot be sent.
+    """
 
     def __init__(
         self, host: str, port: int, *, connect_timeout_s: float, request_timeout_s: float,
         on_closed: Callable[[], None] | None = None, tls: TlsConfiguration | None = None,
         password: str | None = None, limits: ClientLimits = DEFAULT_LIMITS,
     ) -> None:  # fmt: skip
-        """Associate with the MMS server at `host` (a name or IPv4 address) and `port`.
-
-        A name may have several addresses, dead ones among them: each is tried in its share of the time.
-        Raises ConnectFailed and its kinds, CredentialFileError; ValueError for a password that cannot be
-        sent. The library may report success and then lose the association at the first
-        request: a probe follows every connect, and the whole is tried again when just that happens.
-        """
         self.host: Final = f"{host}:{port}"
         self.request_timeout_s: Final = request_timeout_s
         self.limits: Final = limits
@@ -98,17 +127,17 @@ class Connection:
         addresses = self._resolve(host, port)
         self._credentials = Credentials(self.lib, tls, password)
         try:
-            self._reach(addresses, port, time.monotonic() + connect_timeout_s, on_closed)
+            self._connect_to_first(addresses, port, time.monotonic() + connect_timeout_s, on_closed)
         except BaseException:
             self._credentials.destroy()
             raise
         self._state = _State.OPEN
         _open_connections.add(self)
 
-    def _reach(
+    def _connect_to_first(
         self, addresses: tuple[str, ...], port: int, deadline: float, on_closed: Callable[[], None] | None
     ) -> None:
-        """Associate with the first address that lets us. Raises ConnectFailed and its kinds."""
+        """Associate with the first address that accepts. Raise ConnectFailed or a subclass if none does."""
         for turn, address in enumerate(addresses, 1):
             now = time.monotonic()
             end = now + (deadline - now) / (len(addresses) - turn + 1)
@@ -135,7 +164,7 @@ class Connection:
             is_broken = isinstance(found, errors.ProtocolError)
             kind = errors.AssociationBroken if is_broken else errors.ConnectFailed
             return kind(self.host, "connect", code, found.message)
-        return refused(
+        return explain_failure(
             self.host,
             address,
             self._credentials.tls,
@@ -157,7 +186,7 @@ class Connection:
     def _associate(
         self, address: str, port: int, deadline: float, on_closed: Callable[[], None] | None
     ) -> int:
-        """Returns 0 when the association stands, _CONNECTION_LOST when it was lost at once each time."""
+        """Return 0 when the association stands, _CONNECTION_LOST when it was lost at once each time."""
         for attempt in range(1, _ATTEMPTS + 1):
             remaining_s = deadline - time.monotonic()
             if remaining_s <= 0 and attempt > 1:
@@ -180,16 +209,15 @@ class Connection:
         notice = self._notice
 
         def closed(_parameter: int | None, _connection: int | None) -> None:
-            notice.give()
+            notice.notify()
 
         handler = ConnectionClosedHandler(guarded(closed, None))
         self._handlers = [handler]
         lib.IedConnection_installConnectionClosedHandler(self._pointer, handler, None)
         timeout_ms = max(1, round(timeout_s * 1000))
-        lib.IedConnection_setConnectTimeout(self._pointer, timeout_ms)  # TCP's part
-        lib.IedConnection_setRequestTimeout(
-            self._pointer, timeout_ms
-        )  # the association's part, and the probe's
+        # The connect timeout covers TCP; the request timeout the association and the first request.
+        lib.IedConnection_setConnectTimeout(self._pointer, timeout_ms)
+        lib.IedConnection_setRequestTimeout(self._pointer, timeout_ms)
         error = ctypes.c_int(0)
         unlimited = self._credentials.tls is None
         with (
@@ -211,33 +239,77 @@ class Connection:
         return error.value
 
     def _limited(self, limit_s: float) -> AbstractContextManager[threading.Event]:
-        """End this connection when that is over; the event tells so."""
+        """End this connection when the limit is over; the event tells that it was."""
         return end_connections_after(connections_between(peer=self._peer), limit_s, before=self._others)
 
     @property
     def is_open(self) -> bool:
+        """Whether the association stands, as far as the library knows."""
         return self._state is _State.OPEN and not self._notice.event.is_set()
 
     @property
     def closing(self) -> bool:
+        """Whether `abandon` or `close` has been called."""
         return self._state is not _State.OPEN
 
     def wait_closed(self, timeout_s: float | None) -> bool:
+        """Wait until the association has ended.
+
+        Parameters
+        ----------
+        timeout_s : float or None
+            Longest wait [s]; None for no limit.
+
+        Returns
+        -------
+        bool
+            False if the association still stands.
+        """
         return self._notice.event.wait(timeout_s)
 
-    def keep(self, handler: object) -> None:
-        """Hold a callback for as long as C may call it."""
+    def keep_callback(self, handler: object) -> None:
+        """Hold a callback for as long as C may call it.
+
+        Parameters
+        ----------
+        handler : object
+            The ctypes callback.
+        """
         with self._lock:
             self._handlers.append(handler)
 
-    def release(self, handler: object) -> None:
-        """Let go of a callback that was kept, once C cannot call it any more."""
+    def release_callback(self, handler: object) -> None:
+        """Let go of a callback that C cannot call any more.
+
+        Parameters
+        ----------
+        handler : object
+            The ctypes callback, as it was given to `keep_callback`.
+        """
         with self._lock:
             self._handlers.remove(handler)
 
     @contextmanager
     def exclusive(self, operation: str) -> Iterator[int]:
-        """The connection's pointer, alone: nobody else sends a request and nobody closes meanwhile."""
+        """Hold the association alone: meanwhile nobody else sends a request and nobody closes it.
+
+        Parameters
+        ----------
+        operation : str
+            The service and its object, for messages.
+
+        Yields
+        ------
+        int
+            Pointer to the library's IedConnection.
+
+        Raises
+        ------
+        ConnectionLost
+            The association has ended.
+        RuntimeError
+            The caller is a callback of the library, which would wait for itself.
+        """
         if inside_callback():
             raise RuntimeError(
                 f"{operation}: no requests from a callback of the MMS library; hand over to a thread"
@@ -250,10 +322,30 @@ class Connection:
     def request(
         self, operation: str, function: ServiceFunction, *arguments: object, longest_s: float | None = None
     ) -> int | None:
-        """One confirmed service; its pointer result (or None), or the typed error.
+        """Carry out one confirmed service.
 
-        `function` takes the connection, the error cell and `arguments`. longest_s: for one that asks for part
-        after part; the connection is ended, and Timeout raised, when that is over.
+        Parameters
+        ----------
+        operation : str
+            The service and its object, for messages.
+        function : ServiceFunction
+            The library's function. It is called with the connection, the error cell and `arguments`.
+        *arguments : object
+            Further arguments of the function.
+        longest_s : float, optional
+            Limit for a function that requests part after part [s]. The connection is ended when it is over.
+
+        Returns
+        -------
+        int or None
+            The function's pointer result, if it has one.
+
+        Raises
+        ------
+        MmsError
+            The kind that belongs to the library's error number.
+        Timeout
+            The answer did not come in time, or `longest_s` is over.
         """
         with self.exclusive(operation) as pointer:
             error = ctypes.c_int(0)
@@ -270,18 +362,40 @@ class Connection:
         return result if isinstance(result, int) else None
 
     def resolve_timeout(self, error: errors.MmsError) -> errors.MmsError:
-        """The error as it is: the library ends a request with a time-out when the association is lost."""
+        """Turn a timeout into ConnectionLost where the association has ended.
+
+        The library ends a request with a timeout when the association is lost meanwhile.
+
+        Parameters
+        ----------
+        error : MmsError
+            Error of a request.
+
+        Returns
+        -------
+        MmsError
+            ConnectionLost in place of Timeout if the association has ended, else `error`.
+        """
         if isinstance(error, errors.Timeout) and self._notice.event.wait(self.limits.loss_notice_s):
             return errors.ConnectionLost(self.host, error.operation, error.code, "the connection was lost")
         return error
 
     def abandon(self) -> None:
-        """Let no further request begin; waits for none. The connection is still to be closed."""
+        """Let no further request begin, without waiting. The connection is still to be closed."""
         if self._state is _State.OPEN:
             self._state = _State.CLOSING
 
     def close(self) -> None:
-        """Release the association and free it; waits for a request under way, at most its time-out."""
+        """Release the association and free it.
+
+        It waits for a request under way, at most that request's timeout. Closing a closed connection does
+        nothing.
+
+        Raises
+        ------
+        RuntimeError
+            The caller is a callback of the library, which would wait for itself.
+        """
         if inside_callback():
             raise RuntimeError("close: not from a callback of the MMS library; hand over to a thread")
         if self._state is _State.OPEN:
@@ -292,7 +406,7 @@ class Connection:
             self._state = _State.CLOSED
             self._destroy()
             self._credentials.destroy()
-        self._notice.give()
+        self._notice.notify()
         _open_connections.discard(self)
 
     def _destroy(self) -> None:
@@ -302,7 +416,18 @@ class Connection:
         self._handlers.clear()
 
     def strings(self, linked_list: int | None) -> list[str]:
-        """The names in a LinkedList of C strings, which is freed."""
+        """Read a list of names and free it.
+
+        Parameters
+        ----------
+        linked_list : int or None
+            Pointer to a LinkedList of C strings.
+
+        Returns
+        -------
+        list of str
+            The names, their octets read as Latin-1; empty for None.
+        """
         if linked_list is None:
             return []
         names = [(ctypes.string_at(data)).decode("latin-1") for data in self.items(linked_list)]
@@ -310,6 +435,18 @@ class Connection:
         return names
 
     def items(self, linked_list: int) -> Iterator[int]:
+        """Iterate over a list of the library.
+
+        Parameters
+        ----------
+        linked_list : int
+            Pointer to a LinkedList.
+
+        Yields
+        ------
+        int
+            Pointer to the data of each element.
+        """
         element = self.lib.LinkedList_getNext(linked_list)
         while element:
             yield self.lib.LinkedList_getData(element)
@@ -317,7 +454,7 @@ class Connection:
 
 
 _open_connections: Final[set[Connection]] = set()
-"""Strong references: a connection forgotten open keeps its callbacks alive as long as C may call them."""
+"""References that keep the callbacks of a connection forgotten open alive as long as C may call them."""
 
 
 @atexit.register

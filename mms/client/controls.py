@@ -1,4 +1,4 @@
-"""Operating a controllable object by the control model it declares (clause 20 of IEC 61850-7-2 and 8-1).
+"""Operation of a controllable object by the control model it declares (clause 20 of IEC 61850-7-2 and -8-1).
 
 direct-with-normal-security      Operate
 sbo-with-normal-security         Select, Operate
@@ -25,10 +25,33 @@ _LOOK_FOR_LOSS_S: Final = 0.1
 
 
 def operate(connection: Connection, reference: str, *, value: bool, originator: str) -> None:
-    """Bring the object to `value` by its control model; returns when the relay has accepted or, with enhanced
-    security, completed it.
+    """Bring a controllable object to a value by its control model.
 
-    ControlRefused carries the relay's add cause; Timeout if the command termination does not come.
+    It returns when the relay has accepted the command or, with enhanced security, completed it.
+
+    Parameters
+    ----------
+    connection : Connection
+        The association with the relay.
+    reference : str
+        Reference "LD/LN.DO".
+    value : bool
+        The value to bring the object to.
+    originator : str
+        Identification of the originator, at most 16 ASCII characters.
+
+    Raises
+    ------
+    ControlRefused
+        The relay refuses; the error carries its add cause.
+    Timeout
+        The command termination does not come.
+    ValueError
+        The originator is too long.
+
+    References
+    ----------
+    IEC 61850-7-2 clause 20; IEC 61850-8-1 clause 20.
     """
     operation = f"operate {reference}"
     object_name = object_reference(reference, names=2, room=_CONTROL_ROOM)
@@ -46,7 +69,10 @@ def operate(connection: Connection, reference: str, *, value: bool, originator: 
 
 
 def _create(connection: Connection, operation: str, reference: str, object_name: bytes, pointer: int) -> int:
-    """The library's control object, which asks the relay for its description: again if that came too late."""
+    """Make the library's control object, which asks the relay for its description.
+
+    The relay is asked again if its description came too late.
+    """
     for _ in range(2):
         began_s = time.monotonic()
         control = connection.lib.ControlObjectClient_create(object_name, pointer)
@@ -60,7 +86,7 @@ def _create(connection: Connection, operation: str, reference: str, object_name:
 
 
 def _no_control(connection: Connection, operation: str, reference: str) -> errors.MmsError:
-    """Why the library made no control object: it keeps the error of what it asked for to itself."""
+    """Find out why the library made no control object: it does not pass on the error of what it asked for."""
     lib = connection.lib
     model = connection.request(
         operation,

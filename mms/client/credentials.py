@@ -7,10 +7,28 @@ from mms.security.tls import TlsConfiguration, TlsContext
 
 
 class Credentials:
-    """The library's objects of one connection's TLS and password; destroyed after the connection."""
+    """TLS configuration and password of one client in the library.
+
+    They are destroyed after the client's connection.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    tls : TlsConfiguration or None
+        Our certificate and those we trust.
+    password : str or None
+        Password of ACSE.
+
+    Raises
+    ------
+    CredentialFileError
+        A file of `tls` cannot be used.
+    ValueError
+        The password cannot be sent.
+    """
 
     def __init__(self, lib: ctypes.CDLL, tls: TlsConfiguration | None, password: str | None) -> None:
-        """Raises CredentialFileError, and ValueError for a password that cannot be sent."""
         self._lib = lib
         self._password = None if password is None else ClientPassword(lib, password)
         try:
@@ -21,13 +39,25 @@ class Credentials:
 
     @property
     def has_password(self) -> bool:
+        """Whether a password is sent."""
         return self._password is not None
 
     def new_connection(self) -> int:
-        """The library's IedConnection that will show them; whoever asked for it destroys it."""
+        """Make a connection of the library that will show the credentials.
+
+        Returns
+        -------
+        int
+            Pointer to the IedConnection. The caller destroys it.
+
+        Raises
+        ------
+        MemoryError
+            The library has no memory for it.
+        """
         lib = self._lib
         if self.tls is not None:
-            self.tls.forget()
+            self.tls.reset()
         threaded = True
         pointer = int(
             lib.IedConnection_createEx(None if self.tls is None else self.tls.pointer, threaded) or 0
@@ -42,7 +72,7 @@ class Credentials:
         return pointer
 
     def destroy(self) -> None:
-        """Once no connection of theirs is left; harmless twice."""
+        """Free the library's objects once none of their connections is left; a second call does nothing."""
         if self.tls is not None:
             self.tls.destroy()
         self._destroy_password()

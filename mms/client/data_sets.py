@@ -1,7 +1,7 @@
-"""The members of a data set (IEC 61850-7-2, GetDataSetDirectory; ISO 9506-2, GetNamedVariableListAttributes).
+"""Members of a data set (IEC 61850-7-2 GetDataSetDirectory, ISO 9506-2 GetNamedVariableListAttributes).
 
-Asked for in MMS's own terms: the library's function for it follows a null pointer when a relay names a member
-without a functional constraint.
+The request is made in MMS's own terms. The library's function for it follows a null pointer when a relay
+names a member without a functional constraint.
 """
 
 import ctypes
@@ -18,9 +18,26 @@ _NOT_FOUND: Final = (81, 84)
 
 
 def data_set_members(connection: Connection, reference: str) -> tuple[str, ...]:
-    """The members' references "LD/LN.DO.DA[FC]" of the data set "LD/LN.name".
+    """List the members of a data set.
 
-    NotFound, ProtocolError where the relay names a member that is none.
+    Parameters
+    ----------
+    connection : Connection
+        The association with the relay.
+    reference : str
+        Reference "LD/LN.name".
+
+    Returns
+    -------
+    tuple of str
+        References of the members, "LD/LN.DO.DA[FC]".
+
+    Raises
+    ------
+    NotFound
+        There is no such data set.
+    ProtocolError
+        The relay names a member that is none.
     """
     operation = f"directory of data set {reference}"
     lib = connection.lib
@@ -56,7 +73,7 @@ def data_set_members(connection: Connection, reference: str) -> tuple[str, ...]:
 
 
 def _reference(data: int) -> tuple[str | None, bytes]:
-    """A member's reference, None where it is none; and the item as it was told."""
+    """Return a member's reference, None if it is none, and the item name as the relay sent it."""
     specification = VariableAccessSpecification.from_address(data)
     domain, item = specification.domain or b"", specification.item or b""
     match = _ITEM.fullmatch(item.decode("latin-1"))

@@ -1,4 +1,4 @@
-"""Listing and fetching a relay's files (IEC 61850-7-2 clause 23, ISO 9506-2 FileOpen, Read, Close)."""
+"""Listing and download of a relay's files (IEC 61850-7-2 clause 23, ISO 9506-2 file services)."""
 
 import ctypes
 import logging
@@ -21,14 +21,36 @@ _LONGEST_NAME: Final = 255
 
 
 class Sink(Protocol):
-    """Where a downloaded file's bytes go, in order: a binary file, a hash."""
+    """Receiver of a downloaded file's bytes, in order: a binary file or a hash, say."""
 
-    def write(self, chunk: bytes, /) -> object: ...
+    def write(self, chunk: bytes, /) -> object:
+        """Take the next bytes.
+
+        Parameters
+        ----------
+        chunk : bytes
+            The bytes.
+
+        Returns
+        -------
+        object
+            Ignored.
+        """
 
 
 @dataclass(frozen=True, slots=True)
 class FileEntry:
-    """One file of a relay's listing: name as the relay gives it, size [bytes], last change [ns UTC]."""
+    """One file of a relay's listing.
+
+    Parameters
+    ----------
+    name : str
+        Name as the relay gives it.
+    size : int
+        Size [byte].
+    modified_ns : int
+        Time of the last change [ns, UTC].
+    """
 
     name: str
     size: int
@@ -36,9 +58,28 @@ class FileEntry:
 
 
 def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
-    """Every file of a directory, "" for the root. Relays send long listings in parts: all are asked for.
+    """List every file of a directory.
 
-    Raises Timeout where that takes longer than five minutes, though each part comes in time.
+    Relays send long listings in parts; all of them are requested.
+
+    Parameters
+    ----------
+    connection : Connection
+        The association with the relay.
+    directory : str
+        Name of the directory, "" for the root.
+
+    Returns
+    -------
+    tuple of FileEntry
+        The files.
+
+    Raises
+    ------
+    Timeout
+        The whole takes longer than the limits of the connection allow, though each part comes in time.
+    ProtocolError
+        The listing never ends, or cannot be continued.
     """
     operation = f"list files of {directory or 'the root'!r}"
     entries: dict[str, FileEntry] = {}
@@ -67,7 +108,7 @@ def list_files(connection: Connection, directory: str) -> tuple[FileEntry, ...]:
 def _listing(
     connection: Connection, operation: str, directory: str, after: str | None
 ) -> tuple[list[FileEntry], bool]:
-    """One part of a listing and whether more follows."""
+    """Fetch one part of a listing; return its entries and whether more follows."""
     lib = connection.lib
     more = ctypes.c_bool()
     found = connection.request(
@@ -90,7 +131,23 @@ def _listing(
 
 
 def file_name(name: str) -> bytes:
-    """A file name for C: the bytes the relay gave, which listings read as Latin-1."""
+    """Encode a file name for C.
+
+    Parameters
+    ----------
+    name : str
+        Name whose characters are the relay's octets read as Latin-1.
+
+    Returns
+    -------
+    bytes
+        The relay's octets.
+
+    Raises
+    ------
+    ValueError
+        The name has a NUL or is longer than 255 octets.
+    """
     octets = name.encode("latin-1")
     if b"\0" in octets or len(octets) > _LONGEST_NAME:
         raise ValueError(f"not a file name: {name!r}")
@@ -98,11 +155,31 @@ def file_name(name: str) -> bytes:
 
 
 def download(connection: Connection, name: str, sink: Sink, expected_size: int | None) -> int:
-    """Stream one file to `sink` in chunks of about 65 kB; the number of bytes.
+    """Stream one file to a sink in chunks of about 65 kB.
 
-    FileSizeMismatch unless the bytes are `expected_size`, the size listed. Without it the size announced at
-    opening must do, which some relays also have for a directory: give the size wherever there is a listing.
-    Timeout also where the parts come in time and next to nothing with them (`mms.client.throughput`).
+    Parameters
+    ----------
+    connection : Connection
+        The association with the relay.
+    name : str
+        Name of the file as the relay lists it.
+    sink : Sink
+        Receives the bytes in order.
+    expected_size : int or None
+        Size as it was listed [byte]. None takes the size announced at opening, which some relays also
+        announce for a directory: give the size wherever there is a listing.
+
+    Returns
+    -------
+    int
+        Number of bytes received.
+
+    Raises
+    ------
+    FileSizeMismatch
+        The number of bytes is not the expected one.
+    Timeout
+        A part does not come in time, or the throughput is below the limit of the connection.
     """
     operation = f"download {name!r}"
     with _open_file(connection, operation, name) as (handle, announced):
@@ -154,7 +231,7 @@ def _open_file(connection: Connection, operation: str, name: str) -> Iterator[tu
 
 
 def _close_file(connection: Connection, operation: str, handle: int) -> None:
-    """Give the file back: a relay has few handles. A lost connection, told elsewhere, holds none."""
+    """Close the file: a relay has few handles. A lost connection holds none and is reported elsewhere."""
     error = ctypes.c_int(0)
     try:
         with connection.exclusive(operation) as pointer:
@@ -167,7 +244,7 @@ def _close_file(connection: Connection, operation: str, handle: int) -> None:
 
 
 class _Reader:
-    """Reads one open file, part by part, through one callback for all of them."""
+    """Reads one open file, part by part, with one callback for all parts."""
 
     def __init__(self, connection: Connection, operation: str, handle: int) -> None:
         self._connection = connection
@@ -180,7 +257,7 @@ class _Reader:
         self._parts.append(ctypes.string_at(buffer, size))  # type: ignore[arg-type]
 
     def read(self) -> tuple[bytes, bool]:
-        """One FileRead: the bytes and whether more follow."""
+        """Carry out one FileRead; return the bytes and whether more follow."""
         lib = self._connection.lib
         error = ctypes.c_int(0)
         self._parts.clear()

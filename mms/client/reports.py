@@ -1,7 +1,7 @@
 """Buffered and unbuffered reporting (IEC 61850-7-2 clause 17, IEC 61850-8-1 clause 17).
 
-A report is copied into Python on the library's thread and put into the subscriber's queue; nothing else
-happens there.
+The library's thread copies a report into Python and puts it into the subscriber's queue. It does nothing
+else.
 """
 
 import ctypes
@@ -29,7 +29,7 @@ _ENTRY_ID_OCTETS: Final = 8
 
 
 class _Field(IntFlag):
-    """Which attributes one SetRCBValues request writes (the library's RCB_ELEMENT_...)."""
+    """Attributes that one SetRCBValues request writes (the library's RCB_ELEMENT_...)."""
 
     ENABLE = 2
     RESERVE = 4
@@ -39,7 +39,7 @@ class _Field(IntFlag):
 
 
 class _Option(IntFlag):
-    """OptFlds, the optional fields of a report."""
+    """Optional fields of a report (OptFlds)."""
 
     SEQUENCE_NUMBER = 1
     TIMESTAMP = 2
@@ -70,7 +70,19 @@ class Reason(IntFlag):
 
 @dataclass(frozen=True, slots=True)
 class ReportMember:
-    """An included data set member: index, reference as the relay sends it (or None), value and reasons."""
+    """One data set member that a report includes.
+
+    Parameters
+    ----------
+    index : int
+        Place of the member in the data set, from 0.
+    reference : str or None
+        Reference as the relay sends it; None where it sends none.
+    value : Value
+        The member's value.
+    reasons : Reason
+        Why the member is included.
+    """
 
     index: int
     reference: str | None
@@ -80,11 +92,35 @@ class ReportMember:
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """One report, or one segment of a long one, with the included members only.
+    """One report, or one segment of a long one, with its included members.
 
-    `entry_id` resumes a buffered block after this report. `buffer_overflow` says that entries before it may
-    be lost; the first report of a block enabled without an entry ID usually says so. Fields the relay left
-    out are None (`buffer_overflow` False).
+    Fields that the relay left out are None, and `buffer_overflow` is False.
+
+    Parameters
+    ----------
+    rcb_reference : str
+        Reference of the control block.
+    report_id : str
+        RptID, as the relay sends it.
+    entry_id : bytes or None
+        Entry of a buffered block. With it a subscription resumes after this report.
+    sequence_number : int or None
+        Number of the report since the block was enabled.
+    timestamp_ns : int or None
+        Time of the entry by the relay's clock [ns, UTC].
+    buffer_overflow : bool
+        Whether entries before this one may be lost. The first report of a block enabled without an entry ID
+        usually says so.
+    data_set : str or None
+        Reference of the data set.
+    members : tuple of ReportMember
+        The included members.
+    more_segments_follow : bool
+        Whether the report goes on in another segment.
+
+    References
+    ----------
+    IEC 61850-7-2 clause 17; IEC 61850-8-1 clause 17.
     """
 
     rcb_reference: str
@@ -99,7 +135,13 @@ class Report:
 
 
 class Subscriptions:
-    """The report control blocks one client has enabled."""
+    """Report control blocks that one client has enabled.
+
+    Parameters
+    ----------
+    connection : Connection
+        The association with the relay.
+    """
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
@@ -110,7 +152,28 @@ class Subscriptions:
         self, reference: str, reports: "queue.SimpleQueue[Report]", *, entry_id: bytes | None,
         general_interrogation: bool,
     ) -> None:  # fmt: skip
-        """Enable the block and deliver its reports to the queue; see Client.subscribe."""
+        """Enable a block and deliver its reports to a queue.
+
+        Parameters
+        ----------
+        reference : str
+            Reference of the block.
+        reports : queue.SimpleQueue of Report
+            Receives the reports.
+        entry_id : bytes or None
+            Entry after which a buffered block resumes, 8 octets.
+        general_interrogation : bool
+            Whether to ask for a report of all members at once.
+
+        Raises
+        ------
+        ReportControlInUse
+            Another client, or this one, has the block.
+        EntryNotFound
+            The relay no longer holds the entry.
+        ValueError
+            An entry ID has other than 8 octets, or is given for an unbuffered block.
+        """
         operation = f"subscribe to {reference}"
         buffered = _is_buffered(reference)
         if entry_id is not None and (not buffered or len(entry_id) != _ENTRY_ID_OCTETS):
@@ -132,7 +195,13 @@ class Subscriptions:
                 self._write(operation, block, _Field.GENERAL_INTERROGATION)
 
     def unsubscribe(self, reference: str) -> None:
-        """Disable the block; a buffered one goes on collecting."""
+        """Disable a block; a buffered one goes on collecting.
+
+        Parameters
+        ----------
+        reference : str
+            Reference of the block.
+        """
         operation = f"unsubscribe from {reference}"
         lib = self._connection.lib
         with _control_block(self._connection, operation, reference) as block:
@@ -141,7 +210,7 @@ class Subscriptions:
         self._uninstall(operation, reference)
 
     def _claim(self, operation: str, reference: str, block: int) -> str:
-        """The block's report ID, once the block is known to be free and its ID to be its own."""
+        """Return the block's report ID, once the block is known to be free and its ID to be its own."""
         lib, host = self._connection.lib, self._connection.host
         if reference in self._report_ids:
             raise errors.ReportControlInUse(host, operation, 0, "this client has enabled the block already")
@@ -166,7 +235,7 @@ class Subscriptions:
             raise _in_use(error) from error
 
     def _set_optional_fields(self, operation: str, block: int, wanted: _Option) -> None:
-        """Ask for the fields we rely on, if they are not there already: writing needs not be allowed."""
+        """Request the fields we rely on, unless they are set already: a relay need not allow writing them."""
         lib = self._connection.lib
         present = int(lib.ClientReportControlBlock_getOptFlds(block))
         if present & wanted == wanted:
@@ -178,7 +247,10 @@ class Subscriptions:
             raise _in_use(error) from error
 
     def _set_entry_id(self, operation: str, block: int, entry_id: bytes) -> None:
-        """In a request of its own, before enabling: relays ignore it afterwards or refuse the whole."""
+        """Write the entry ID in a request of its own before enabling.
+
+        After enabling, relays ignore the entry ID or refuse the whole request.
+        """
         lib = self._connection.lib
         value = lib.MmsValue_newOctetString(_ENTRY_ID_OCTETS, _ENTRY_ID_OCTETS)
         lib.MmsValue_setOctetString(value, entry_id, len(entry_id))
@@ -202,7 +274,7 @@ class Subscriptions:
 
         handler = ReportHandler(guarded(receive, None))
         with connection.exclusive(operation) as pointer:
-            connection.keep(handler)
+            connection.keep_callback(handler)
             lib.IedConnection_installReportHandler(
                 pointer, reference.encode("ascii"), report_id.encode("latin-1"), handler, None
             )
@@ -217,14 +289,14 @@ class Subscriptions:
             raise
 
     def _uninstall(self, operation: str, reference: str) -> None:
-        """No report of the block is delivered from now on."""
+        """Deliver no report of the block from now on."""
         self._report_ids.pop(reference, None)
         with self._connection.exclusive(operation) as pointer:
             self._connection.lib.IedConnection_uninstallReportHandler(pointer, reference.encode("ascii"))
             # The library calls handlers under the lock that uninstalling takes: it is not inside one now.
             handler = self._handlers.pop(reference, None)
             if handler is not None:
-                self._connection.release(handler)
+                self._connection.release_callback(handler)
 
     def _write(self, operation: str, block: int, field: _Field) -> None:
         single_request = True
@@ -251,7 +323,7 @@ def _in_use(error: errors.MmsError) -> errors.ReportControlInUse:
 
 @contextmanager
 def _control_block(connection: Connection, operation: str, reference: str) -> Iterator[int]:
-    """The library's copy of the block's attributes, read from the relay (GetBRCBValues, GetURCBValues)."""
+    """Hold the library's copy of the block's attributes, read by GetBRCBValues or GetURCBValues."""
     name = object_reference(reference, names=3, room=_RCB_ROOM)
     block = connection.request(operation, connection.lib.IedConnection_getRCBValues, name, None)
     if block is None:

@@ -1,1 +1,1 @@
-"""Who may connect: TLS certificates and passwords."""
+"""Access to a relay: TLS certificates and passwords."""

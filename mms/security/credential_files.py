@@ -19,12 +19,44 @@ _OTHERS: Final = stat.S_IRWXG | stat.S_IRWXO
 
 
 def read_secret(path: Path) -> bytes:
-    """The content of a file that only its owner may use. Raises CredentialFileError."""
+    """Read a file that only its owner may use.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+
+    Returns
+    -------
+    bytes
+        Its content.
+
+    Raises
+    ------
+    CredentialFileError
+        The file cannot be read, is empty or too large, or others may use it.
+    """
     return _read(path, secret=True)
 
 
 def read_certificates(path: Path) -> tuple[x509.Certificate, ...]:
-    """All certificates of a PEM file, or the one of a DER file. Raises CredentialFileError."""
+    """Read the certificates of a file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        A PEM file with any number of certificates, or a DER file with one.
+
+    Returns
+    -------
+    tuple of cryptography.x509.Certificate
+        The certificates in order.
+
+    Raises
+    ------
+    CredentialFileError
+        The file holds no certificates or cannot be read.
+    """
     content = _read(path, secret=False)
     try:
         if b"-----BEGIN" in content:
@@ -35,9 +67,26 @@ def read_certificates(path: Path) -> tuple[x509.Certificate, ...]:
 
 
 def read_identity(certificate: Path, key: Path) -> tuple[tuple[x509.Certificate, ...], PrivateKey]:
-    """A certificate, valid at present and followed by its intermediates if it has any, and its private key.
+    """Read a certificate and its private key.
 
-    Raises CredentialFileError.
+    Parameters
+    ----------
+    certificate : pathlib.Path
+        The certificate, valid at present, followed by its intermediates if it has any.
+    key : pathlib.Path
+        The private key, its owner's alone.
+
+    Returns
+    -------
+    chain : tuple of cryptography.x509.Certificate
+        The certificate and its intermediates.
+    private_key : PrivateKey
+        The key.
+
+    Raises
+    ------
+    CredentialFileError
+        A file cannot be used, or the key is of another certificate.
     """
     chain = read_certificates(certificate)
     _require_valid_now(certificate, chain[0])
@@ -48,12 +97,34 @@ def read_identity(certificate: Path, key: Path) -> tuple[tuple[x509.Certificate,
 
 
 def is_self_signed(certificate: x509.Certificate) -> bool:
-    """Whether it can be trusted by itself, being nobody else's word."""
+    """Tell whether a certificate is signed by its own key, so that it needs no authority.
+
+    Parameters
+    ----------
+    certificate : cryptography.x509.Certificate
+        The certificate.
+
+    Returns
+    -------
+    bool
+        True if issuer and subject are the same.
+    """
     return certificate.issuer == certificate.subject
 
 
-def described(certificate: x509.Certificate) -> str:
-    """Subject and SHA-256 fingerprint, as `openssl x509 -noout -subject -fingerprint -sha256` shows them."""
+def describe_certificate(certificate: x509.Certificate) -> str:
+    """Describe a certificate for people.
+
+    Parameters
+    ----------
+    certificate : cryptography.x509.Certificate
+        The certificate.
+
+    Returns
+    -------
+    str
+        Subject and SHA-256 fingerprint, as `openssl x509 -noout -subject -fingerprint -sha256` shows them.
+    """
     fingerprint = certificate.fingerprint(hashes.SHA256()).hex(":").upper()
     return f"{certificate.subject.rfc4514_string()} (SHA-256 {fingerprint})"
 
@@ -64,7 +135,7 @@ def _require_valid_now(path: Path, certificate: x509.Certificate) -> None:
         raise CredentialFileError(
             path,
             "a certificate that is valid now",
-            f"{described(certificate)}, valid from {_day(begin)} to {_day(end)}: "
+            f"{describe_certificate(certificate)}, valid from {_day(begin)} to {_day(end)}: "
             "make a new one, or set this machine's clock",
         )
 

@@ -1,7 +1,7 @@
 """TLS for MMS associations (IEC 62351-3, IEC 62351-4 T-profile): both sides show a certificate, and pin.
 
-The library's Mbed TLS does the work; here are the configuration, checked before anything connects, and the
-owner of the C object made of it.
+The library's Mbed TLS does the work. This module holds the configuration, which is checked before anything
+connects, and the owner of the C object made of it.
 """
 
 import ctypes
@@ -22,14 +22,14 @@ from mms.binding.prototypes import TlsEventHandler
 from mms.errors import CredentialFileError
 from mms.security.credential_files import (
     PrivateKey,
-    described,
+    describe_certificate,
     is_self_signed,
     read_certificates,
     read_identity,
 )
 
 TLS_PORT: Final = 3782
-"""Where servers speak TLS by default (IEC 62351-3)."""
+"""Port at which servers speak TLS by default (IEC 62351-3)."""
 
 _INCIDENT: Final = 2  # TLSEventLevel
 _ESTABLISHED: Final = 16  # TLS_EVENT_CODE_INF_SESSION_ESTABLISHED
@@ -43,11 +43,11 @@ _UNTRUSTED: Final = {
 """The library's event codes for what is wrong with the peer's certificate."""
 
 _count_lock: Final = threading.Lock()
-"""The library counts its configurations, unguarded, to know when to end its cryptography."""
+"""Guards the library's own count of its configurations, which tells it when to end its cryptography."""
 
 
 class TlsVersion(IntEnum):
-    """The numbers are the library's TLSConfigVersion."""
+    """TLS versions, with the numbers of the library's TLSConfigVersion."""
 
     TLS_1_2 = 6
     TLS_1_3 = 7
@@ -55,11 +55,26 @@ class TlsVersion(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class TlsConfiguration:
-    """Who we are and whom we trust.
+    """Our certificate, and the certificates we trust. Files are PEM or DER.
 
-    certificate, key: our own; the key file must be its owner's alone (mode 600).  pinned: the certificates of
-    those we speak with, at least one; more while one is being exchanged.  ca: the authorities that sign them;
-    None where the pinned ones are self-signed.  Files are PEM or DER.
+    Parameters
+    ----------
+    certificate : pathlib.Path
+        Our certificate.
+    key : pathlib.Path
+        Its private key. The file must be its owner's alone (mode 600).
+    pinned : tuple of pathlib.Path
+        Certificates of those we speak with, at least one; more while one is being exchanged.
+    ca : pathlib.Path, optional
+        Authorities that sign the pinned certificates. None where those are self-signed.
+    minimum_version : TlsVersion
+        Lowest version to speak.
+    maximum_version : TlsVersion, optional
+        Highest version to speak. The library's highest by default.
+
+    References
+    ----------
+    IEC 62351-3, profiles including TCP/IP; IEC 62351-4, profiles including MMS.
     """
 
     certificate: Path
@@ -70,13 +85,19 @@ class TlsConfiguration:
     maximum_version: TlsVersion | None = None
 
     def check(self) -> None:
-        """Raises CredentialFileError: which file, what was expected and found."""
+        """Read all files and check them.
+
+        Raises
+        ------
+        CredentialFileError
+            A file cannot be used; the error says which, what was expected and what was found.
+        """
         _Credentials.read(self)
 
 
 @dataclass(frozen=True, slots=True)
 class _Credentials:
-    """What the files hold."""
+    """Contents of the files of a TlsConfiguration."""
 
     chain: tuple[x509.Certificate, ...]
     key: PrivateKey
@@ -101,16 +122,28 @@ class _Credentials:
 
 
 class TlsContext:
-    """The library's TLSConfiguration: for one client connection or one server, and destroyed after it."""
+    """The library's TLSConfiguration of one client connection or one server, destroyed after it.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    configuration : TlsConfiguration
+        Our certificate and those we trust.
+
+    Raises
+    ------
+    CredentialFileError
+        A file cannot be used; the error says which, what was expected and what was found.
+    """
 
     def __init__(self, lib: ctypes.CDLL, configuration: TlsConfiguration) -> None:
-        """Raises CredentialFileError: which file, what was expected and found."""
         self._lib = lib
         self._configuration = configuration
         self._incidents: list[int] = []
         self._established: TlsVersion | None = None
         self._credentials_read = material = _Credentials.read(configuration)
-        self.trusted: Final = tuple(described(certificate) for certificate in material.pinned)
+        self.trusted: Final = tuple(describe_certificate(certificate) for certificate in material.pinned)
         self._handler = TlsEventHandler(guarded(self._on_event, None))
         with _count_lock:
             self.pointer = int(lib.TLSConfiguration_create() or 0)
@@ -165,19 +198,34 @@ class TlsContext:
             self._established = TlsVersion(self._lib.TLSConnection_getTLSVersion(connection))
 
     def certificate_fault(self) -> str | None:
-        """What is wrong with the certificate the peer showed; None where nothing was found wrong with it."""
+        """Tell what is wrong with the certificate that the peer showed.
+
+        Returns
+        -------
+        str or None
+            The fault in words; None where the library found none.
+        """
         return next((_UNTRUSTED[code] for code in self._incidents if code in _UNTRUSTED), None)
 
     @property
     def established_version(self) -> TlsVersion | None:
-        """The version of a handshake that succeeded, where nothing has gone wrong since that was noticed.
+        """Version of a handshake that succeeded, if nothing has gone wrong since; else None.
 
-        With TLS 1.2 the peer has taken our certificate then; with 1.3 it says so, or not, only afterwards.
+        With TLS 1.2 the peer has accepted our certificate by then. With 1.3 it says so, or not, only
+        afterwards.
         """
         return None if self._incidents else self._established
 
-    def again(self) -> ssl.SSLContext:
-        """For a handshake of our own with the same certificate; compare the peer's by `is_pinned`."""
+    def ssl_context(self) -> ssl.SSLContext:
+        """Make a context of the ssl module for a handshake with the same certificate.
+
+        The context verifies nothing: compare the peer's certificate by `is_pinned`.
+
+        Returns
+        -------
+        ssl.SSLContext
+            The context.
+        """
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
         context.check_hostname = False
         context.verify_mode = ssl.CERT_NONE
@@ -187,7 +235,9 @@ class TlsContext:
         identity += self._credentials_read.key.private_bytes(
             serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
         )
-        memory = os.memfd_create("identity")  # the ssl module takes files only, and none is to hold the key
+        memory = os.memfd_create(
+            "identity"
+        )  # the ssl module takes files only, and no file on disk may hold the key
         try:
             os.write(memory, identity)
             context.load_cert_chain(f"/proc/self/fd/{memory}")
@@ -196,17 +246,28 @@ class TlsContext:
         return context
 
     def is_pinned(self, certificate: bytes | None) -> bool:
-        """Whether it, in DER, is one of those we trust."""
+        """Tell whether a certificate is one of those we trust.
+
+        Parameters
+        ----------
+        certificate : bytes or None
+            The certificate in DER; None for none.
+
+        Returns
+        -------
+        bool
+            True if it is pinned.
+        """
         pinned = (each.public_bytes(serialization.Encoding.DER) for each in self._credentials_read.pinned)
         return certificate is not None and certificate in pinned
 
-    def forget(self) -> None:
-        """Begin another attempt."""
+    def reset(self) -> None:
+        """Forget what happened in an earlier attempt."""
         self._incidents.clear()
         self._established = None
 
     def destroy(self) -> None:
-        """Free it, once its connection or server has been destroyed; harmless twice."""
+        """Free the library's object once its owner has been destroyed; a second call does nothing."""
         pointer, self.pointer = self.pointer, 0
         if pointer:
             with _count_lock:

@@ -10,7 +10,7 @@ from mms.binding.callbacks import log
 
 
 class FileOperation(IntEnum):
-    """The service asked for; the numbers are the library's MmsFileServiceType."""
+    """File service asked for, with the numbers of the library's MmsFileServiceType."""
 
     LIST = 0
     OPEN = 1
@@ -20,7 +20,7 @@ class FileOperation(IntEnum):
 
 
 class FileAnswer(IntEnum):
-    """What the client is told; the numbers are the library's MmsError.
+    """What the client is told, with the numbers of the library's MmsError.
 
     BUSY is sent as a lack of resources: the library's server has no other way to say "later".
     """
@@ -33,7 +33,17 @@ class FileAnswer(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class FileRequest:
-    """A client's request: the service, the name it gave, and the path that name means under the file root."""
+    """A client's request for a file or a listing.
+
+    Parameters
+    ----------
+    operation : FileOperation
+        The service.
+    name : str
+        The name that the client gave.
+    path : pathlib.Path
+        The path that the name means under the file root.
+    """
 
     operation: FileOperation
     name: str
@@ -47,8 +57,15 @@ class FileGuard:
     """Decides each file request: reading inside the root only, then the hook.
 
     Writing services, "..", and links that lead out of the root are refused whatever the hook says. The hook
-    runs before the path is looked at, so that it can make content on demand, or answer BUSY until the content
+    runs before the path is checked, so that it can make content on demand, or answer BUSY until the content
     is there.
+
+    Parameters
+    ----------
+    root : pathlib.Path
+        Folder whose files are served.
+    hook : FileHook or None
+        Function that is asked first.
     """
 
     def __init__(self, root: Path, hook: FileHook | None) -> None:
@@ -56,6 +73,20 @@ class FileGuard:
         self._hook = hook
 
     def answer(self, operation: int, name: bytes | None) -> FileAnswer:
+        """Decide one request.
+
+        Parameters
+        ----------
+        operation : int
+            The library's number of the service.
+        name : bytes or None
+            The name that the client gave.
+
+        Returns
+        -------
+        FileAnswer
+            SERVE, or why not.
+        """
         if operation not in (FileOperation.LIST, FileOperation.OPEN):
             return FileAnswer.DENIED
         text = (name or b"").decode("utf-8", "surrogateescape")
@@ -68,9 +99,9 @@ class FileGuard:
             answer = self._hook(FileRequest(FileOperation(operation), text, path))
             if answer is not FileAnswer.SERVE:
                 return answer
-        return self._look(operation, text, path)
+        return self._check_path(operation, text, path)
 
-    def _look(self, operation: int, text: str, path: Path) -> FileAnswer:
+    def _check_path(self, operation: int, text: str, path: Path) -> FileAnswer:
         try:
             real = path.resolve(strict=True)
         except (OSError, RuntimeError):  # RuntimeError: links in a circle

@@ -1,4 +1,4 @@
-"""The owner of one data model in the library: built from text, asked for nodes, freed after its server."""
+"""Data model of a server in the library: built from text, asked for nodes, freed after its server."""
 
 import ctypes
 import tempfile
@@ -8,26 +8,27 @@ from typing import Final
 
 from mms.binding.value_conversion import TypeMismatchError, assign
 from mms.errors import ModelError
-from mms.server.model_text import checked
+from mms.server.model_text import check_model_text
 from mms.values import Quality, Value
 
 _REFERENCE_LIMIT: Final = 128
 _parser_lock: Final = threading.Lock()
-"""The library's parser keeps the line it reads in a static buffer."""
+"""Lets one thread parse at a time: the library's parser keeps its line in a static buffer."""
 
 
 class Node(IntEnum):
-    """The library's ModelNodeType."""
+    """Kinds of node, with the numbers of the library's ModelNodeType."""
 
     DATA_OBJECT = 2
     DATA_ATTRIBUTE = 3
 
     @property
     def words(self) -> str:
+        """The kind in words."""
         return f"a {self.name.lower().replace('_', ' ')}"
 
 
-# by the library's DataAttributeType
+# By the library's DataAttributeType.
 _INTEGER_RANGES: Final = {
     1: (-(1 << 7), (1 << 7) - 1),  # INT8
     2: (-(1 << 15), (1 << 15) - 1),  # INT16
@@ -44,14 +45,25 @@ _LONGEST_STRING: Final = 255
 
 
 class Model:
-    """A data model; every reference is "LD/LN.DO.DA" with the LD as clients see it."""
+    """Data model in the library. Every reference is "LD/LN.DO.DA" with the LD as clients see it.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    text : str
+        The library's configuration text.
+    ied_name : str or None
+        Name of the IED in place of the text's.
+
+    Raises
+    ------
+    ModelError
+        The text is wrong, or the library makes less of it than it says.
+    """
 
     def __init__(self, lib: ctypes.CDLL, text: str, ied_name: str | None) -> None:
-        """Build the model from the library's configuration text, under another IED name if one is given.
-
-        ModelError if the text is wrong in any way, or if the library makes less of it than it says.
-        """
-        attributes = checked(text, ied_name)
+        attributes = check_model_text(text, ied_name)
         self._lib = lib
         self._nodes: dict[str, int] = {}
         with tempfile.NamedTemporaryFile("w", encoding="utf-8", suffix=".cfg") as file:
@@ -72,7 +84,25 @@ class Model:
         self._nodes.clear()
 
     def node(self, reference: str, kind: Node) -> int:
-        """The library's node of a reference; ModelError if there is none or it is of another kind."""
+        """Find the library's node of a reference.
+
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO" or "LD/LN.DO.DA".
+        kind : Node
+            Expected kind of node.
+
+        Returns
+        -------
+        int
+            Pointer to the node.
+
+        Raises
+        ------
+        ModelError
+            There is no such node, or it is of another kind.
+        """
         node = self._nodes.get(reference)
         if node is None:
             if not reference.isascii() or len(reference) > _REFERENCE_LIMIT:
@@ -86,7 +116,24 @@ class Model:
         return node
 
     def assign(self, reference: str, node: int, target: int, value: Value | Quality) -> None:
-        """Put a value for attribute `node` into the MmsValue at `target`; ModelError if it does not fit."""
+        """Put a value for an attribute into the library's value.
+
+        Parameters
+        ----------
+        reference : str
+            Reference of the attribute, for messages.
+        node : int
+            Pointer to the attribute's node.
+        target : int
+            Pointer to the MmsValue.
+        value : Value or Quality
+            The value.
+
+        Raises
+        ------
+        ModelError
+            The value does not fit the attribute.
+        """
         kind = int(self._lib.DataAttribute_getType(node))
         try:
             _check_range(kind, value)
@@ -103,7 +150,7 @@ class Model:
 
 
 def _check_range(kind: int, value: Value | Quality) -> None:
-    """The library itself lets 128 into an INT8."""
+    """Check an integer against its type, because the library lets 128 into an INT8."""
     if kind in _INTEGER_RANGES and isinstance(value, int):
         lowest, highest = _INTEGER_RANGES[kind]
         if not lowest <= value <= highest:

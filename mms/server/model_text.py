@@ -1,7 +1,7 @@
-"""Checking a data model in libiec61850's configuration text before the library reads it.
+"""Check of a data model in libiec61850's configuration text before the library reads it.
 
 The library's parser accepts a cut-off file, cuts long lines and strings at a quote, and drops what a data set
-or a report control block names but the model has not. Each of these is an error here, with its line.
+or a report control block names but the model lacks. Each of these is an error here, with its line.
 """
 
 import re
@@ -41,18 +41,33 @@ class _Reading:
     data_sets: set[str] = field(default_factory=set)  # "LD/LN.name"
     wanted_items: list[tuple[int, str]] = field(default_factory=list)
     wanted_data_sets: list[tuple[int, str]] = field(default_factory=list)
-    attributes: list[tuple[str, str]] = field(default_factory=list)  # LD's inst, "LN.DO.DA"
-    own_names: dict[str, str] = field(default_factory=dict)  # by inst, of LDs not called by IED name and inst
+    attributes: list[tuple[str, str]] = field(default_factory=list)  # inst of the LD, and "LN.DO.DA"
+    own_names: dict[str, str] = field(default_factory=dict)  # by inst, for LDs with an ldName
     model_name: str = ""
 
     def path(self) -> list[str]:
         return [name for _, name in self.open_blocks]
 
 
-def checked(text: str, ied_name: str | None = None) -> tuple[str, ...]:
-    """Every data attribute in the text, "LD/LN.DO.DA" with the LD as clients see it.
+def check_model_text(text: str, ied_name: str | None = None) -> tuple[str, ...]:
+    """Check a model text and list its data attributes.
 
-    `ied_name` replaces the model's name. ModelError naming the line of the first fault.
+    Parameters
+    ----------
+    text : str
+        The library's configuration text.
+    ied_name : str, optional
+        Name of the IED in place of the text's.
+
+    Returns
+    -------
+    tuple of str
+        References of all data attributes, "LD/LN.DO.DA" with the LD as clients see it.
+
+    Raises
+    ------
+    ModelError
+        The text is wrong; the error names the line of the first fault.
     """
     reading = _read(text)
     name = reading.model_name if ied_name is None else ied_name
@@ -63,7 +78,7 @@ def checked(text: str, ied_name: str | None = None) -> tuple[str, ...]:
 
 @lru_cache(maxsize=4)
 def _read(text: str) -> _Reading:
-    """All of the text; kept, because many servers may have one text under names of their own."""
+    """Read the whole text. The result is kept, because many servers may have one text under several names."""
     reading = _Reading()
     for number, line in enumerate(text.splitlines(), 1):
         _read_line(reading, number, line.strip())
@@ -145,7 +160,7 @@ def _note_attribute(reading: _Reading, where: str, path: list[str], words: list[
     except ValueError as error:
         raise ModelError(where, "a functional constraint from 0 to 18", words[3]) from error
     device, node, *names = path
-    # MMS lists an array's name, and what its elements hold under no name of their own
+    # MMS lists an array's name; what its elements hold has no name of its own.
     indices = [depth for depth, name in enumerate(names) if name.startswith("(")]
     listed = names[: indices[0]] if indices else names
     item = "$".join([node, constraint, *listed])

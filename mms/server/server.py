@@ -1,4 +1,4 @@
-"""An MMS server with an IEC 61850 data model: the relay's side (IEC 61850-7-2, mapped by IEC 61850-8-1).
+"""MMS server with an IEC 61850 data model: the relay's side (IEC 61850-7-2, mapped by IEC 61850-8-1).
 
 The library serves without threads of its own; a ServerPump drives any number of servers from one thread.
 """
@@ -22,7 +22,7 @@ from mms.binding.value_conversion import decode
 from mms.control_model import AddCause, ControlModel
 from mms.errors import ModelError, ServerStartFailed
 from mms.references import FunctionalConstraint
-from mms.security.passwords import authenticator
+from mms.security.passwords import make_authenticator
 from mms.security.tls import TlsConfiguration, TlsContext
 from mms.server.file_access import FileAnswer, FileGuard, FileHook
 from mms.server.model import Model, Node
@@ -31,9 +31,10 @@ from mms.values import Quality, Value
 
 _DENY: Final = 1  # AccessPolicy
 _FAILED, _OK = 0, 1  # ControlHandlerResult
-_TURN_DELAY_AFTER_REQUEST_S: Final = 0.01  # only enabling a block or an interrogation makes reports
+_TURN_DELAY_AFTER_REQUEST_S: Final = 0.01
+"""A request makes reports only if it enables a block or asks for a general interrogation."""
 MOST_CONNECTIONS: Final = 5
-"""Clients of one server; compiled into the wheel's library."""
+"""Most clients of one server: a limit compiled into the wheel's library."""
 
 
 class _State(Enum):
@@ -44,7 +45,23 @@ class _State(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ControlAction:
-    """A client's Operate: the object, the value, and who asks (IEC 61850-7-2 clause 20)."""
+    """A client's Operate (IEC 61850-7-2 clause 20).
+
+    Parameters
+    ----------
+    reference : str
+        Reference of the controllable object.
+    value : Value
+        The value to bring the object to.
+    test : bool
+        Whether the client only tests the control.
+    originator : str
+        Identification of the originator.
+    originator_category : int
+        Category of the originator, orCat.
+    control_number : int
+        Number of the control, ctlNum.
+    """
 
     reference: str
     value: Value
@@ -58,11 +75,48 @@ OperateHandler = Callable[[ControlAction], "bool | AddCause"]
 
 
 class Server:
-    """One simulated IED.
+    """One simulated IED; a context manager that serves while it is entered.
 
-    Handlers run on the pump's thread, one at a time, with the server locked: they may update this server,
+    Handlers run on the pump's thread, one at a time, with the server locked. They may update this server,
     should return at once, and must not take a lock that another thread holds while it updates. A handler that
     raises is logged and counts as a refusal.
+
+    `start` or a ServerPump makes the server listen. Replace served files by renaming: a file that shrinks
+    while it is sent is filled up with whatever the memory holds.
+
+    Parameters
+    ----------
+    model_text : str
+        The library's configuration text.
+    port : int
+        TCP port.
+    ied_name : str, optional
+        Name of the IED in place of the text's.
+    address : str
+        IPv4 address to listen at.
+    file_root : pathlib.Path, optional
+        Folder whose files are served, read only. Without it there is no file service.
+    max_connections : int
+        Most clients at once, up to the library's own limit of 5.
+    report_buffer_bytes : int
+        Buffer of each report control block [byte].
+    on_file_request : FileHook, optional
+        Function that is asked first about each file request.
+    tls : TlsConfiguration, optional
+        Our certificate and those we trust. With it only clients with a pinned certificate are served.
+    passwords : iterable of str
+        Accepted passwords. Without any, no password is required.
+    tls_handshake_timeout_s : float
+        Longest TLS handshake, during which nobody else is served [s].
+
+    Raises
+    ------
+    ModelError
+        The text is wrong in any way, also where the library would not mind.
+    CredentialFileError
+        A file of `tls` cannot be used.
+    ValueError
+        The port or the number of connections is out of range, or a password cannot be sent.
     """
 
     def __init__(
@@ -72,17 +126,6 @@ class Server:
         tls: TlsConfiguration | None = None, passwords: Iterable[str] = (),
         tls_handshake_timeout_s: float = 5.0,
     ) -> None:  # fmt: skip
-        """Build the model and the server; `start` or a ServerPump makes it listen.
-
-        `model_text` is the library's configuration text, `ied_name` replaces the model's name. At most
-        `max_connections` clients connect; the library's own limit is 5. `report_buffer_bytes` is the buffer
-        of each report control block. `file_root` is the folder whose files are served (none: no file
-        service), read only; `on_file_request` is asked first. Replace files by renaming: one that shrinks
-        while it is sent is filled up with whatever the memory holds. With `tls` only clients with a pinned
-        certificate are served, with `passwords` only those that know one of them.
-        ModelError if the text is wrong in any way, also where the library would not mind;
-        CredentialFileError for the files of `tls`; ValueError for a password that cannot be sent.
-        """
         if not 0 < port < 65536:
             raise ValueError(f"not a TCP port: {port} (the library cannot choose one)")
         if not 0 < max_connections <= MOST_CONNECTIONS:
@@ -97,7 +140,7 @@ class Server:
         self._library_holds_model = False
         self._handlers: list[object] = []
         self._pump: ServerPump | None = None
-        authenticate = authenticator(self._lib, passwords)
+        authenticate = make_authenticator(self._lib, passwords)
         self._tls = None if tls is None else TlsContext(self._lib, tls)
         try:
             self._model = Model(self._lib, model_text, ied_name)
@@ -123,7 +166,7 @@ class Server:
             lib.IedServerConfig_setFileServiceBasePath(config, f"{file_root.resolve()}/".encode())
         off, on = False, True
         lib.IedServerConfig_enableDynamicDataSetService(config, off)
-        lib.IedServerConfig_enableLogService(config, on)  # lists log control blocks, keeps no logs
+        lib.IedServerConfig_enableLogService(config, on)  # log control blocks are listed; no logs are kept
         lib.IedServerConfig_useIntegratedGoosePublisher(config, off)
         tls = None if self._tls is None else self._tls.pointer
         server = lib.IedServer_createWithConfig(self._model.pointer, tls, config)
@@ -153,26 +196,33 @@ class Server:
         mms_server = self._lib.IedServer_getMmsServer(self._server)
         self._lib.MmsServer_installFileAccessHandler(mms_server, handler, None)
 
-    # life
+    # Lifetime
 
     @property
     def is_running(self) -> bool:
+        """Whether the server listens and serves."""
         return self._state is _State.RUNNING
 
     @property
     def connections(self) -> int:
-        """How many clients are connected."""
+        """Number of connected clients."""
         with self._lock:
             return int(self._lib.IedServer_getNumberOfOpenConnections(self._server)) if self.is_running else 0
 
     def start(self) -> None:
-        """Listen and serve on a thread of its own; ServerStartFailed if address and port cannot be had."""
+        """Listen and serve on a thread of its own.
+
+        Raises
+        ------
+        ServerStartFailed
+            The address and port cannot be had.
+        """
         pump = ServerPump([self])
         pump.start()
         self._pump = pump
 
     def stop(self) -> None:
-        """Close every connection and free the server, for good; harmless when stopped."""
+        """Close every connection and free the server, for good; a second call does nothing."""
         pump, self._pump = self._pump, None
         if pump is not None:
             pump.stop()
@@ -188,19 +238,39 @@ class Server:
     ) -> None:
         self.stop()
 
-    # data
+    # Data
 
     def update(self, reference: str, value: Value | Quality) -> None:
-        """Set one data attribute "LD/LN.DO.DA" (the LD with the IED's name), reporting it if it triggers.
+        """Set one data attribute, and report it if that triggers a report.
 
-        ModelError if there is no such attribute or the value does not fit its type.
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO.DA", the LD with the IED's name.
+        value : Value or Quality
+            The new value.
+
+        Raises
+        ------
+        ModelError
+            There is no such attribute, or the value does not fit its type.
         """
         self.update_many({reference: value})
 
     def update_many(self, values: Mapping[str, Value | Quality]) -> None:
         """Set several attributes as one change: a reader or a report sees all of them or none.
 
-        Either every value fits or nothing is changed. Times go first, so that an event carries its own.
+        Either every value fits or nothing is changed. Times are set first, so that an event carries its own.
+
+        Parameters
+        ----------
+        values : mapping of str to Value or Quality
+            New values by reference.
+
+        Raises
+        ------
+        ModelError
+            There is no such attribute, or a value does not fit its type.
         """
         lib = self._lib
         with self._lock:
@@ -229,19 +299,45 @@ class Server:
         self._turn_delay_s = 0.0
 
     def read(self, reference: str) -> Value:
-        """The present value of one of this server's own data attributes."""
+        """Read one of this server's own data attributes.
+
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO.DA".
+
+        Returns
+        -------
+        Value
+            The present value.
+
+        Raises
+        ------
+        ModelError
+            There is no such attribute.
+        """
         with self._lock:
             self._require_alive("read")
             node = self._model.node(reference, Node.DATA_ATTRIBUTE)
             return decode(self._lib, self._lib.IedServer_getAttributeValue(self._server, node))
 
-    # controls
+    # Controls
 
     def on_operate(self, reference: str, handler: OperateHandler) -> None:
-        """Call `handler` for each Operate of the controllable object "LD/LN.DO".
+        """Set the handler for Operate of a controllable object. The handler itself updates stVal.
 
-        True lets it pass; False or an AddCause refuses it: with normal security by a negative response, with
-        enhanced security by a negative CommandTermination. The handler itself updates stVal.
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO".
+        handler : callable
+            Called with a ControlAction. It returns True to accept, False or an AddCause to refuse. With
+            normal security a refusal is a negative response, with enhanced security a negative
+            CommandTermination.
+
+        References
+        ----------
+        IEC 61850-7-2 clause 20, control.
         """
 
         def operated(action: int, _parameter: int | None, value: int, test: bool) -> int:
@@ -290,25 +386,36 @@ class Server:
             lib.ControlAction_setAddCause(action, int(verdict))
         return _FAILED
 
-    # the pump's side
+    # Called by the pump
 
     def listen(self) -> None:
-        """Open the port. For ServerPump, which then serves."""
+        """Open the port. The pump calls this and then serves.
+
+        Raises
+        ------
+        ServerStartFailed
+            The address and port cannot be had.
+        """
         with self._lock:
             where = f"{self.address}:{self.port}"
             if self._state is not _State.CREATED:
                 raise ServerStartFailed(where, "start the server", 0, f"the server is {self._state.value}")
             self._lib.IedServer_startThreadless(self._server, self.port)
             if not self._lib.IedServer_isRunning(self._server):
-                self._lib.IedServer_stopThreadless(
-                    self._server
-                )  # or the library ends a thread it never began
+                # Without this the library would later end a thread that it never began.
+                self._lib.IedServer_stopThreadless(self._server)
                 reason = "cannot listen there: the port is taken, or the address is not this machine's"
                 raise ServerStartFailed(where, "start the server", 0, reason)
             self._state = _State.RUNNING
 
     def serve_pending(self) -> bool:
-        """Serve what clients have sent; False if nothing had come. For ServerPump."""
+        """Serve what clients have sent. The pump calls this.
+
+        Returns
+        -------
+        bool
+            False if nothing had come.
+        """
         with self._lock:
             if self._state is not _State.RUNNING or self._lib.IedServer_waitReady(self._server, 0) <= 0:
                 return False
@@ -318,9 +425,14 @@ class Server:
             return True
 
     def take_turn(self) -> bool:
-        """Do what time brings and send waiting reports; True if that waited a millisecond. For ServerPump.
+        """Do periodic tasks and send waiting reports. The pump calls this.
 
         The library sends reports only while it looks for data, and there it waits 1 ms for some to come.
+
+        Returns
+        -------
+        bool
+            True if that waited a millisecond.
         """
         with self._lock:
             self._turn_delay_s = math.inf
@@ -333,7 +445,7 @@ class Server:
             return True
 
     def _process_incoming(self) -> None:
-        """Accept, read and answer. A handshake of TLS is waited for, with everything else at a stand."""
+        """Accept, read and answer. A TLS handshake is waited for, with everything else at a standstill."""
         ours = connections_between(own=(self.address, self.port))
         with (
             nullcontext() if self._tls is None else end_connections_after(ours, self._tls_handshake_timeout_s)
@@ -342,9 +454,9 @@ class Server:
 
     @property
     def turn_delay_s(self) -> float:
-        """How long the next turn may wait [s]: not at all after an update, for ever if nothing happened.
+        """Longest time until the next turn [s]: none after an update, infinite if nothing happened.
 
-        For ServerPump.
+        The pump reads this.
         """
         return self._turn_delay_s
 

@@ -14,7 +14,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, SecretStr
 
 from mms import CredentialFileError, TlsConfiguration, TlsVersion
 from mms.security.credential_files import read_secret
-from mms.security.passwords import EXPECTED, is_password
+from mms.security.passwords import PASSWORD_RULE, is_password
 
 AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
 
@@ -108,11 +108,11 @@ def _password(access: RelayAccess, name: str) -> SecretStr | None:
     spoken = os.environ.get(variable)
     if spoken is not None:
         if not is_password(spoken):
-            raise AccessError(f"environment: {variable}: expected {EXPECTED}, found something else")
+            raise AccessError(f"environment: {variable}: expected {PASSWORD_RULE}, found something else")
         return SecretStr(spoken)
     if access.password_file is None:
         return None
     content = read_secret(access.password_file).decode("latin-1").removesuffix("\n").removesuffix("\r")
     if not is_password(content):
-        raise CredentialFileError(access.password_file, f"{EXPECTED} on its one line", "something else")
+        raise CredentialFileError(access.password_file, f"{PASSWORD_RULE} on its one line", "something else")
     return SecretStr(content)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mms import AssociationRejected, Client, FunctionalConstraint, Server, TlsConfiguration
-from mms.security.passwords import LONGEST, is_password
+from mms.security.passwords import LONGEST_PASSWORD, is_password
 from testing.ports import LOOPBACK
 from testing.relays.pki import Pki
 from testing.relays.serving import start_relay
@@ -33,7 +33,7 @@ def test_the_right_password_lets_in(relay: Server, password: str) -> None:
     assert reads(relay, password)
 
 
-@pytest.mark.parametrize("password", ["otter", "OTTE", "OTTERS", RIGHT[:-1], "x" * LONGEST])
+@pytest.mark.parametrize("password", ["otter", "OTTE", "OTTERS", RIGHT[:-1], "x" * LONGEST_PASSWORD])
 def test_a_wrong_password_is_rejected_and_not_told(relay: Server, password: str) -> None:
     with pytest.raises(AssociationRejected, match=r"expected the password it knows") as refusal:
         reads(relay, password)
@@ -61,9 +61,9 @@ def test_over_tls_the_password_is_told_from_the_certificate(tmp_path: Path) -> N
             reads(relay, None, pki.of_client())
 
 
-@pytest.mark.parametrize("password", ["", "x" * (LONGEST + 1), "tab\tstop", "nul\0", "Schlüssel"])
+@pytest.mark.parametrize("password", ["", "x" * (LONGEST_PASSWORD + 1), "tab\tstop", "nul\0", "Schlüssel"])
 def test_what_cannot_be_sent_is_refused_without_showing_it(relay: Server, password: str) -> None:
-    with pytest.raises(ValueError, match=f"expected a password of 1 to {LONGEST}") as refusal:
+    with pytest.raises(ValueError, match=f"expected a password of 1 to {LONGEST_PASSWORD}") as refusal:
         reads(relay, password)
     assert not password or password not in str(refusal.value)
     with pytest.raises(ValueError, match="expected a password"):
@@ -71,7 +71,7 @@ def test_what_cannot_be_sent_is_refused_without_showing_it(relay: Server, passwo
 
 
 @settings(max_examples=8, deadline=None)
-@given(st.text(st.characters(min_codepoint=32, max_codepoint=126), min_size=1, max_size=LONGEST))
+@given(st.text(st.characters(min_codepoint=32, max_codepoint=126), min_size=1, max_size=LONGEST_PASSWORD))
 def test_every_password_arrives_as_it_is(password: str) -> None:
     assert is_password(password)
     with start_relay(passwords=(password,)) as relay:

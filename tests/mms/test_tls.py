@@ -27,7 +27,7 @@ from mms import (
     TlsVersion,
 )
 from mms.binding.library import library
-from mms.security.credential_files import described
+from mms.security.credential_files import describe_certificate
 from mms.security.tls import TlsContext
 from testing.ports import LOOPBACK
 from testing.relays.certificates import identity
@@ -154,7 +154,7 @@ def test_a_relay_with_another_certificate_is_not_trusted(pki: Pki, relay: Server
     tls = replace(pki.of_client(), pinned=(pki.client.certificate_file,))
     with pytest.raises(RelayNotTrusted, match="none of the pinned ones") as refusal:
         connect(relay, tls)
-    assert described(pki.client.certificate) in str(refusal.value), "what was expected"
+    assert describe_certificate(pki.client.certificate) in str(refusal.value), "what was expected"
 
 
 def test_a_relay_of_an_unknown_authority_is_not_trusted(pki: Pki, relay: Server) -> None:
