@@ -1,6 +1,5 @@
 """Takes jobs from the database, has them done in worker processes, writes the results back."""
 
-import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -16,11 +15,12 @@ from structlog.typing import FilteringBoundLogger
 from core.machines.parameters import Motor
 from core.units import NANOSECONDS_PER_SECOND
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
-from service.jobs.worker_pool import WorkerPool, WorkersEndedError
+from service.jobs.worker_pool import NoWorkersError, WorkerPool
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage.records import ClaimedJob
 from service.storage.repository import Repository
+from service.timing.periodic_worker import PeriodicWorker
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
@@ -36,7 +36,7 @@ class JobLimits:
 
 
 class JobRunner:
-    """One thread that feeds a pool of worker processes.
+    """One thread feeds a pool of worker processes.
 
     A worker that dies or takes too long costs its own job an attempt and nothing else. Whatever was running
     when the service was killed is queued again by `start`.
@@ -58,70 +58,48 @@ class JobRunner:
         self._motors = motors
         self._task = task
         self._limits = limits
-        self._poll_period_s = poll_period_s
         self._pool = WorkerPool(limits.workers, prepare_worker)
+        self._pool_problem: str | None = None
         self._in_flight: dict[str, Future[Outcome]] = {}
         self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()
-        self._wake_up = threading.Event()
-        self._stopping = threading.Event()
-        self._problem: str | None = "the job runner has not started"
         self._loading = limits.workers
-        self._thread = threading.Thread(target=self._run, name="job-runner")
+        self._worker = PeriodicWorker("the job runner", self._step, period_s=poll_period_s, at_once=True)
 
     def start(self) -> None:
-        """Queues interrupted jobs again and starts the thread and the workers."""
+        """Queue interrupted jobs again and start the thread, which starts the workers."""
         self._repository.requeue_interrupted_jobs(now_ns=time.time_ns(), max_attempts=self._limits.attempts)
-        self._pool.start()
-        self._problem = None
-        self._thread.start()
+        self._worker.start()
 
     def stop(self) -> None:
-        """Stops the workers; their jobs go back to the queue as if they had not been claimed."""
-        self._stopping.set()
-        self._wake_up.set()
-        if self._thread.is_alive():
-            self._thread.join()
+        """Stop the workers; their jobs go back to the queue as if they had not been claimed."""
+        self._worker.stop()
+        self._shut_down()
 
     def wake(self) -> None:
-        """Looks for jobs now instead of at the next poll."""
-        self._wake_up.set()
+        """Look for jobs now instead of at the next poll."""
+        self._worker.wake()
 
     def problem(self) -> str | None:
-        """Why jobs are not done, or not at full speed, at present; None when all is well."""
-        if self._problem is None and self._loading:
+        """Return why jobs are not done, or not at full speed, at present; None when all is well."""
+        problem = self._worker.problem() or self._pool_problem
+        if problem is None and self._loading:
             return f"{self._loading} of {self._limits.workers} workers are still loading"
-        return self._problem
-
-    def _run(self) -> None:
-        try:
-            while not self._stopping.is_set():
-                self._step()
-                self._wake_up.wait(self._poll_period_s)
-                self._wake_up.clear()
-        except Exception as error:  # the end of this thread must show in the readiness, whatever ended it
-            self._problem = f"the job runner stopped: {error}"
-            log.exception("job runner stopped")
-        finally:
-            self._shut_down()
+        return problem
 
     def _step(self) -> None:
-        try:
-            while self._results:
-                self._settle(*self._results[0])
-                self._results.popleft()
-            if self._pool.has_ended():
-                self._problem = "the worker processes ended and are started again"
-                self._give_back()
-                self._pool.renew()
-                return
-            self._loading = self._pool.loading()
-            while len(self._in_flight) < self._limits.workers and self._claim():
-                pass
-        except SQLAlchemyError as error:
-            self._problem = f"the database does not answer: {error}"
-            log.warning("database does not answer, trying again", error=str(error))
-        else:
-            self._problem = None
+        """Write results back and claim what workers are free for. Raises SQLAlchemyError: try again."""
+        while self._results:
+            self._settle(*self._results[0])
+            self._results.popleft()
+        if self._pool.has_ended():
+            self._give_back()
+            self._pool.renew()
+        self._pool_problem = self._pool.problem
+        if self._pool_problem is not None:
+            return
+        self._loading = self._pool.loading()
+        while len(self._in_flight) < self._limits.workers and self._claim():
+            pass
 
     def _give_back(self) -> None:
         """Jobs nobody does any more: as if they had not been claimed."""
@@ -148,7 +126,7 @@ class JobRunner:
         task = DiagnosisTask(entry, motor, job.method, job.model, baseline)
         try:
             future = self._pool.schedule(self._task, task, self._limits.job_timeout_s)
-        except WorkersEndedError:
+        except NoWorkersError:
             self._repository.release_job(job.id)
             return False
         self._in_flight[job.id] = future
@@ -158,7 +136,7 @@ class JobRunner:
     def _done(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
         """Called by a thread of the pool: hands over to ours."""
         self._results.append((claimed, future))
-        self._wake_up.set()
+        self._worker.wake()
 
     def _settle(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
         """Writes a result back. Raises SQLAlchemyError (the database does not answer): to be tried again."""

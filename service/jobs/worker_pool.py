@@ -1,30 +1,33 @@
-"""The worker processes, renewed when they cannot go on.
+"""The worker processes, replaced when they cannot go on.
 
-One that dies while none has a task takes its whole pool with it (pebble: "All workers expired"); so does one
-that cannot even start. That must not end all diagnosing.
+A worker that dies while none has a task takes its whole pool with it (pebble: "All workers expired"); so does
+one that cannot even start. A machine that is short of memory, processes or file descriptors starts none at
+all. None of this may end all diagnosing.
 """
 
 import multiprocessing
 import os
-import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from multiprocessing.synchronize import Semaphore
+from threading import Thread
 
 import structlog
 from pebble import ProcessPool
 
 from service.jobs.task import DiagnosisTask, Outcome, Task
+from service.timing.backoff import Backoff
 
 log = structlog.get_logger(__name__)
 
 STOP_TIMEOUT_S = 10.0
-SHORTEST_DELAY_S, LONGEST_DELAY_S = 0.2, 30.0
+BACKOFF = Backoff(first_s=0.2, longest_s=30.0)
 STABLE_AFTER_S = 60.0
+"""Workers that lived so long were no failure: the next ones are started after the shortest pause."""
 
 
-class WorkersEndedError(RuntimeError):
+class NoWorkersError(RuntimeError):
     """There are no workers at the moment; there will be."""
 
 
@@ -35,66 +38,94 @@ class WorkerPool:
         self._workers = workers
         self._prepare_worker = prepare_worker
         self._context = multiprocessing.get_context("spawn")
-        self._delay_s = SHORTEST_DELAY_S
-        self._renew_at_s: float | None = None
-        self._ending: threading.Thread | None = None
-        self._started_s = time.monotonic()
-        self._begin()
+        self._pool: ProcessPool | None = None
+        self._prepared: Semaphore | None = None
+        self._unprepared = workers
+        self._started_s = 0.0
+        self._failures = 0
+        self._problem: str | None = None
+        self._retry_at_s = time.monotonic()
+        self._ending: list[Thread] = []
 
-    def start(self) -> None:
-        """The workers load now instead of with the first task."""
-        self._started_s = time.monotonic()
-        self._pool.schedule(os.getpid)
+    @property
+    def problem(self) -> str | None:
+        """Why there are no workers at present; None while there are."""
+        return self._problem if self._pool is None else None
+
+    def has_ended(self) -> bool:
+        """Return whether there are no workers, until `renew` has started some."""
+        if self._pool is not None and not self._pool.active:
+            self._lose(self._pool)
+        return self._pool is None
+
+    def renew(self) -> None:
+        """Start workers where there are none, once that is due: later each time it was in vain."""
+        if self._pool is None and time.monotonic() >= self._retry_at_s:
+            self._start()
 
     def schedule(self, function: Task, task: DiagnosisTask, timeout_s: float) -> "Future[Outcome]":
-        """Raises WorkersEndedError; a task that was accepted may end with BrokenExecutor instead."""
+        """Raises NoWorkersError; a task that was accepted may end with BrokenExecutor instead."""
+        if self._pool is None:
+            raise NoWorkersError(self._problem)
         try:
             return self._pool.schedule(function, args=(task,), timeout=timeout_s)
         except RuntimeError as error:
-            raise WorkersEndedError(str(error)) from error
+            raise NoWorkersError(str(error)) from error
 
     def loading(self) -> int:
-        """How many workers are not ready yet."""
-        while self._unprepared and self._prepared.acquire(block=False):
+        """Return how many workers are not ready yet."""
+        while self._unprepared and self._prepared is not None and self._prepared.acquire(block=False):
             self._unprepared -= 1
         return self._unprepared
 
-    def has_ended(self) -> bool:
-        """Whether all workers are gone, until `renew` has brought others."""
-        if self._renew_at_s is None and not self._pool.active:
-            if time.monotonic() - self._started_s > STABLE_AFTER_S:
-                self._delay_s = SHORTEST_DELAY_S
-            log.error("the worker processes ended and are started again", delay_s=self._delay_s)
-            self._renew_at_s = time.monotonic() + self._delay_s
-            self._delay_s = min(2 * self._delay_s, LONGEST_DELAY_S)
-            # Aside, because it waits for its threads, one of which may wait for a process that is gone.
-            self._ending = threading.Thread(target=_end, args=(self._pool,), name="workers-end", daemon=True)
-            self._ending.start()
-        return self._renew_at_s is not None
-
-    def renew(self) -> None:
-        """Other workers, once that is due: later each time it was in vain."""
-        if self._renew_at_s is not None and time.monotonic() >= self._renew_at_s:
-            self._renew_at_s = None
-            self._begin()
-            self.start()
-
     def stop(self) -> None:
         """End all workers, whatever they do."""
-        if self._renew_at_s is None:
+        if self._pool is not None:
             _end(self._pool)
-        if self._ending is not None:
-            self._ending.join(STOP_TIMEOUT_S)
+            self._pool = None
+        for ending in self._ending:
+            ending.join(STOP_TIMEOUT_S)
 
-    def _begin(self) -> None:
-        self._prepared = self._context.Semaphore(0)
-        self._unprepared = self._workers
-        self._pool = ProcessPool(
-            max_workers=self._workers,
-            initializer=_prepare,
-            initargs=(self._prepare_worker, self._prepared),
-            context=self._context,
-        )
+    def _start(self) -> None:
+        """Start the workers; they load now instead of with the first task."""
+        pool = None
+        try:
+            self._prepared = self._context.Semaphore(0)
+            self._unprepared = self._workers
+            pool = ProcessPool(
+                max_workers=self._workers,
+                initializer=_prepare,
+                initargs=(self._prepare_worker, self._prepared),
+                context=self._context,
+            )
+            pool.schedule(os.getpid)
+        except (
+            OSError,
+            RuntimeError,
+        ) as error:  # RuntimeError: pebble's, whose cause is an OSError; no thread
+            if pool is not None:
+                _end(pool)  # some of its workers may have started
+            self._retry_later(f"the worker processes cannot be started: {error.__cause__ or error}")
+        else:
+            self._pool = pool
+            self._started_s = time.monotonic()
+
+    def _lose(self, pool: ProcessPool) -> None:
+        # Aside, because it waits for its threads, one of which may wait for a process that is gone.
+        ending = Thread(target=_end, args=(pool,), name="workers-end", daemon=True)
+        ending.start()
+        self._ending = [*(earlier for earlier in self._ending if earlier.is_alive()), ending]
+        self._pool = None
+        if time.monotonic() - self._started_s > STABLE_AFTER_S:
+            self._failures = 0
+        self._retry_later("the worker processes ended and are started again")
+
+    def _retry_later(self, problem: str) -> None:
+        self._problem = problem
+        self._failures += 1
+        pause_s = BACKOFF.pause_s(self._failures)
+        self._retry_at_s = time.monotonic() + pause_s
+        log.error(problem, pause_s=pause_s)
 
 
 def _end(pool: ProcessPool) -> None:

@@ -6,14 +6,20 @@ from threading import Event, Thread
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
+from service.timing.backoff import Backoff
+
 log = structlog.get_logger(__name__)
+
+LONGEST_PAUSE_S = 30.0
+"""After errors that nobody foresaw: each is logged with its traceback, and periods may be short."""
 
 
 class PeriodicWorker:
     """One thread that calls `work` every `period_s` seconds until it is stopped.
 
-    No failure ends the thread: it is logged, told by `problem`, and the work is tried again a period later.
-    A database that does not answer is a warning; any other error is logged with its traceback.
+    No failure ends the thread: it is logged, told by `problem`, and the work is tried again. A database that
+    does not answer is a warning, and the next attempt comes a period later. Any other error is logged with
+    its traceback, and the pauses grow while such errors follow each other.
     """
 
     def __init__(
@@ -31,7 +37,10 @@ class PeriodicWorker:
         self._period_s = period_s
         self._at_once = at_once
         self._once_more = once_more
+        self._backoff = Backoff(period_s, max(period_s, LONGEST_PAUSE_S))
+        self._unforeseen = 0
         self._stopping = Event()
+        self._due = Event()
         self._thread = Thread(target=self._run, name=name, daemon=True)
         self._started = False
         self._failure: str | None = None
@@ -44,8 +53,13 @@ class PeriodicWorker:
     def stop(self, patience_s: float | None = None) -> None:
         """End after the work under way, and wait for that: at most `patience_s` where it is given."""
         self._stopping.set()
+        self._due.set()
         if self._started:
             self._thread.join(patience_s)
+
+    def wake(self) -> None:
+        """Work now instead of at the end of the pause."""
+        self._due.set()
 
     def problem(self) -> str | None:
         """Return why the work is not done at present; None while all is well."""
@@ -58,7 +72,11 @@ class PeriodicWorker:
     def _run(self) -> None:
         if self._at_once:
             self._attempt()
-        while not self._stopping.wait(self._period_s):
+        while True:
+            self._due.wait(self._backoff.pause_s(self._unforeseen) or self._period_s)
+            self._due.clear()
+            if self._stopping.is_set():
+                break
             self._attempt()
         if self._once_more:
             self._attempt()
@@ -67,10 +85,13 @@ class PeriodicWorker:
         try:
             self._work()
         except SQLAlchemyError as error:
+            self._unforeseen = 0
             self._failure = f"the database does not answer: {error}"
             log.warning("database does not answer, trying again", work=self._name, error=str(error))
         except Exception as error:  # a bug in one round must not end all that would follow
+            self._unforeseen += 1
             self._failure = f"{type(error).__name__}: {error}"
             log.exception("background work failed, trying again", work=self._name)
         else:
+            self._unforeseen = 0
             self._failure = None

@@ -1,12 +1,14 @@
 """The job runner with real worker processes."""
 
-import multiprocessing
+import errno
+import multiprocessing.util
 import os
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Event
 
 import pytest
 from sqlalchemy import Engine
@@ -191,6 +193,53 @@ def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, s
         wait_until(lambda: "the worker processes ended" in (runner.problem() or ""))
     (job,) = repository.jobs(recording_id, limit=5).items
     assert (job.state, job.attempts) == (JobState.QUEUED, 0), "it was not the job's fault"
+
+
+@pytest.fixture
+def exhausted(monkeypatch: pytest.MonkeyPatch) -> Event:
+    """While it is set, the system gives no process: fork fails, as at a limit of processes."""
+    at_the_limit = Event()
+    fork = multiprocessing.util.spawnv_passfds
+
+    def fork_or_fail(path: bytes, arguments: Sequence[str | bytes], passed: Sequence[int]) -> int:
+        if at_the_limit.is_set():
+            raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+        return fork(path, arguments, passed)
+
+    monkeypatch.setattr(multiprocessing.util, "spawnv_passfds", fork_or_fail)
+    return at_the_limit
+
+
+NO_PROCESS = f"cannot be started: [Errno {errno.EAGAIN}]"
+
+
+def test_a_start_that_gets_no_process_is_told_and_tried_again(
+    repository: Repository, store: RecordingStore, exhausted: Event
+) -> None:
+    recording_id = add(repository, store, "fine")
+    exhausted.set()
+    with running(repository, store) as runner:
+        wait_until(lambda: NO_PROCESS in (runner.problem() or ""))
+        exhausted.clear()
+        wait_until(lambda: ended(repository, recording_id))
+        wait_until(lambda: runner.problem() is None)
+    assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
+
+
+def test_workers_that_die_while_the_system_has_no_process_to_give_are_replaced_later(
+    repository: Repository, store: RecordingStore, exhausted: Event
+) -> None:
+    with running(repository, store) as runner:
+        wait_until(lambda: runner.problem() is None)
+        exhausted.set()
+        for worker in idle_workers():
+            os.kill(worker, signal.SIGKILL)
+        wait_until(lambda: NO_PROCESS in (runner.problem() or ""))
+        recording_id = add(repository, store, "fine")
+        exhausted.clear()
+        wait_until(lambda: ended(repository, recording_id))
+        wait_until(lambda: runner.problem() is None)
+    assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
 
 
 def test_workers_that_die_idle_are_replaced(repository: Repository, store: RecordingStore) -> None:

@@ -1,3 +1,4 @@
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from queue import SimpleQueue
@@ -52,6 +53,28 @@ def test_a_failure_is_told_and_the_work_is_tried_again(error: Exception) -> None
         go_on.set()
         assert done.wait(LIMIT_S)
     assert worker.problem() is None
+
+
+def test_it_can_be_woken_before_its_pause_is_over() -> None:
+    done: SimpleQueue[None] = SimpleQueue()
+    worker = PeriodicWorker("woken", lambda: done.put(None), period_s=3600.0, at_once=True)
+    with running(worker):
+        done.get(timeout=LIMIT_S)
+        worker.wake()
+        done.get(timeout=LIMIT_S)
+
+
+def test_the_pauses_grow_while_unforeseen_errors_follow_each_other() -> None:
+    attempts: SimpleQueue[float] = SimpleQueue()
+
+    def fail() -> None:
+        attempts.put(time.monotonic())
+        raise RuntimeError("a bug")
+
+    worker = PeriodicWorker("failing", fail, period_s=0.01, at_once=True)
+    with running(worker):
+        at_s = [attempts.get(timeout=LIMIT_S) for _ in range(6)]
+    assert at_s[5] - at_s[4] >= 0.16, at_s
 
 
 def test_one_that_has_not_started_says_so() -> None:
