@@ -6,11 +6,11 @@ from uuid import UUID
 
 from fastapi import APIRouter, Request, Response
 
-from service.api.context import ApiContext, Context
+from service.api.context import Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.schemas import Diagnosis, DiagnosisRequest, DiagnosisRun
-from service.storage.records import Job
+from service.storage.records import JobResult
 
 router = APIRouter(prefix="/recordings/{recording_id}/diagnoses", tags=["recordings"])
 
@@ -45,18 +45,17 @@ def list_diagnoses(
 ) -> Page[DiagnosisRun]:
     """Diagnoses of a recording, latest first."""
     jobs = context.repository.jobs(str(recording_id), limit=limit, after=decode(cursor, int, str))
-    return page(jobs, lambda job: _run(context, job))
+    return page(jobs, _run)
 
 
 @router.get("/{diagnosis_id}", responses=problems(404))
 def get_diagnosis(context: Context, recording_id: UUID, diagnosis_id: UUID) -> DiagnosisRun:
     """One diagnosis of a recording."""
-    return _run(context, context.repository.job(str(recording_id), str(diagnosis_id)))
+    return _run(context.repository.job(str(recording_id), str(diagnosis_id)))
 
 
-def _run(context: ApiContext, job: Job) -> DiagnosisRun:
-    run = DiagnosisRun.model_validate(job)
-    entry = context.repository.diagnosis_of_job(job.id)
-    if entry is None:
+def _run(found: JobResult) -> DiagnosisRun:
+    run = DiagnosisRun.model_validate(found.job)
+    if found.diagnosis is None:
         return run
-    return run.model_copy(update={"result": Diagnosis.model_validate(entry.document)})
+    return run.model_copy(update={"result": Diagnosis.model_validate(found.diagnosis.document)})

@@ -8,7 +8,7 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Diagnosis, Health, Motor, Recording, Site, TrendPoint
+from service.api.schemas import Diagnosis, Health, ListedMotor, Motor, Recording, Site, TrendPoint
 from service.api.times import TimeParameter, rfc3339
 from service.storage.records import MotorHealth, Quantity
 
@@ -21,10 +21,18 @@ def list_sites(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorTex
     return page(context.repository.sites(limit=limit, after=decode(cursor, str)), Site.model_validate)
 
 
-@router.get("/motors", responses=problems(), tags=["plant"])
-def list_motors(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Motor]:
+@router.get("/motors", responses=problems(), tags=["plant"], response_model_exclude_unset=True)
+def list_motors(
+    context: Context,
+    health: Annotated[bool, Query(description="With the health of each, as `motors/{name}/health`.")] = False,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
+) -> Page[ListedMotor]:
     """Motors, by name."""
-    return page(context.repository.motors(limit=limit, after=decode(cursor, str)), Motor.model_validate)
+    after = decode(cursor, str)
+    if health:
+        return page(context.repository.health_of_motors(limit=limit, after=after), _with_health)
+    return page(context.repository.motors(limit=limit, after=after), ListedMotor.model_validate)
 
 
 @router.get("/motors/{name}", responses=problems(404), tags=["plant"])
@@ -64,6 +72,10 @@ def list_recordings_of_motor(
     context.repository.motor(name)
     recordings = context.repository.recordings(motor=name, limit=limit, after=decode(cursor, int, str))
     return page(recordings, Recording.model_validate)
+
+
+def _with_health(health: MotorHealth) -> ListedMotor:
+    return ListedMotor.model_validate(health.motor).model_copy(update={"health": _health(health)})
 
 
 def _health(health: MotorHealth) -> Health:

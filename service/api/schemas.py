@@ -225,6 +225,12 @@ class Health(Document):
     last_recording: Recording | None
 
 
+class ListedMotor(Motor):
+    """A motor in a list, with its health where that was asked for."""
+
+    health: Health | None = None
+
+
 class TrendPoint(Document):
     """One recording's figure; `value` is null where the recording does not tell it; `ci95` is of mu_f."""
 

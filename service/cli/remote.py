@@ -56,9 +56,10 @@ def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_js
 def list_motors(url: str, *, as_json: bool) -> None:
     """Print one line for each of the plant's motors: where it is and how it is. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        motors = [(motor, _health(service, str(motor["name"]))) for motor in service.items("/motors")]
+        motors = list(service.items("/motors", health="true", limit="1000"))
+        overviews = [_overview(_listed_health(motor)) for motor in motors]
     if as_json:
-        print_document({"motors": [{**motor, "health": health} for motor, health in motors]})
+        print_document({"motors": motors})
         return
     table = Table(box=SIMPLE_HEAD, collapse_padding=True)
     table.add_column("motor", no_wrap=True)
@@ -67,8 +68,8 @@ def list_motors(url: str, *, as_json: bool) -> None:
     for heading in ("level %", "phase", "load"):
         table.add_column(heading, justify="right")
     table.add_column("last recording")
-    for _, health in motors:
-        table.add_row(*_overview(health))
+    for overview in overviews:
+        table.add_row(*overview)
     results().print(table)
 
 
@@ -100,6 +101,13 @@ def release_relay(url: str, relay: str, *, as_json: bool) -> None:
 
 def _health(service: ServiceClient, motor: str) -> Document:
     return service.get(f"/motors/{segment(motor)}/health")
+
+
+def _listed_health(motor: Document) -> Document:
+    health = motor.get("health")
+    if not isinstance(health, Mapping):
+        raise ServiceError("the list of motors has no health in it: is the service older than this command?")
+    return health
 
 
 def _warn_of_a_link_that_is_down(service: ServiceClient, motor: str) -> None:

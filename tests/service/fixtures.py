@@ -4,11 +4,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from sqlalchemy import Engine
+from sqlalchemy import Engine, func, select
+from sqlalchemy.orm import Session
 
 from service.configuration.settings import sqlite_url
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
+from service.storage.models import JobRow, RecordingRequestRow, RecordingRow, StateCountRow
 from testing.service.plants import two_motor_plant
 
 
@@ -31,6 +33,18 @@ def repository(engine: Engine) -> Repository:
     repository = Repository(engine)
     repository.sync_plant(two_motor_plant())
     return repository
+
+
+def state_counts(engine: Engine) -> tuple[dict[tuple[str, str], int], dict[tuple[str, str], int]]:
+    """How many rows there are in each state: as the service keeps it, and counted."""
+    with Session(engine) as session:
+        kept = {(row.counted_table, row.state): row.number for row in session.scalars(select(StateCountRow))}
+        counted = dict.fromkeys(kept, 0) | {
+            (table.__tablename__, str(state)): number
+            for table in (RecordingRow, RecordingRequestRow, JobRow)
+            for state, number in session.execute(select(table.state, func.count()).group_by(table.state))
+        }
+    return kept, counted
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """Tables. Times are UTC, integer nanoseconds since 1970 (columns ..._ns); ids are random UUIDs as text."""
 
 from service.storage.models.base import Base
+from service.storage.models.counts import StateCountRow
 from service.storage.models.diagnoses import DiagnosisRow, JobRow
 from service.storage.models.measurements import MeasurementRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
@@ -41,4 +42,5 @@ __all__ = [
     "RelayFindingsRow",
     "RemoteRecordRow",
     "SiteRow",
+    "StateCountRow",
 ]

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from sqlalchemy import ForeignKey, Index, String
-from sqlalchemy.orm import Mapped, mapped_column
+from sqlalchemy.orm import Mapped, mapped_column, relationship
 
 from core.diagnosis.verdict import Verdict
 from service.storage.models.base import Base
@@ -24,6 +24,7 @@ class JobRow(Base):
     started_ns: Mapped[int | None]
     finished_ns: Mapped[int | None]
     error: Mapped[str | None]
+    result: Mapped["DiagnosisRow | None"] = relationship(viewonly=True)
 
     __table_args__ = (
         Index("ix_jobs_state_not_before_ns", "state", "not_before_ns"),

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from sqlalchemy import ForeignKey, Index, String
+from sqlalchemy import ForeignKey, Index, String, text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.models.base import Base
@@ -87,6 +87,13 @@ class AlarmRow(Base):
     __table_args__ = (
         Index("ix_alarms_ied_cleared_ns", "ied", "cleared_ns"),
         Index("ix_alarms_raised_ns_id", "raised_ns", "id"),
+        Index(
+            "ix_alarms_standing",
+            "ied",
+            "kind",
+            sqlite_where=text("cleared_ns IS NULL"),
+            postgresql_where=text("cleared_ns IS NULL"),
+        ),
     )
 
 

@@ -56,6 +56,14 @@ class DiagnosisEntry:
 
 
 @dataclass(frozen=True, slots=True)
+class JobResult:
+    """A job, and its diagnosis once that is made."""
+
+    job: Job
+    diagnosis: DiagnosisEntry | None
+
+
+@dataclass(frozen=True, slots=True)
 class TrendPoint:
     """One recording's figure. `ci95` only for mu_f; `value` is None where the recording does not tell it."""
 

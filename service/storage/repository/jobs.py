@@ -2,14 +2,14 @@
 
 import uuid
 
-from sqlalchemy import func, or_, select, update
-from sqlalchemy.orm import Session
+from sqlalchemy import Select, func, or_, select, update
+from sqlalchemy.orm import Session, joinedload
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis
-from service.storage.errors import StateConflictError
+from service.storage.errors import NotFoundError, StateConflictError
 from service.storage.models import DiagnosisRow, JobRow, RecordingRow
-from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, Page
+from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
 from service.storage.repository.recording_requests import diagnose_rows, fail_rows
@@ -131,27 +131,23 @@ class JobRows(Sessions):
                 _retry_or_give_up(session, row, error, now_ns, max_attempts, retry_delay_ns=0)
             return len(rows)
 
-    def job(self, recording_id: str, job_id: str) -> Job:
-        """A job of this recording. Raises NotFoundError."""
-        query = select(JobRow).where(JobRow.id == job_id, JobRow.recording_id == recording_id)
+    def job(self, recording_id: str, job_id: str) -> JobResult:
+        """Return a job of this recording. Raises NotFoundError."""
+        query = _with_result(recording_id).where(JobRow.id == job_id)
         with self._read() as session:
             found(session, RecordingRow, recording_id, "recording")
             row = only(session, query)
-            return job(row if row is not None else found(session, JobRow, job_id, "diagnosis"))
+            if row is None:
+                raise NotFoundError("diagnosis", job_id)
+            return _job_result(row)
 
-    def jobs(self, recording_id: str, *, limit: int, after: Cursor | None = None) -> Page[Job]:
-        """Jobs of a recording, latest first. Raises NotFoundError."""
-        query = select(JobRow).where(JobRow.recording_id == recording_id)
+    def jobs(self, recording_id: str, *, limit: int, after: Cursor | None = None) -> Page[JobResult]:
+        """Return the jobs of a recording, latest first. Raises NotFoundError."""
         order: Order = [JobRow.created_ns, JobRow.id]
         with self._read() as session:
             found(session, RecordingRow, recording_id, "recording")
-            return page_of(session, query, order, job, limit=limit, after=after, descending=True)
-
-    def diagnosis_of_job(self, job_id: str) -> DiagnosisEntry | None:
-        """The result of a job, None while there is none."""
-        with self._read() as session:
-            row = only(session, select(DiagnosisRow).where(DiagnosisRow.job_id == job_id))
-            return None if row is None else record_of(DiagnosisEntry, row)
+            query = _with_result(recording_id)
+            return page_of(session, query, order, _job_result, limit=limit, after=after, descending=True)
 
     def current_diagnosis(self, recording_id: str) -> DiagnosisEntry | None:
         """The latest result for a recording, None without one."""
@@ -216,6 +212,15 @@ def _diagnosis_row(
         model=diagnosis.model,
         document=diagnosis.as_dict(),
     )
+
+
+def _with_result(recording_id: str) -> Select[JobRow]:
+    return select(JobRow).where(JobRow.recording_id == recording_id).options(joinedload(JobRow.result))
+
+
+def _job_result(row: JobRow) -> JobResult:
+    diagnosis = None if row.result is None else record_of(DiagnosisEntry, row.result)
+    return JobResult(job(row), diagnosis)
 
 
 def job(row: JobRow) -> Job:

@@ -1,6 +1,9 @@
 """What is known of motors: the latest diagnosis, the relay, and the trend."""
 
-from sqlalchemy import select
+from collections.abc import Sequence
+
+from sqlalchemy import Select, select
+from sqlalchemy.orm import Session, aliased
 
 from service.storage.models import (
     DiagnosisRow,
@@ -19,33 +22,26 @@ from service.storage.records import (
     RecordingEntry,
     TrendPoint,
 )
-from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, found, page_of, record_of
 from service.storage.states import RecordingState
 
 
 class MotorHealthRows(Sessions):
     def health(self, motor: str) -> MotorHealth:
-        """What is known of a motor now; the latest recording counts, not the latest diagnosis made.
+        """Return what is known of a motor now. Raises NotFoundError.
 
-        Raises NotFoundError.
+        The latest recording counts, not the latest diagnosis made.
         """
-        of_motor = select(DiagnosisRow).where(DiagnosisRow.motor == motor, DiagnosisRow.current)
-        latest = of_motor.order_by(DiagnosisRow.recorded_ns.desc(), DiagnosisRow.id.desc())
-        recordings = (
-            select(RecordingRow)
-            .where(RecordingRow.motor == motor, RecordingRow.state != RecordingState.ANNOUNCED)
-            .order_by(RecordingRow.announced_ns.desc(), RecordingRow.id.desc())
-        )
         with self._read() as session:
-            row = found(session, MotorRow, motor, "motor")
-            diagnosis = only(session, latest)
-            recording = only(session, recordings)
-            return MotorHealth(
-                motor=record_of(MotorEntry, row),
-                ied=record_of(IedEntry, found(session, IedRow, row.ied, "IED")),
-                diagnosis=None if diagnosis is None else record_of(DiagnosisEntry, diagnosis),
-                last_recording=None if recording is None else record_of(RecordingEntry, recording),
-            )
+            (health,) = _health_of(session, [found(session, MotorRow, motor, "motor")])
+            return health
+
+    def health_of_motors(self, *, limit: int, after: Cursor | None = None) -> Page[MotorHealth]:
+        """Return what is known of the motors in service, by name."""
+        query = select(MotorRow).where(MotorRow.in_service)
+        with self._read() as session:
+            rows = page_of(session, query, [MotorRow.name], lambda row: row, limit=limit, after=after)
+            return Page(_health_of(session, rows.items), rows.next)
 
     def trend(
         self,
@@ -69,6 +65,54 @@ class MotorHealthRows(Sessions):
             return page_of(
                 session, query, order, lambda row: _trend_point(row, quantity), limit=limit, after=after
             )
+
+
+def _health_of(session: Session, motors: Sequence[MotorRow]) -> tuple[MotorHealth, ...]:
+    """Ask four times, however many motors there are; the index finds each motor's latest rows."""
+    names = [motor.name for motor in motors]
+    diagnosis, recording = aliased(DiagnosisRow), aliased(RecordingRow)
+    latest_diagnosis = (
+        select(diagnosis.id)
+        .where(diagnosis.motor == MotorRow.name, diagnosis.current)
+        .order_by(diagnosis.recorded_ns.desc(), diagnosis.id.desc())
+        .limit(1)
+    )
+    latest_recording = (
+        select(recording.id)
+        .where(recording.motor == MotorRow.name, recording.state != RecordingState.ANNOUNCED)
+        .order_by(recording.announced_ns.desc(), recording.id.desc())
+        .limit(1)
+    )
+    diagnoses = {
+        row.motor: record_of(DiagnosisEntry, row)
+        for row in session.scalars(
+            select(DiagnosisRow).where(DiagnosisRow.id.in_(_for_each(names, latest_diagnosis)))
+        )
+    }
+    recordings = {
+        row.motor: record_of(RecordingEntry, row)
+        for row in session.scalars(
+            select(RecordingRow).where(RecordingRow.id.in_(_for_each(names, latest_recording)))
+        )
+    }
+    relays = {
+        row.name: record_of(IedEntry, row)
+        for row in session.scalars(select(IedRow).where(IedRow.name.in_({motor.ied for motor in motors})))
+    }
+    return tuple(
+        MotorHealth(
+            motor=record_of(MotorEntry, motor),
+            ied=relays[motor.ied],
+            diagnosis=diagnoses.get(motor.name),
+            last_recording=recordings.get(motor.name),
+        )
+        for motor in motors
+    )
+
+
+def _for_each(motors: Sequence[str], latest: Select[str]) -> Select[str]:
+    """One id for each of the motors: what `latest` finds for it."""
+    return select(latest.scalar_subquery()).select_from(MotorRow).where(MotorRow.name.in_(motors))
 
 
 def _trend_point(row: DiagnosisRow, quantity: Quantity) -> TrendPoint:

@@ -14,6 +14,7 @@ from service.storage.engine import BUSY_TIMEOUT_S, WRITES
 from service.storage.errors import NotFoundError
 from service.storage.models import Base
 from service.storage.records import Cursor, Page
+from service.storage.repository.counting_session import CountingSession
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -45,7 +46,7 @@ class Sessions:
 
     @contextmanager
     def _write(self) -> Iterator[Session]:
-        with self._own_turn(), Session(self._writing) as session, session.begin():
+        with self._own_turn(), CountingSession(self._writing) as session, session.begin():
             yield session
 
     @contextmanager

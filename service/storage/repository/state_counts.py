@@ -1,32 +1,51 @@
 """How much there is of everything, by state: for the metrics."""
 
+from collections.abc import Mapping
 from enum import StrEnum
 from typing import TypeVar
 
-from sqlalchemy import ColumnElement, func, select
-from sqlalchemy.orm import InstrumentedAttribute, Session
+from sqlalchemy import func, select
 
-from service.storage.models import AlarmRow, IedRow, JobRow, RecordingRequestRow, RecordingRow
+from service.storage.models import (
+    AlarmRow,
+    Base,
+    IedRow,
+    JobRow,
+    RecordingRequestRow,
+    RecordingRow,
+    StateCountRow,
+)
 from service.storage.records import Counts
 from service.storage.repository.sessions import Sessions
+from service.storage.states import JobState, RecordingRequestState, RecordingState
 
 State = TypeVar("State", bound=StrEnum)
 
 
 class StateCounts(Sessions):
     def counts(self) -> Counts:
+        """Count what there is now; of relays and their alarms, those in service only."""
+        links = select(IedRow.link_state, func.count()).where(IedRow.in_service).group_by(IedRow.link_state)
+        alarms = (
+            select(AlarmRow.kind, func.count())
+            .join(IedRow, IedRow.name == AlarmRow.ied)
+            .where(IedRow.in_service, AlarmRow.cleared_ns.is_(None))
+            .group_by(AlarmRow.kind)
+        )
         with self._read() as session:
+            numbers = {
+                (row.counted_table, row.state): row.number for row in session.scalars(select(StateCountRow))
+            }
             return Counts(
-                links=_count(session, IedRow.link_state),
-                alarms=_count(session, AlarmRow.kind, AlarmRow.cleared_ns.is_(None)),
-                recording_requests=_count(session, RecordingRequestRow.state),
-                recordings=_count(session, RecordingRow.state),
-                jobs=_count(session, JobRow.state),
+                links=dict(session.execute(links).all()),
+                alarms=dict(session.execute(alarms).all()),
+                recording_requests=_of(RecordingRequestRow, RecordingRequestState, numbers),
+                recordings=_of(RecordingRow, RecordingState, numbers),
+                jobs=_of(JobRow, JobState, numbers),
             )
 
 
-def _count(
-    session: Session, state: InstrumentedAttribute[State], *only_those: ColumnElement[bool]
-) -> dict[State, int]:
-    rows = session.execute(select(state, func.count()).where(*only_those).group_by(state))
-    return {row[0]: row[1] for row in rows}
+def _of(table: type[Base], states: type[State], numbers: Mapping[tuple[str, str], int]) -> dict[State, int]:
+    """The states in which there are any."""
+    found = {state: numbers[table.__tablename__, state] for state in states}
+    return {state: number for state, number in found.items() if number}

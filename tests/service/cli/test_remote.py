@@ -4,6 +4,8 @@ import json
 from pathlib import Path
 
 import pytest
+from fastapi import Request, Response
+from starlette.middleware.base import RequestResponseEndpoint
 
 from service.api import ApiContext, create_app
 from service.cli.app import main
@@ -35,6 +37,29 @@ def test_the_motors_whose_relay_is_down_say_why(
     words = " ".join(line[column:].split("  ")[0].strip() for line in shown.splitlines()[3:])
     assert "down: 10.0.0.7:102: connection refused" in " ".join(words.split())
     assert "up" in words
+
+
+def test_the_motors_are_asked_for_once(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    app = create_app(
+        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+    )
+    requests: list[str] = []
+
+    @app.middleware("http")
+    async def note(request: Request, call_next: RequestResponseEndpoint) -> Response:
+        requests.append(request.url.path)
+        return await call_next(request)
+
+    with serving(app) as client:
+        assert main(["motors", "--url", str(client.base_url), "--json"]) == 0
+        assert requests == ["/api/v1/motors"]
+        listed = json.loads(capsys.readouterr().out)["motors"]
+        for one in listed:
+            health = client.get(f"/api/v1/motors/{one['name']}/health").json()
+            assert one == {**client.get(f"/api/v1/motors/{one['name']}").json(), "health": health}
+    assert [one["name"] for one in listed] == ["FAN-A2", "PUMP-A1"]
 
 
 def test_a_relay_tells_what_is_used_of_it(

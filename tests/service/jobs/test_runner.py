@@ -110,7 +110,8 @@ def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: Rec
     recording_id = add(repository, store, "hang once")
     with running(repository, store):
         wait_until(lambda: worker_of(store))
-    (job,) = repository.jobs(recording_id, limit=5).items
+    (found,) = repository.jobs(recording_id, limit=5).items
+    job = found.job
     assert (job.state, job.attempts) == (JobState.QUEUED, 0)
     with running(repository, store):
         wait_until(lambda: ended(repository, recording_id))
@@ -152,7 +153,8 @@ def test_a_killed_service_loses_no_job_and_leaves_no_worker(
     assert service.pid is not None
     os.kill(service.pid, signal.SIGKILL)
     service.join()
-    (job,) = repository.jobs(recording_id, limit=5).items
+    (found,) = repository.jobs(recording_id, limit=5).items
+    job = found.job
     assert job.state is JobState.RUNNING
     with running(repository, store):
         wait_until(lambda: ended(repository, recording_id))
@@ -191,7 +193,8 @@ def test_workers_that_cannot_start_show_in_the_problem(repository: Repository, s
     recording_id = add(repository, store, "fine")
     with running(repository, store, prepare_worker=fail_to_start) as runner:
         wait_until(lambda: "the worker processes ended" in (runner.problem() or ""))
-    (job,) = repository.jobs(recording_id, limit=5).items
+    (found,) = repository.jobs(recording_id, limit=5).items
+    job = found.job
     assert (job.state, job.attempts) == (JobState.QUEUED, 0), "it was not the job's fault"
 
 

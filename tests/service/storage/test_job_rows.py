@@ -55,14 +55,14 @@ def test_a_result_ends_job_recording_and_request(repository: Repository, recordi
     job_id = claim(repository).job.id
     for _ in range(2):
         repository.finish_job(job_id, fault(), recorded_ns=NOW_NS - SECOND_NS, now_ns=NOW_NS + SECOND_NS)
-    assert repository.job(recording_id, job_id).state is JobState.DONE
+    assert repository.job(recording_id, job_id).job.state is JobState.DONE
     recording = repository.recording(recording_id)
     assert (recording.state, recording.recorded_ns) == (RecordingState.DIAGNOSED, NOW_NS - SECOND_NS)
     assert request_state(repository) == (RecordingRequestState.DIAGNOSED, None)
     diagnosis = repository.current_diagnosis(recording_id)
     assert diagnosis is not None
     assert diagnosis.document == fault().as_dict()
-    assert diagnosis == repository.diagnosis_of_job(job_id)
+    assert diagnosis == repository.job(recording_id, job_id).diagnosis
     assert len(repository.trend("PUMP-A1", "mu_f", limit=10).items) == 1
 
 
@@ -113,7 +113,7 @@ def test_the_latest_diagnosis_of_a_recording_counts(repository: Repository, reco
     repository.finish_job(job.id, fault(0.06), recorded_ns=NOW_NS, now_ns=NOW_NS + 2)
     (point,) = repository.trend("PUMP-A1", "mu_f", limit=10).items
     assert point.value == 0.06
-    assert [job.method for job in repository.jobs(recording_id, limit=10).items] == ["genetic", "hybrid"]
+    assert [one.job.method for one in repository.jobs(recording_id, limit=10).items] == ["genetic", "hybrid"]
 
 
 def test_a_failed_repetition_leaves_the_earlier_diagnosis(repository: Repository, recording_id: str) -> None:
@@ -137,7 +137,7 @@ def test_a_result_that_is_no_json_is_refused(repository: Repository, recording_i
     broken = replace(fault(), residual_rms_A=float("nan"))
     with pytest.raises(StatementError, match="not JSON compliant"):
         repository.finish_job(job_id, broken, recorded_ns=NOW_NS, now_ns=NOW_NS)
-    assert repository.job(recording_id, job_id).state is JobState.RUNNING
+    assert repository.job(recording_id, job_id).job.state is JobState.RUNNING
 
 
 def test_trend_and_health(repository: Repository, store: RecordingStore) -> None:

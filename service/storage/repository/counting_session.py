@@ -1,0 +1,52 @@
+"""Sessions that keep the number of rows in each state, in the transaction that changes them.
+
+Counting whole tables whenever the metrics are asked for would take longer every year.
+"""
+
+from collections import Counter
+
+from sqlalchemy import event, update
+from sqlalchemy.orm import Session, UOWTransaction
+from sqlalchemy.orm.attributes import get_history
+
+from service.storage.models import JobRow, RecordingRequestRow, RecordingRow, StateCountRow
+
+COUNTED = (RecordingRow, RecordingRequestRow, JobRow)
+_CHANGES = "changes of state counts"
+
+
+class CountingSession(Session):
+    """Keeps the state counts in step with the rows that are added, changed and deleted through it.
+
+    It sees what goes through objects; no statement may change the state of a counted table's rows directly.
+    """
+
+
+@event.listens_for(CountingSession, "after_flush")
+def _note_changes(session: Session, _context: UOWTransaction) -> None:
+    changes: Counter[tuple[str, str]] = session.info.setdefault(_CHANGES, Counter())
+    for row in session.new:
+        if isinstance(row, COUNTED):
+            changes[row.__tablename__, row.state] += 1
+    for row in session.dirty:
+        if isinstance(row, COUNTED):
+            for earlier in get_history(row, "state").deleted:
+                changes[row.__tablename__, earlier] -= 1
+                changes[row.__tablename__, row.state] += 1
+    for row in session.deleted:
+        if isinstance(row, COUNTED):
+            changes[row.__tablename__, row.state] -= 1
+
+
+@event.listens_for(CountingSession, "before_commit")
+def _write_changes(session: Session) -> None:
+    """Comes last in a transaction and in one order: writers wait for each other briefly, and in no circle."""
+    session.flush()
+    changes: Counter[tuple[str, str]] = session.info.pop(_CHANGES, Counter())
+    for (table, state), change in sorted(changes.items()):
+        if change:
+            session.execute(
+                update(StateCountRow)
+                .where(StateCountRow.counted_table == table, StateCountRow.state == state)
+                .values(number=StateCountRow.number + change)
+            )
