@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from ipaddress import ip_address
 from pathlib import Path
 
-from scl.data_model import Ied
 from scl.errors import Finding, SclError
+from scl.ied_model import Ied
 
 MMS_PORT = 102
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from lxml import etree
 
-from scl.data_model import (
+from scl.control_block_model import (
     DataSet,
     GooseControl,
     LogControl,

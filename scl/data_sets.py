@@ -5,8 +5,10 @@ from functools import lru_cache
 
 from lxml import etree
 
-from scl.data_model import DataSet, DataSetMember, FunctionalConstraint, Ied
+from scl.control_block_model import DataSet, DataSetMember
+from scl.data_model import FunctionalConstraint
 from scl.document import NAME, Document, decimal
+from scl.ied_model import Ied
 
 LONGEST_REFERENCE = 129
 _CONSTRAINTS = dict(FunctionalConstraint.__members__)

@@ -3,9 +3,9 @@
 from lxml import etree
 
 from scl.control_blocks import ControlBlockReader
-from scl.data_model import AccessPoint, Ied, LogicalDevice, LogicalNode
 from scl.data_sets import DataSetReader
 from scl.document import Document, node_name
+from scl.ied_model import AccessPoint, Ied, LogicalDevice, LogicalNode
 from scl.instance_values import InstanceValues
 from scl.multicast_addresses import MulticastAddresses
 from scl.templates import Templates

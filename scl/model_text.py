@@ -9,21 +9,17 @@ import math
 from collections.abc import Iterator, Mapping
 
 from scl.configuration import Scl
-from scl.data_model import (
-    DataAttribute,
-    DataObject,
+from scl.control_block_model import (
     DataSetMember,
-    FunctionalConstraint,
     GooseControl,
-    Ied,
     LogControl,
-    LogicalDevice,
-    LogicalNode,
     MulticastAddress,
     ReportControl,
     SampledValueControl,
 )
+from scl.data_model import DataAttribute, DataObject, FunctionalConstraint
 from scl.errors import SclError
+from scl.ied_model import Ied, LogicalDevice, LogicalNode
 
 LONGEST_WORD = 128
 LONGEST_LINE_BYTES = 1000

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from lxml import etree
 
-from scl.data_model import MulticastAddress
+from scl.control_block_model import MulticastAddress
 from scl.document import Document, content, decimal
 
 MAC = re.compile(r"(?:[0-9A-Fa-f]{2}[-:]?){5}[0-9A-Fa-f]{2}")

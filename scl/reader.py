@@ -19,8 +19,8 @@ from scl.configuration import (
     Substation,
 )
 from scl.conformance import check_conformance
-from scl.data_model import Ied
 from scl.document import LARGEST_FILE_BYTES, Document, content
+from scl.ied_model import Ied
 from scl.ied_section import IedSection
 from scl.instance_values import InstanceValues
 from scl.multicast_addresses import multicast_addresses

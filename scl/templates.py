@@ -9,13 +9,7 @@ from dataclasses import dataclass, replace
 
 from lxml import etree
 
-from scl.data_model import (
-    DataAttribute,
-    DataObject,
-    Enumeration,
-    FunctionalConstraint,
-    TriggerOptions,
-)
+from scl.data_model import DataAttribute, DataObject, Enumeration, FunctionalConstraint, TriggerOptions
 from scl.document import Document, content, decimal
 
 DEEPEST_NESTING = 16

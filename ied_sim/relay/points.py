@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from ied_sim.errors import SimulatorError
 from ied_sim.profiles.profile import Profile
-from scl.data_model import DataObject, Ied
+from scl.data_model import DataObject
+from scl.ied_model import Ied
 
 _VALUE_ATTRIBUTES = frozenset({"stVal", "general", "instMag", "mag", "instCVal", "cVal"})
 

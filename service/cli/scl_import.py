@@ -9,7 +9,7 @@ from rich.text import Text
 
 import scl
 from scl import Address, Scl, SclError
-from scl.data_model import Ied
+from scl.ied_model import Ied
 from service.cli.output import failing_clearly, one_line, print_document, results
 from service.plant.recognition import recognise
 

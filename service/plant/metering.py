@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from scl.data_model import Ied
+from scl.ied_model import Ied
 from service.plant.offer import Offer
 from service.plant.quantities import MeteredQuantity
 

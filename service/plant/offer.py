@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from scl.data_model import Ied
+from scl.ied_model import Ied
 
 _NODE_CLASS = re.compile(r"([A-Z]{4})\d*$")
 

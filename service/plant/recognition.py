@@ -6,7 +6,7 @@ The same rules read an SCL file and what a relay itself offers.
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from scl.data_model import Ied
+from scl.ied_model import Ied
 from service.plant.offer import Offer, promised_by
 
 REMOTE_BIT = "RBGGIO1.SPCSO01"

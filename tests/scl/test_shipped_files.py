@@ -6,7 +6,8 @@ import pytest
 
 import scl
 from scl import Address, Scl
-from scl.data_model import DataAttribute, FunctionalConstraint, OptionalFields, TriggerOptions
+from scl.control_block_model import OptionalFields
+from scl.data_model import DataAttribute, FunctionalConstraint, TriggerOptions
 from scl.demo_plant import write_demo_plant
 
 RELAYS = {

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from scl.data_model import Ied
+from scl.ied_model import Ied
 from service.plant.metering import measurands
 from service.plant.offer import promised_by
 from service.plant.overrides import AS_RECOGNISED, Overrides

@@ -12,7 +12,7 @@ from ied_sim.profiles.profile import read_profile
 from ied_sim.profiles.standalone import standalone
 from mms import Client
 from scl import Address
-from scl.data_model import Ied
+from scl.ied_model import Ied
 from service.collector.session.browsing import browse
 from service.plant import Overrides, TriggerAction, differences
 from service.plant.offer import node_class, promised_by
