@@ -10,6 +10,7 @@ import pytest
 
 from mms import Client, ClientLimits, ConnectFailed, ConnectionLost, MmsError, Timeout
 from service.collector.records.directory import LINK_FAILURES
+from service.collector.session.session_policy import SessionPolicy
 from service.storage.states import LinkState, RecordingState
 from testing.ports import LOOPBACK
 from testing.waiting import eventually
@@ -143,7 +144,7 @@ def test_whoever_closes_waits_for_one_part_alone(
 
 def test_a_session_puts_the_trickle_off_and_says_so(dialogue: Dialogue, bench: Bench) -> None:
     assert Timeout in LINK_FAILURES
-    bench.client_limits = ClientLimits(throughput_window_s=0.5)
+    bench.policy = SessionPolicy(client=ClientLimits(throughput_window_s=0.5))
     with lying(dialogue, {crafted.FILE_READ: parts_of(1)}) as port:
         bench.relay = replace(bench.relay, port=port)
         with bench.session():

@@ -1,8 +1,7 @@
-"""What a relay offers, asked of the relay itself: as much as recognition and comparison need, and no more.
+"""Browses a relay: reads from the relay itself what it offers, as far as the service needs to know.
 
-One request after the other. The names of logical nodes and data objects come in one listing a logical
-device; beyond that one request for each logical device's data sets, for each data set and for each report
-control block.
+It makes one request after the other: one listing of names for each logical device, then one request for each
+logical device's data sets, for each data set and for each report control block.
 """
 
 from collections.abc import Iterator
@@ -24,16 +23,16 @@ from service.plant import Offer, ReportBlock
 log = structlog.get_logger(__name__)
 
 REFUSALS = (AccessDenied, NotFound, ProtocolError, TemporarilyUnavailable, ValueError)
-"""Of one question, the link being fine; ValueError: a name that is none."""
+"""Errors of one request while the link is fine. ValueError: a name that is none."""
 
 MOST_DEVICES, MOST_NODES, MOST_DATA_SETS, MOST_BLOCKS = 64, 4000, 64, 128
-"""Of one relay. More than any relay of this kind has: what a relay gone wild may cost."""
+"""Limits for one relay. Protection relays have fewer; a faulty one may list any number."""
 
 
 def browse(client: Client, expected: Offer | None) -> Offer | None:
-    """What the relay offers; None where it does not let itself be asked. Raises MmsError (the link).
+    """Return what the relay offers; None where it cannot be browsed. Raises MmsError (the link).
 
-    expected: what its SCL promises: data sets are looked for where it has some, and in every LLN0.
+    expected: what its SCL promises. Data sets are looked for where the SCL has some, and in every LLN0.
     """
     try:
         devices = client.logical_devices()[:MOST_DEVICES]
@@ -60,7 +59,7 @@ def browse(client: Client, expected: Offer | None) -> Offer | None:
 
 
 def control_model(client: Client, reference: str) -> ControlModel | None:
-    """The control model of a data object as the relay has it; None for one that is no control.
+    """Return the control model of a data object as the relay has it; None where it is no control.
 
     Raises MmsError (the link).
     """
@@ -112,7 +111,7 @@ def _report_blocks(client: Client, nodes: dict[str, tuple[str, ...]]) -> Iterato
 
 
 def _data_set_of(client: Client, block: str, kind: str) -> str | None:
-    """Relays tell it as MMS does: LD/LLN0$DSet01."""
+    """Return the data set of a report control block. Relays name it as MMS does: LD/LLN0$DSet01."""
     try:
         data_set = client.read(f"{block}.DatSet", FunctionalConstraint[kind])
     except REFUSALS:

@@ -1,6 +1,6 @@
-"""What a relay is, found by asking it at each connection; its SCL is what was expected.
+"""Finds out what a relay offers, by browsing it at each connection, and compares that with its SCL.
 
-What differs is written down and, where the service uses it, an alarm. Nothing of it ends a connection.
+Differences are stored. A difference in what the service uses raises an alarm. None ends a connection.
 """
 
 import time
@@ -21,11 +21,11 @@ from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
 
-NOT_ASKED = "the relay does not tell what it offers: its SCL is taken at its word"
+NOT_BROWSED = "the relay does not tell what it offers: its SCL is taken at its word"
 
 
 class Discovery:
-    """Of one relay. Used by that relay's session alone."""
+    """What is known of one relay. Used by that relay's session alone."""
 
     def __init__(self, relay: Relay, repository: Repository, alarms: RelayAlarms) -> None:
         self._relay = relay
@@ -34,13 +34,16 @@ class Discovery:
         self._acquisition = promised(relay)
         self._control_model: str | None = None
         self._differences: list[dict[str, object]] = []
-        self._asked_ns = 0
-        self._written: RelayFindings | None = None
+        self._browsed_ns = 0
+        self._saved: RelayFindings | None = None
 
-    def look(self, client: Client) -> Acquisition:
-        """Browse the relay: what is to be used of it. Raises MmsError (the link)."""
+    def discover(self, client: Client) -> Acquisition:
+        """Browse the relay and return what is to be used of it.
+
+        Raises MmsError (the link), SQLAlchemyError.
+        """
         offer = browse(client, self._relay.expected)
-        self._asked_ns = time.time_ns()
+        self._browsed_ns = time.time_ns()
         self._differences = []
         if offer is None:
             self._acquisition = promised(self._relay)
@@ -49,14 +52,16 @@ class Discovery:
                 self._relay, offer, lambda control: bool(control_model(client, control))
             )
             if self._relay.expected is not None:
-                self._differences = [_document(each) for each in differences(self._relay.expected, offer)]
+                self._differences = [
+                    _difference_document(each) for each in differences(self._relay.expected, offer)
+                ]
         trigger = self._acquisition.trigger
         model = None if trigger is None else control_model(client, trigger)
         self._control_model = None if model is None else model.words
         self._raise_alarms()
         return self._acquisition
 
-    def note(
+    def save(
         self,
         *,
         report_control: str | None,
@@ -65,23 +70,23 @@ class Discovery:
         ignored: Sequence[RefusedFile],
         ignored_in_all: int,
     ) -> None:
-        """Write down what is used and what is not taken, where that has changed.
+        """Store what is used and what is ignored, if that has changed since it was stored.
 
-        Raises SQLAlchemyError; then it is written the next time.
+        Raises SQLAlchemyError; the next call then stores it.
         """
         findings = RelayFindings(
             ied=self._relay.name,
-            found_ns=self._asked_ns,
-            acquisition=self._used(report_control, directory, remarks),
+            found_ns=self._browsed_ns,
+            acquisition=self._acquisition_document(report_control, directory, remarks),
             differences=self._differences,
             ignored_files=[asdict(each) for each in ignored],
             ignored_in_all=ignored_in_all,
         )
-        if findings != self._written:
+        if findings != self._saved:
             self._repository.note_findings(findings)
-            self._written = findings
+            self._saved = findings
 
-    def _used(
+    def _acquisition_document(
         self, report_control: str | None, directory: str | None, remarks: Sequence[str]
     ) -> dict[str, object]:
         found = self._acquisition
@@ -93,12 +98,12 @@ class Discovery:
             "control_model": self._control_model,
             "record_made": found.record_made,
             "record_number": found.record_number,
-            "records_told_by": _told_by(report_control),
+            "records_told_by": _announced_by(report_control),
             "report_control": report_control,
             "events_directory": "/" if directory == ROOT else directory,
             "overridden": [name for name, value in asdict(overrides).items() if value is not None],
             "remarks": [
-                *([] if found.asked else [NOT_ASKED]),
+                *([] if found.asked else [NOT_BROWSED]),
                 *remarks,
                 *(each.reason for each in found.deviations),
             ],
@@ -113,11 +118,11 @@ class Discovery:
             log.info("the relay differs from its SCL", relay=self._relay.name, number=len(self._differences))
 
 
-def _told_by(report_control: str | None) -> str:
+def _announced_by(report_control: str | None) -> str:
     if report_control is None:
         return "polling"
     return "buffered-report" if ".BR." in report_control else "unbuffered-report"
 
 
-def _document(difference: Difference) -> dict[str, object]:
+def _difference_document(difference: Difference) -> dict[str, object]:
     return {"kind": str(difference.kind), "expected": difference.expected, "found": difference.found}

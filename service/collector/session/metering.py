@@ -1,4 +1,4 @@
-"""Samples what a relay measures all the time, one request after the other, at a set period."""
+"""Samples the values that a relay measures, one request after the other, at a set period."""
 
 import math
 import time
@@ -20,51 +20,52 @@ from service.storage.records import Sample
 log = structlog.get_logger(__name__)
 
 LARGEST_POWER_OF_TEN = 24
-"""yotta; IEC 61850-7-3, multiplier."""
+"""The multiplier yotta (IEC 61850-7-3)."""
 
 STATISTICS_PERIOD_S = 60.0
-"""Least time between samples of the relay's own statistics, which change slowly and are many."""
+"""Between samples of the relay's own statistics, which are many and change slowly."""
 
 NOT_OFFERED = (AccessDenied, NotFound)
 
 
 class Metering:
-    """Used by that relay's session alone. `on_sample` takes each sample; period_s = 0: none is taken.
+    """Samples one relay. Used by that relay's session alone.
 
-    What the model promises and the relay does not have is left out for the length of a connection; what it
-    has and cannot give, only from that sample. Both are said.
+    A value that the model promises and the relay does not have is left out until the next connection. A value
+    that the relay has and cannot give is left out of that sample. Both are logged.
     """
 
     def __init__(
         self, relay: Relay, motor: str, *, period_s: float, on_sample: Callable[[Sample], None]
     ) -> None:
+        """period_s: between samples; 0 where none is wanted.  on_sample: takes each sample."""
         self._relay = relay
         self._measurands = relay.measurands
         self._motor = motor
         self._period_s = period_s
         self._on_sample = on_sample
-        self._asked_for = self._measurands
+        self._offered = self._measurands
         self._factors: dict[Measurand, float] = {}
-        self._said: set[Measurand] = set()
+        self._logged: set[Measurand] = set()
         self._next_s = 0.0
         self._next_statistics_s = 0.0
 
     def begin(self, measurands: tuple[Measurand, ...] | None = None) -> None:
-        """A new connection: find out again what the relay offers, among what was found or is promised."""
+        """Begin a new connection. measurands: what the relay offers; None where what is known still holds."""
         if measurands is not None:
             self._measurands = measurands
-        self._asked_for = self._measurands
+        self._offered = self._measurands
         self._factors = {}
-        self._said = set()
+        self._logged = set()
         self._next_s = time.monotonic()
 
     def due_in_s(self) -> float:
-        """Until the next sample [s]; infinite where none is wanted."""
-        wanted = self._period_s > 0 and self._asked_for
+        """Return the time until the next sample [s]; infinite where none is wanted."""
+        wanted = self._period_s > 0 and self._offered
         return max(0.0, self._next_s - time.monotonic()) if wanted else math.inf
 
     def sample(self, client: Client) -> None:
-        """Take a sample now. Raises MmsError when the link fails."""
+        """Take a sample now. Raises MmsError (the link)."""
         self._next_s += self._period_s
         if self._next_s < time.monotonic():
             # What was missed, because a long record was pulled meanwhile, is not made up for.
@@ -79,8 +80,8 @@ class Metering:
     def _values(self, client: Client, *, with_statistics: bool) -> dict[str, float]:
         values: dict[str, float] = {}
         left_out: dict[Measurand, str] = {}
-        still_asked_for = []
-        for measurand in self._asked_for:
+        offered = []
+        for measurand in self._offered:
             try:
                 if with_statistics or not measurand.quantity.is_statistic:
                     value = self._value(client, measurand)
@@ -93,13 +94,13 @@ class Metering:
                 left_out[measurand] = str(error)
             except TemporarilyUnavailable:
                 pass
-            still_asked_for.append(measurand)
-        self._asked_for = tuple(still_asked_for)
-        self._say(left_out)
+            offered.append(measurand)
+        self._offered = tuple(offered)
+        self._log_missing(left_out)
         return values
 
     def _value(self, client: Client, measurand: Measurand) -> float | None:
-        """In plain units; None where it is no number."""
+        """Read a value in plain units; None where it is no number."""
         value = client.read(measurand.reference, FunctionalConstraint.MX)
         if measurand not in self._factors:
             self._factors[measurand] = _factor(client, measurand)
@@ -107,10 +108,10 @@ class Metering:
             return float(value) * self._factors[measurand]
         return None
 
-    def _say(self, reasons: Mapping[Measurand, str]) -> None:
-        """Once a connection."""
-        new = {each.quantity: reason for each, reason in reasons.items() if each not in self._said}
-        self._said.update(reasons)
+    def _log_missing(self, reasons: Mapping[Measurand, str]) -> None:
+        """Log what is missing, once a connection."""
+        new = {each.quantity: reason for each, reason in reasons.items() if each not in self._logged}
+        self._logged.update(reasons)
         if new:
             log.warning(
                 "not measured by the relay, though its model says so", relay=self._relay.name, missing=new

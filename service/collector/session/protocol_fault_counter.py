@@ -6,15 +6,10 @@ from collections.abc import Callable
 import structlog
 
 from service.collector.session.quarantine import QuarantinePolicy, quarantine_relay
+from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.storage import Repository
 
 log = structlog.get_logger(__name__)
-
-FAULTS_IN_A_ROW = 5
-"""So many visits that end by a broken protocol, with no good visit between them, bring a quarantine."""
-
-GOOD_VISIT_S = 10.0
-"""A visit is good when it goes well for so long; one good answer is not enough."""
 
 
 class ProtocolFaultCounter:
@@ -24,19 +19,21 @@ class ProtocolFaultCounter:
         self,
         relay: str,
         repository: Repository,
-        policy: QuarantinePolicy,
+        quarantine: QuarantinePolicy,
         *,
+        policy: SessionPolicy = SESSION_POLICY,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """clock: tells a time that only goes forward [s]. Raises SQLAlchemyError."""
         self._relay = relay
         self._repository = repository
+        self._quarantine = quarantine
         self._policy = policy
         self._clock = clock
         self._faults = 0
         self._visited_s = clock()
-        quarantine = repository.quarantine(relay)
-        self._probation_s = None if quarantine is None else policy.probation_after_s(quarantine)
+        latest = repository.quarantine(relay)
+        self._probation_s = None if latest is None else quarantine.probation_after_s(latest)
 
     def visit_begins(self) -> None:
         """Note that a visit begins."""
@@ -45,7 +42,7 @@ class ProtocolFaultCounter:
     def round_succeeded(self) -> None:
         """Note that a round of a visit went well. Raises SQLAlchemyError."""
         well_s = self._clock() - self._visited_s
-        if well_s > GOOD_VISIT_S:
+        if well_s > self._policy.good_visit_s:
             self._faults = 0
         if self._probation_s is not None and well_s > self._probation_s:
             self._repository.release(self._relay, now_ns=time.time_ns())
@@ -58,8 +55,8 @@ class ProtocolFaultCounter:
         Returns whether the relay is quarantined now. Raises SQLAlchemyError.
         """
         self._faults += 1
-        if self._faults < FAULTS_IN_A_ROW:
+        if self._faults < self._policy.faults_in_a_row:
             return False
         why = f"it broke the protocol {self._faults} times in a row, at last: {reason}"
-        quarantine_relay(self._repository, self._relay, why, self._policy)
+        quarantine_relay(self._repository, self._relay, why, self._quarantine)
         return True

@@ -1,41 +1,44 @@
-"""The alarms of one relay: raised once, however often their cause is seen, cleared when it is gone."""
+"""The alarms of one relay: each is raised once, however often its cause is seen, until that is gone."""
 
 import time
 from collections.abc import Collection
 
 import structlog
 
+from service.collector.session.session_policy import SESSION_POLICY
 from service.storage import Repository
 from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
 
-MOST_OF_A_KIND = 1000
-"""A relay that lists a million bad names gets one more alarm that says so, and no more."""
-
 AND_MORE = "(and more)"
 
 
 class RelayAlarms:
-    """Used by that relay's session alone, which alone raises its alarms: it knows them without asking."""
+    """The standing alarms of one relay, raised and cleared by that relay's session alone.
 
-    def __init__(self, relay: str, repository: Repository) -> None:
+    No other process changes them, so they are read from the database once.
+    """
+
+    def __init__(self, relay: str, repository: Repository, *, most: int = SESSION_POLICY.most_alarms) -> None:
+        """most: of a kind; one more alarm says that there are others. Raises SQLAlchemyError."""
         self._relay = relay
         self._repository = repository
+        self._most = most
         self._standing = {
             (alarm.kind, alarm.subject): alarm.id for alarm in repository.standing_alarms(relay)
         }
 
     def standing(self, kind: AlarmKind) -> frozenset[str]:
-        """Subjects of the alarms of this kind."""
+        """Return the subjects of the standing alarms of this kind."""
         return frozenset(subject for of_kind, subject in self._standing if of_kind is kind)
 
     def raise_alarm(self, kind: AlarmKind, subject: str, reason: str) -> None:
-        """Raise an alarm unless it stands already."""
+        """Raise an alarm unless it stands already. Raises SQLAlchemyError."""
         if (kind, subject) in self._standing:
             return
-        if len(self.standing(kind)) >= MOST_OF_A_KIND:
-            subject, reason = AND_MORE, f"more than {MOST_OF_A_KIND} of this kind; the others are not listed"
+        if len(self.standing(kind)) >= self._most:
+            subject, reason = AND_MORE, f"more than {self._most} of this kind; the others are not listed"
             if (kind, subject) in self._standing:
                 return
         alarm = self._repository.raise_alarm(self._relay, kind, subject, reason, now_ns=time.time_ns())
@@ -43,7 +46,7 @@ class RelayAlarms:
         log.warning("alarm", relay=self._relay, kind=str(kind), subject=subject, reason=reason)
 
     def keep(self, kind: AlarmKind, subjects: Collection[str]) -> None:
-        """Clear the alarms of this kind whose subject is not among these."""
+        """Clear the alarms of this kind whose subject is not among these. Raises SQLAlchemyError."""
         over = [
             key
             for key in self._standing

@@ -1,6 +1,6 @@
-"""One relay, one thread: connect, subscribe, keep its directory and its event reports up to date, for ever.
+"""The session with one relay, on a thread of its own: connect, subscribe, pull records, trigger, measure.
 
-What a relay does wrong ends at its own session: the link is down with its reason, and tried again.
+What a relay does wrong ends with its own session: the link is down with the reason, and is tried again.
 """
 
 import math
@@ -12,11 +12,11 @@ from threading import Event
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from mms import Client, ClientLimits, CredentialFileError, MmsError, ProtocolError
+from mms import Client, CredentialFileError, MmsError, ProtocolError
 from service.collector.records.allowance import DailyAllowance
 from service.collector.records.directory import RecordDirectory, Scan
 from service.collector.records.event_folder import EventFolder
-from service.collector.session.clock import ClockWatch
+from service.collector.session.clock_monitor import ClockMonitor
 from service.collector.session.discovery import Discovery
 from service.collector.session.link import Link
 from service.collector.session.metering import Metering
@@ -24,6 +24,7 @@ from service.collector.session.protocol_fault_counter import ProtocolFaultCounte
 from service.collector.session.quarantine import QuarantinePolicy
 from service.collector.session.relay_alarms import RelayAlarms
 from service.collector.session.report_subscription import ReportQueue, ReportSubscription
+from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.collector.session.visit_marks import VisitMark, VisitMarks
 from service.collector.triggers.trigger_queue import TriggerQueue
 from service.configuration.relay_access import AccessError, credentials
@@ -32,6 +33,7 @@ from service.plant import Relay
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository
 from service.storage.records import LinkNote, Sample
+from service.timing.backoff import RestartDelay
 
 log = structlog.get_logger(__name__)
 
@@ -39,13 +41,11 @@ HURRIED_PERIOD_S = 0.2
 """Between scans while a record is known to be on its way."""
 
 LISTING_PAUSE = 4.0
-"""Of the time that listing the directory takes: so long a pause before the next, also while in a hurry."""
-
-FIRST_RETRY_S, LONGEST_RETRY_S = 0.5, 10.0
+"""The pause before the next listing of the directory, in units of the time that the latest one took."""
 
 
 class RelaySession:
-    """Everything between the service and one relay. `run` is the body of the session's own thread."""
+    """Does everything between the service and one relay. `run` is the body of the session's own thread."""
 
     def __init__(
         self,
@@ -59,27 +59,28 @@ class RelaySession:
         visit_marks: VisitMarks | None = None,
         on_sample: Callable[[Sample], None] | None = None,
         on_note: Callable[[LinkNote], None] | None = None,
-        client_limits: ClientLimits | None = None,
+        policy: SessionPolicy = SESSION_POLICY,
     ) -> None:
-        """`gateway`: who holds the relay's lease; None where relays are not shared.
+        """gateway: who holds the relay's lease; None where relays are not shared.
 
         visit_marks: where a visit is marked, for whoever finds the process dead; None where nobody looks.
         on_sample: takes what the relay measures; None where nobody wants it.
         on_note: takes what goes over a link that stays up; None where it is written at once.
-        client_limits: how much the MMS client takes from a relay that keeps answering; its own by default.
         """
         self._relay = relay
         self._repository = repository
         self._settings = settings
-        self._client_limits = client_limits or ClientLimits()
+        self._policy = policy
         figures = repository.link_figures(relay.name)
         allowance = DailyAllowance(
             settings.max_relay_bytes_per_day, day=figures.day, used_bytes=figures.day_bytes
         )
-        self._link = Link(relay.name, repository, allowance, on_note=on_note)
-        alarms = RelayAlarms(relay.name, repository)
+        self._link = Link(relay.name, repository, allowance, on_note=on_note, reminder_s=policy.reminder_s)
+        alarms = RelayAlarms(relay.name, repository, most=policy.most_alarms)
         self._discovery = Discovery(relay, repository, alarms)
-        self._subscription = ReportSubscription(relay.name, repository, self._link)
+        self._subscription = ReportSubscription(
+            relay.name, repository, self._link, retry_s=policy.report_retry_s
+        )
         self._folder = EventFolder(relay.name, settings.events_directory, relay.overrides.events_directory)
         self._directory = RecordDirectory(
             relay,
@@ -92,7 +93,7 @@ class RelaySession:
             allowance=allowance,
             on_bytes=self._link.received,
         )
-        self._clock = ClockWatch(relay.name, repository)
+        self._clock = ClockMonitor(relay.name, repository)
         self._triggers = TriggerQueue(
             relay,
             repository,
@@ -106,139 +107,73 @@ class RelaySession:
             else Metering(relay, motor, period_s=settings.metering_period_s, on_sample=on_sample)
         )
         self._protocol_faults = ProtocolFaultCounter(
-            relay.name, repository, QuarantinePolicy(settings.quarantine_s)
+            relay.name, repository, QuarantinePolicy(settings.quarantine_s), policy=policy
         )
         self._visit_marks = visit_marks
         self._mark: VisitMark | None = None
         self._client: Client | None = None
         self._stopping = Event()
-        self._stirred = Event()
-        self._asked = Event()
-        self._expecting_until_s = 0.0
+        self._wake_up = Event()
+        self._requested = Event()
+        self._record_expected_until_s = 0.0
 
     def wake(self) -> None:
-        """Somebody asked for an event report."""
-        self._asked.set()
-        self._stirred.set()
+        """Look for requests now: somebody has requested a recording."""
+        self._requested.set()
+        self._wake_up.set()
 
     def stop(self) -> None:
-        """End after what is under way."""
+        """End after the request under way."""
         self._stopping.set()
         self.wake()
 
     def abandon(self) -> None:
-        """End with the request under way: somebody else may visit the relay soon."""
+        """End in the middle of the request under way: another gateway may visit the relay soon."""
         self.stop()
         client = self._client
         if client is not None:
             client.abandon()
 
     def run(self) -> None:
-        """Visit the relay until stopped, waiting longer each time it does not answer."""
-        retry_s = FIRST_RETRY_S
+        """Visit the relay until stopped, with a longer pause after each visit that fails."""
+        delay = RestartDelay(self._policy.reconnect, stable_after_s=self._policy.reconnect.longest_s)
         while not self._stopping.is_set():
-            visited_s = time.monotonic()
-            reason = None
-            trouble = "does not answer"
-            broken = False
-            try:
-                self._visit()
-            except (MmsError, CredentialFileError, AccessError) as error:
-                reason = str(error)
-                broken = isinstance(error, ProtocolError)
-            except LeaseLostError as error:
-                log.warning("visit ended", relay=self._relay.name, reason=str(error))
+            began_s = time.monotonic()
+            if not self._visit_once():
                 return
-            except Exception as error:  # a full disk or a bug here must not silence the relay for ever
-                log.exception("session failed", relay=self._relay.name)
-                reason = f"{type(error).__name__}: {error}"
-                trouble = "is not visited"
-            if reason is not None and not self._stopping.is_set():
-                self._note_failure(trouble, reason)
-                if broken and self._is_set_aside(reason):
-                    return
-            if time.monotonic() - visited_s > LONGEST_RETRY_S:
-                retry_s = FIRST_RETRY_S
-            self._stopping.wait(retry_s)
-            retry_s = min(2 * retry_s, LONGEST_RETRY_S)
+            self._stopping.wait(delay.after_run_s(time.monotonic() - began_s))
 
-    def _visit(self) -> None:
-        """One connection, until it breaks or the session is stopped.
+    def _visit_once(self) -> bool:
+        """Make one visit, and note why it ended. Returns whether the relay is to be visited again."""
+        try:
+            self._visit()
+        except (MmsError, CredentialFileError, AccessError) as error:
+            return self._handle_failure(
+                "does not answer", str(error), broken=isinstance(error, ProtocolError)
+            )
+        except LeaseLostError as error:
+            log.warning("visit ended", relay=self._relay.name, reason=str(error))
+            return False
+        except Exception as error:  # a full disk or a bug here must not silence the relay for ever
+            log.exception("session failed", relay=self._relay.name)
+            return self._handle_failure("is not visited", f"{type(error).__name__}: {error}", broken=False)
+        return True
 
-        Raises MmsError; CredentialFileError, AccessError for what is to be shown the relay.
+    def _handle_failure(self, trouble: str, reason: str, *, broken: bool) -> bool:
+        """Note a visit that failed. Returns whether the relay is to be visited again.
+
+        broken: the relay broke the protocol, which brings a quarantine if it happens too often.
         """
-        with ExitStack() as marked:
-            if self._visit_marks is not None:
-                self._mark = marked.enter_context(self._visit_marks.mark(self._relay.name))
-            self._protocol_faults.visit_begins()
-            self._visit_marked()
-
-    def _visit_marked(self) -> None:
-        shown = credentials(self._settings.relays, self._relay.name)
-        with Client.connect(
-            self._relay.host,
-            self._relay.port,
-            connect_timeout_s=self._settings.connect_timeout_s,
-            request_timeout_s=self._settings.request_timeout_s,
-            tls=shown.tls,
-            password=shown.spoken_password,
-            limits=self._client_limits,
-        ) as client:
-            self._client = client
-            self._begin(client)
-            log.info("connected", relay=self._relay.name, host=self._relay.host, port=self._relay.port)
-            while not self._stopping.is_set():
-                self._asked.clear()
-                waiting = self._work(client)
-                self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
-                self._protocol_faults.round_succeeded()
-                self._wait(client, self._hurried_period_s() if waiting else self._settings.poll_period_s)
-            self._link.left()
-
-    def _hurried_period_s(self) -> float:
-        """A relay that takes long to list its records is not kept busy with that alone."""
-        gentle_s = max(HURRIED_PERIOD_S, LISTING_PAUSE * self._directory.listing_s)
-        return min(gentle_s, self._settings.poll_period_s)
-
-    def _begin(self, client: Client) -> None:
-        """A new connection: find out what the relay is, and use that. Raises MmsError."""
-        acquisition = self._discovery.look(client)
-        self._triggers.use(acquisition)
-        self._clock.use(acquisition.measurands)
-        self._folder.begin()
-        if self._metering is not None:
-            self._metering.begin(acquisition.measurands)
-        self._subscription.begin(client, ReportQueue(self._stirred), acquisition)
-        self._link.connected()
-
-    def _remarks(self) -> list[str]:
-        """What of the relay cannot be had at present."""
-        told = (self._subscription.refusal, self._folder.missing, self._folder.unread)
-        return [words for words in told if words is not None]
-
-    def _wait(self, client: Client, longest_s: float) -> None:
-        """Until there is something to do, or for so long; what is to be sampled meanwhile is.
-
-        Reports that tell of no record, of which a chattering input sends many, are heeded and change nothing.
-        """
-        until_s = time.monotonic() + longest_s
-        while not (self._asked.is_set() or self._stopping.is_set()) and time.monotonic() < until_s:
-            due_in_s = math.inf if self._metering is None else self._metering.due_in_s()
-            if self._metering is not None and due_in_s <= 0:
-                self._metering.sample(client)
-                continue
-            with nullcontext() if self._mark is None else self._mark.idle():
-                self._stirred.wait(min(due_in_s, until_s - time.monotonic()))
-            self._stirred.clear()
-            if self._handle_reports():
-                return
-
-    def _handle_reports(self) -> bool:
-        """Whether what has arrived tells of a record."""
-        tells = self._subscription.handle_all()
-        if tells:
-            self._expecting_until_s = time.monotonic() + self._settings.record_timeout_s
-        return tells
+        if self._stopping.is_set():
+            return True
+        self._note_failure(trouble, reason)
+        if not broken:
+            return True
+        try:
+            return not self._protocol_faults.count_fault(reason)
+        except SQLAlchemyError:
+            log.exception("database does not answer, trying again")
+            return True
 
     def _note_failure(self, trouble: str, reason: str) -> None:
         self._link.failed(reason)
@@ -247,38 +182,113 @@ class RelaySession:
         except SQLAlchemyError:
             log.exception("database does not answer, trying again")
 
-    def _is_set_aside(self, reason: str) -> bool:
-        """A visit ended by a broken protocol: whether that was once too often."""
-        try:
-            return self._protocol_faults.count_fault(reason)
-        except SQLAlchemyError:
-            log.exception("database does not answer, trying again")
-            return False
+    def _visit(self) -> None:
+        """Hold one connection, until it breaks or the session is stopped.
+
+        Raises MmsError; CredentialFileError, AccessError for the session's own credentials; LeaseLostError;
+        SQLAlchemyError; OSError.
+        """
+        with ExitStack() as marked:
+            if self._visit_marks is not None:
+                self._mark = marked.enter_context(self._visit_marks.mark(self._relay.name))
+            self._protocol_faults.visit_begins()
+            with self._connect() as client:
+                self._client = client
+                self._begin(client)
+                log.info("connected", relay=self._relay.name, host=self._relay.host, port=self._relay.port)
+                self._work_until_stopped(client)
+
+    def _connect(self) -> Client:
+        """Return a client that is connected. Raises MmsError, CredentialFileError, AccessError."""
+        own = credentials(self._settings.relays, self._relay.name)
+        return Client.connect(
+            self._relay.host,
+            self._relay.port,
+            connect_timeout_s=self._settings.connect_timeout_s,
+            request_timeout_s=self._settings.request_timeout_s,
+            tls=own.tls,
+            password=own.spoken_password,
+            limits=self._policy.client,
+        )
+
+    def _work_until_stopped(self, client: Client) -> None:
+        while not self._stopping.is_set():
+            self._requested.clear()
+            waiting = self._work(client)
+            self._link.answered(client.round_trip_s, "; ".join(self._remarks()) or None)
+            self._protocol_faults.round_succeeded()
+            self._wait(client, self._hurried_period_s() if waiting else self._settings.poll_period_s)
+        self._link.visit_ended()
+
+    def _hurried_period_s(self) -> float:
+        """Return the pause between scans in a hurry [s]; longer where listing alone keeps the relay busy."""
+        gentle_s = max(HURRIED_PERIOD_S, LISTING_PAUSE * self._directory.listing_s)
+        return min(gentle_s, self._settings.poll_period_s)
+
+    def _begin(self, client: Client) -> None:
+        """Find out what the relay offers over a new connection, and use that. Raises MmsError."""
+        acquisition = self._discovery.discover(client)
+        self._triggers.use(acquisition)
+        self._clock.begin(acquisition.measurands)
+        self._folder.begin()
+        if self._metering is not None:
+            self._metering.begin(acquisition.measurands)
+        self._subscription.begin(client, ReportQueue(self._wake_up), acquisition)
+        self._link.connected()
+
+    def _remarks(self) -> list[str]:
+        """Return what cannot be had of the relay at present."""
+        reasons = (self._subscription.refusal, self._folder.missing, self._folder.unread)
+        return [reason for reason in reasons if reason is not None]
+
+    def _wait(self, client: Client, longest_s: float) -> None:
+        """Wait until there is something to do, or for so long; take the samples that fall due meanwhile.
+
+        Reports that announce no record, of which a chattering input sends many, do not end the wait.
+        """
+        until_s = time.monotonic() + longest_s
+        while not (self._requested.is_set() or self._stopping.is_set()) and time.monotonic() < until_s:
+            due_in_s = math.inf if self._metering is None else self._metering.due_in_s()
+            if self._metering is not None and due_in_s <= 0:
+                self._metering.sample(client)
+                continue
+            with nullcontext() if self._mark is None else self._mark.idle():
+                self._wake_up.wait(min(due_in_s, until_s - time.monotonic()))
+            self._wake_up.clear()
+            if self._handle_reports():
+                return
+
+    def _handle_reports(self) -> bool:
+        """Handle the reports that have arrived. Returns whether one announces a record."""
+        announced = self._subscription.handle_all()
+        if announced:
+            self._record_expected_until_s = time.monotonic() + self._settings.record_timeout_s
+        return announced
 
     def _work(self, client: Client) -> bool:
-        """One round: reports, directory, event reports. Returns whether a record is on its way."""
-        self._subscription.keep(client)
+        """Do one round: reports, directory, requests. Returns whether a record is on its way."""
+        self._subscription.retry_if_due(client)
         self._handle_reports()
         self._triggers.recall()
-        told = time.monotonic() < self._expecting_until_s
-        if self._expecting_until_s and not told:
+        expected = time.monotonic() < self._record_expected_until_s
+        if self._record_expected_until_s and not expected:
             self._directory.doubt_the_untimed()
-            self._expecting_until_s = 0.0
-        scan = self._directory.scan(client, self._triggers.claim, told=told)
+            self._record_expected_until_s = 0.0
+        scan = self._directory.scan(client, self._triggers.claim, told=expected)
         triggered = self._triggers.follow(client, scan)
         if not triggered and not scan.waiting:
-            self._clock.look(client)
+            self._clock.measure_if_due(client)
         if scan.taken and not scan.waiting:
-            self._expecting_until_s = 0.0
-        expecting = bool(scan.waiting) or time.monotonic() < self._expecting_until_s
+            self._record_expected_until_s = 0.0
+        expecting = bool(scan.waiting) or time.monotonic() < self._record_expected_until_s
         if not expecting:
-            self._subscription.save()
+            self._subscription.save_entry_id()
         self._note_findings(scan)
-        # Where a report will tell of the record, there is nothing to look for until it comes.
+        # Where a report will announce the record, there is nothing to look for until it comes.
         return expecting or (triggered and self._subscription.report_control is None)
 
     def _note_findings(self, scan: Scan) -> None:
-        self._discovery.note(
+        self._discovery.save(
             report_control=self._subscription.report_control,
             directory=self._folder.directory,
             remarks=self._remarks(),

@@ -1,7 +1,7 @@
-"""Did reports get lost? Their sequence numbers, and the relay's own count of its records, tell.
+"""Detects lost reports, from their sequence numbers and from the relay's own count of its records.
 
-Nothing depends on it: the directory is scanned after every report. It says how far a relay's reports can be
-relied upon.
+No record is lost with a report, because the directory is scanned after every report. The figure says how far
+a relay's reports can be relied upon.
 """
 
 from mms import Report, ReportMember
@@ -22,11 +22,11 @@ class ReportContinuity:
         self._records: int | None = None
 
     def begin(self) -> None:
-        """A new connection: some relays begin to count their reports anew."""
+        """Begin a new connection: some relays begin to count their reports anew."""
         self._sequence_number = None
 
     def missed_before(self, report: Report) -> str | None:
-        """What was missed before this report, in words; None when nothing was."""
+        """Return what was missed before this report, in words; None when nothing was."""
         reasons = []
         expected, found = self._sequence_number, report.sequence_number
         if found is not None:
@@ -46,7 +46,7 @@ class ReportContinuity:
 
 
 def is_of(member: str, reference: str) -> bool:
-    """Whether a report's member belongs to a data object.
+    """Return whether a report's member belongs to a data object.
 
     A relay names its members as MMS does: LD/LN$FC$DO, with $attribute where one is reported alone.
     """
@@ -55,5 +55,5 @@ def is_of(member: str, reference: str) -> bool:
 
 
 def status_of(member: ReportMember) -> object:
-    """The status value of a member that is reported alone or with quality and time."""
+    """Return the status value of a member that is reported alone or with quality and time."""
     return member.value[0] if isinstance(member.value, tuple) and member.value else member.value

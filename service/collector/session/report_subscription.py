@@ -1,7 +1,8 @@
-"""A relay's reports: which block tells of its records, and what a report means.
+"""The subscription to a relay's reports: which report control block is used, and what a report means.
 
-The best block comes first: the buffered one the SCL names, then other buffered ones whose data set holds
-RcdMade, then unbuffered ones. Without any the directory is polled, and they are tried again now and then.
+The best block is tried first: the buffered one that the SCL names, then other buffered ones whose data set
+holds RcdMade, then unbuffered ones. If the relay refuses all, its directory is polled, and they are tried
+again now and then.
 """
 
 import time
@@ -24,26 +25,24 @@ from mms import (
 )
 from service.collector.session.link import Link
 from service.collector.session.report_continuity import ReportContinuity, is_of, status_of
+from service.collector.session.session_policy import SESSION_POLICY
 from service.plant import Acquisition
 from service.storage import Repository
 
 log = structlog.get_logger(__name__)
 
 ENTRY_ID_OCTETS = 8
-"""IEC 61850-8-1; anything else a relay sends could not be given back to it."""
-
-RETRY_S = 60.0
-"""Between attempts to get a block that was refused: another client may have left it."""
+"""Size in IEC 61850-8-1. An EntryID of another size could not be given back to the relay."""
 
 MOST_BLOCKS = 16
-"""Tried at a time: a block has many instances at some relays, all of them taken."""
+"""So many blocks are tried at a time: at some relays a block has many instances, all of them taken."""
 
 REFUSALS = (AccessDenied, NotFound, ProtocolError, ReportControlInUse, TemporarilyUnavailable, ValueError)
-"""Of one block, the link being fine; ValueError: a reference that is none."""
+"""Errors of one block while the link is fine. ValueError: a reference that is none."""
 
 
 class ReportQueue(SimpleQueue[Report]):
-    """Reports as they arrive from the MMS layer's thread; whoever waits on `arrival` wakes up."""
+    """Reports as they arrive from the thread of the MMS layer; each sets `arrival`."""
 
     def __init__(self, arrival: Event) -> None:
         super().__init__()
@@ -54,7 +53,7 @@ class ReportQueue(SimpleQueue[Report]):
         self._arrival.set()
 
     def drain(self) -> list[Report]:
-        """What has arrived, oldest first."""
+        """Return what has arrived, oldest first."""
         reports: list[Report] = []
         while True:
             try:
@@ -64,47 +63,59 @@ class ReportQueue(SimpleQueue[Report]):
 
 
 class ReportSubscription:
-    """Of one relay, over one connection after the other. Used by that relay's session alone.
+    """The subscription of one relay, over one connection after the other. Used by its session alone.
 
-    report_control: the block in use, None where the directory is polled.  refusal: why none of the blocks the
-    relay offers could be had, None where one is in use or there is none.
+    report_control: the block in use; None where the directory is polled.  refusal: why the relay refused all
+    its blocks; None where one is in use, or the relay has none.
     """
 
-    def __init__(self, relay: str, repository: Repository, link: Link) -> None:
+    def __init__(
+        self,
+        relay: str,
+        repository: Repository,
+        link: Link,
+        *,
+        retry_s: float = SESSION_POLICY.report_retry_s,
+    ) -> None:
+        """retry_s: between attempts to get a block, where all were refused."""
         self._relay = relay
         self._repository = repository
         self._link = link
+        self._retry_s = retry_s
         self._acquisition: Acquisition | None = None
         self._continuity = ReportContinuity(None)
-        self._inbox = ReportQueue(Event())
+        self._queue = ReportQueue(Event())
         self._unsaved_entry_id: bytes | None = None
         self._overflow_means_loss = False
         self._next_attempt_s = 0.0
         self.report_control: str | None = None
         self.refusal: str | None = None
 
-    def begin(self, client: Client, inbox: ReportQueue, acquisition: Acquisition) -> None:
-        """A new connection: reports go on where the last saved one left off. Raises MmsError (the link)."""
+    def begin(self, client: Client, queue: ReportQueue, acquisition: Acquisition) -> None:
+        """Subscribe over a new connection, from the report after the last saved one.
+
+        Raises MmsError (the link), SQLAlchemyError.
+        """
         if self._acquisition is None or self._acquisition.record_number != acquisition.record_number:
             self._continuity = ReportContinuity(acquisition.record_number)
         self._acquisition = acquisition
-        self._inbox = inbox
+        self._queue = queue
         self._continuity.begin()
         self._unsaved_entry_id = None
-        self._attempt(client)
+        self._subscribe(client)
 
-    def keep(self, client: Client) -> None:
-        """Where no block could be had, try again when it is time. Raises MmsError (the link)."""
+    def retry_if_due(self, client: Client) -> None:
+        """Try the blocks again if all were refused and it is time to. Raises MmsError (the link)."""
         if self.refusal is not None and time.monotonic() >= self._next_attempt_s:
-            self._attempt(client)
+            self._subscribe(client)
 
     def handle_all(self) -> bool:
-        """Whether what has arrived says that a record is, or will soon be, in the directory."""
-        told = [self.handle(report) for report in self._inbox.drain()]
-        return any(told)
+        """Handle what has arrived. Returns whether a record is, or will soon be, in the directory."""
+        announced = [self.handle(report) for report in self._queue.drain()]
+        return any(announced)
 
     def handle(self, report: Report) -> bool:
-        """Whether a report says so."""
+        """Handle one report. Returns whether it announces a record."""
         overflowed = report.buffer_overflow and self._overflow_means_loss
         self._overflow_means_loss = True
         if overflowed:
@@ -116,23 +127,23 @@ class ReportSubscription:
         self._link.reported(gap=overflowed or missed is not None)
         if report.entry_id is not None and len(report.entry_id) == ENTRY_ID_OCTETS:
             self._unsaved_entry_id = report.entry_id
-        tells = any(self._tells_of_a_record(member) for member in report.members)
-        if tells:
+        announced = any(self._announces_a_record(member) for member in report.members)
+        if announced:
             log.info("record announced", relay=self._relay)
-        return tells
+        return announced
 
-    def save(self) -> None:
-        """What the reports so far announced is safe.
+    def save_entry_id(self) -> None:
+        """Save the EntryID of the latest report, when its record is stored. Raises SQLAlchemyError.
 
-        Not before: after a crash the relay repeats every report from this EntryID on.
+        After a crash the relay repeats every report from the saved EntryID on.
         """
         if self._unsaved_entry_id is not None:
             self._repository.save_entry_id(self._relay, self._unsaved_entry_id, self.report_control)
             self._unsaved_entry_id = None
 
-    def _attempt(self, client: Client) -> None:
+    def _subscribe(self, client: Client) -> None:
         assert self._acquisition is not None  # noqa: S101 - begin comes first
-        self._next_attempt_s = time.monotonic() + RETRY_S
+        self._next_attempt_s = time.monotonic() + self._retry_s
         self.report_control, self.refusal = None, None
         controls = self._acquisition.report_controls[:MOST_BLOCKS]
         if not controls:
@@ -158,20 +169,20 @@ class ReportSubscription:
     def _enable(self, client: Client, control: str) -> None:
         if ".RP." in control:
             self._overflow_means_loss = False
-            client.subscribe(control, self._inbox)
+            client.subscribe(control, self._queue)
             return
         entry_id = self._repository.entry_id(self._relay, control)
         # A block enabled without an EntryID begins with the overflow bit set, whatever it lost.
         self._overflow_means_loss = entry_id is not None
         try:
-            client.subscribe(control, self._inbox, entry_id=entry_id)
+            client.subscribe(control, self._queue, entry_id=entry_id)
         except EntryNotFound:
             self._overflow_means_loss = False
             self._link.lost_reports()
             log.warning("reports lost: the relay no longer holds the last one seen", relay=self._relay)
-            client.subscribe(control, self._inbox)
+            client.subscribe(control, self._queue)
 
-    def _tells_of_a_record(self, member: ReportMember) -> bool:
+    def _announces_a_record(self, member: ReportMember) -> bool:
         assert self._acquisition is not None  # noqa: S101 - begin comes first
         if not member.reasons & (Reason.DATA_CHANGE | Reason.UNKNOWN):
             return False

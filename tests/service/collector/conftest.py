@@ -3,14 +3,14 @@
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Thread
 
 import pytest
 
-from mms import ClientLimits
 from service.collector.session.relay_session import RelaySession
+from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
 from service.recording_store.store import RecordingStore
@@ -41,7 +41,7 @@ class Bench:
     store: RecordingStore
     settings: Settings
     relay_root: Path
-    client_limits: ClientLimits = field(default_factory=ClientLimits)
+    policy: SessionPolicy = SESSION_POLICY
 
     def start_relay(self) -> ScriptedRelay:
         return ScriptedRelay(self.relay_root, self.relay.port)
@@ -55,7 +55,7 @@ class Bench:
             self.repository,
             self.store,
             self.settings,
-            client_limits=self.client_limits,
+            policy=self.policy,
         )
         thread = Thread(target=session.run)
         thread.start()

@@ -168,11 +168,8 @@ def test_nothing_is_deleted_on_a_relay(bench: Bench, relay: ScriptedRelay) -> No
     assert {name.partition("_")[2] for name in of_clients} == reading, "there is no way to ask for more"
 
 
-def test_a_million_bad_names_are_a_thousand_alarms_and_one(
-    bench: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.session.relay_alarms.MOST_OF_A_KIND", 3)
-    alarms = RelayAlarms(NAME, bench.repository)
+def test_a_million_bad_names_are_a_thousand_alarms_and_one(bench: Bench) -> None:
+    alarms = RelayAlarms(NAME, bench.repository, most=3)
     for number in range(50):
         alarms.raise_alarm(AlarmKind.FILE_REFUSED, f"bad {number}", "outside")
     subjects = ["bad 0", "bad 1", "bad 2", AND_MORE]

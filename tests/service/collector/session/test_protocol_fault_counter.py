@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-import pytest
-
-from service.collector.session.protocol_fault_counter import FAULTS_IN_A_ROW, ProtocolFaultCounter
+from service.collector.session.protocol_fault_counter import ProtocolFaultCounter
 from service.collector.session.quarantine import QuarantinePolicy
+from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.storage import Repository
 from service.storage.states import LinkState
+from service.timing.backoff import Backoff
 from testing.service.plants import NOW_NS
 from testing.waiting import eventually
 from tests.hostile.dialogue import overheard
@@ -25,28 +25,26 @@ POLICY = QuarantinePolicy(PAUSE_S)
 
 def test_who_breaks_the_protocol_again_and_again_is_set_aside(repository: Repository) -> None:
     counter = ProtocolFaultCounter(A, repository, POLICY)
-    told = [counter.count_fault("nonsense") for _ in range(FAULTS_IN_A_ROW)]
-    assert told == [False] * (FAULTS_IN_A_ROW - 1) + [True]
+    told = [counter.count_fault("nonsense") for _ in range(SESSION_POLICY.faults_in_a_row)]
+    assert told == [False] * (SESSION_POLICY.faults_in_a_row - 1) + [True]
     assert "broke the protocol 5 times in a row, at last: nonsense" in (repository.ied(A).link_reason or "")
 
 
-def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(
-    bench: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.session.relay_session.FIRST_RETRY_S", 0.01)
+def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(bench: Bench) -> None:
+    bench.policy = SessionPolicy(reconnect=Backoff(first_s=0.01, longest_s=10.0))
     with lying(overheard(), {LIST_OF_NAMES: lambda _: b"\xa1\x00"}) as port:
         bench.relay = replace(bench.relay, port=port)
         with bench.session():
             assert eventually(lambda: bench.link() is LinkState.QUARANTINED)
     reason = bench.repository.ied(NAME).link_reason or ""
-    assert f"broke the protocol {FAULTS_IN_A_ROW} times in a row" in reason
+    assert f"broke the protocol {SESSION_POLICY.faults_in_a_row} times in a row" in reason
     assert "connect: malformed message" in reason
 
 
 def test_good_visits_between_count(repository: Repository) -> None:
     now_s = 0.0
     counter = ProtocolFaultCounter(A, repository, POLICY, clock=lambda: now_s)
-    for _ in range(3 * FAULTS_IN_A_ROW):
+    for _ in range(3 * SESSION_POLICY.faults_in_a_row):
         counter.visit_begins()
         now_s += 11.0
         counter.round_succeeded()

@@ -11,11 +11,15 @@ from structlog.testing import capture_logs
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError
 from service.collector.session.relay_session import RelaySession
+from service.collector.session.session_policy import SessionPolicy
 from service.recording_store.store import Incoming
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
+from service.timing.backoff import Backoff
 from testing.waiting import eventually
 from tests.service.collector.conftest import MOTOR, Bench
 from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
+
+SOON = Backoff(first_s=0.05, longest_s=10.0)
 
 
 def test_a_wish_becomes_a_stored_record(bench: Bench, relay: ScriptedRelay) -> None:
@@ -367,7 +371,7 @@ def test_a_relay_that_forgot_the_last_report_is_subscribed_anew(bench: Bench, re
 
 
 def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.collector.session.relay_session.FIRST_RETRY_S", 0.05)
+    bench.policy = SessionPolicy(reconnect=SOON)
     failures: list[str] = []
     note_failure = RelaySession._note_failure
 
@@ -381,10 +385,7 @@ def test_a_relay_that_stays_down_is_logged_once(bench: Bench, monkeypatch: pytes
     assert [entry["event"] for entry in logs].count("link down") == len(set(failures)) == 1
 
 
-def test_a_relay_that_stays_down_is_mentioned_now_and_then(
-    bench: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.session.relay_session.FIRST_RETRY_S", 0.05)
-    monkeypatch.setattr("service.collector.session.link.REMIND_AFTER_S", 0.0)
+def test_a_relay_that_stays_down_is_mentioned_now_and_then(bench: Bench) -> None:
+    bench.policy = SessionPolicy(reconnect=SOON, reminder_s=0.0)
     with capture_logs() as logs, bench.session():
         assert eventually(lambda: [entry["event"] for entry in logs].count("link down") >= 2)

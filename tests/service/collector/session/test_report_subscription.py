@@ -14,6 +14,7 @@ from mms import Client, Report
 from service.collector.records.allowance import DailyAllowance
 from service.collector.session.link import Link
 from service.collector.session.report_subscription import ReportQueue, ReportSubscription
+from service.collector.session.session_policy import SessionPolicy
 from service.plant import promised
 from service.storage.states import LinkState
 from testing.waiting import eventually
@@ -69,9 +70,9 @@ def test_the_best_block_that_is_free_tells_of_the_records(
 
 
 def test_with_all_blocks_taken_the_directory_is_polled_until_one_is_free(
-    here: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+    here: Bench, relay: ScriptedRelay
 ) -> None:
-    monkeypatch.setattr("service.collector.session.report_subscription.RETRY_S", 0.5)
+    here.policy = SessionPolicy(report_retry_s=0.5)
     here.with_settings(poll_period_s=0.2)
     with ExitStack() as others:
         others.enter_context(taken(relay, *BUFFERED, UNBUFFERED))

@@ -11,7 +11,7 @@ import pytest
 import scl
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError, Timestamp
-from service.collector.session.clock import ClockWatch, reading
+from service.collector.session.clock_monitor import ClockMonitor, clock_reading
 from service.plant.metering import measurands
 from service.storage.states import ClockQuality, RecordingRequestState
 from testing.waiting import eventually
@@ -106,7 +106,7 @@ def test_a_relay_that_stamps_nothing_has_no_known_clock(bench: Bench, relay: Scr
     ],
 )
 def test_what_a_stamp_tells(octet: int, quality: ClockQuality, uncertainty_ns: int) -> None:
-    found = reading(Timestamp(1_000_500, octet), asked_ns=1_000_000, answered_ns=1_000_020)
+    found = clock_reading(Timestamp(1_000_500, octet), asked_ns=1_000_000, answered_ns=1_000_020)
     assert (found.offset_ns, found.uncertainty_ns, found.quality) == (490, uncertainty_ns, quality)
 
 
@@ -125,14 +125,14 @@ def test_a_clock_is_read_though_nobody_triggers(bench: Bench, relay: ScriptedRel
 
 
 @pytest.fixture
-def watch(bench: Bench) -> ClockWatch:
-    found = ClockWatch(NAME, bench.repository)
-    found.use(measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))
+def monitor(bench: Bench) -> ClockMonitor:
+    found = ClockMonitor(NAME, bench.repository)
+    found.begin(measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))
     return found
 
 
 def test_a_stamp_that_does_not_change_tells_nothing(
-    bench: Bench, relay: ScriptedRelay, watch: ClockWatch
+    bench: Bench, relay: ScriptedRelay, monitor: ClockMonitor
 ) -> None:
     """However old it is: nobody knows when it was given."""
     stamps = Stamps(relay)
@@ -140,14 +140,14 @@ def test_a_stamp_that_does_not_change_tells_nothing(
         for changes in (True, False, False):
             if changes:
                 stamps.change()
-            watch.look(client)
+            monitor.measure_if_due(client)
             assert not stamps.are_read(bench)
         stamps.change()
-        watch.look(client)
+        monitor.measure_if_due(client)
     assert stamps.are_read(bench)
 
 
-def test_a_clock_is_not_read_all_the_time(bench: Bench, relay: ScriptedRelay, watch: ClockWatch) -> None:
+def test_a_clock_is_not_read_all_the_time(bench: Bench, relay: ScriptedRelay, monitor: ClockMonitor) -> None:
     stamps = Stamps(relay)
 
     def measured_ns() -> int | None:
@@ -157,42 +157,42 @@ def test_a_clock_is_not_read_all_the_time(bench: Bench, relay: ScriptedRelay, wa
         found = []
         for _ in range(4):
             stamps.change()
-            watch.look(client)
+            monitor.measure_if_due(client)
             found.append(measured_ns())
         first = found[1]
         assert found == [None, first, first, first]
         assert first is not None
-        watch.use(measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))  # a new connection
+        monitor.begin(measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))  # a new connection
         for _ in range(2):
             stamps.change()
-            watch.look(client)
+            monitor.measure_if_due(client)
         assert measured_ns() != first
 
 
 def test_another_value_is_read_where_one_is_refused(
-    bench: Bench, relay: ScriptedRelay, watch: ClockWatch
+    bench: Bench, relay: ScriptedRelay, monitor: ClockMonitor
 ) -> None:
     relay.unreadable = {CURRENTS: DataAccessError.HARDWARE_FAULT}
     stamps = Stamps(relay)
     with Client.connect("127.0.0.1", relay.port) as client:
         for _ in range(5):
             stamps.change(f"{VOLTAGES}.phsAB")
-            watch.look(client)
+            monitor.measure_if_due(client)
     assert stamps.are_read(bench)
 
 
 def test_a_service_clock_that_is_set_meanwhile_is_not_the_relay_s_error(
-    bench: Bench, relay: ScriptedRelay, watch: ClockWatch, monkeypatch: pytest.MonkeyPatch
+    bench: Bench, relay: ScriptedRelay, monitor: ClockMonitor, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stamps = Stamps(relay)
     now_ns = time.time_ns
     with Client.connect("127.0.0.1", relay.port) as client:
         monkeypatch.setattr(time, "time_ns", lambda: now_ns() - 90 * NANOSECONDS_PER_SECOND)
         stamps.change()
-        watch.look(client)
+        monitor.measure_if_due(client)
         monkeypatch.undo()
         stamps.change()
-        watch.look(client)
+        monitor.measure_if_due(client)
     assert stamps.are_read(bench)
     uncertainty_ns = bench.repository.ied(NAME).clock_uncertainty_ns
     assert uncertainty_ns is not None
