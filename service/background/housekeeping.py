@@ -28,7 +28,7 @@ class Housekeeping:
 
     def average_and_delete(self, now_ns: int, monotonic_ns: int) -> None:
         """Average, then delete, as far as the wall clock can be trusted. Raises SQLAlchemyError."""
-        self._clock.look(now_ns, monotonic_ns)
+        self._clock.compare(now_ns, monotonic_ns)
         if self._clock.was_set:
             return
         self._repository.average_measurements(now_ns=now_ns)

@@ -1,4 +1,4 @@
-"""`mcc demo`: a simulated plant, watched; everything ends with the command."""
+"""`mcc demo`: a simulated plant and a service that watches it, which both end with the command."""
 
 import tempfile
 import time
@@ -28,7 +28,7 @@ from service.demo.truth import TruthError, ask_simulator
 
 ROUNDS = 2
 REST_S = 60.0
-"""Between rounds when the demo goes on until Ctrl-C."""
+"""Pause between two rounds of a demo that runs until Ctrl-C."""
 
 
 def demonstrate(*, once: bool, json_file: Path | None, data: Path | None, url: str | None) -> None:
@@ -42,28 +42,28 @@ def demonstrate(*, once: bool, json_file: Path | None, data: Path | None, url: s
             failing_clearly(SclError, ProgramError, NotReadyError, ServiceError, TruthError, OSError),
         ):
             if json_file is not None:
-                json_file.write_bytes(b"")  # a place that cannot be written to is told now, not in a minute
+                json_file.write_bytes(b"")  # fail now, not in a minute, where it cannot be written
             started_s = time.monotonic()
             with _plant(interruption, data, url) as plant, ServiceClient(plant.url) as service:
                 _run(plant, service, started_s, once=once, json_file=json_file)
     except KeyboardInterrupt as interrupt:
         failure = CommandError("interrupted", details={"type": "Interrupted"})
-        _tell(failure, json_file)
+        _write_failure(failure, json_file)
         raise failure from interrupt
     except CommandError as error:
-        _tell(error, json_file)
+        _write_failure(error, json_file)
         raise
 
 
 @contextmanager
 def _plant(interruption: Interruption, data: Path | None, url: str | None) -> Iterator[DemoPlant]:
-    """A plant of our own, or the one whose service answers at `url`."""
+    """Start a plant, or use the one whose service answers at `url`."""
     if url is not None:
         yield plant_elsewhere(url, interruption.pause)
         return
     with _data_directory(data) as directory:
         progress().print(f"starting two factories, six relays and the service (data and logs: {directory})")
-        with running_plant(directory, interruption.pause, _tell_line) as plant:
+        with running_plant(directory, interruption.pause, _report) as plant:
             yield plant
 
 
@@ -94,7 +94,7 @@ def _motors(plant: DemoPlant, service: ServiceClient) -> list[DemoMotor]:
     """The service's motors with the simulator's truth, once both are up."""
     truths = ask_simulator(plant.scd, plant.scenario)
     for relay in wait_until_ready(plant, service):
-        _tell_line(f"{relay} does not answer yet; the others go on")
+        _report(f"{relay} does not answer yet; the others go on")
     return [
         DemoMotor(str(motor["name"]), str(motor["site"]), truths[str(motor["ied"])])
         for motor in service.items("/motors")
@@ -116,7 +116,7 @@ def _play(plant: DemoPlant, service: ServiceClient, motors: Sequence[DemoMotor],
 
 
 def _publish(motors: Sequence[DemoMotor], seconds: float, json_file: Path | None, number: int = 1) -> None:
-    """Print and write what was found; `seconds` hold the plant's start too, except after round 1."""
+    """Print and write the results. `seconds` include the start of the plant in the first round."""
     console = results()
     console.print(table(motors))
     longest_s = slowest(motors)
@@ -127,12 +127,12 @@ def _publish(motors: Sequence[DemoMotor], seconds: float, json_file: Path | None
         json_file.write_text(as_json(document(motors, seconds)) + "\n", encoding="utf-8")
 
 
-def _tell_line(line: str) -> None:
+def _report(line: str) -> None:
     progress().print(Text(line), soft_wrap=True)
 
 
-def _tell(failure: CommandError, json_file: Path | None) -> None:
-    """Write the failure where the results should have gone, unless they are there."""
+def _write_failure(failure: CommandError, json_file: Path | None) -> None:
+    """Write the failure to the results' file, unless the results are there already."""
     if json_file is not None and json_file.is_file() and not json_file.stat().st_size:
         json_file.write_text(as_json(failure_document(failure)) + "\n", encoding="utf-8")
 

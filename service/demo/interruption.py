@@ -1,7 +1,8 @@
-"""Ctrl-C and SIGTERM, heeded where the demo waits and nowhere else.
+"""Ctrl-C and SIGTERM, which end the demo where it pauses and nowhere else.
 
-Raised wherever the interpreter happens to be, an interrupt could strike between the start of a program and
-the note of it, and leave a process that nobody ends; or inside a callback, and be lost.
+By default Python raises KeyboardInterrupt wherever the program happens to be. That could be between the start
+of a child process and the assignment that remembers it, so that nobody would end the child; or inside a
+callback, where the exception would be lost.
 """
 
 import signal
@@ -14,28 +15,28 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 class Interruption:
-    """Whether somebody wants the demo to end."""
+    """Remembers a signal until the next pause."""
 
     def __init__(self) -> None:
-        self._wanted = False
+        self._signalled = False
 
-    def note(self, _number: int, _frame: FrameType | None) -> None:
-        """The handler of the signals."""
-        self._wanted = True
+    def handle(self, _number: int, _frame: FrameType | None) -> None:
+        """Handle one of SIGNALS."""
+        self._signalled = True
 
     def pause(self, seconds: float) -> None:
-        """Wait a moment [s]. Raises KeyboardInterrupt when somebody wants the demo to end."""
-        if not self._wanted:
+        """Wait some seconds. Raises KeyboardInterrupt once a signal has come."""
+        if not self._signalled:
             time.sleep(seconds)
-        if self._wanted:
+        if self._signalled:
             raise KeyboardInterrupt
 
 
 @contextmanager
 def interruptible() -> Iterator[Interruption]:
-    """Signals only take note while the block runs; whoever pauses in it hears of them."""
+    """While the block runs, signals are raised by `pause` alone."""
     interruption = Interruption()
-    before = {number: signal.signal(number, interruption.note) for number in SIGNALS}
+    before = {number: signal.signal(number, interruption.handle) for number in SIGNALS}
     try:
         yield interruption
     finally:

@@ -1,4 +1,4 @@
-"""The demo plant as it runs: the simulator and the service, each a process of its own, on loopback only."""
+"""The running demo plant: simulator and service, each in its own process, on the loopback interface only."""
 
 import os
 import sys
@@ -19,10 +19,10 @@ POLL_PERIOD_S = 0.1
 SERVICE_PORT = 8710
 
 ATTEMPTS = 3
-"""To find ports nobody else takes between the choice and the start."""
+"""To start on ports that nobody else takes between the choice and the start."""
 
 PORT_TAKEN = ("cannot listen on", "expected a free port")
-"""Last words of the simulator, of the service, that came too late to its port."""
+"""What the simulator and the service log when somebody else took their port."""
 
 
 class NotReadyError(RuntimeError):
@@ -44,36 +44,43 @@ class DemoPlant:
 
 @contextmanager
 def running_plant(
-    data: Path, pause: Callable[[float], None], tell: Callable[[str], None]
+    data: Path,
+    pause: Callable[[float], None],
+    report: Callable[[str], None],
+    *,
+    choose_port: Callable[[int], int] = free_port,
 ) -> Iterator[DemoPlant]:
     """The demo plant while the block runs; afterwards every process has ended. Its data stays in `data`.
 
-    pause: waits some seconds, and may raise to end the block. tell: takes a line for the person who waits.
+    pause: waits some seconds, and may raise to end the block.
+    report: takes a line for the person who waits.
+    choose_port: returns the port of the service, given the usual one.
 
     Raises SclError, ProgramError, NotReadyError, OSError.
     """
     data.mkdir(parents=True, exist_ok=True)
     with ExitStack() as programs:
-        plant = _start(data, pause, programs)
-        for line in _other_places(plant):
-            tell(line)
+        plant = _start(data, pause, choose_port, programs)
+        for line in _other_addresses(plant):
+            report(line)
         yield plant
 
 
-def _start(data: Path, pause: Callable[[float], None], programs: ExitStack) -> DemoPlant:
-    """Both programs, listening; with other ports where somebody was quicker to take the chosen ones."""
+def _start(
+    data: Path, pause: Callable[[float], None], choose_port: Callable[[int], int], programs: ExitStack
+) -> DemoPlant:
+    """Start both programs, again on other ports where somebody else has taken the chosen ones."""
     for _ in range(ATTEMPTS - 1):
         try:
-            return _start_once(data, pause, programs)
+            return _start_once(data, pause, choose_port(SERVICE_PORT), programs)
         except ProgramError as error:
             if not any(words in str(error) for words in PORT_TAKEN):
                 raise
-    return _start_once(data, pause, programs)
+    return _start_once(data, pause, choose_port(SERVICE_PORT), programs)
 
 
-def _start_once(data: Path, pause: Callable[[float], None], programs: ExitStack) -> DemoPlant:
+def _start_once(data: Path, pause: Callable[[float], None], port: int, programs: ExitStack) -> DemoPlant:
     scd = addressed_scd(scl.DEMO_PLANT_SCD, data)
-    port = free_port(SERVICE_PORT)
     with ExitStack() as starting:
         simulator = starting.enter_context(Program("ied-sim", _simulator(scd, data), data / "ied-sim.log"))
         service = starting.enter_context(
@@ -85,9 +92,9 @@ def _start_once(data: Path, pause: Callable[[float], None], programs: ExitStack)
             simulator.check()
             service.check()
 
-        # Their own word, because at a port that was lost somebody else's service would answer.
+        # Ask their logs: at a port that was lost, the service of somebody else would answer.
         deadline_s = time.monotonic() + START_LIMIT_S
-        while not (simulator.has_said("\nready\n") and service.has_said("serving")):
+        while not (simulator.has_logged("\nready\n") and service.has_logged("serving")):
             pause_and_check(POLL_PERIOD_S)
             if time.monotonic() > deadline_s:
                 raise NotReadyError(f"not listening after {START_LIMIT_S:g} s; logs: {data}")
@@ -95,8 +102,8 @@ def _start_once(data: Path, pause: Callable[[float], None], programs: ExitStack)
     return DemoPlant(scd, SCENARIO, f"http://{LOOPBACK}:{port}", pause_and_check)
 
 
-def _other_places(plant: DemoPlant) -> Iterator[str]:
-    """Where the demo answers, as far as that is not where its documentation says."""
+def _other_addresses(plant: DemoPlant) -> Iterator[str]:
+    """The addresses of the demo that are not those of its documentation."""
     if plant.url != f"http://{LOOPBACK}:{SERVICE_PORT}":
         yield (f"port {SERVICE_PORT} is taken; the API answers on {plant.url} (export MCC_URL={plant.url})")
     if plant.scd != scl.DEMO_PLANT_SCD:
@@ -106,12 +113,12 @@ def _other_places(plant: DemoPlant) -> Iterator[str]:
 
 
 def plant_elsewhere(url: str, pause: Callable[[float], None]) -> DemoPlant:
-    """A demo plant somebody else started, whose service answers at `url`."""
+    """Return a demo plant that somebody else started, whose service answers at `url`."""
     return DemoPlant(scl.DEMO_PLANT_SCD, SCENARIO, url, pause)
 
 
 def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> list[str]:
-    """Until the service and every relay answer. Returns the relays that do not, when it is late.
+    """Wait until the service and every relay answer; return the relays that do not answer in time.
 
     Raises ProgramError, ServiceError, NotReadyError when the service is late.
     """
@@ -136,7 +143,7 @@ def _service() -> list[str]:
 
 
 def _environment(scd: Path, data: Path, port: int) -> dict[str, str]:
-    """The service's settings for the demo; whatever else MCC_ variables say is not the demo's."""
+    """The settings of the demo's service. Other MCC_ variables of the environment are left out."""
     others = {name: value for name, value in os.environ.items() if not name.startswith("MCC_")}
     return others | {
         "MCC_DATA_DIRECTORY": str(data),

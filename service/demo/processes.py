@@ -1,4 +1,4 @@
-"""Programs the demo runs beside itself: started, watched, and gone when the demo is."""
+"""Child processes of the demo: started, watched and ended by it."""
 
 import subprocess
 from collections.abc import Mapping, Sequence
@@ -6,24 +6,32 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-STOP_PATIENCE_S = 10.0
+STOP_TIMEOUT_S = 10.0
 TAIL_LINES = 5
 
 
 class ProgramError(RuntimeError):
-    """A program of the demo ended, or could not start; its last words are in the message."""
+    """A program of the demo ended, or could not start; the message has the end of its log."""
 
 
 class Program:
     """One child process that writes its log to a file. Leaving the `with` block ends it."""
 
     def __init__(
-        self, name: str, command: Sequence[str], log: Path, environment: Mapping[str, str] | None = None
+        self,
+        name: str,
+        command: Sequence[str],
+        log: Path,
+        environment: Mapping[str, str] | None = None,
+        *,
+        stop_timeout_s: float = STOP_TIMEOUT_S,
     ) -> None:
+        """stop_timeout_s: time to end after SIGTERM; then the program is killed."""
+        self._stop_timeout_s = stop_timeout_s
         self._name = name
         self._log = log
         with log.open("wb") as sink:
-            # Its own session: Ctrl-C is for the demo, which ends its programs in order.
+            # In its own session, so that Ctrl-C reaches the demo alone, which ends its programs in order.
             self._process = subprocess.Popen(  # noqa: S603 - our own modules
                 command,
                 stdin=subprocess.DEVNULL,
@@ -37,25 +45,25 @@ class Program:
     def process_id(self) -> int:
         return self._process.pid
 
-    def has_said(self, words: str) -> bool:
-        """Whether its log holds these words."""
-        return words in self._log.read_text(encoding="utf-8", errors="replace")
+    def has_logged(self, text: str) -> bool:
+        """Whether its log contains the text."""
+        return text in self._log.read_text(encoding="utf-8", errors="replace")
 
     def check(self) -> None:
-        """Raises ProgramError when the program has ended."""
+        """Raise ProgramError when the program has ended."""
         exit_code = self._process.poll()
         if exit_code is not None:
             raise ProgramError(
-                f"{self._name} ended (exit code {exit_code}); {self._log} says: {self._last_words()}"
+                f"{self._name} ended (exit code {exit_code}); {self._log} says: {self._end_of_log()}"
             )
 
     def stop(self) -> None:
-        """Ask it to end, wait, kill it if it does not go."""
+        """Ask the program to end and wait; kill it if it does not end in time."""
         if self._process.poll() is not None:
             return
         self._process.terminate()
         try:
-            self._process.wait(STOP_PATIENCE_S)
+            self._process.wait(self._stop_timeout_s)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()
@@ -68,6 +76,6 @@ class Program:
     ) -> None:
         self.stop()
 
-    def _last_words(self) -> str:
+    def _end_of_log(self) -> str:
         lines = self._log.read_text(encoding="utf-8", errors="replace").splitlines()
         return " | ".join(lines[-TAIL_LINES:]) or "nothing"

@@ -1,4 +1,4 @@
-"""A background thread that does one thing again and again, and says so when it cannot."""
+"""A background thread that repeats one piece of work and reports when it fails."""
 
 from collections.abc import Callable
 from threading import Event, Thread
@@ -17,9 +17,9 @@ LONGEST_PAUSE_S = 30.0
 class PeriodicWorker:
     """One thread that calls `work` every `period_s` seconds until it is stopped.
 
-    No failure ends the thread: it is logged, told by `problem`, and the work is tried again. A database that
-    does not answer is a warning, and the next attempt comes a period later. Any other error is logged with
-    its traceback, and the pauses grow while such errors follow each other.
+    No failure ends the thread. It is logged, `problem` reports it, and the work is tried again. Where the
+    database does not answer, that is a warning, and the next attempt comes a period later. Any other error is
+    logged with its traceback, and the pauses grow while such errors follow each other.
     """
 
     def __init__(
@@ -31,7 +31,10 @@ class PeriodicWorker:
         at_once: bool = False,
         once_more: bool = False,
     ) -> None:
-        """at_once: begin with the work, not with a pause.  once_more: do the work again after `stop`."""
+        """
+        at_once: begin with the work, not with a pause.
+        once_more: do the work a last time after `stop`.
+        """
         self._name = name
         self._work = work
         self._period_s = period_s
@@ -50,12 +53,12 @@ class PeriodicWorker:
         self._started = True
         self._thread.start()
 
-    def stop(self, patience_s: float | None = None) -> None:
-        """End after the work under way, and wait for that: at most `patience_s` where it is given."""
+    def stop(self, timeout_s: float | None = None) -> None:
+        """Let the work under way end, then the thread; wait for that, at most `timeout_s` if given."""
         self._stopping.set()
         self._due.set()
         if self._started:
-            self._thread.join(patience_s)
+            self._thread.join(timeout_s)
 
     def wake(self) -> None:
         """Work now instead of at the end of the pause."""

@@ -1,23 +1,26 @@
-"""Whether this host's wall clock can be relied upon, told by the clock that only goes forward.
+"""Whether the wall clock of this host can be trusted, by comparison with the monotonic clock.
 
-What is old is told by the wall clock, and somebody may set that a day ahead, and right again minutes later.
+The age of stored values is measured by the wall clock. Somebody may set that clock a day ahead and correct it
+minutes later; nothing may be deleted in between.
 """
 
 from core.units import NANOSECONDS_PER_SECOND
 
 SETTLING_S = 3600.0
-"""A clock that was not set for so long is taken for right."""
+"""A clock that was not set for this long is taken to be right."""
 
 LARGEST_STEP_S = 5.0
-"""Between two looks. A clock that is kept right by the network is slewed, or set by less."""
+"""Between two comparisons. Network time synchronisation slews a clock, or steps it by less."""
 
 
 class WallClock:
-    """Used by one thread, which looks at it now and then; a clock that is set and set back between two looks
-    was right at both.
+    """Notices when the wall clock is set. For use by one thread.
 
-    was_set: whether it was set less than SETTLING_S ago, as far as anybody looked.
-    is_settled: whether it has been looked at for SETTLING_S and was not set.
+    It knows only what it sees at each comparison: a clock that is set and set back between two of them counts
+    as right.
+
+    was_set: whether the clock was set less than SETTLING_S ago.
+    is_settled: whether the clock has been compared for SETTLING_S and was not set in that time.
     """
 
     def __init__(self) -> None:
@@ -27,8 +30,8 @@ class WallClock:
         self.was_set = False
         self.is_settled = False
 
-    def look(self, wall_ns: int, monotonic_ns: int) -> None:
-        """What both clocks say now [ns]."""
+    def compare(self, wall_ns: int, monotonic_ns: int) -> None:
+        """Take what both clocks show now [ns]."""
         lead_ns = wall_ns - monotonic_ns
         if self._lead_ns is None:
             self._since_ns = monotonic_ns

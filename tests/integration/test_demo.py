@@ -121,7 +121,7 @@ def test_a_simulator_that_dies_ends_the_demo(tmp_path: Path) -> None:
     assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
 
 
-def test_a_port_lost_before_the_start_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_port_lost_before_the_start_is_replaced(tmp_path: Path) -> None:
     chosen = [SERVICE_PORT]
     told: list[str] = []
     with socket.create_server(("127.0.0.1", 0)) as taken:
@@ -131,8 +131,10 @@ def test_a_port_lost_before_the_start_is_replaced(tmp_path: Path, monkeypatch: p
             chosen.append(port if len(chosen) == 1 else free_ports(1)[0])
             return chosen[-1]
 
-        monkeypatch.setattr("service.demo.plant.free_port", too_late)
-        with running_plant(tmp_path, time.sleep, told.append) as plant, ServiceClient(plant.url) as service:
+        with (
+            running_plant(tmp_path, time.sleep, told.append, choose_port=too_late) as plant,
+            ServiceClient(plant.url) as service,
+        ):
             assert len(list(service.items("/motors"))) == len(MOTOR_NAMES)
     assert chosen[1] == port
     assert len(chosen) == 3

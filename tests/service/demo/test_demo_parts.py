@@ -75,12 +75,11 @@ def test_a_program_that_ends_leaves_its_last_words(tmp_path: Path) -> None:
             program.check()
 
 
-def test_a_program_that_does_not_go_is_killed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.demo.processes.STOP_PATIENCE_S", 0.2)
+def test_a_program_that_does_not_go_is_killed(tmp_path: Path) -> None:
     stubborn = "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN)"
     script = f"{stubborn}; print('deaf', flush=True); time.sleep(60)"
     log = tmp_path / "log"
-    with Program("helper", [sys.executable, "-c", script], log) as program:
+    with Program("helper", [sys.executable, "-c", script], log, stop_timeout_s=0.2) as program:
         assert eventually(lambda: log.stat().st_size > 0)
     assert not Path(f"/proc/{program.process_id}").exists()
 
