@@ -10,7 +10,7 @@ stepping, cost) is written once. `j` is the model's fifth current, scaled to the
 """
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +23,16 @@ CLARKE_PHASE = float(np.sqrt(2.0 / 3.0))
 """k: length of one phase's unit vector in power-invariant Clarke axes (3.11)."""
 
 
-@dataclass(frozen=True, slots=True)
-class RotorAsymmetry:
-    """Turning part of the rotor's resistance, each of shape (candidates,): half the difference between its
-    axes [ohm], and the electrical angle of the axis of more resistance at the window's first sample [rad]."""
+class RotorAsymmetry(NamedTuple):
+    """Turning part of the rotor's resistance.
+
+    Attributes
+    ----------
+    resistance : ndarray, shape (candidates,)
+        Half the difference between the resistances of the two axes [ohm].
+    angle : ndarray, shape (candidates,)
+        Electrical angle of the axis of more resistance at the window's first sample [rad].
+    """
 
     resistance: Array
     angle: Array

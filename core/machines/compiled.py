@@ -8,17 +8,21 @@ import numba
 P = ParamSpec("P")
 R = TypeVar("R")
 
+FAST_MATH = {"contract", "reassoc", "nsz", "arcp"}
+"""What LLVM may do to sums. Not among it: nnan and ninf, which assume that no NaN or infinity occurs."""
+
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile to machine code at the first call; later processes load the cached code.
+    """Compile a function to machine code at the first call; later processes load the cached code.
 
-    `fastmath` lets the compiler contract and reorder sums (needed for fused multiply-add and vector lanes);
-    no result here depends on signed zeros, infinities or the order of a sum.
+    FAST_MATH lets the compiler contract and reorder sums, which fused multiply-add and vector lanes need: no
+    result here depends on the sign of a zero or on the order of a sum. NaN and infinity keep their meaning,
+    because a candidate without a finite answer has to be told from the others.
 
     The cache notices a change in the file of a function, not in those of the functions it calls: after
     editing one, remove __pycache__.
     """
     return cast(
         Callable[P, R],
-        numba.njit(cache=True, nogil=True, fastmath=True, error_model="numpy")(function),
+        numba.njit(cache=True, nogil=True, fastmath=FAST_MATH, error_model="numpy")(function),
     )

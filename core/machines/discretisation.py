@@ -10,6 +10,8 @@ A-stable for any A, so a loop that decays in a microsecond is stepped at 0.1 ms 
 Van Loan, IEEE Trans. Autom. Control 23(3), 1978; Higham, Functions of Matrices, 2008, chapter 10.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from core.machines.base import Array
@@ -19,6 +21,21 @@ STATES = 5
 INPUTS = 4
 SERIES_TERMS = 10
 SERIES_NORM = 0.25
+
+
+class Hold(NamedTuple):
+    """Matrices of one step, x_k+1 = E x_k + G0 u_k + G1 u_k+1 + H e; in the kernel with an axis of lanes.
+
+    Attributes
+    ----------
+    E : ndarray, shape (5, 5)
+    G0, G1, H : ndarray, shape (5, 2)
+    """
+
+    E: Array
+    G0: Array
+    G1: Array
+    H: Array
 
 
 @compiled
@@ -35,8 +52,11 @@ def multiply(a: Array, b: Array, out: Array) -> None:
 @compiled
 def invert(matrix: Array, inverse: Array) -> None:
     """Inverse of a 5 x 5 matrix whose diagonal dominates, by Gauss and Jordan without pivoting."""
-    work = matrix.copy()
-    inverse[:] = np.eye(5)
+    work = np.empty((5, 5))
+    for i in range(5):
+        for j in range(5):
+            work[i, j] = matrix[i, j]
+            inverse[i, j] = 1.0 if i == j else 0.0
     for i in range(5):
         pivot = 1.0 / work[i, i]
         for j in range(5):
@@ -51,44 +71,71 @@ def invert(matrix: Array, inverse: Array) -> None:
 
 
 @compiled
-def first_order_hold(A: Array, step: float, E: Array, G0: Array, G1: Array, H: Array) -> None:
-    """Fill E (5, 5), G0, G1 and H (5, 2) for x' = A x + [u; e; 0] over `step` [s]."""
-    norm = np.abs(A).sum(axis=1).max() * step
-    doublings = 0
-    while norm > SERIES_NORM:
-        norm *= 0.5
-        doublings += 1
-    short = step * 0.5**doublings
-
-    # E = sum X^k / k!;  hold = h sum X^k / (k+1)! B;  ramp = h sum X^k / (k+2)! B, with X = A h
-    X = A * short
-    term, product = np.eye(STATES), np.empty((STATES, STATES))
-    hold, ramp, carried = np.zeros((STATES, INPUTS)), np.zeros((STATES, INPUTS)), np.empty((STATES, INPUTS))
-    E[:] = 0.0
-    for k in range(SERIES_TERMS):
-        E += term
-        hold += term[:, :INPUTS] * (short / (k + 1))
-        ramp += term[:, :INPUTS] * (short / ((k + 1) * (k + 2)))
-        multiply(term, X, product)
-        term[:] = product / (k + 1)
-
-    # twice the step: the second half starts where the first ended, its ramp from one half
-    for _ in range(doublings):
-        multiply(E, ramp, carried)
-        ramp[:] = 0.5 * (carried + ramp + hold)
-        multiply(E, hold, carried)
-        hold += carried
-        multiply(E, E, product)
-        E[:] = product
-    G0[:] = hold[:, :2] - ramp[:, :2]
-    G1[:] = ramp[:, :2]
-    H[:] = hold[:, 2:]
+def row_norm(A: Array) -> float:
+    """Greatest sum of the sizes in a row of A."""
+    norm = 0.0
+    for i in range(A.shape[0]):
+        total = 0.0
+        for j in range(A.shape[1]):
+            total += abs(A[i, j])
+        norm = max(norm, total)
+    return norm
 
 
 @compiled
-def discretise(decay: Array, w: float, step: float, E: Array, G0: Array, G1: Array, H: Array) -> None:
-    """The hold of a machine, A = decay + w Jr, at the electrical speed w [rad/s]."""
+def sum_series(X: Array, step: float, E: Array, level: Array, ramp: Array) -> None:
+    """Fill E = sum X^k / k!, level = h sum X^k / (k+1)! B and ramp = h sum X^k / (k+2)! B, h the step."""
+    term, product = np.eye(STATES), np.empty((STATES, STATES))
+    E[:], level[:], ramp[:] = 0.0, 0.0, 0.0
+    for k in range(SERIES_TERMS):
+        multiply(term, X, product)
+        for i in range(STATES):
+            for j in range(INPUTS):
+                level[i, j] += term[i, j] * (step / (k + 1))
+                ramp[i, j] += term[i, j] * (step / ((k + 1) * (k + 2)))
+            for j in range(STATES):
+                E[i, j] += term[i, j]
+                term[i, j] = product[i, j] / (k + 1)
+
+
+@compiled
+def double_step(E: Array, level: Array, ramp: Array) -> None:
+    """Make them those of twice the step: the second half begins where the first ended, its ramp at a half."""
+    E_ramp, E_level, E_E = np.empty((STATES, INPUTS)), np.empty((STATES, INPUTS)), np.empty((STATES, STATES))
+    multiply(E, ramp, E_ramp)
+    multiply(E, level, E_level)
+    multiply(E, E, E_E)
+    for i in range(STATES):
+        for j in range(INPUTS):
+            ramp[i, j] = 0.5 * (E_ramp[i, j] + ramp[i, j] + level[i, j])
+            level[i, j] += E_level[i, j]
+        for j in range(STATES):
+            E[i, j] = E_E[i, j]
+
+
+@compiled
+def first_order_hold(A: Array, step: float, hold: Hold) -> None:
+    """Fill the hold of x' = A x + [u; e; 0] over `step` [s]; it is not finite where A is not."""
+    norm, doublings = row_norm(A) * step, 0
+    while norm > SERIES_NORM and np.isfinite(norm):
+        norm *= 0.5
+        doublings += 1
+    short = step * 0.5**doublings
+    level, ramp = np.empty((STATES, INPUTS)), np.empty((STATES, INPUTS))
+    sum_series(A * short, short, hold.E, level, ramp)
+    for _ in range(doublings):
+        double_step(hold.E, level, ramp)
+    for i in range(STATES):
+        for j in range(2):
+            hold.G0[i, j] = level[i, j] - ramp[i, j]
+            hold.G1[i, j] = ramp[i, j]
+            hold.H[i, j] = level[i, j + 2]
+
+
+@compiled
+def discretise(decay: Array, w: float, step: float, hold: Hold) -> None:
+    """Fill the hold of a machine, A = decay + w Jr, at the electrical speed w [rad/s]."""
     A = decay.copy()
     A[2, 3] -= w
     A[3, 2] += w
-    first_order_hold(A, step, E, G0, G1, H)
+    first_order_hold(A, step, hold)

@@ -9,19 +9,85 @@ half steps (leapfrog). All of it is of second order; the reference follows the m
 The stepped state is x = (i_s, psi_r, j): what is compared and what makes the torque lie in it as they are.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.base import Array
 from core.machines.compiled import compiled
 from core.machines.delay import delay_voltage
-from core.machines.discretisation import discretise, invert, multiply
+from core.machines.discretisation import Hold, discretise, invert, multiply
+from core.machines.stepping import Comparison, InitialState, MachineRates, SteppedVoltage, Track
 
 LANES = 16
 SHORTEST_BLOCK, LONGEST_BLOCK = 16, 256
 """Steps between two looks at the speed: twice as many or half as many as it changes slowly or fast."""
 REFERENCE_DRIFT = 10.0
 """Largest |w - w_reference| before a candidate is discretised anew [rad/s]: the error follows it."""
+NO_REFERENCE = -1e300
+"""Reference speed of a candidate that was never discretised: finite, and farther than any drift."""
+
+
+class LaneVoltage(NamedTuple):
+    """Delayed voltages of one block, and which of them each lane sees.
+
+    Attributes
+    ----------
+    voltage : ndarray, shape (sources, columns, 2)
+        Clarke voltages from the block's first column on [V].
+    source : ndarray of uint64, shape (LANES,)
+        Index of the voltage that drives each lane.
+    first, last : int
+        Columns of the record at which the block begins and ends.
+    """
+
+    voltage: Array
+    source: NDArray[np.uint64]
+    first: int
+    last: int
+
+
+class LaneMachines(NamedTuple):
+    """Candidates side by side, in the coordinates x = (i_s, psi_r, j).
+
+    Attributes
+    ----------
+    hold : Hold
+        Matrices of a step at the reference speeds, each with a last axis of LANES.
+    torque : ndarray, shape (3, LANES)
+        i_r = t0 i_s + (t1, t2) j + a share of psi_r, which makes no torque.
+    load : ndarray, shape (3, LANES)
+        T_load / p = l0 + l1 w + l2 w^2.
+    reference_speed : ndarray, shape (LANES,)
+        Electrical speed for which `hold` is exact [rad/s].
+    acceleration : float
+        Step times p^2 / J.
+    turn : float
+        Angle that the supply turns in a step, w_s h [rad].
+    """
+
+    hold: Hold
+    torque: Array
+    load: Array
+    reference_speed: Array
+    acceleration: float
+    turn: float
+
+
+class LaneState(NamedTuple):
+    """State of the candidates side by side, which a block advances.
+
+    Attributes
+    ----------
+    x : ndarray, shape (8, LANES)
+        i_s, psi_r, j, then the rotor's flux of one step before and the last gain in speed.
+    speed : ndarray, shape (LANES,)
+        Electrical speed, half a step ahead of x [rad/s].
+    """
+
+    x: Array
+    speed: Array
 
 
 @compiled
@@ -34,48 +100,27 @@ def mean_over_next_step(turn: float) -> tuple[float, float]:
 
 @compiled
 def advance(
-    voltage: Array,
-    source: NDArray[np.uint64],
-    first: int,
-    last: int,
-    E_in: Array,
-    G0_in: Array,
-    G1_in: Array,
-    H_in: Array,
-    torque_in: Array,
-    load_in: Array,
-    acceleration: float,
-    turn: float,
-    reference_speed: Array,
-    state: Array,
-    speed: Array,
-    measured: Array,
-    substeps: int,
-    error: Array,
-    current: Array,
-    speed_out: Array,
-    lanes: int,
-) -> None:
-    """Advance `lanes` candidates from sample `first` to sample `last`.
+    feed: LaneVoltage, machines: LaneMachines, state: LaneState, comparison: Comparison, substeps: int,
+    track: Track, lanes: int,
+) -> None:  # fmt: skip
+    """Advance `lanes` candidates through the block of a feed.
 
-    voltage (sources, samples, 2) from `first` on; source (lanes,): which of them a candidate sees.
-    torque_in (3, LANES): i_r = t0 i_s + (t1, t2) j + a share of psi_r, which makes no torque.
-    load_in (3, LANES): T_load / p = l0 + l1 w + l2 w^2; acceleration: h p^2 / J; turn: w_s h.
-    state (8, LANES): x, the rotor's flux of one step before, the last gain in speed; speed (LANES,): half
-    a step ahead of the state; both in and out.
-    measured (samples / substeps, 2): the squared distance of i_s to it is added to error (LANES,); or empty.
-    current (2, samples, LANES), speed_out (samples, LANES): filled for first < k <= last; or empty.
+    The comparison, where its measured current is not empty, adds up the squared errors (LANES,). The track,
+    where it is not empty, is filled for first < k <= last.
     """
     # Arrays made here have strides the compiler knows: without that it will not use vector instructions.
     E, G0, G1 = np.empty((5, 5, LANES)), np.empty((5, 2, LANES)), np.empty((5, 2, LANES))
     H, torque, load = np.empty((5, 2, LANES)), np.empty((3, LANES)), np.empty((3, LANES))
-    E[:], G0[:], G1[:], H[:], torque[:], load[:] = E_in, G0_in, G1_in, H_in, torque_in, load_in
+    E[:], G0[:], G1[:], H[:] = machines.hold.E, machines.hold.G0, machines.hold.G1, machines.hold.H
+    torque[:], load[:], acceleration = machines.torque, machines.load, machines.acceleration
     x = np.empty((8, LANES))
     u, u_next, w, w_reference = np.empty((2, LANES)), np.empty((2, LANES)), np.empty(LANES), np.empty(LANES)
-    x[:], w[:], w_reference[:] = state, speed, reference_speed
+    x[:], w[:], w_reference[:] = state.x, state.speed, machines.reference_speed
+    voltage, source, first, last = feed
+    measured, current, speed_out = comparison.measured, track.current, track.speed
     distance = np.empty(LANES)
-    distance[:] = error
-    now, before = mean_over_next_step(turn)
+    distance[:] = comparison.squared_error
+    now, before = mean_over_next_step(machines.turn)
     recorded = current.shape[1] > 0
     compared = measured.shape[0] > 0
     for b in range(lanes):
@@ -128,7 +173,7 @@ def advance(
             i_alpha, i_beta = measured[k // substeps, 0], measured[k // substeps, 1]
             for b in range(lanes):
                 distance[b] += (x[0, b] - i_alpha) ** 2 + (x[1, b] - i_beta) ** 2
-    state[:], speed[:], error[:] = x, w, distance
+    state.x[:], state.speed[:], comparison.squared_error[:] = x, w, distance
 
 
 @compiled
@@ -146,18 +191,17 @@ def change_state(current_from_flux: Array, to_state: Array, to_flux: Array, torq
 
 @compiled
 def discretise_state(
-    decay: Array, w: float, step: float, to_state: Array, to_flux: Array, E: Array, G0: Array, G1: Array,
-    H: Array,
-) -> None:  # fmt: skip
-    """The hold at speed w of the state x: that of the flux between the two changes of state."""
-    E_flux, product = np.empty((5, 5)), np.empty((5, 5))
-    G0_flux, G1_flux, H_flux = np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2))
-    discretise(decay, w, step, E_flux, G0_flux, G1_flux, H_flux)
-    multiply(E_flux, to_flux, product)
-    multiply(to_state, product, E)
-    multiply(to_state, G0_flux, G0)
-    multiply(to_state, G1_flux, G1)
-    multiply(to_state, H_flux, H)
+    decay: Array, w: float, step: float, to_state: Array, to_flux: Array, hold: Hold
+) -> None:
+    """Fill the hold at speed w of the state x: that of the flux between the two changes of state."""
+    product = np.empty((5, 5))
+    of_flux = Hold(np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2)))
+    discretise(decay, w, step, of_flux)
+    multiply(of_flux.E, to_flux, product)
+    multiply(to_state, product, hold.E)
+    multiply(to_state, of_flux.G0, hold.G0)
+    multiply(to_state, of_flux.G1, hold.G1)
+    multiply(to_state, of_flux.H, hold.H)
 
 
 @compiled
@@ -169,72 +213,72 @@ def next_block(block: int, change: float) -> int:
 
 
 @compiled
-def simulate(
-    voltage: Array,
-    first_column: int,
-    samples: int,
-    source: NDArray[np.uint64],
-    delays: Array,
-    step: float,
-    decay: Array,
-    current_from_flux: Array,
-    load: Array,
-    acceleration: float,
-    turn: float,
-    flux: Array,
-    speed: Array,
-    measured: Array,
-    substeps: int,
-    compare_from: int,
-    error: Array,
-    current: Array,
-    speed_out: Array,
-    lanes: int,
-) -> None:
-    """Simulate up to LANES candidates over `samples` columns from `first_column` on; arrays as in `advance`.
+def greatest_change(now: Array, before: Array, lanes: int) -> float:
+    """Greatest change of the first `lanes` speeds [rad/s]; speeds that are not numbers do not count."""
+    greatest = 0.0
+    for b in range(lanes):
+        change = abs(now[b] - before[b])
+        if change > greatest:
+            greatest = change
+    return greatest
 
-    voltage (columns, 2): undelayed; delays (sources,): of what the candidates see [columns].
-    decay = -R inv(L), current_from_flux = inv(L), both (lanes, 5, 5).  flux (5, LANES), speed (LANES,): at
-    sample 0; the speed at the last sample out.
-    compare_from: first sample whose distance to the measured current counts.
+
+@compiled
+def simulate(
+    feed: SteppedVoltage, source: NDArray[np.uint64], delays: Array, machines: MachineRates,
+    beginning: InitialState, comparison: Comparison, track: Track, lanes: int,
+) -> None:  # fmt: skip
+    """Simulate up to LANES candidates over the columns of the feed.
+
+    source (LANES,): index among `delays` (sources,) [columns] of what a candidate sees. The machines' load
+    is (3, LANES), the flux (5, LANES), the speed (LANES,): the speed at the last column out.
     """
-    E, G0, G1 = np.zeros((5, 5, LANES)), np.zeros((5, 2, LANES)), np.zeros((5, 2, LANES))
-    H, torque, state = np.zeros((5, 2, LANES)), np.zeros((3, LANES)), np.zeros((8, LANES))
+    current, speed_out, load, speed = track.current, track.speed, machines.load, beginning.speed
+    acceleration = machines.gain * feed.step_s
+    hold = Hold(
+        np.zeros((5, 5, LANES)), np.zeros((5, 2, LANES)), np.zeros((5, 2, LANES)), np.zeros((5, 2, LANES))
+    )
+    torque, x = np.zeros((3, LANES)), np.zeros((8, LANES))
     to_state, to_flux = np.empty((lanes, 5, 5)), np.empty((lanes, 5, 5))
     delayed = np.empty((delays.size, LONGEST_BLOCK + 1, 2))
-    reference, before = np.full(LANES, np.inf), np.zeros(LANES)
+    reference, before = np.full(LANES, NO_REFERENCE), np.zeros(LANES)
     for b in range(lanes):
-        change_state(current_from_flux[b], to_state[b], to_flux[b], torque[:, b])
+        change_state(machines.current_from_flux[b], to_state[b], to_flux[b], torque[:, b])
         for n in range(5):
             for m in range(5):
-                state[n, b] += to_state[b, n, m] * flux[m, b]
+                x[n, b] += to_state[b, n, m] * beginning.flux[m, b]
         if current.shape[1] > 0:
-            current[0, 0, b], current[1, 0, b], speed_out[0, b] = state[0, b], state[1, b], speed[b]
-        i_r_alpha = torque[0, b] * state[0, b] + torque[1, b] * state[4, b]
-        i_r_beta = torque[0, b] * state[1, b] + torque[2, b] * state[4, b]
+            current[0, 0, b], current[1, 0, b], speed_out[0, b] = x[0, b], x[1, b], speed[b]
+        i_r_alpha = torque[0, b] * x[0, b] + torque[1, b] * x[4, b]
+        i_r_beta = torque[0, b] * x[1, b] + torque[2, b] * x[4, b]
         demand = load[0, b] + speed[b] * (load[1, b] + speed[b] * load[2, b])
-        state[5, b], state[6, b] = state[2, b], state[3, b]
-        state[7, b] = acceleration * (state[3, b] * i_r_alpha - state[2, b] * i_r_beta - demand)
-        speed[b] += 0.5 * state[7, b]
-    nothing = np.empty((0, 2))
+        x[5, b], x[6, b] = x[2, b], x[3, b]
+        x[7, b] = acceleration * (x[3, b] * i_r_alpha - x[2, b] * i_r_beta - demand)
+        speed[b] += 0.5 * x[7, b]
+    side_by_side = LaneMachines(
+        hold, torque, load, reference, acceleration, feed.angular_frequency * feed.step_s
+    )
+    state, error = LaneState(x, speed), comparison.squared_error
+    nothing = Comparison(np.empty((0, 2)), comparison.compare_from, error)
+    columns, compare_from = feed.last - feed.first, comparison.compare_from
     first, block = 0, SHORTEST_BLOCK
-    while first < samples - 1:
-        last = min(first + block, samples - 1)
+    while first < columns - 1:
+        last = min(first + block, columns - 1)
         if first < compare_from - 1:
             last = min(last, compare_from - 1)
         for b in range(lanes):
-            if abs(speed[b] - reference[b]) > REFERENCE_DRIFT:
+            if not abs(speed[b] - reference[b]) <= REFERENCE_DRIFT:
                 reference[b] = speed[b]
                 discretise_state(
-                    decay[b], reference[b], step, to_state[b], to_flux[b], E[:, :, b], G0[:, :, b],
-                    G1[:, :, b], H[:, :, b],
+                    machines.decay[b], reference[b], feed.step_s, to_state[b], to_flux[b],
+                    Hold(hold.E[:, :, b], hold.G0[:, :, b], hold.G1[:, :, b], hold.H[:, :, b]),
                 )  # fmt: skip
         for s in range(delays.size):
-            delay_voltage(voltage, delays[s], first_column + first, delayed[s, : last - first + 1])
+            delay_voltage(feed.voltage, delays[s], feed.first + first, delayed[s, : last - first + 1])
         before[:] = speed
         advance(
-            delayed, source, first, last, E, G0, G1, H, torque, load, acceleration, turn, reference, state,
-            speed, measured if last >= compare_from else nothing, substeps, error, current, speed_out, lanes,
+            LaneVoltage(delayed, source, first, last), side_by_side, state,
+            comparison if last >= compare_from else nothing, feed.substeps, track, lanes,
         )  # fmt: skip
-        block = next_block(block, np.abs(speed - before)[:lanes].max())
+        block = next_block(block, greatest_change(speed, before, lanes))
         first = last

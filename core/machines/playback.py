@@ -12,6 +12,7 @@ from core.machines.candidates import Candidates, LoadLaw
 from core.machines.parameters import Motor
 from core.machines.running import SteadyRunning
 from core.machines.steady_state import SteadyState
+from core.machines.stepping import Comparison, InitialState, SteppedVoltage, Track
 from core.machines.supply import Supply
 from core.machines.turning_rotor import play_turning
 
@@ -63,13 +64,15 @@ class Playback:
         self.window = window
         self.load_law = load_law
         self.beginning = beginning
-        self._first = window.first * supply.substeps
-        self._last = (window.last - 1) * supply.substeps + 1
+        first = window.first * supply.substeps
+        last = (window.last - 1) * supply.substeps + 1
         reach = DELAY_MARGIN_COLUMNS - 1
-        self._latest_delay = (self._first - reach) * supply.step_s
-        self._earliest_delay = -(supply.voltage.shape[0] - self._last - reach) * supply.step_s
+        self._latest_delay = (first - reach) * supply.step_s
+        self._earliest_delay = -(supply.voltage.shape[0] - last - reach) * supply.step_s
+        self._compare_from = max(1, (window.compare_from - window.first) * supply.substeps)
         w_s = supply.angular_frequency
-        at_first = supply.phasor * np.exp(1j * w_s * self._first * supply.step_s)
+        self._feed = SteppedVoltage(supply.voltage, first, last, supply.step_s, supply.substeps, w_s)
+        at_first = supply.phasor * np.exp(1j * w_s * first * supply.step_s)
         self._running = SteadyRunning(model, motor, w_s, at_first, load_law)
 
     def steady_state(self, candidates: Candidates) -> SteadyState:
@@ -83,20 +86,18 @@ class Playback:
         """
         window = self.window
         measured = np.ascontiguousarray(measured_ab[:, window.first : window.last].T)
-        error = np.empty(len(candidates))
-        self._play(candidates, measured, error, np.empty((0, 2, 0)), np.empty((0, 0)))
-        return error
+        comparison = Comparison(measured, self._compare_from, np.empty(len(candidates)))
+        self._play(candidates, comparison, Track(np.empty((0, 2, 0)), np.empty((0, 0))))
+        return comparison.squared_error
 
     def trajectories(self, candidates: Candidates) -> Trajectories:
         """Currents and speed of every candidate over the window."""
         n, samples = len(candidates), self.window.last - self.window.first
-        current, speed = np.empty((n, 2, samples)), np.empty((n, samples))
-        self._play(candidates, np.empty((0, 2)), np.empty(n), current, speed)
-        return Trajectories(current, speed)
+        track = Track(np.empty((n, 2, samples)), np.empty((n, samples)))
+        self._play(candidates, Comparison(np.empty((0, 2)), self._compare_from, np.empty(n)), track)
+        return Trajectories(track.current, track.speed)
 
-    def _play(
-        self, candidates: Candidates, measured: Array, error: Array, current: Array, speed: Array
-    ) -> None:
+    def _play(self, candidates: Candidates, comparison: Comparison, track: Track) -> None:
         delays = candidates.time_offset_s
         if delays.size and not (self._earliest_delay <= delays.min() and delays.max() <= self._latest_delay):
             raise ValueError(
@@ -105,28 +106,16 @@ class Playback:
             )
         rates = self._running.rates(candidates)
         if self.beginning is Beginning.REST:
-            flux_0, speed_0 = np.zeros((5, len(candidates))), np.zeros(len(candidates))
+            beginning = InitialState(np.zeros((5, len(candidates))), np.zeros(len(candidates)))
         else:
             state = self._running.state(candidates, rates)
-            flux_0, speed_0 = state.flux, state.speed
-        supply, asymmetry = self.supply, rates.rotor_asymmetry
-        compare_from = max(1, (self.window.compare_from - self.window.first) * supply.substeps)
-        acceleration, turn = (
-            self._running.ripple_gain * supply.step_s,
-            supply.angular_frequency * supply.step_s,
-        )
-        if asymmetry is None:
-            play(
-                supply.voltage, self._first, self._last, supply.step_s, supply.substeps, delays, rates.decay,
-                rates.current_from_flux, rates.load, acceleration, turn, flux_0, speed_0, measured,
-                compare_from, error, current, speed,
-            )  # fmt: skip
+            beginning = InitialState(state.flux, state.speed)
+        if rates.rotor_asymmetry is None:
+            play(self._feed, delays, rates.machines, beginning, comparison, track)
         else:
             play_turning(
-                supply.voltage, self._first, self._last, supply.step_s, supply.substeps, delays, rates.decay,
-                rates.current_from_flux, rates.load, acceleration, turn, flux_0, speed_0,
-                asymmetry.resistance, asymmetry.angle, measured, compare_from, error, current, speed,
-            )  # fmt: skip
+                self._feed, delays, rates.machines, rates.rotor_asymmetry, beginning, comparison, track
+            )
 
 
 def window_of_record(samples: int, sample_rate_hz: float, frequency_hz: float, longest_s: float) -> Window:

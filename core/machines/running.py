@@ -4,21 +4,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.machines.base import Array, RotorAsymmetry, StatorModel
+from core.machines.base import RotorAsymmetry, StatorModel
 from core.machines.batch import find_rates, find_steady_states
 from core.machines.candidates import Candidates, LoadLaw
 from core.machines.parameters import Motor
-from core.machines.steady_state import ComplexArray, SteadyState
+from core.machines.steady_state import ComplexArray, SinusoidalSupply, SteadyState
+from core.machines.stepping import MachineRates
 
 
 @dataclass(frozen=True, slots=True)
 class Rates:
-    """What a batch is stepped with: -R inv(L) and inv(L) (n, 5, 5), the load's polynomial in the speed
-    (n, 3), what of the rotor's resistance turns with it."""
+    """What a batch is stepped with.
 
-    decay: Array
-    current_from_flux: Array
-    load: Array
+    Attributes
+    ----------
+    machines : MachineRates
+        Coefficients of the batch.
+    rotor_asymmetry : RotorAsymmetry or None
+        Part of the rotors' resistance that turns with them, where there is any.
+    """
+
+    machines: MachineRates
     rotor_asymmetry: RotorAsymmetry | None
 
 
@@ -44,7 +50,7 @@ class SteadyRunning:
         nameplate, machine = motor.nameplate, motor.parameters
         w_s, w_b = angular_frequency, nameplate.rated_angular_frequency
         self._torque_per_pole_pair = nameplate.rated_torque_Nm / nameplate.pole_pairs / w_b**load_law.value
-        self.ripple_gain = nameplate.pole_pairs**2 / machine.inertia_kgm2
+        self._gain = nameplate.pole_pairs**2 / machine.inertia_kgm2
         # Slip of the healthy machine's greatest torque: R_r' over the impedance of R_s and the leakages.
         leakage = w_s * (machine.stator_leakage_H + machine.rotor_leakage_H)
         impedance = float(np.hypot(machine.stator_resistance_ohm, leakage))
@@ -62,9 +68,9 @@ class SteadyRunning:
         )
         load = np.zeros((n, 3))
         load[:, int(self.load_law)] = candidates.load_level * self._torque_per_pole_pair
-        rates = Rates(np.empty((n, 5, 5)), np.empty((n, 5, 5)), load, circuits.rotor_asymmetry)
-        find_rates(circuits.inductance, circuits.resistance, rates.decay, rates.current_from_flux)
-        return rates
+        machines = MachineRates(np.empty((n, 5, 5)), np.empty((n, 5, 5)), load, self._gain)
+        find_rates(circuits.inductance, circuits.resistance, machines.decay, machines.current_from_flux)
+        return Rates(machines, circuits.rotor_asymmetry)
 
     def state(self, candidates: Candidates, rates: Rates | None = None) -> SteadyState:
         """Periodic steady state of every candidate; `rates` where they are known already."""
@@ -77,9 +83,6 @@ class SteadyRunning:
             current=np.empty((2, n), np.complex128),
             balanced=np.empty(n, np.bool_),
         )
-        find_steady_states(
-            known.decay, known.current_from_flux, known.load, candidates.time_offset_s,
-            self.angular_frequency, self.phasor, self._pull_out_slip, self.ripple_gain,
-            state.flux, state.speed, state.mean_speed, state.current, state.balanced,
-        )  # fmt: skip
+        supply = SinusoidalSupply(self.angular_frequency, self.phasor, self._pull_out_slip)
+        find_steady_states(known.machines, candidates.time_offset_s, supply, state)
         return state

@@ -17,6 +17,7 @@ from core.machines.batch import find_rates, play
 from core.machines.candidates import LoadLaw
 from core.machines.parameters import MachineParameters, Nameplate
 from core.machines.playback import DELAY_MARGIN_COLUMNS, Trajectories
+from core.machines.stepping import Comparison, InitialState, MachineRates, SteppedVoltage, Track
 from core.machines.supply import Supply
 
 REFERENCE_RUN_UP_S = 0.3
@@ -88,11 +89,14 @@ class StartPlayback:
         self.nameplate = nameplate
         self.supply = supply
         self.load_law = load_law
-        self._first, self._last = switched_on, last - supply.substeps + 1
+        end = last - supply.substeps + 1
+        self._feed = SteppedVoltage(
+            supply.voltage, switched_on, end, supply.step_s, 1, supply.angular_frequency
+        )
         self._wanted = slice(first - switched_on, None, supply.substeps)
         reach = DELAY_MARGIN_COLUMNS - 1
-        self.latest_offset_s = (self._first - reach) * supply.step_s
-        self.earliest_offset_s = -(supply.voltage.shape[0] - self._last - reach) * supply.step_s
+        self.latest_offset_s = (switched_on - reach) * supply.step_s
+        self.earliest_offset_s = -(supply.voltage.shape[0] - end - reach) * supply.step_s
         w_b, p = nameplate.rated_angular_frequency, nameplate.pole_pairs
         self._torque_per_pole_pair = nameplate.rated_torque_Nm / p / w_b**load_law.value
         self._reference_inertia = 2.0 * REFERENCE_RUN_UP_S * nameplate.rated_power_W / (w_b / p) ** 2
@@ -117,21 +121,18 @@ class StartPlayback:
                 f"the record has voltages, found {delays.min():g} to {delays.max():g} s"
             )
         share = self._reference_inertia / candidates.inertia_kgm2
-        decay, current_from_flux = np.empty((n, 5, 5)), np.empty((n, 5, 5))
-        find_rates(*_circuits(candidates, share), decay, current_from_flux)
         load = np.zeros((n, 3))
         load[:, int(self.load_law)] = candidates.load_level * self._torque_per_pole_pair * share
         flux = np.zeros((5, n))
         flux[:2] = candidates.switching_flux_Vs.T
-        columns, supply = self._last - self._first, self.supply
-        current, speed = np.empty((n, 2, columns)), np.empty((n, columns))
-        play(
-            supply.voltage, self._first, self._last, supply.step_s, 1, delays, decay, current_from_flux, load,
-            self.nameplate.pole_pairs**2 / self._reference_inertia * supply.step_s,
-            supply.angular_frequency * supply.step_s, flux, np.zeros(n), np.empty((0, 2)), 1, np.empty(n),
-            current, speed,
-        )  # fmt: skip
-        return Trajectories(current[:, :, self._wanted], speed[:, self._wanted])
+        gain = self.nameplate.pole_pairs**2 / self._reference_inertia
+        machines = MachineRates(np.empty((n, 5, 5)), np.empty((n, 5, 5)), load, gain)
+        find_rates(*_circuits(candidates, share), machines.decay, machines.current_from_flux)
+        columns = self._feed.last - self._feed.first
+        track = Track(np.empty((n, 2, columns)), np.empty((n, columns)))
+        nothing = Comparison(np.empty((0, 2)), 1, np.empty(n))
+        play(self._feed, delays, machines, InitialState(flux, np.zeros(n)), nothing, track)
+        return Trajectories(track.current[:, :, self._wanted], track.speed[:, self._wanted])
 
 
 def _circuits(candidates: StartCandidates, share: Array) -> tuple[Array, Array]:

@@ -14,13 +14,14 @@ both proportional to W, so that their torque closes one linear equation for W: h
 3 w_s, with the mean speed corrected to the second order in W / w_s (which is below 1 %).
 """
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.base import Array
 from core.machines.compiled import compiled
+from core.machines.stepping import MachineRates
 
 ComplexArray = NDArray[np.complex128]
 
@@ -28,11 +29,38 @@ SPEED_TOLERANCE = 1e-9
 MOST_ITERATIONS = 60
 
 
-@dataclass(frozen=True, slots=True)
-class SteadyState:
-    """Of each candidate: flux at t = 0 (5, candidates) [V s], speed at t = 0 and mean speed (candidates,)
-    [electrical rad/s], stator current phasors at w_s on the Clarke axes (2, candidates) [A, peak], and
-    whether a speed exists at which the torques balance (candidates,)."""
+class SinusoidalSupply(NamedTuple):
+    """A supply of one frequency, and where the machine pulls out on it.
+
+    Attributes
+    ----------
+    angular_frequency : float
+        w_s [rad/s].
+    phasor : ndarray of complex, shape (2,)
+        Voltage on the Clarke axes at t = 0 without delay, peak [V].
+    pull_out_slip : float
+        Slip of the healthy machine's greatest torque.
+    """
+
+    angular_frequency: float
+    phasor: ComplexArray
+    pull_out_slip: float
+
+
+class SteadyState(NamedTuple):
+    """Periodic steady state of a batch.
+
+    Attributes
+    ----------
+    flux : ndarray, shape (5, candidates)
+        Flux of every circuit at t = 0 [V s].
+    speed, mean_speed : ndarray, shape (candidates,)
+        Electrical speed at t = 0 and its mean [rad/s].
+    current : ndarray of complex, shape (2, candidates)
+        Phasors of the stator current at w_s on the Clarke axes, peak [A].
+    balanced : ndarray of bool, shape (candidates,)
+        Whether there is a speed at which the torques balance.
+    """
 
     flux: Array
     speed: Array
@@ -76,42 +104,41 @@ def rotor_current(current_from_flux: Array, flux: ComplexArray, rotor: ComplexAr
 
 @compiled
 def mean_torque(
-    decay: Array, current_from_flux: Array, w: float, w_s: float, drive: ComplexArray, flux: ComplexArray,
-    rotor: ComplexArray,
-) -> float:  # fmt: skip
+    machine: MachineRates, w: float, w_s: float, drive: ComplexArray, flux: ComplexArray, rotor: ComplexArray
+) -> float:
     """Mean of T_e / p at speed w; leaves the flux and the rotor currents of that speed behind."""
-    solve_circuits(decay, w, w_s, drive, flux)
-    rotor_current(current_from_flux, flux, rotor)
+    solve_circuits(machine.decay, w, w_s, drive, flux)
+    rotor_current(machine.current_from_flux, flux, rotor)
     crossed = flux[3] * np.conj(rotor[0]) - flux[2] * np.conj(rotor[1])
     return 0.5 * float(crossed.real)
 
 
 @compiled
+def surplus_torque(
+    machine: MachineRates, w: float, w_s: float, drive: ComplexArray, flux: ComplexArray, rotor: ComplexArray
+) -> float:
+    """Mean of (T_e - T_load) / p at speed w; leaves flux and rotor currents behind like `mean_torque`."""
+    load = machine.load
+    return mean_torque(machine, w, w_s, drive, flux, rotor) - float(load[0] + w * (load[1] + w * load[2]))
+
+
+@compiled
 def balance(
-    decay: Array, current_from_flux: Array, load: Array, w_s: float, drive: ComplexArray,
-    pull_out_slip: float, flux: ComplexArray, rotor: ComplexArray,
+    machine: MachineRates, w_s: float, drive: ComplexArray, pull_out_slip: float, flux: ComplexArray,
+    rotor: ComplexArray,
 ) -> tuple[float, bool]:  # fmt: skip
     """Speed between pull-out and synchronism (a little above, for the drag of the negative sequence) at
     which motor and load torque agree, by regula falsi (Illinois); False where the load is too heavy."""
     low, high = w_s * (1.0 - pull_out_slip), w_s * (1.0 + 0.1 * pull_out_slip)
-    surplus_low = (
-        mean_torque(decay, current_from_flux, low, w_s, drive, flux, rotor)
-        - load[0] - low * (load[1] + low * load[2])
-    )  # fmt: skip
-    if surplus_low <= 0.0:
+    surplus_low = surplus_torque(machine, low, w_s, drive, flux, rotor)
+    if not surplus_low > 0.0:  # nor is a machine balanced whose torque is no number
         return low, False
-    surplus_high = (
-        mean_torque(decay, current_from_flux, high, w_s, drive, flux, rotor)
-        - load[0] - high * (load[1] + high * load[2])
-    )  # fmt: skip
+    surplus_high = surplus_torque(machine, high, w_s, drive, flux, rotor)
     w, side = high, 0
     for _ in range(MOST_ITERATIONS):
         previous = w
         w = (low * surplus_high - high * surplus_low) / (surplus_high - surplus_low)
-        surplus = (
-            mean_torque(decay, current_from_flux, w, w_s, drive, flux, rotor)
-            - load[0] - w * (load[1] + w * load[2])
-        )  # fmt: skip
+        surplus = surplus_torque(machine, w, w_s, drive, flux, rotor)
         if abs(w - previous) < SPEED_TOLERANCE * w_s:
             break
         if surplus > 0.0:
@@ -129,14 +156,14 @@ def balance(
 
 @compiled
 def answer_speed(
-    decay: Array, current_from_flux: Array, w: float, frequency: float, amplitude: complex,
-    turned: ComplexArray, flux: ComplexArray, rotor: ComplexArray,
+    machine: MachineRates, w: float, frequency: float, amplitude: complex, turned: ComplexArray,
+    flux: ComplexArray, rotor: ComplexArray,
 ) -> None:  # fmt: skip
     """Flux and rotor current at `frequency` in answer to the rotor's voltage amplitude Jr turned."""
     drive = np.zeros(4, np.complex128)
     drive[2], drive[3] = -amplitude * turned[3], amplitude * turned[2]
-    solve_circuits(decay, w, frequency, drive, flux)
-    rotor_current(current_from_flux, flux, rotor)
+    solve_circuits(machine.decay, w, frequency, drive, flux)
+    rotor_current(machine.current_from_flux, flux, rotor)
 
 
 @compiled
@@ -147,12 +174,11 @@ def cross(flux: ComplexArray, rotor: ComplexArray) -> complex:
 
 @compiled
 def answer_ripple(
-    decay: Array, current_from_flux: Array, load: Array, w: float, w_s: float, gain: float,
-    flux: ComplexArray, rotor: ComplexArray, third: ComplexArray,
-) -> tuple[float, complex]:  # fmt: skip
+    machine: MachineRates, w: float, w_s: float, flux: ComplexArray, rotor: ComplexArray, third: ComplexArray
+) -> tuple[float, complex]:
     """Mean speed and amplitude W of its ripple; adds their answer to `flux`, fills `third`, that at 3 w_s.
 
-    flux, rotor: Psi and I_r of constant speed w; gain: p^2 / J. The mean torque changes with |W|^2, and the
+    flux, rotor: Psi and I_r of constant speed w. The mean torque changes with |W|^2, and the
     mean speed makes up for it.
     """
     once, steady, again = np.empty(5, np.complex128), np.empty(5, np.complex128), np.empty(5, np.complex128)
@@ -160,9 +186,10 @@ def answer_ripple(
         np.empty(2, np.complex128), np.empty(2, np.complex128), np.empty(2, np.complex128),
     )  # fmt: skip
     i_third = np.empty(2, np.complex128)
-    answer_speed(decay, current_from_flux, w, w_s, 0.5, np.conj(flux), once, i_once)
-    answer_speed(decay, current_from_flux, w, 3.0 * w_s, 0.5, flux, third, i_third)
-    answer_speed(decay, current_from_flux, w, w_s, 1.0, flux, steady, i_steady)
+    answer_speed(machine, w, w_s, 0.5, np.conj(flux), once, i_once)
+    answer_speed(machine, w, 3.0 * w_s, 0.5, flux, third, i_third)
+    answer_speed(machine, w, w_s, 1.0, flux, steady, i_steady)
+    load, gain = machine.load, machine.gain
     load_slope = load[1] + 2.0 * w * load[2]
     ripple_slope = 0.5 * (
         cross(once, rotor) + cross(flux, i_once)
@@ -175,7 +202,7 @@ def answer_ripple(
     i_once *= ripple
     third *= ripple
     i_third *= ripple
-    answer_speed(decay, current_from_flux, w, w_s, 0.5 * np.conj(ripple), third, again, i_again)
+    answer_speed(machine, w, w_s, 0.5 * np.conj(ripple), third, again, i_again)
     mean_slope = 0.5 * (cross(steady, np.conj(rotor)) + cross(np.conj(flux), i_steady)).real
     gained = -0.5 * cross(flux, np.conj(rotor)).real
     flux += once + again

@@ -8,11 +8,12 @@ middle of the step. Plain loops, one candidate after the other: this is for simu
 
 import numpy as np
 
-from core.machines.base import Array
+from core.machines.base import Array, RotorAsymmetry
 from core.machines.compiled import compiled
 from core.machines.delay import delay_voltage
-from core.machines.discretisation import discretise, multiply
-from core.machines.kernel import REFERENCE_DRIFT, mean_over_next_step
+from core.machines.discretisation import Hold, discretise, multiply
+from core.machines.kernel import NO_REFERENCE, REFERENCE_DRIFT, mean_over_next_step
+from core.machines.stepping import Comparison, InitialState, MachineRates, SteppedVoltage, Track
 
 
 @compiled
@@ -25,21 +26,23 @@ def turning_drop(asymmetry: float, angle: float, i: Array, drop: Array) -> None:
 
 @compiled
 def simulate_turning(
-    u: Array, step: float, decay: Array, current_from_flux: Array, load: Array, acceleration: float,
-    turn: float, flux: Array, w: float, asymmetry: float, angle: float, current: Array, speed: Array,
+    u: Array, step: float, turn: float, machine: MachineRates, flux: Array, w: float, asymmetry: float,
+    angle: float, track: Track,
 ) -> None:  # fmt: skip
-    """One candidate through voltages u (columns, 2); fills current (columns, 2) and speed (columns,).
+    """Step one candidate through voltages u (columns, 2); fill current (columns, 2) and speed (columns,).
 
     asymmetry [ohm] and angle [rad] are those of the header, the angle at column 0; flux (5,), w likewise.
     """
-    E, G0, G1, H = np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2))
+    current, speed, load, acceleration = track.current, track.speed, machine.load, machine.gain * step
+    hold = Hold(np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2)))
+    E, G0, G1, H = hold
     x, x_next, i, rotor_before = np.empty((5, 1)), np.empty((5, 1)), np.empty((5, 1)), np.empty(2)
     drop, drop_before, e = np.zeros(2), np.empty(2), np.empty(2)
-    x[:, 0], rotor_before[:], reference, half_kick = flux, flux[2:4], np.inf, 0.0
+    x[:, 0], rotor_before[:], reference, half_kick = flux, flux[2:4], NO_REFERENCE, 0.0
     now, before = mean_over_next_step(turn)
     for k in range(u.shape[0]):
         drop_before[:] = drop
-        multiply(current_from_flux, x, i)
+        multiply(machine.current_from_flux, x, i)
         turning_drop(asymmetry, angle, i, drop)
         if k == 0:
             drop_before[:] = drop
@@ -53,9 +56,9 @@ def simulate_turning(
         w += half_kick
         if k == u.shape[0] - 1:
             break
-        if abs(w - reference) > REFERENCE_DRIFT:
+        if not abs(w - reference) <= REFERENCE_DRIFT:
             reference = w
-            discretise(decay, reference, step, E, G0, G1, H)
+            discretise(machine.decay, reference, step, hold)
         ahead = w - reference
         e[0] = -ahead * (now * x[3, 0] + before * rotor_before[1]) - now * drop[0] - before * drop_before[0]
         e[1] = ahead * (now * x[2, 0] + before * rotor_before[0]) - now * drop[1] - before * drop_before[1]
@@ -70,23 +73,27 @@ def simulate_turning(
 
 @compiled
 def play_turning(
-    voltage: Array, first: int, last: int, step: float, substeps: int, delay_s: Array, decay: Array,
-    current_from_flux: Array, load: Array, acceleration: float, turn: float, flux_0: Array, speed_0: Array,
-    asymmetry: Array, angle_0: Array, measured: Array, compare_from: int, error: Array, current: Array,
-    speed: Array,
+    feed: SteppedVoltage, delay_s: Array, machines: MachineRates, asymmetry: RotorAsymmetry,
+    beginning: InitialState, comparison: Comparison, track: Track,
 ) -> None:  # fmt: skip
-    """Like `batch.play`; asymmetry [ohm] and angle_0, th at the first column [rad], of shape (n,)."""
-    u, track, pace = np.empty((last - first, 2)), np.empty((last - first, 2)), np.empty(last - first)
+    """Step every candidate like `batch.play`, with the turning part of its rotor's resistance."""
+    columns, substeps, measured = feed.last - feed.first, feed.substeps, comparison.measured
+    u, own = np.empty((columns, 2)), Track(np.empty((columns, 2)), np.empty(columns))
     for c in range(delay_s.size):
-        delay_voltage(voltage, delay_s[c] / step, first, u)
+        machine = MachineRates(
+            machines.decay[c], machines.current_from_flux[c], machines.load[c], machines.gain
+        )
+        delay_voltage(feed.voltage, delay_s[c] / feed.step_s, feed.first, u)
         simulate_turning(
-            u, step, decay[c], current_from_flux[c], load[c], acceleration, turn, flux_0[:, c], speed_0[c],
-            asymmetry[c], angle_0[c], track, pace,
+            u, feed.step_s, feed.angular_frequency * feed.step_s, machine, beginning.flux[:, c],
+            beginning.speed[c], asymmetry.resistance[c], asymmetry.angle[c], own,
         )  # fmt: skip
-        error[c] = 0.0
-        for k in range(0, track.shape[0], substeps):
-            if speed.shape[1] > 0:
-                current[c, :, k // substeps], speed[c, k // substeps] = track[k], pace[k]
-            if measured.shape[0] > 0 and k >= compare_from:
-                difference = track[k] - measured[k // substeps]
-                error[c] += difference[0] ** 2 + difference[1] ** 2
+        error = 0.0
+        for k in range(0, columns, substeps):
+            if track.speed.shape[1] > 0:
+                track.current[c, :, k // substeps] = own.current[k]
+                track.speed[c, k // substeps] = own.speed[k]
+            if measured.shape[0] > 0 and k >= comparison.compare_from:
+                difference = own.current[k] - measured[k // substeps]
+                error += difference[0] ** 2 + difference[1] ** 2
+        comparison.squared_error[c] = error if np.isfinite(error) else np.inf

@@ -3,13 +3,12 @@
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Thread
 
 import pytest
 
-from service.collector.records.policy import RecordPolicy
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.configuration.settings import Settings
@@ -70,11 +69,11 @@ class Bench:
     def request(self) -> str:
         return self.repository.request_recording(MOTOR, now_ns=time.time_ns()).id
 
-    def requested(self, request_id: str) -> RecordingRequest:
-        return self.repository.recording_request(request_id)
+    def report(self, report_id: str) -> RecordingRequest:
+        return self.repository.recording_request(report_id)
 
-    def reaches(self, request_id: str, state: RecordingRequestState) -> bool:
-        return eventually(lambda: self.requested(request_id).state is state)
+    def reaches(self, report_id: str, state: RecordingRequestState) -> bool:
+        return eventually(lambda: self.report(report_id).state is state)
 
     def recordings(self) -> list[RecordingEntry]:
         return list(self.repository.recordings(limit=100).items)
@@ -96,10 +95,6 @@ class Bench:
 
     def with_settings(self, **changes: object) -> "Bench":
         self.settings = self.settings.model_copy(update=changes)
-        return self
-
-    def with_record_policy(self, policy: RecordPolicy) -> "Bench":
-        self.policy = replace(self.policy, records=policy)
         return self
 
     def link(self) -> LinkState:

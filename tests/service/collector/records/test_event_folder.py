@@ -1,14 +1,12 @@
 """Where a relay keeps its recordings: found over real MMS, however it is called."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from mms import Client
 from service.collector.records.event_folder import Contents, EventFolder
-from service.collector.records.policy import RECORD_POLICY
 from service.plant import Overrides
 from service.storage.states import LinkState, RecordingRequestState
 from testing.waiting import eventually
@@ -103,10 +101,10 @@ def test_a_second_folder_is_told_of_the_relay(bench: Bench, relay: ScriptedRelay
 def test_a_trigger_without_a_folder_names_what_was_looked_for(bench: Bench, relay: ScriptedRelay) -> None:
     relay.silent = True
     relay.events.rmdir()
-    request_id = bench.request()
+    report_id = bench.request()
     with bench.session():
-        assert bench.reaches(request_id, RecordingRequestState.FAILED)
-    reason = bench.requested(request_id).reason or ""
+        assert bench.reaches(report_id, RecordingRequestState.FAILED)
+    reason = bench.report(report_id).reason or ""
     assert "expected a record within 2 s of the trigger; no directory of event recordings" in reason
     assert relay.edges == 1, "the folder may come with the first record"
 
@@ -121,9 +119,12 @@ def test_of_empty_folders_the_one_that_gets_a_recording_is_it(client: Client, re
     assert folder.contents(client).directory == "COMTRADE", "from now on"
 
 
-def test_a_folder_that_goes_and_comes(bench: Bench, relay: ScriptedRelay) -> None:
+def test_a_folder_that_goes_and_comes(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.records.event_folder.SEARCH_PERIOD_S", 0.1)
     relay.events.rmdir()
-    with bench.with_record_policy(replace(RECORD_POLICY, folder_search_s=0.1)).session():
+    with bench.session():
         assert eventually(lambda: "looked for" in (bench.repository.ied(NAME).link_reason or ""))
         assert bench.link() is LinkState.UP
         relay.events.mkdir()

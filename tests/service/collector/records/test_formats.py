@@ -6,25 +6,24 @@ from pathlib import Path
 import pytest
 
 from core.recordings import read
-from service.collector.records.formats import one_format_an_event
-from service.collector.records.life import Life, RecordState
-from service.collector.records.listing import understand
+from service.collector.records.directory import PULL_ATTEMPTS
+from service.collector.records.formats import one_format_an_event, remote_of
+from service.collector.records.listing import ListedRecord, understand
 from service.storage.states import AlarmKind, RecordingRequestState, RecordingState
 from testing.relays.simulated import IED, scenario_of, simulated
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import at, expecting
-from tests.service.collector.records.policies import WRONG_IN_A_ROW, with_first_pause
 from tests.service.collector.records.test_listing import listed
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 
 
-def states_of(*names: str) -> list[RecordState]:
-    return [RecordState(record) for record in understand(listed(*names), "EVENTS").records]
+def records(*names: str) -> tuple[ListedRecord, ...]:
+    return understand(listed(*names), "EVENTS").records
 
 
 def chosen(*names: str) -> list[str]:
-    return [state.record.file_names for state in one_format_an_event(states_of(*names)).states]
+    return [record.file_names for record in one_format_an_event(records(*names), (), (), ()).records]
 
 
 @pytest.mark.parametrize(
@@ -44,48 +43,40 @@ def test_one_format_of_each_event_is_taken(names: list[str], taken: list[str]) -
     assert chosen(*names) == taken
 
 
-def report_and_comtrade() -> tuple[RecordState, RecordState]:
-    """Of one event."""
-    both = states_of("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
-    report, comtrade = sorted(both, key=lambda state: state.name)
-    return report, comtrade
-
-
 def test_what_was_taken_stays_taken() -> None:
-    report, comtrade = report_and_comtrade()
-    report.life, report.in_store = Life.STORED, True
-    kept = one_format_an_event([report, comtrade])
-    assert kept.states == (report,)
+    both = records("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
+    (report,) = (record for record in both if record.suffixes == {".CEV"})
+    kept = one_format_an_event(both, {remote_of(report)}, (), ())
+    assert kept.records == (report,)
     assert [(file.name, file.reason) for file in kept.passed_over] == [
         ("HR_10007.CFG, HR_10007.DAT", "the same event as CR_10007.CEV, which is taken")
     ]
 
 
 def test_a_refused_format_comes_last() -> None:
-    report, comtrade = report_and_comtrade()
-    assert one_format_an_event([report, comtrade]).replaceable == {comtrade}
-    report.life, comtrade.life = Life.INCOMPLETE, Life.REFUSED
-    without = one_format_an_event([report, comtrade])
-    assert without.states == (report,)
+    both = records("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
+    report, comtrade = sorted(both, key=lambda record: record.name)
+    without = one_format_an_event(both, (), {remote_of(comtrade)}, {report})
+    assert without.records == (report,)
     assert without.replaceable == frozenset(), "the other one is refused"
-    report.life = Life.REFUSED
-    neither = one_format_an_event([report, comtrade])
-    assert neither.states == (comtrade,)
+    neither = one_format_an_event(both, (), {remote_of(comtrade), remote_of(report)}, ())
+    assert neither.records == (comtrade,)
     assert [file.reason for file in neither.passed_over] == [
         "the same event as HR_10007.CFG, HR_10007.DAT, refused, as this is"
     ]
+    assert one_format_an_event(both, (), (), ()).replaceable == {comtrade}
 
 
 def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
-    """A request becomes a stored event report."""
+    """A wish becomes a stored event report."""
     scenario = scenario_of("sel-710-ed1")
     record = scenario.profile.record.model_copy(update={"formats": ("CEV",)})
     scenario = replace(scenario, profile=scenario.profile.model_copy(update={"record": record}))
     with simulated(tmp_path / "relays", scenario) as served:
         here = at(expecting(bench, served.document.ied(IED)), served)
-        request_id = here.request()
+        wish = here.request()
         with here.session():
-            assert eventually(lambda: here.requested(request_id).state is RecordingRequestState.FETCHED, 20)
+            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FETCHED, 20)
     (recording,) = here.recordings()
     assert recording.digest is not None
     stored = here.store.find(recording.digest)
@@ -134,21 +125,21 @@ def states(bench: Bench) -> dict[str, RecordingState]:
 
 
 def test_an_event_report_stands_in_for_a_comtrade_too_large(bench: Bench, relay: ScriptedRelay) -> None:
-    """The request gets the record, and is not failed by the refusal before."""
+    """The wish for the record gets it, and is not failed by the refusal before."""
     relay.silent = True
-    request_id = bench.request()
+    wish = bench.request()
     with bench.session():
-        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
+        assert bench.reaches(wish, RecordingRequestState.TRIGGERED)
         relay.write_file("CR_10007.CEV", b"event report of the same event")
         relay.write_record("HR_10007", b"x" * 200_000)  # larger than max_file_bytes
-        assert bench.reaches(request_id, RecordingRequestState.FETCHED), bench.requested(request_id).reason
+        assert bench.reaches(wish, RecordingRequestState.FETCHED), bench.report(wish).reason
         assert bench.alarms() == {AlarmKind.FILE_TOO_LARGE: ["HR_10007"]}
         taken = {"HR_10007.CFG, HR_10007.DAT": "the same event as CR_10007.CEV, which is taken"}
         assert eventually(lambda: ignored(bench) == taken)
     assert states(bench) == {"CR_10007": RecordingState.FETCHED, "HR_10007": RecordingState.REJECTED}
     report = bench.recording("CR_10007")
     assert report is not None
-    assert bench.requested(request_id).recording_id == report.id
+    assert bench.report(wish).recording_id == report.id
     refused = bench.recording("HR_10007")
     assert refused is not None
     assert "(setting max_file_bytes), found 200000" in (refused.reason or "")
@@ -167,15 +158,15 @@ def test_a_refusal_of_the_past_hides_no_other_format(bench: Bench, relay: Script
         assert eventually(lambda: bench.is_stored("CR_10007"))
 
 
-def test_a_request_fails_where_each_format_is_refused(bench: Bench, relay: ScriptedRelay) -> None:
+def test_a_wish_fails_where_each_format_is_refused(bench: Bench, relay: ScriptedRelay) -> None:
     relay.silent = True
-    request_id = bench.request()
+    wish = bench.request()
     with bench.session():
-        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
+        assert bench.reaches(wish, RecordingRequestState.TRIGGERED)
         relay.write_file("CR_10007.CEV", b"x" * 150_000)
         relay.write_record("HR_10007", b"x" * 200_000)
-        assert bench.reaches(request_id, RecordingRequestState.FAILED)
-        assert "CR_10007.CEV: expected at most 100000 bytes" in (bench.requested(request_id).reason or "")
+        assert bench.reaches(wish, RecordingRequestState.FAILED)
+        assert "CR_10007.CEV: expected at most 100000 bytes" in (bench.report(wish).reason or "")
         listings = relay.listings
         assert eventually(lambda: relay.listings > listings + 3)
     refused = {"CR_10007": RecordingState.REJECTED, "HR_10007": RecordingState.REJECTED}
@@ -185,9 +176,9 @@ def test_a_request_fails_where_each_format_is_refused(bench: Bench, relay: Scrip
 
 
 def test_an_event_report_stands_in_for_a_comtrade_that_is_listed_only(
-    bench: Bench, relay: ScriptedRelay
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    bench.with_record_policy(with_first_pause(0.002))
+    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.002)
     relay.absent = {"HR_10007"}
     relay.write_record("HR_10007")
     relay.write_file("CR_10007.CEV", b"event report of the same event")
@@ -195,7 +186,7 @@ def test_an_event_report_stands_in_for_a_comtrade_that_is_listed_only(
         assert eventually(lambda: bench.is_stored("CR_10007"))
     refused = bench.recording("HR_10007")
     assert refused is not None
-    assert (refused.state, refused.attempts) == (RecordingState.REJECTED, WRONG_IN_A_ROW)
+    assert (refused.state, refused.attempts) == (RecordingState.REJECTED, PULL_ATTEMPTS)
     assert "EVENTS/HR_10007.CFG" in (refused.reason or "")
 
 

@@ -1,13 +1,13 @@
 """What a relay may do to the store: names, sizes and amounts that are refused, and told."""
 
 import time
-from dataclasses import replace
 from pathlib import Path
+
+import pytest
 
 from core.units import NANOSECONDS_PER_DAY
 from mms.binding.prototypes import PROTOTYPES
 from service.collector.records.allowance import BLOCK_BYTES, DailyAllowance
-from service.collector.records.policy import RECORD_POLICY
 from service.collector.session.relay_alarms import AND_MORE, RelayAlarms
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.waiting import eventually
@@ -50,9 +50,9 @@ def test_a_trigger_whose_record_must_wait_says_so(bench: Bench, relay: ScriptedR
     relay.write_record("HR_0")
     with bench.with_settings(max_relay_bytes_per_day=RECORD_BYTES).session():
         assert eventually(lambda: bench.is_stored("HR_0"))
-        request_id = bench.request()
-        assert bench.reaches(request_id, RecordingRequestState.FAILED)
-    assert "max_relay_bytes_per_day" in (bench.requested(request_id).reason or "")
+        report = bench.request()
+        assert bench.reaches(report, RecordingRequestState.FAILED)
+    assert "max_relay_bytes_per_day" in (bench.report(report).reason or "")
 
 
 def test_an_allowance_begins_anew_each_day_of_utc() -> None:
@@ -93,8 +93,10 @@ def test_a_name_that_cannot_be_trusted_is_an_alarm_while_it_is_listed(
     assert len(bench.repository.alarms(limit=10).items) == 1, "a restart raises no second one"
 
 
-def test_a_record_that_grows_for_ever_is_an_alarm_until_it_stops(bench: Bench, relay: ScriptedRelay) -> None:
-    bench.with_record_policy(replace(RECORD_POLICY, unsteady_s=0.5))
+def test_a_record_that_grows_for_ever_is_an_alarm_until_it_stops(
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.collector.records.directory.UNSTEADY_S", 0.5)
     relay.write_file("HR_1.CFG", b"configuration")
     size = 0
     with bench.session():
@@ -117,9 +119,9 @@ def shifty(bench: Bench) -> list[RecordingState]:
 
 
 def test_a_record_of_another_size_at_each_look_is_asked_for_a_few_times_only(
-    bench: Bench, relay: ScriptedRelay
+    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    bench.with_record_policy(replace(RECORD_POLICY, wrong_listings_a_day=3))
+    monkeypatch.setattr("service.collector.records.directory.ATTEMPTS_OF_A_NAME", 3)
     relay.shifts = True
     relay.write_record("SHIFTY")
     with bench.session():
@@ -157,9 +159,9 @@ def test_nothing_is_deleted_on_a_relay(bench: Bench, relay: ScriptedRelay) -> No
     relay.write_record("HR_1", b"x" * 200_000)
     relay.write_record("HR_2")
     before = {path: path.read_bytes() for path in relay.events.iterdir()}
-    request_id = bench.request()
+    report = bench.request()
     with bench.session():
-        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(report, RecordingRequestState.FETCHED)
     assert before.items() <= {path: path.read_bytes() for path in relay.events.iterdir()}.items()
     of_clients = {name for name in PROTOTYPES if "Connection_" in name and "file" in name.lower()}
     reading = {"getFileDirectoryEx", "fileOpen", "fileRead", "fileClose"}
