@@ -3,6 +3,7 @@
 import json
 import sqlite3
 import time
+from collections.abc import Mapping
 from functools import partial
 
 from sqlalchemy import Connection, Engine, create_engine, event, make_url
@@ -13,15 +14,24 @@ from sqlalchemy.pool import ConnectionPoolEntry
 from service.storage.errors import StorageError
 
 BUSY_TIMEOUT_S = 30.0
+"""How long a transaction waits while others write to an SQLite file."""
+
 LOOK_S = 0.003
 """Between looks whether SQLite's write lock is free."""
 
 WRITES = "statorwatch_writes"
 """Execution option of connections that will write."""
 
+WAITS_S = "statorwatch_busy_timeout_s"
+"""Execution option that says how long a writing connection waits for its turn [s]."""
 
-def connect(url: str) -> Engine:
-    """Engine for an SQLAlchemy URL (SQLite or PostgreSQL). Raises StorageError for a URL that is none."""
+
+def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
+    """Return the engine for an SQLAlchemy URL (SQLite or PostgreSQL).
+
+    busy_timeout_s: how long a transaction waits while others write to an SQLite file. Raises StorageError for
+    what is no URL.
+    """
     try:
         parsed = make_url(url)
     except ArgumentError as error:
@@ -40,10 +50,22 @@ def connect(url: str) -> Engine:
         raise StorageError(
             "database_url: expected an SQLite file, found a database in memory (two processes use it)"
         )
-    engine = create_engine(parsed, json_serializer=serializer, connect_args={"timeout": BUSY_TIMEOUT_S})
+    engine = create_engine(
+        parsed,
+        json_serializer=serializer,
+        connect_args={"timeout": busy_timeout_s},
+        execution_options={WAITS_S: busy_timeout_s},
+    )
     event.listen(engine, "connect", _prepare_sqlite)
     event.listen(engine, "begin", _begin_sqlite)
     return engine
+
+
+def busy_timeout_s_of(options: Mapping[str, object]) -> float:
+    """Return how long a transaction waits for its turn, from the execution options of an engine [s]."""
+    timeout_s = options.get(WAITS_S, BUSY_TIMEOUT_S)
+    assert isinstance(timeout_s, float)  # noqa: S101 - `connect` has set it
+    return timeout_s
 
 
 def _prepare_sqlite(connection: DBAPIConnection, entry: ConnectionPoolEntry) -> None:
@@ -64,7 +86,7 @@ def _prepare_sqlite(connection: DBAPIConnection, entry: ConnectionPoolEntry) -> 
 
 def _begin_sqlite(connection: Connection) -> None:
     # A transaction that reads first and writes later would fail at once (no wait) when the other process
-    # wrote in between; taking the write lock at BEGIN waits for BUSY_TIMEOUT_S instead.
+    # wrote in between; taking the write lock at BEGIN waits for the busy timeout instead.
     if not connection.get_execution_options().get(WRITES, False):
         connection.exec_driver_sql("BEGIN")
     else:
@@ -72,14 +94,15 @@ def _begin_sqlite(connection: Connection) -> None:
 
 
 def _begin_writing(connection: Connection) -> None:
-    """Waits for the write lock for BUSY_TIMEOUT_S. Raises sqlalchemy.exc.OperationalError.
+    """Wait for the write lock as long as the engine says. Raises sqlalchemy.exc.OperationalError.
 
     SQLite itself soon looks every 100 ms only: beside a process whose threads write one after the other, that
     is to come too late again and again. At most one thread of a process waits here (Sessions).
     """
     driver = connection.connection.driver_connection
     assert isinstance(driver, sqlite3.Connection)  # noqa: S101 - _prepare_sqlite has looked
-    deadline_s = time.monotonic() + BUSY_TIMEOUT_S
+    timeout_s = busy_timeout_s_of(connection.get_execution_options())
+    deadline_s = time.monotonic() + timeout_s
     driver.execute("PRAGMA busy_timeout = 0")
     try:
         while True:
@@ -94,4 +117,4 @@ def _begin_writing(connection: Connection) -> None:
                 return
             time.sleep(LOOK_S)
     finally:
-        driver.execute(f"PRAGMA busy_timeout = {round(BUSY_TIMEOUT_S * 1000)}")
+        driver.execute(f"PRAGMA busy_timeout = {round(timeout_s * 1000)}")

@@ -10,7 +10,7 @@ from sqlalchemy import ColumnElement, Engine, Select, text, tuple_
 from sqlalchemy.exc import TimeoutError  # noqa: A004 - that of the database
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from service.storage.engine import BUSY_TIMEOUT_S, WRITES
+from service.storage.engine import WRITES, busy_timeout_s_of
 from service.storage.errors import NotFoundError
 from service.storage.models import Base
 from service.storage.records import Cursor, Page
@@ -32,6 +32,7 @@ class Sessions:
     def __init__(self, engine: Engine) -> None:
         self._reading = engine
         self._writing = engine.execution_options(**{WRITES: True})
+        self._busy_timeout_s = busy_timeout_s_of(engine.get_execution_options())
         self._turn = Lock() if engine.dialect.name == "sqlite" else None
 
     def check(self) -> None:
@@ -59,8 +60,8 @@ class Sessions:
         if self._turn is None:
             yield
             return
-        if not self._turn.acquire(timeout=BUSY_TIMEOUT_S):
-            raise TimeoutError(f"other threads have been writing for {BUSY_TIMEOUT_S:g} s")
+        if not self._turn.acquire(timeout=self._busy_timeout_s):
+            raise TimeoutError(f"other threads have been writing for {self._busy_timeout_s:g} s")
         try:
             yield
         finally:

@@ -69,11 +69,8 @@ def test_a_failure_of_the_service(context: ApiContext, engine: Engine) -> None:
     assert "no such table" not in response.text, "what went wrong inside is for the log"
 
 
-def test_a_database_that_is_locked_for_long(
-    tmp_path: Path, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.storage.engine.BUSY_TIMEOUT_S", 0.2)
-    repository = Repository(connect(database_url))
+def test_a_database_that_is_locked_for_long(tmp_path: Path, store: RecordingStore, database_url: str) -> None:
+    repository = Repository(connect(database_url, busy_timeout_s=0.2))
     repository.sync_plant(two_motor_plant())
     app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
     file = database_url.removeprefix("sqlite:///")

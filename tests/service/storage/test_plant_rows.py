@@ -1,10 +1,17 @@
 from dataclasses import replace
 
 import pytest
+from sqlalchemy import Engine
+from sqlalchemy.orm import Session
 
 from service.storage import NotFoundError, Repository
+from service.storage.models import AlarmRow, LinkChangeRow
+from service.storage.repository.alarms import MOST_CLEARED
+from service.storage.repository.links import MOST_CHANGES
 from service.storage.states import AlarmKind, LinkState
 from testing.service.plants import NOW_NS, two_motor_plant
+
+RELAY = "A1_SEL710"
 
 
 def test_the_tables_follow_the_plant(repository: Repository) -> None:
@@ -26,20 +33,37 @@ def test_the_tables_follow_the_plant(repository: Repository) -> None:
     assert len(repository.motors(limit=10).items) == 2
 
 
-def test_only_so_much_history_is_kept(repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.storage.repository.links.MOST_CHANGES", 5)
-    monkeypatch.setattr("service.storage.repository.alarms.MOST_CLEARED", 2)
-    for number in range(9):
-        repository.set_link_state("A1_SEL710", LinkState.DOWN, f"reason {number}", now_ns=NOW_NS + number)
-        alarm = repository.raise_alarm(
-            "A1_SEL710", AlarmKind.FILE_REFUSED, f"{number}", "bad", now_ns=NOW_NS + number
-        )
-        repository.clear_alarms("A1_SEL710", [alarm.id], now_ns=NOW_NS + number)
-    repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "stands", "bad", now_ns=NOW_NS)
-    changes = repository.link_changes("A1_SEL710", limit=100).items
-    assert [change.reason for change in changes] == [f"reason {number}" for number in (8, 7, 6, 5, 4)]
-    alarms = repository.alarms(limit=100).items
-    assert [alarm.subject for alarm in alarms] == ["8", "7", "stands"]
+def test_only_so_much_history_is_kept(repository: Repository, engine: Engine) -> None:
+    fill_history(engine)
+    for number in range(3):
+        now_ns = NOW_NS + number
+        repository.set_link_state(RELAY, LinkState.DOWN, f"reason {number}", now_ns=now_ns)
+        alarm = repository.raise_alarm(RELAY, AlarmKind.FILE_REFUSED, f"file {number}", "bad", now_ns=now_ns)
+        repository.clear_alarms(RELAY, [alarm.id], now_ns=now_ns)
+    repository.raise_alarm(RELAY, AlarmKind.FILE_REFUSED, "stands", "bad", now_ns=NOW_NS)
+    changes = repository.link_changes(RELAY, limit=2 * MOST_CHANGES).items
+    assert len(changes) == MOST_CHANGES
+    assert [each.reason for each in changes[:4]] == ["reason 2", "reason 1", "reason 0", "old 1"]
+    cleared = [
+        each for each in repository.alarms(limit=2 * MOST_CLEARED).items if each.cleared_ns is not None
+    ]
+    assert len(cleared) == MOST_CLEARED
+    assert {"file 0", "file 1", "file 2", "old 1"} <= {each.subject for each in cleared}
+    assert f"old {MOST_CLEARED}" not in {each.subject for each in cleared}
+    assert [each.subject for each in repository.standing_alarms(RELAY)] == ["stands"]
+
+
+def fill_history(engine: Engine) -> None:
+    """As many changes of a link and alarms that are over as are kept; "old 1" is the latest."""
+    with Session(engine) as session, session.begin():
+        for age in range(1, MOST_CHANGES + 1):
+            then_ns = NOW_NS - age
+            change = {"ied": RELAY, "changed_ns": then_ns, "state": LinkState.UP, "reason": f"old {age}"}
+            session.add(LinkChangeRow(id=f"change {age}", **change))
+        for age in range(1, MOST_CLEARED + 1):
+            times = {"raised_ns": NOW_NS - age, "cleared_ns": NOW_NS - age}
+            alarm = {"ied": RELAY, "kind": AlarmKind.FILE_REFUSED, "subject": f"old {age}", "reason": "bad"}
+            session.add(AlarmRow(id=f"alarm {age}", **alarm, **times))
 
 
 def test_links_change_state_with_a_reason(repository: Repository) -> None:

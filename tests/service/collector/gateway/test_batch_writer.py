@@ -21,9 +21,8 @@ RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
 
 
 @pytest.fixture
-def repository(database_url: str, monkeypatch: pytest.MonkeyPatch) -> Repository:
-    monkeypatch.setattr("service.storage.engine.BUSY_TIMEOUT_S", 0.2)
-    repository = Repository(connect(database_url))
+def repository(database_url: str) -> Repository:
+    repository = Repository(connect(database_url, busy_timeout_s=0.2))
     repository.sync_plant(two_motor_plant())
     repository.set_link_state(RELAY, LinkState.UP, None, now_ns=NOW_NS, traffic=LinkTraffic(connections=1))
     return repository
