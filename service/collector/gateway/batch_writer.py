@@ -32,10 +32,11 @@ NO_ANSWER = (OperationalError, InterfaceError, TimeoutError)
 class BatchWriter:
     """Collects items from the threads of the sessions, and writes them from a thread of its own."""
 
-    def __init__(self, repository: Repository) -> None:
+    def __init__(self, repository: Repository, *, period_s: float = PERIOD_S) -> None:
+        """period_s: between transactions."""
         self._samples = _Batch(repository.add_samples)
         self._notes = _Batch(repository.note_links)
-        self._worker = PeriodicWorker("batch-writer", self._write, period_s=PERIOD_S, once_more=True)
+        self._worker = PeriodicWorker("batch-writer", self._write, period_s=period_s, once_more=True)
 
     def add_sample(self, sample: Sample) -> None:
         """Write what a relay measured."""
