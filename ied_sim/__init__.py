@@ -3,9 +3,8 @@
 
 def warm_up() -> None:
     """Compile the motor's equations, or load them from the cache of an earlier run."""
-    from ied_sim.scenario.scenario import (
-        healthy_reference,  # compilation costs what an import of the package must not
-    )
+    # Imported here, because an import of the package must not load the compiler.
+    from ied_sim.scenario.scenario import healthy_reference
 
     healthy_reference("warm-up").plant.operation(0.0, 0.002, 10_000.0, settling_s=0.0)
 

@@ -1,4 +1,4 @@
-"""The command `ied-sim`: serve the simulated relays of a plant, or tell the truth about its motors."""
+"""The command `ied-sim`: serve the simulated relays of a plant, or print the true condition of its motors."""
 
 import json
 import logging
@@ -102,7 +102,7 @@ def main() -> None:
 
 
 def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, RelayConfiguration]:
-    """A scenario for every IED of the file: that of the scenario file, or the healthy reference motor."""
+    """Return a configuration for every IED: that of the scenario file, or the healthy reference motor."""
     scenarios = {found.name: healthy_reference(found.name, profile) for found in document.ieds}
     given = {} if path is None else read_scenario(path, profile)
     for name in given:
@@ -119,7 +119,7 @@ def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, 
 def _serve(
     document: scl.Scl, names: list[str], scenarios: dict[str, RelayConfiguration], files: Path | None
 ) -> None:
-    # Waited for instead of handled, and blocked before any thread starts: all threads inherit it.
+    # The signals are waited for, not handled. They are blocked before any thread starts, so all inherit that.
     signals = (signal.SIGTERM, signal.SIGINT)
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     if any(scenario.access.tls is not None for scenario in scenarios.values()):
@@ -136,5 +136,5 @@ def _serve(
 
 
 def _say(line: str) -> None:
-    """Answer on stdout at once: programs that start this one read it through a pipe."""
+    """Write a line to stdout at once, because programs that start this one read it through a pipe."""
     print(line, flush=True)  # noqa: T201

@@ -8,7 +8,7 @@ class SimulatorError(Exception):
 
 
 class TableError(ValueError):
-    """A file cannot be used: which file, which field, what was expected and what was found."""
+    """A file cannot be used; the message says which file and field, what was expected and what was found."""
 
     def __init__(self, path: Path | str, field: str, *, expected: str, found: str) -> None:
         self.path = Path(path)

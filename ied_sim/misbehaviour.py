@@ -1,4 +1,4 @@
-"""What a relay or its network can do wrong, and when it does: switched on by time or by a control."""
+"""Faulty behaviour of a relay or its network, switched on by time or by a control."""
 
 import threading
 from collections.abc import Callable, Iterable
@@ -8,7 +8,7 @@ from math import inf
 
 
 class Kind(StrEnum):
-    """Ways to misbehave; docs/reference/simulator.md tells what each does."""
+    """Kinds of misbehaviour; docs/simulator.md tells what each does."""
 
     SLOW_REPLIES = "slow-replies"
     CUT_MID_FILE = "cut-mid-file"
@@ -60,9 +60,11 @@ MADE_BY_PROXY = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Misbehaviour:
-    """One kind with its number; on from `at_s` on, or from the rise of the control `switch`, for `for_s` [s].
+    """One kind of misbehaviour and when it is on.
 
-    It ends earlier when the control falls. at_s None: by the control alone.
+    It comes on at `at_s` [s], or when the control `switch` rises, and stays on for `for_s` [s]. It ends
+    earlier when the control falls. With `at_s` None the control alone switches it. `number` is the number
+    that some kinds have.
     """
 
     kind: Kind
@@ -73,7 +75,10 @@ class Misbehaviour:
 
 
 class MisbehaviourState:
-    """Which kinds are on at present. clock: seconds since the simulator's start. Safe for several threads."""
+    """Tells which kinds of misbehaviour are on at present.
+
+    `clock` gives the seconds since the simulator's start. Several threads may use this.
+    """
 
     def __init__(self, known: Iterable[Misbehaviour], clock: Callable[[], float]) -> None:
         self._known = tuple(known)
@@ -83,15 +88,15 @@ class MisbehaviourState:
 
     @property
     def kinds(self) -> frozenset[Kind]:
-        """All that may come on some time."""
+        """All kinds that may come on at some time."""
         return frozenset(each.kind for each in self._known)
 
     def switches(self) -> frozenset[str]:
-        """The controls that switch."""
+        """Return the controls that switch a kind."""
         return frozenset(each.switch for each in self._known if each.switch is not None)
 
     def switch(self, control: str, *, on: bool) -> None:
-        """A control has been operated."""
+        """Note that a control has been operated."""
         with self._lock:
             if on:
                 self._risen.setdefault(control, self._clock())
@@ -99,7 +104,7 @@ class MisbehaviourState:
                 self._risen.pop(control, None)
 
     def number(self, kind: Kind) -> float | None:
-        """The number of a kind that is on, None while it is not."""
+        """Return the number of a kind that is on, None while it is off."""
         for each in self._known:
             if each.kind is kind and self._is_on(each):
                 return each.number

@@ -16,15 +16,31 @@ from mms import ServerPump, ServerStartFailed
 from scl import Address, Scl
 
 UPDATE_CHECK_PERIOD_S = 0.05
-"""Between looks for relays that want to look at their motors; each says when it does."""
+"""Time between checks for relays that are due for an update."""
 
 
 class Simulator:
-    """Relays of an SCD file at the addresses it names; a context manager that serves while it is entered.
+    """Relays of an SCD file, served at the addresses it names while this context manager is entered.
 
-    ieds: names of the relays to serve, all of the file's if empty. scenarios: by IED; a relay without one
-    protects a healthy reference motor. files: directory for the relays' files.
-    Raises SimulatorError, SclError, OSError.
+    Parameters
+    ----------
+    document : Scl
+        The SCD file.
+    scenarios : mapping of str to RelayConfiguration
+        Configuration of each relay by its IED. A relay without one protects a healthy reference motor.
+    files : pathlib.Path
+        Directory for the relays' files.
+    ieds : sequence of str
+        Names of the relays to serve. All of the file's by default.
+
+    Raises
+    ------
+    SimulatorError
+        A relay cannot be made as its profile and scenario say.
+    SclError
+        The file lacks an IED or its address.
+    OSError
+        The relays' directories cannot be made.
     """
 
     def __init__(
@@ -38,7 +54,7 @@ class Simulator:
         names = tuple(dict.fromkeys(ieds)) or tuple(ied.name for ied in document.ieds)
         self.addresses: dict[str, Address] = {name: document.address(name) for name in names}
         epoch_ns = time.time_ns()
-        self._begin_s = time.monotonic()
+        self._start_s = time.monotonic()
         self._proxies = RelayProxies()
         self.relays: dict[str, Relay] = {}
         for name, address in self.addresses.items():
@@ -54,10 +70,10 @@ class Simulator:
             self.relays[name] = relay
         self._pump = ServerPump(relay.server for relay in self.relays.values() if not relay.serves_itself)
         self._stopping = threading.Event()
-        self._looking = threading.Thread(target=self._look, name="looking", daemon=True)
+        self._updating = threading.Thread(target=self._update_relays, name="relay updates", daemon=True)
 
     def start(self) -> None:
-        """Serve; SimulatorError names the relay whose address and port cannot be had."""
+        """Serve. SimulatorError names the relay whose address and port cannot be had."""
         try:
             self._pump.start()
             for relay in self.relays.values():
@@ -69,13 +85,13 @@ class Simulator:
         if taken is not None:
             self.stop()
             raise self._start_error(str(taken))
-        self._looking.start()
+        self._updating.start()
 
     def stop(self) -> None:
-        """Close all connections, abandon captures under way."""
+        """Close all connections and abandon captures under way."""
         self._stopping.set()
-        if self._looking.is_alive():
-            self._looking.join()
+        if self._updating.is_alive():
+            self._updating.join()
         self._proxies.stop()
         for relay in self.relays.values():
             relay.stop()
@@ -92,15 +108,15 @@ class Simulator:
     ) -> None:
         self.stop()
 
-    def _look(self) -> None:
-        """Every relay looks at its motor when it wants to; they begin one after the other."""
+    def _update_relays(self) -> None:
+        """Update every relay when it is due; the first updates come one after the other."""
         relays = tuple(self.relays.values())
         due_s = [k / max(1, len(relays)) for k in range(len(relays))]
         while not self._stopping.wait(UPDATE_CHECK_PERIOD_S):
-            now_s = time.monotonic() - self._begin_s
+            now_s = time.monotonic() - self._start_s
             for k, relay in enumerate(relays):
                 if due_s[k] <= now_s or relay.needs_update_soon:
-                    due_s[k] = now_s + relay.look(time.time_ns())
+                    due_s[k] = now_s + relay.update(time.time_ns())
 
     def _start_error(self, where: str) -> SimulatorError:
         for name, address in self.addresses.items():

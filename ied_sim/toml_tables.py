@@ -1,4 +1,4 @@
-"""What is wrong with a TOML file of the simulator, said for people: which file, which key."""
+"""Tables of the simulator's TOML files, and what is wrong with them in words: which file, which key."""
 
 import tomllib
 from pathlib import Path
@@ -12,13 +12,13 @@ T = TypeVar("T", bound=TableError)
 
 
 class Table(BaseModel):
-    """A table of such a file: no unknown keys, no changes."""
+    """Base of the tables: unknown keys are refused, and nothing can be changed."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 def read_table(path: Path, error: type[T]) -> dict[str, object]:
-    """The file's contents. Raises `error`."""
+    """Read a TOML file. Raise `error` where it cannot be read."""
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as reason:
@@ -30,7 +30,7 @@ def read_table(path: Path, error: type[T]) -> dict[str, object]:
 
 
 def first_error(path: Path, place: str, invalid: ValidationError, error: type[T]) -> T:
-    """The first of pydantic's complaints as `error`; `place` is where in the file it is."""
+    """Turn the first of pydantic's errors into `error`; `place` is where in the file it is."""
     first = invalid.errors()[0]
     if first["type"] == "missing":
         return error(path, place, expected="this field", found="nothing")

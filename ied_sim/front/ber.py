@@ -7,7 +7,7 @@ _DEEPEST = 50
 
 
 class MalformedError(ValueError):
-    """Octets that are no BER element."""
+    """The octets are no BER element."""
 
 
 @dataclass(slots=True)
@@ -19,12 +19,12 @@ class Element:
     parts: "list[Element] | None" = None
 
     def part(self, tag: bytes) -> "Element | None":
-        """The first part with this tag."""
+        """Return the first part with this tag, None where there is none."""
         return next((part for part in self.parts or () if part.tag == tag), None)
 
 
 def decode(octets: bytes) -> Element:
-    """The one element that `octets` are. Raises MalformedError."""
+    """Decode octets that are one element. Raise MalformedError where they are not."""
     found = list(_elements(octets, 0, len(octets), 0))
     if len(found) != 1:
         raise MalformedError(f"{len(found)} elements where one was expected")
@@ -32,18 +32,19 @@ def decode(octets: bytes) -> Element:
 
 
 def encode(whole: Element) -> bytes:
+    """Encode an element with its parts."""
     return element(whole.tag, whole.content if whole.parts is None else b"".join(map(encode, whole.parts)))
 
 
 def element(tag: bytes, content: bytes) -> bytes:
-    """Tag, length, content."""
+    """Encode a tag, its length and its content."""
     return tag + _length(len(content)) + content
 
 
 def spans(octets: bytes, begin: int, end: int) -> Iterator[tuple[bytes, int, int, int]]:
-    """The elements in octets[begin:end], not looked into: tag, and where it, its content and the next begin.
+    """Yield the elements in octets[begin:end] without decoding their contents.
 
-    Raises MalformedError.
+    Each is told by its tag, and by where it, its content and the next element begin. Raises MalformedError.
     """
     place = begin
     while place < end:

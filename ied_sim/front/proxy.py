@@ -1,4 +1,4 @@
-"""The TCP side: connections accepted in a relay's place and passed on to its server."""
+"""The TCP side of the proxies: connections accepted in a relay's place and passed on to its server."""
 
 import asyncio
 import logging
@@ -21,7 +21,7 @@ log = logging.getLogger(__name__)
 _FROZEN_POLL_S = 0.02
 
 OpenOverflowServer = Callable[[], Address | None]
-"""Opens a second server beside the first where there is none yet; None while the relay is down."""
+"""Opens a second server beside the first where there is none yet; returns None while the relay is down."""
 
 
 @dataclass(slots=True)
@@ -36,7 +36,11 @@ class _Session:
 
 
 class RelayProxy:
-    """Accepts at `outside` what the server at `inside` answers. Used by the loop of RelayProxies."""
+    """Proxy of one relay: accepts clients at `outside` and passes their requests to the server at `inside`.
+
+    At most `sessions` clients are served at once. Those beyond MOST_CONNECTIONS are passed to the overflow
+    server. The loop of RelayProxies runs the proxy.
+    """
 
     def __init__(
         self,
@@ -49,7 +53,6 @@ class RelayProxy:
         sessions: int,
         overflow_server: OpenOverflowServer,
     ) -> None:
-        """sessions: most clients at once. Those beyond MOST_CONNECTIONS go to the overflow server."""
         self.outside = outside
         self._inside = inside
         self._most = sessions
@@ -63,7 +66,7 @@ class RelayProxy:
         self._listening: asyncio.Server | None = None
 
     async def open(self) -> None:
-        """Listen. Raises OSError where the address cannot be had."""
+        """Listen. Raise OSError where the address cannot be had."""
         self._listening = await asyncio.start_server(self._accept, self.outside.host, self.outside.port)
 
     async def close(self) -> None:
@@ -149,7 +152,7 @@ class RelayProxy:
                 await session.client.drain()
 
     def _pass_on(self, message: Message, session: _Session) -> bool:
-        """Write a server's message to the client; False where the connection is cut instead."""
+        """Write a server's message to the client; return False where the connection is cut instead."""
         if message.kind == CONNECT_CONFIRM:
             session.unit_size = unit_size(message)
         if message.kind != DATA:
@@ -173,12 +176,12 @@ class RelayProxy:
 
 
 def _units(message: Message, user_data: bytes, size: int) -> bytes:
-    """As they came where nothing was changed."""
+    """Return the data units to send: those that came where nothing was changed."""
     return b"".join(message.units) if user_data == message.user_data else units_of(user_data, size)
 
 
 class RelayProxies:
-    """All proxies of a simulator, on one thread; none, no thread."""
+    """All proxies of a simulator, on one thread. Without proxies there is no thread."""
 
     def __init__(self) -> None:
         self._proxies: list[RelayProxy] = []
@@ -195,7 +198,7 @@ class RelayProxies:
         sessions: int,
         overflow_server: OpenOverflowServer,
     ) -> Address:
-        """A proxy at `outside`; returns where the server behind it is to listen."""
+        """Add a proxy at `outside`; return the address where the server behind it is to listen."""
         inside = ReservedAddress()
         self._reserved.append(inside)
         self._proxies.append(
@@ -212,7 +215,7 @@ class RelayProxies:
         return inside.address
 
     def start(self) -> Address | None:
-        """Open all proxies; None, or the address of the first that cannot be had."""
+        """Open all proxies; return None, or the address of the first that cannot be had."""
         if not self._proxies:
             return None
         loop = asyncio.new_event_loop()
@@ -227,7 +230,7 @@ class RelayProxies:
         return None
 
     def stop(self) -> None:
-        """Close all proxies; harmless where none was opened."""
+        """Close all proxies. Without any, this does nothing."""
         for inside in self._reserved:
             inside.release()
         if self._running is None:

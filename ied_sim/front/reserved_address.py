@@ -1,15 +1,18 @@
-"""Addresses of this machine's own, for servers that stand behind a front."""
+"""Addresses on the loopback interface for servers that stand behind a proxy."""
 
 import socket
 
 from scl import Address
 
 HOST = "127.0.0.2"
-"""Not 127.0.0.1: a port that is free there may be one that another relay is about to listen at."""
+"""An address other than 127.0.0.1, where a free port may be one that another relay is about to listen at."""
 
 
 class ReservedAddress:
-    """A port nobody else is given while it is reserved; a server that reuses addresses can listen there."""
+    """A port that nobody else is given while it is reserved.
+
+    A server that reuses addresses can listen there.
+    """
 
     def __init__(self) -> None:
         self._socket = socket.socket()
@@ -19,4 +22,5 @@ class ReservedAddress:
         self.address = Address(HOST, port)
 
     def release(self) -> None:
+        """Give the port back."""
         self._socket.close()

@@ -1,4 +1,4 @@
-"""Changing MMS messages on their way: file names, listings, report identifiers (ISO 9506-2)."""
+"""Changes to MMS messages that pass a proxy: file names, listings, report identifiers (ISO 9506-2)."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.profiles.profile import Files
 
 _SESSION = bytes([1, 0, 1, 0])
-"""Give tokens and data transfer (ISO 8327-1), before every message of an association."""
+"""Give-tokens and data-transfer SPDU (ISO 8327-1), which precede every message of an association."""
 
 _CONFIRMED_REQUEST, _CONFIRMED_RESPONSE, _UNCONFIRMED = b"\xa0", b"\xa1", b"\xa3"
 _FILE_OPEN, _FILE_READ, _FILE_DIRECTORY = b"\xbf\x48", b"\xbf\x49", b"\xbf\x4d"
@@ -22,16 +22,16 @@ _FIELDS_OF_A_CONTROL_BLOCK = 11
 
 @dataclass(frozen=True, slots=True)
 class Rewritten:
-    """The message to pass on; `file_bytes`: how much of a file it carries."""
+    """A message to pass on, and how many bytes of a file it carries."""
 
     user_data: bytes
     file_bytes: int = 0
 
 
 class Rewriter:
-    """Rewrites the messages of one association, as the profile's files and the misbehaviour_state want it.
+    """Rewrites the messages of one association as the profile and the misbehaviour require.
 
-    report_ids: by RptID, the reference of the report control block, "R1CFG/LLN0$BR$BRep01".
+    `report_ids` holds the reference of each report control block, "R1CFG/LLN0$BR$BRep01", by its RptID.
     """
 
     def __init__(
@@ -40,12 +40,12 @@ class Rewriter:
         self._report_ids = report_ids
         self._files = files
         self._misbehaviour_state = misbehaviour_state
-        # A block's RptID stands while it is enabled: for an association it is what it was at its beginning.
+        # A block keeps its RptID while it is enabled, so an association keeps the state of its beginning.
         self._empties_report_ids = misbehaviour_state.is_on(Kind.EMPTY_RPTID)
         self._directory = ""
 
     def request(self, user_data: bytes) -> bytes:
-        """A client's message, file names made those the server knows."""
+        """Rewrite a client's message: its file names become those that the server knows."""
         message = _opened(user_data)
         if message is None or message.pdu_tag != _CONFIRMED_REQUEST:
             return user_data
@@ -68,7 +68,7 @@ class Rewriter:
         return message.with_service(encode(service))
 
     def response(self, user_data: bytes) -> Rewritten:
-        """A server's message."""
+        """Rewrite a server's message."""
         message = _opened(user_data)
         if message is None:
             return Rewritten(user_data)
@@ -91,7 +91,7 @@ class Rewriter:
         return Rewritten(message.with_service(encode(service)))
 
     def _name_after_block(self, report: Element) -> None:
-        """A report of a block without RptID has the block's reference in its place, its first value."""
+        """Put the block's reference in place of its RptID, which is a report's first value."""
         values = report.part(_FIRST)
         if values is not None and values.parts and values.parts[0].tag == _VISIBLE_STRING:
             own = values.parts[0].content.decode("latin-1")
@@ -106,7 +106,7 @@ class Rewriter:
         return self._files is not None and self._files.listed == "name"
 
     def _rename(self, names: Element, *, within: bool) -> None:
-        """A name from a client; `within` the folder last listed where it has none of its own."""
+        """Rename files as the server knows them. With `within`, a bare name is in the folder last listed."""
         for part in names.parts or ():
             name = part.content.replace(b"\\", b"/")
             if within and self._directory and b"/" not in name:
@@ -129,7 +129,7 @@ class Rewriter:
 
 @dataclass(frozen=True, slots=True)
 class _Show:
-    """How a listing is shown. most: entries of one answer, the rest follows."""
+    """How a listing is shown. An answer has at most `most` entries; the rest follows."""
 
     without_path: bool
     separator: str
@@ -139,9 +139,9 @@ class _Show:
 
 @lru_cache(maxsize=64)
 def _shown_listing(octets: bytes, show: _Show) -> bytes:
-    """A listing as the server gives it, made what the relay shows. Kept: clients list again and again.
+    """Turn a listing of the server into what the relay shows. Raises MalformedError.
 
-    Raises MalformedError.
+    Results are kept, because clients list again and again.
     """
     service = decode(octets)
     entries = _entries(service)
@@ -167,9 +167,10 @@ def _show_names(entry: Element, show: _Show) -> None:
 
 @dataclass(frozen=True, slots=True)
 class _Opened:
-    """A message of an association, looked into as far as its service.
+    """A message of an association, decoded down to its service.
 
-    context: before the PDU in the presentation's data.  head: before the service in the PDU, its invoke id.
+    `context` is what stands before the PDU in the presentation's data, `head` what stands before the service
+    in the PDU: its invoke id.
     """
 
     presentation_tags: tuple[bytes, bytes, bytes]
@@ -180,14 +181,14 @@ class _Opened:
     service: bytes
 
     def with_service(self, service: bytes) -> bytes:
-        """The message with another service, a whole element."""
+        """Encode the message with another service, a whole element."""
         outermost, values, value = self.presentation_tags
         pdu = element(self.pdu_tag, self.head + service)
         return _SESSION + element(outermost, element(values, self.context + element(value, pdu)))
 
 
 def _opened(user_data: bytes) -> _Opened | None:
-    """None for what is no data of an association, and for a PDU without a service."""
+    """Decode a message; return None for what is no data of an association or has no service."""
     if not user_data.startswith(_SESSION):
         return None
     try:
@@ -212,7 +213,7 @@ def _opened(user_data: bytes) -> _Opened | None:
 
 
 def _file_bytes(file_read: bytes) -> int:
-    """How much of a file the answer carries. Raises MalformedError."""
+    """Count the bytes of a file that the answer carries. Raises MalformedError."""
     (_, _, begin, end), *_ = spans(file_read, 0, len(file_read))
     parts = spans(file_read, begin, end)
     return next((following - content for tag, _, content, following in parts if tag == _SIMPLE_FIRST), 0)
@@ -223,7 +224,7 @@ def _names(names: Element) -> list[str]:
 
 
 def _entries(service: Element) -> Element:
-    """The SEQUENCE OF DirectoryEntry, which the [0] around it holds explicitly."""
+    """Return the SEQUENCE OF DirectoryEntry, which the [0] around it holds explicitly."""
     listed = service.part(_FIRST)
     if listed is None:
         return Element(_FIRST)
@@ -242,7 +243,10 @@ def _change_size(entry: Element, by_bytes: int) -> None:
 
 
 def _empty_report_ids(read: Element) -> None:
-    """Of the control blocks among the values read: structures that begin with RptID and RptEna (or Resv)."""
+    """Empty the RptID of control blocks among the values read.
+
+    A control block is a structure that begins with RptID and RptEna (or Resv).
+    """
     results = read.part(_SECOND)
     for value in (results.parts or ()) if results is not None else ():
         parts = value.parts or []

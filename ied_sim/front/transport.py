@@ -12,9 +12,10 @@ _LARGEST = 8192
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """One transport service data unit; kind: DATA, or that of a connection's other units.
+    """One transport service data unit.
 
-    units: as they came, with their headers.  user_data: what the DATA units carry, in one piece.
+    `kind` is DATA, or the kind of a connection's other units. `units` holds the units as they came, with
+    their headers, and `user_data` what the DATA units carry, in one piece.
     """
 
     kind: int
@@ -23,7 +24,7 @@ class Message:
 
 
 async def read_message(reader: StreamReader) -> Message:
-    """The next message. Raises asyncio.IncompleteReadError at the connection's end."""
+    """Read the next message. Raise asyncio.IncompleteReadError at the connection's end."""
     units: list[bytes] = []
     user_data: list[bytes] = []
     while True:
@@ -39,7 +40,7 @@ async def read_message(reader: StreamReader) -> Message:
 
 
 def unit_size(confirm: Message) -> int:
-    """Largest data unit that a connect confirm agrees to [octets]."""
+    """Return the largest data unit that a connect confirm agrees to [octet]."""
     unit = confirm.units[0]
     place = _TPKT_HEADER + 7
     while place + 2 <= len(unit):
@@ -50,7 +51,7 @@ def unit_size(confirm: Message) -> int:
 
 
 def units_of(user_data: bytes, size: int) -> bytes:
-    """Data units of at most `size` octets, with their headers."""
+    """Divide a message into data units of at most `size` octets, with their headers."""
     most = size - _DATA_HEADER
     parts = [user_data[k : k + most] for k in range(0, len(user_data), most)] or [b""]
     units = []

@@ -1,4 +1,7 @@
-"""What the motor and its relay did: events, starts, load profile, running hours. Reports are made of it."""
+"""Journal of what the motor and its relay did: events, starts, load profile, running hours.
+
+The relay's text reports are made from it.
+"""
 
 import threading
 from collections import Counter, deque
@@ -14,27 +17,30 @@ LOAD_ROWS_KEPT = 1000
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A stored event report. kind: what made it, as the relay calls it; targets: elements that tripped."""
+    """A stored event report.
+
+    `kind` is what made it, as the relay calls it; `targets` names the elements that tripped.
+    """
 
     number: int
     time_ns: int
     kind: str
-    seen: Metering
+    metering: Metering
     targets: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class LoadRow:
-    """One row of the load profile. thermal_capacity: 1 is the trip."""
+    """One row of the load profile. The thermal capacity is 1 at the trip."""
 
     time_ns: int
-    seen: Metering
+    metering: Metering
     thermal_capacity: float
 
 
 @dataclass(frozen=True, slots=True)
 class LoggedStart:
-    """A motor start, with the UTC of its closing."""
+    """A motor start, with the UTC of the contactor's closing."""
 
     time_ns: int
     start: Start
@@ -42,7 +48,10 @@ class LoggedStart:
 
 @dataclass(slots=True)
 class Statistics:
-    """Since `since_ns`: times [s], sums over the time between starts (`loaded_s`), extremes, trips."""
+    """Operating statistics since `since_ns`: times [s], extremes, number of trips.
+
+    `loaded_s` and `current_time_As` are sums over the time between starts.
+    """
 
     since_ns: int
     running_s: float = 0.0
@@ -57,7 +66,10 @@ class Statistics:
 
 
 class Journal:
-    """Safe to use from several threads. capacity: events kept, as many as the relay has records."""
+    """Journal of one relay. It keeps `capacity` events, as many as the relay has records.
+
+    Several threads may use it.
+    """
 
     def __init__(self, capacity: int, *, since_ns: int, profile_every_s: float) -> None:
         self._lock = threading.Lock()
@@ -68,14 +80,17 @@ class Journal:
         self.statistics = Statistics(since_ns)
 
     def add_event(self, event: Event) -> None:
+        """Add a stored event."""
         with self._lock:
             self._events.append(event)
 
     def clear_events(self) -> None:
+        """Remove all events."""
         with self._lock:
             self._events.clear()
 
     def add_start(self, time_ns: int, start: Start) -> None:
+        """Add a motor start and count it in the statistics."""
         with self._lock:
             self._starts.append(LoggedStart(time_ns, start))
             statistics = self.statistics
@@ -85,22 +100,23 @@ class Journal:
             statistics.longest_start_s = max(statistics.longest_start_s, start.duration_s or 0.0)
 
     def add_trip(self, element: str) -> None:
+        """Count a trip of a protection element."""
         with self._lock:
             self.statistics.trips[element] += 1
 
-    def add_load_row(self, time_ns: int, seen: Metering, thermal_capacity: float) -> None:
-        """A row of the load profile, where one is due."""
+    def add_load_row(self, time_ns: int, metering: Metering, thermal_capacity: float) -> None:
+        """Add a row to the load profile where one is due."""
         with self._lock:
             if not self._load or time_ns - self._load[-1].time_ns >= self._every_ns:
-                self._load.append(LoadRow(time_ns, seen, thermal_capacity))
+                self._load.append(LoadRow(time_ns, metering, thermal_capacity))
 
-    def add_operation(self, duration_s: float, seen: Metering, *, running: bool, starting: bool) -> None:
-        """The motor has run, or stood, for so long; the current of a start is not one of running."""
+    def add_operation(self, duration_s: float, metering: Metering, *, running: bool, starting: bool) -> None:
+        """Count time in which the motor ran or stood. The current of a start is not a running current."""
         with self._lock:
             if not running:
                 self.statistics.stopped_s += duration_s
                 return
-            statistics, current_A = self.statistics, seen.current_A
+            statistics, current_A = self.statistics, metering.current_A
             statistics.running_s += duration_s
             if starting:
                 return
@@ -109,16 +125,16 @@ class Journal:
             statistics.highest_current_A = max(statistics.highest_current_A, current_A)
 
     def events(self) -> tuple[Event, ...]:
-        """Newest first, as relays list them."""
+        """Return the events, newest first, as relays list them."""
         with self._lock:
             return tuple(reversed(self._events))
 
     def starts(self) -> tuple[LoggedStart, ...]:
-        """Newest first."""
+        """Return the starts, newest first."""
         with self._lock:
             return tuple(reversed(self._starts))
 
     def load(self) -> tuple[LoadRow, ...]:
-        """Oldest first."""
+        """Return the load profile, oldest row first."""
         with self._lock:
             return tuple(self._load)

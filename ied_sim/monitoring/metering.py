@@ -1,4 +1,4 @@
-"""What the relay's front panel shows: fundamental phasors of a few cycles, and what follows from them."""
+"""Metered values as on the relay's front panel: phasors of a few cycles, and what follows from them."""
 
 from dataclasses import dataclass
 
@@ -74,9 +74,9 @@ def meter(plant: MotorPlant, time_s: float) -> Metering:
 
 
 def metered(samples: NDArray[np.float64], frequency_Hz: float, rate_Hz: float, direction: int) -> Metering:
-    """The phasors of samples of IA IB IC VA VB VC, shape (6, n), a few cycles long."""
+    """Fit phasors to samples of IA IB IC VA VB VC, shape (6, n), a few cycles long."""
     angle = 2 * np.pi * frequency_Hz / rate_Hz * np.arange(samples.shape[1])
-    # Fitted, not summed: the window need not hold a whole number of samples per cycle.
+    # The phasors are fitted, because the window need not hold a whole number of samples per cycle.
     basis = np.vstack((np.cos(angle), -np.sin(angle)))
     fitted, *_ = np.linalg.lstsq(basis.T, samples.T)
     phasors = (fitted[0] + 1j * fitted[1]) / np.sqrt(2)
@@ -85,7 +85,7 @@ def metered(samples: NDArray[np.float64], frequency_Hz: float, rate_Hz: float, d
 
 
 def metered_values(metering: Metering, mmxu: str | None, msqi: str | None) -> dict[str, float | complex]:
-    """Values of the metering data objects, by their reference within the relay; complex ones are vectors."""
+    """Return the values of the metering data objects by their reference; complex ones are vectors."""
     power = metering.complex_power_VA
     values: dict[str, float | complex] = {}
     vectors = {}

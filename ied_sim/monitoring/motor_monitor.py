@@ -1,6 +1,6 @@
-"""What the relay sees of its motor from moment to moment, without a simulation for each look.
+"""Measurement of a motor from moment to moment, without a simulation for each measurement.
 
-A motor that runs steadily is simulated again only when its load, its supply or its windings have changed; a
+A motor that runs steadily is simulated again only when its load, its supply or its windings have changed. A
 start is simulated once, as a whole.
 """
 
@@ -16,7 +16,7 @@ from ied_sim.motor.plant import DISTURBANCE_MEMORY_S, METERING_STEP_RATE_HZ, STA
 TRACE_RATE_HZ = 2_000.0
 
 RUNNING_BELOW = 1.5
-"""Times the rated current: a start ends where the current has fallen to this."""
+"""Multiple of the rated current to which the current has fallen when a start ends."""
 NO_CURRENT = 0.05
 
 _NOTICEABLE_LEVEL = 0.002
@@ -27,10 +27,11 @@ _NOTICEABLE_HZ = 0.001
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A motor start from rest, as it was seen: one row each METERING_CYCLES.
+    """A motor start from rest, as the relay measured it: one row for each METERING_CYCLES.
 
-    closed_s: when [s since the simulator's start].  duration_s: until the current had fallen; None where it
-    did not within START_MEMORY_S.  time_s: of the rows, after the closing; current_A, voltage_V: rms of each.
+    `closed_s` is the time of the closing [s since the simulator's start]. `duration_s` is the time until the
+    current had fallen; None where it did not within START_MEMORY_S. `time_s` are the times of the rows after
+    the closing, `current_A` and `voltage_V` the rms values.
     """
 
     closed_s: float
@@ -41,7 +42,7 @@ class Start:
 
 
 class MotorMonitor:
-    """Looks at one plant; used by one thread at a time. Times are seconds since the simulator's start."""
+    """Measures one plant; used by one thread at a time. Times are seconds since the simulator's start."""
 
     def __init__(self, plant: MotorPlant, rated_current_A: float) -> None:
         self._plant = plant
@@ -50,64 +51,64 @@ class MotorMonitor:
         self._trace: tuple[Closure, NDArray[np.float64]] | None = None
 
     def closure(self, time_s: float) -> Closure | None:
-        """Since when the motor is connected, None while it is not."""
+        """Return since when the motor is connected, None while it is not."""
         contactor = self._plant.contactor
         return Closure() if contactor is None else contactor.closure_at(time_s)
 
-    def look(self, time_s: float) -> Metering:
-        """Metered values at one moment."""
+    def measure(self, time_s: float) -> Metering:
+        """Return the metered values at one moment."""
         closure = self.closure(time_s)
         if closure is None:
             self._steady = None
             return meter(self._plant, time_s)
         if time_s - closure.closed_s <= START_MEMORY_S:
-            return self._seen_starting(closure, time_s)
-        return self._seen_running(time_s)
+            return self._starting(closure, time_s)
+        return self._running(time_s)
 
     def start(self, closure: Closure) -> Start:
-        """The start that began with `closure`."""
+        """Return the start that began with `closure`."""
         samples = self._start_samples(closure)
         rows = round(START_MEMORY_S * self._frequency(closure.closed_s) / METERING_CYCLES)
         time_s = (np.arange(rows) + 1) * METERING_CYCLES / self._frequency(closure.closed_s)
-        seen = [self._metered(samples, closure.closed_s, closure.closed_s + each) for each in time_s]
-        current_A = np.array([each.current_A for each in seen])
+        metering = [self._metered(samples, closure.closed_s, closure.closed_s + each) for each in time_s]
+        current_A = np.array([each.current_A for each in metering])
         still = np.flatnonzero(current_A > RUNNING_BELOW * self._rated_A)
         if still.size == 0:
             duration_s: float | None = float(time_s[0])
         else:
             duration_s = None if still[-1] == rows - 1 else float(time_s[still[-1] + 1])
-        voltage_V = np.array([each.voltage_V for each in seen])
+        voltage_V = np.array([each.voltage_V for each in metering])
         return Start(closure.closed_s, duration_s, time_s, current_A, voltage_V)
 
     def _frequency(self, time_s: float) -> float:
         return self._plant.supply.frequency(time_s)
 
-    def _seen_running(self, time_s: float) -> Metering:
+    def _running(self, time_s: float) -> Metering:
         plant = self._plant
         fault = plant.fault_at(time_s)
         resistance = 1.0 if plant.warming is None else plant.warming.resistance_factor(time_s)
         condition = (plant.load.level_at(time_s), 0.0 if fault is None else fault.turns, resistance)
         quiet = plant.supply.disturbed_since(time_s, DISTURBANCE_MEMORY_S) == time_s
         if self._steady is not None and quiet:
-            before, seen = self._steady
+            before, metering = self._steady
             limits = (_NOTICEABLE_LEVEL, _NOTICEABLE_FAULT, _NOTICEABLE_RESISTANCE)
             if all(abs(a - b) <= most for a, b, most in zip(before, condition, limits, strict=True)):
-                return self._at_frequency(seen, time_s)
-        seen = meter(plant, time_s)
-        self._steady = (condition, seen) if quiet else None
-        return seen
+                return self._at_frequency(metering, time_s)
+        metering = meter(plant, time_s)
+        self._steady = (condition, metering) if quiet else None
+        return metering
 
-    def _at_frequency(self, seen: Metering, time_s: float) -> Metering:
+    def _at_frequency(self, metering: Metering, time_s: float) -> Metering:
         frequency_Hz = self._frequency(time_s)
-        if abs(frequency_Hz - seen.frequency_Hz) < _NOTICEABLE_HZ:
-            return seen
-        return replace(seen, frequency_Hz=frequency_Hz)
+        if abs(frequency_Hz - metering.frequency_Hz) < _NOTICEABLE_HZ:
+            return metering
+        return replace(metering, frequency_Hz=frequency_Hz)
 
-    def _seen_starting(self, closure: Closure, time_s: float) -> Metering:
+    def _starting(self, closure: Closure, time_s: float) -> Metering:
         return self._metered(self._start_samples(closure), closure.closed_s, time_s)
 
     def _metered(self, samples: NDArray[np.float64], closed_s: float, time_s: float) -> Metering:
-        """Of the last few cycles before `time_s`, of samples that begin as long before the closing."""
+        """Meter the last few cycles before `time_s`, from samples that begin as long before the closing."""
         frequency_Hz = self._frequency(closed_s)
         span = round(METERING_CYCLES / frequency_Hz * TRACE_RATE_HZ)
         first = round((time_s - closed_s) * TRACE_RATE_HZ)
@@ -115,7 +116,7 @@ class MotorMonitor:
         return metered(samples[:, first : first + span], frequency_Hz, TRACE_RATE_HZ, direction)
 
     def _start_samples(self, closure: Closure) -> NDArray[np.float64]:
-        """Simulated as if the motor stayed connected: it is looked at only while it does."""
+        """Simulate the start as if the motor stayed connected: it is measured only while it does."""
         if self._trace is None or self._trace[0].closed_s != closure.closed_s:
             before_s = (
                 round(METERING_CYCLES / self._frequency(closure.closed_s) * TRACE_RATE_HZ) / TRACE_RATE_HZ

@@ -24,7 +24,7 @@ class Change:
 
 
 class RelayWord:
-    """The bits' last changes; all are false before the first. Safe to use from several threads."""
+    """The last changes of the bits, which are all false before the first. Several threads may use it."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -37,7 +37,7 @@ class RelayWord:
         return self._values[bit]
 
     def set(self, bit: str, value: bool, time_ns: int) -> None:
-        """Note the bit's value from `time_ns` on; bits that are none of BITS are nobody's business."""
+        """Note the bit's value from `time_ns` on. Bits that are not in BITS are ignored."""
         with self._lock:
             if self._values.get(bit, value) == value:
                 return
@@ -53,12 +53,12 @@ class RelayWord:
         self.set(bit, False, time_ns + duration_ns)  # noqa: FBT003
 
     def changes(self) -> tuple[Change, ...]:
-        """Oldest first."""
+        """Return the changes, oldest first."""
         with self._lock:
             return tuple(sorted(self._changes, key=lambda change: change.time_ns))
 
     def states(self, time_ns: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Values of BITS at the times, shape (n, bits)."""
+        """Return the values of BITS at the times, shape (n, bits)."""
         with self._lock:
             before = [self._first[bit] for bit in BITS]
         states = np.tile(np.array(before), (time_ns.size, 1))

@@ -1,4 +1,4 @@
-"""One typed way to machine code."""
+"""A typed decorator for functions compiled to machine code."""
 
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar, cast
@@ -10,5 +10,5 @@ R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile `function` with Numba, cached on disk; it runs without the GIL, so relays work side by side."""
+    """Compile a function with Numba, cached on disk. It runs without the GIL, so relays work side by side."""
     return cast(Callable[P, R], njit(cache=True, nogil=True)(function))

@@ -7,16 +7,16 @@ from math import inf
 
 @dataclass(frozen=True, slots=True)
 class Closure:
-    """The motor was connected from `closed_s` to `opened_s` [s]; for ever where these are infinite."""
+    """Time during which the motor is connected, from `closed_s` to `opened_s` [s]; infinite for no limit."""
 
     closed_s: float = -inf
     opened_s: float = inf
 
 
 class Contactor:
-    """Connects the motor; closed ever since, or `open_at_first`. Times are seconds since the simulator began.
+    """Connects the motor: closed since ever, or `open_at_first`. Times are seconds since the simulator began.
 
-    Closing what is closed and opening what is open changes nothing. Safe to use from several threads.
+    Closing a closed contactor and opening an open one change nothing. Several threads may use it.
     """
 
     def __init__(self, *, open_at_first: bool = False) -> None:
@@ -24,7 +24,10 @@ class Contactor:
         self._lock = threading.Lock()
 
     def close(self, time_s: float) -> float | None:
-        """Connect the motor, once it has opened where it is about to: when. None where it was connected."""
+        """Connect the motor and return when; None where it is connected already.
+
+        A contactor that is about to open closes once it has opened.
+        """
         with self._lock:
             opened_s = self._closures[-1].opened_s if self._closures else -inf
             if opened_s == inf:
@@ -34,7 +37,7 @@ class Contactor:
             return closed_s
 
     def open(self, time_s: float) -> bool:
-        """Disconnect the motor; False where it was not connected."""
+        """Disconnect the motor; return False where it is not connected."""
         with self._lock:
             if not self._closures or not self._closures[-1].closed_s < time_s < self._closures[-1].opened_s:
                 return False
@@ -42,9 +45,9 @@ class Contactor:
             return True
 
     def closures(self, begin_s: float, end_s: float) -> tuple[Closure, ...]:
-        """Closures that reach into the time from `begin_s` to `end_s`, in order."""
+        """Return the closures that reach into the time from `begin_s` to `end_s`, in order."""
         return tuple(each for each in self._closures if each.closed_s < end_s and each.opened_s > begin_s)
 
     def closure_at(self, time_s: float) -> Closure | None:
-        """The closure at one moment, None while the contactor is open."""
+        """Return the closure at one moment, None while the contactor is open."""
         return next((each for each in self._closures if each.closed_s <= time_s < each.opened_s), None)

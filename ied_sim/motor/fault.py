@@ -1,4 +1,4 @@
-"""Shorted stator turns, as they are and as they develop."""
+"""Shorted stator turns: their state at one moment, and how they develop."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -19,7 +19,10 @@ class TurnFault:
     resistance_ohm: float = 0.0
 
     def equivalent_level(self, stator_resistance_ohm: float) -> float:
-        """mu_eq = R_s / (r_f / mu^2 + R_s / mu): the level of the bolted short that looks alike."""
+        """Return the level mu_eq of the bolted short that draws the same current.
+
+        mu_eq = R_s / (r_f / mu^2 + R_s / mu).
+        """
         if self.turns == 0:
             return 0.0
         return self.turns / (1 + self.resistance_ohm / (self.turns * stator_resistance_ohm))
@@ -27,14 +30,17 @@ class TurnFault:
 
 @dataclass(frozen=True, slots=True)
 class FaultCourse:
-    """How a fault of one phase develops: (time [s] since the simulator's start, mu), straight in between."""
+    """Development of a fault of one phase over time.
+
+    The points are (time [s] since the simulator's start, mu), joined by lines.
+    """
 
     phase: int
     course: tuple[tuple[float, float], ...]
     resistance_ohm: float = 0.0
 
     def at(self, time_s: float) -> TurnFault:
-        """The fault at one moment; before the first and after the last point it stays as there."""
+        """Return the fault at one moment; before the first and after the last point it stays constant."""
         return TurnFault(self._level(time_s), self.phase, self.resistance_ohm)
 
     def _level(self, time_s: float) -> float:

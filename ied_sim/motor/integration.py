@@ -1,7 +1,7 @@
-"""Motion of the winding circuit in time: classical Runge-Kutta of fourth order, compiled.
+"""Motion of the winding circuit in time: classical Runge-Kutta method of fourth order, compiled.
 
 The state is the loop fluxes [V s], the rotor's speed [rad/s] and its electrical angle [rad]. Voltages and
-load torque are known functions of time, handed in at the middle of the steps too.
+load torque are known functions of time, given at the middle of the steps too.
 """
 
 from math import cos, sin, sqrt
@@ -16,7 +16,10 @@ Array = NDArray[np.float64]
 
 @compiled
 def _solve_symmetric(matrix: Array, x: Array) -> None:
-    """Solve matrix y = x into x, Cholesky in place: for so few loops a call of LAPACK costs more."""
+    """Solve matrix y = x into x by an in-place Cholesky factorisation.
+
+    For so few loops a call of LAPACK costs more.
+    """
     m = x.size
     for j in range(m):
         pivot = matrix[j, j]
@@ -43,7 +46,7 @@ def _solve_symmetric(matrix: Array, x: Array) -> None:
 
 @compiled
 def _loop_currents(A: Array, B: Array, D: Array, state: Array, work: Array, q: Array) -> None:
-    """q with L(theta) q = flux."""
+    """Solve L(theta) q = flux for the loop currents q."""
     m = q.size
     c, s = cos(state[m + 1]), sin(state[m + 1])
     for i in range(m):
@@ -68,7 +71,10 @@ def _derivative(
     q: Array,
     rate: Array,
 ) -> None:
-    """d(flux)/dt = e - R q;  J dw_m/dt = p q' (dL/dtheta) q / 2 - T_load;  dtheta/dt = p w_m."""
+    """Compute the state's derivative.
+
+    d(flux)/dt = e - R q;  J dw_m/dt = p q' (dL/dtheta) q / 2 - T_load;  dtheta/dt = p w_m.
+    """
     m = q.size
     _loop_currents(A, B, D, state, work, q)
     c, s = cos(state[m + 1]), sin(state[m + 1])
@@ -99,12 +105,33 @@ def integrate(
     steps_per_sample: int,
     state: Array,
 ) -> tuple[Array, Array]:
-    """Loop currents and speed at every `steps_per_sample`-th step, the initial state included.
+    """Integrate the winding circuit; return loop currents and speed at every `steps_per_sample`-th step.
 
-    A, B, D, R: shape (m, m), see `windings`. drive: voltage around each loop [V], shape (2 n + 1, m), at
-    every half step. load_torque: [N m], shape (2 n + 1,). step: [s]. state: initial (m fluxes, speed, angle);
-    holds the final one afterwards. Returns currents, shape (n / steps_per_sample + 1, m) [A], and mechanical
-    speed [rad/s].
+    Parameters
+    ----------
+    A, B, D, R : ndarray, shape (m, m)
+        Loop matrices, see `windings`.
+    pole_pairs : int
+        Pole pairs of the motor.
+    inertia : float
+        Moment of inertia [kg m^2].
+    drive : ndarray, shape (2 n + 1, m)
+        Voltage around each loop at every half step [V].
+    load_torque : ndarray, shape (2 n + 1,)
+        Load torque at every half step [N m].
+    step : float
+        Length of a step [s].
+    steps_per_sample : int
+        Number of steps between samples.
+    state : ndarray, shape (m + 2,)
+        Initial fluxes [V s], speed [rad/s] and angle [rad]. It holds the final state afterwards.
+
+    Returns
+    -------
+    currents : ndarray, shape (n / steps_per_sample + 1, m)
+        Loop currents [A], those of the initial state first.
+    speed : ndarray, shape (n / steps_per_sample + 1,)
+        Mechanical speed [rad/s].
     """
     m = state.size - 2
     steps = (load_torque.size - 1) // 2

@@ -1,4 +1,4 @@
-"""The driven machine: how much of the rated torque it asks for, as a function of time alone."""
+"""The driven machine: its load torque over the rated one, as a function of time alone."""
 
 from dataclasses import dataclass
 from math import pi
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, slots=True)
 class LoadCycle:
-    """Levels that repeat: (time [s] since the cycle's beginning, level), straight in between.
+    """Levels that repeat: points (time [s] since the cycle's beginning, level), joined by lines.
 
     The first point is at 0; at `period_s` the cycle begins anew. Two points close together make a step.
     """
@@ -22,7 +22,7 @@ class LoadCycle:
 class Load:
     """A load level (1 = rated power P_B at synchronous speed) that swings by `swing` about its mean.
 
-    A `cycle` takes the place of `level`; the swing comes on top.
+    A `cycle` replaces `level`; the swing is added to it.
     """
 
     level: float
@@ -31,11 +31,11 @@ class Load:
     cycle: LoadCycle | None = None
 
     def level_at(self, time_s: float) -> float:
-        """Load level at one time [s]."""
+        """Return the load level at one time [s]."""
         return float(self.levels(np.array([time_s]))[0])
 
     def levels(self, time_s: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Load level at the times [s], same shape."""
+        """Return the load level at the times [s], same shape."""
         swing = self.swing * np.sin(2 * pi * time_s / self.swing_period_s)
         if self.cycle is None:
             levels: NDArray[np.float64] = self.level + swing

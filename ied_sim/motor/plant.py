@@ -1,8 +1,8 @@
 """A motor on its busbar with its load and its sensors, simulated on demand.
 
-Nothing runs between windows: a window is simulated from a little before its start, long enough for the motor
-to settle. Supply, load and fault are functions of the time since the simulator's start, so that windows of
-one plant are consistent with each other and the same every time.
+Nothing is simulated between windows. A window is simulated from a little before its start, long enough for
+the motor to settle. Supply, load and fault are functions of the time since the simulator's start, so that
+windows of one plant are consistent with each other and the same every time.
 """
 
 from dataclasses import dataclass
@@ -27,18 +27,18 @@ STEP_RATE_HZ = 20_000.0
 METERING_STEP_RATE_HZ = 4_000.0
 HIGHEST_STEP_RATE_HZ = 200_000.0
 RATE_PER_STEP = 2.0
-"""Fastest decay, in decays a step: RK4 is stable to 2.78, and such a mode follows its drive."""
+"""Fastest decay resolved, in decays a step. RK4 is stable up to 2.78; such a mode follows its drive."""
 SETTLING_S = 1.0
 DISTURBANCE_MEMORY_S = 2.0
-"""How long after a supply event a window is simulated from before it."""
+"""Time after a supply event for which a window is simulated from before the event."""
 START_MEMORY_S = 10.0
-"""How long after the contactor closed a window is simulated from rest."""
+"""Time after the contactor's closing for which a window is simulated from rest."""
 RATED_POWER_FACTOR_TIMES_EFFICIENCY = 0.7
 
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """What truly happens: line currents and phase voltages, shape (3, n), and speed, shape (n,)."""
+    """True operation of the motor: line currents and phase voltages, shape (3, n), and speed, shape (n,)."""
 
     currents_A: Array
     voltages_V: Array
@@ -47,10 +47,11 @@ class Operation:
 
 @dataclass(frozen=True, slots=True)
 class MotorPlant:
-    """One motor with everything around it. `fault` None means a healthy motor; `seed` that of the noise.
+    """A motor with its supply, load, sensors and contactor.
 
-    warming None: the windings have the parameters' resistance throughout.  broken_bars: share of the cage's.
-    contactor: connects the motor; None where it always runs. A motor that is connected starts from rest.
+    `fault` is None for a healthy motor, and `seed` is that of the noise. With `warming` None the windings
+    keep the resistance of the parameters. `broken_bars` is the broken share of the cage's bars. The contactor
+    connects the motor, which then starts from rest; with None the motor always runs.
     """
 
     motor: Motor
@@ -66,7 +67,7 @@ class MotorPlant:
     def window(
         self, start_s: float, duration_s: float, sample_rate_hz: float, *, step_rate_hz: float = STEP_RATE_HZ
     ) -> Array:
-        """Measured samples of IA IB IC [A], VA VB VC [V], shape (6, n), from `start_s` since the start on.
+        """Return measured samples of IA IB IC [A], VA VB VC [V], shape (6, n), from `start_s` on.
 
         The motor is integrated in steps of 1 / step_rate_hz, or finer ones where its fault needs them.
         """
@@ -82,7 +83,7 @@ class MotorPlant:
 
     @property
     def rated_values(self) -> Array:
-        """Rated line current and phase voltage of the six channels, rms, shape (6,): the current a guess."""
+        """Rated line current (estimated) and phase voltage of the six channels, rms, shape (6,)."""
         return np.repeat([rated_current(self.motor), self.motor.nameplate.rated_voltage_V / sqrt(3)], 3)
 
     def operation(
@@ -95,7 +96,7 @@ class MotorPlant:
         current_delay_s: float = 0.0,
         step_rate_hz: float = STEP_RATE_HZ,
     ) -> Operation:
-        """Running operation, simulated from `settling_s` before the window.
+        """Return the true operation, simulated from `settling_s` before the window.
 
         With `current_delay_s` the currents are those of so much earlier than the voltages beside them.
         """
@@ -122,7 +123,7 @@ class MotorPlant:
         settling_s: float,
         step_rate_hz: float,
     ) -> tuple[int, Array, Array]:
-        """First sample, line currents and speed while connected, of `samples` from `begin_s` on."""
+        """Return first sample, line currents and speed while connected, of `samples` from `begin_s` on."""
         last = samples
         if closure.opened_s < inf:
             last = min(samples, ceil((closure.opened_s - begin_s) * sample_rate_hz))
@@ -141,7 +142,7 @@ class MotorPlant:
     def _from_rest(
         self, closed_s: float, begin_s: float, last: int, sample_rate_hz: float, step_rate_hz: float
     ) -> tuple[int, Array, Array]:
-        """As `_connected`, of a motor at rest until `closed_s`; samples lie on the grid of `begin_s`."""
+        """Do as `_connected` does, for a motor at rest until `closed_s`, on the grid of `begin_s`."""
         first = ceil((closed_s - begin_s) * sample_rate_hz)
         if last <= first:
             return 0, np.zeros((3, 0)), np.zeros(0)
@@ -149,14 +150,14 @@ class MotorPlant:
         first_s = begin_s + first / sample_rate_hz
         state = np.zeros(circuit.loops + 2)
         if first_s > closed_s:
-            # The contactor does not wait for a sample: the time up to the first one is simulated apart.
+            # The contactor may close between samples: the time up to the first sample is simulated apart.
             self._simulate(circuit, state, closed_s, 2, 1 / (first_s - closed_s), step_rate_hz)
         currents, speed = self._simulate(circuit, state, first_s, last - first, sample_rate_hz, step_rate_hz)
         seen = max(0, -first)
         return max(0, first), currents[:, seen:], speed[seen:]
 
     def start_up(self, start_s: float, duration_s: float, sample_rate_hz: float) -> Operation:
-        """Direct start from rest: the voltage comes at `start_s`."""
+        """Return a direct start from rest; the voltage comes at `start_s`."""
         circuit = self.circuit(start_s)
         samples = round(duration_s * sample_rate_hz)
         rest = np.zeros(circuit.loops + 2)
@@ -165,7 +166,7 @@ class MotorPlant:
         return Operation(currents, self.supply.phase_voltages(times), speed)
 
     def fault_at(self, time_s: float) -> TurnFault | None:
-        """The fault at one moment, None where the motor is as good as healthy."""
+        """Return the fault at one moment, None where the motor is as good as healthy."""
         if self.fault is None:
             return None
         fault = self.fault.at(time_s)
@@ -173,7 +174,7 @@ class MotorPlant:
         return fault if level > NEGLIGIBLE_LEVEL else None
 
     def circuit(self, time_s: float) -> WindingCircuit:
-        """The winding circuit at one moment; a window has that of its start."""
+        """Return the winding circuit at one moment; a window uses that of its start."""
         return winding_circuit(
             self.motor.parameters,
             self.motor.nameplate.connection,
@@ -191,7 +192,7 @@ class MotorPlant:
         sample_rate_hz: float,
         step_rate_hz: float,
     ) -> tuple[Array, Array]:
-        """Line currents, shape (3, samples), and speed from `first_s` on."""
+        """Return line currents, shape (3, samples), and speed from `first_s` on."""
         needed_hz = max(step_rate_hz, circuit.fastest_rate() / RATE_PER_STEP)
         steps_per_sample = max(1, ceil(needed_hz / sample_rate_hz))
         step = 1 / (sample_rate_hz * steps_per_sample)
@@ -216,7 +217,7 @@ class MotorPlant:
         return circuit.line_currents(currents), speed
 
     def _running_state(self, circuit: WindingCircuit, time_s: float) -> Array:
-        """A guess close enough to settle from: no-load fluxes, and slip in proportion to torque."""
+        """Estimate a state close enough to settle from: no-load fluxes, and slip in proportion to torque."""
         nameplate = self.motor.nameplate
         w = 2 * np.pi * self.supply.frequency(time_s)
         quarter_cycle_ago = np.array([time_s - np.pi / 2 / w])
@@ -242,7 +243,7 @@ class MotorPlant:
 
 
 def rated_current(motor: Motor) -> float:
-    """Line current at rated power [A rms], as a nameplate without it lets one guess."""
+    """Estimate the line current at rated power [A rms], for a nameplate that does not tell it."""
     nameplate = motor.nameplate
     return nameplate.rated_power_W / (
         sqrt(3) * nameplate.rated_voltage_V * RATED_POWER_FACTOR_TIMES_EFFICIENCY

@@ -1,4 +1,4 @@
-"""Transformers and converters between the motor and the samples: what a relay sees is never quite what is."""
+"""Transformers and converters between the motor and the samples, with their errors."""
 
 from dataclasses import dataclass
 
@@ -9,17 +9,25 @@ Array = NDArray[np.float64]
 
 CHANNELS = ("IA", "IB", "IC", "VA", "VB", "VC")
 CODE_LIMIT = 32767
-"""Largest code of the 16-bit converters; -32768 is left out, it marks missing samples in COMTRADE."""
+"""Largest code of the 16-bit converters. The code -32768 marks missing samples in COMTRADE."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sensors:
     """Errors of the six channels, IA IB IC VA VB VC.
 
-    gain_errors: relative, one a channel.  offsets: one a channel, as a fraction of the rated value (rms).
-    current_delay_s: by how much the current channels lag the voltage channels.
-    noise: standard deviation of the white noise as a fraction of the rated value (rms).
-    full_scale_A, full_scale_V: what the converters reach to, peak; beyond it they clip.
+    Parameters
+    ----------
+    full_scale_A, full_scale_V : float
+        Range of the converters, peak. They clip beyond it.
+    gain_errors : tuple of float
+        Relative gain error of each channel.
+    offsets : tuple of float
+        Offset of each channel as a fraction of the rated value (rms).
+    current_delay_s : float
+        Delay of the current channels after the voltage channels [s].
+    noise : float
+        Standard deviation of the white noise as a fraction of the rated value (rms).
     """
 
     full_scale_A: float
@@ -30,7 +38,10 @@ class Sensors:
     noise: float = 0.0
 
     def measure(self, true: Array, rated: Array, random: np.random.Generator) -> Array:
-        """Quantised samples of true currents [A], voltages [V], shape (6, n); `rated`: rms, shape (6,)."""
+        """Return quantised samples of true currents [A] and voltages [V], shape (6, n).
+
+        `rated` holds the channels' rated values, rms, shape (6,).
+        """
         seen = true * (1 + np.array(self.gain_errors))[:, None]
         seen += (rated * np.array(self.offsets))[:, None]
         if self.noise:

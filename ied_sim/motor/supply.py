@@ -14,8 +14,8 @@ Array = NDArray[np.float64]
 class Harmonic:
     """One harmonic voltage: its order, its share of the fundamental and its angle to it.
 
-    It has the sequence its order has by nature: the 5th negative, the 7th positive. Orders divisible by three
-    have none and drive no current into three wires.
+    Its order determines its sequence: the 5th is negative, the 7th positive. Orders divisible by three have
+    none and drive no current into three wires.
     """
 
     order: int
@@ -25,9 +25,9 @@ class Harmonic:
 
 @dataclass(frozen=True, slots=True)
 class SupplyEvent:
-    """A dip, swell or interruption: phases' voltages times `factor` from `at_s` for `duration_s` [s].
+    """A dip, swell or interruption: voltages of `phases` times `factor` from `at_s` for `duration_s` [s].
 
-    phases: indices of those concerned, 0 to 2.  every_s: it comes again after so long; None for once.
+    `phases` are indices, 0 to 2. The event is repeated every `every_s`; with None it comes once.
     """
 
     at_s: float
@@ -37,7 +37,7 @@ class SupplyEvent:
     every_s: float | None = None
 
     def under_way(self, time_s: Array) -> NDArray[np.bool_]:
-        """Whether it is, at the times [s], same shape."""
+        """Tell whether the event is under way at the times [s], same shape."""
         since = time_s - self.at_s
         if self.every_s is not None:
             since = np.where(since >= 0, since % self.every_s, since)
@@ -45,7 +45,7 @@ class SupplyEvent:
         return happening
 
     def latest_begin_s(self, time_s: float) -> float | None:
-        """When it last began at or before `time_s`, None if never."""
+        """Return when the event last began at or before `time_s`, None if never."""
         if time_s < self.at_s:
             return None
         if self.every_s is None:
@@ -57,10 +57,22 @@ class SupplyEvent:
 class Supply:
     """Voltages of a three-phase busbar.
 
-    line_voltage_V: positive-sequence line-to-line voltage, rms.
-    frequency_drift_Hz, drift_period_s: the frequency swings by so much about its mean, once a period.
-    unbalance, unbalance_angle_rad: voltage unbalance factor |V2| / |V1| and the angle of V2 to V1.
-    sequence: which way the phases follow each other; with acb motors turn backwards.
+    Parameters
+    ----------
+    line_voltage_V : float
+        Positive-sequence line-to-line voltage, rms.
+    frequency_Hz : float
+        Mean frequency.
+    frequency_drift_Hz, drift_period_s : float
+        Amplitude and period of the frequency's swing about its mean.
+    unbalance, unbalance_angle_rad : float
+        Voltage unbalance factor |V2| / |V1| and the angle of V2 to V1.
+    harmonics : tuple of Harmonic
+        Harmonic voltages.
+    sequence : {"abc", "acb"}
+        Order of the phases. With acb motors turn backwards.
+    events : tuple of SupplyEvent
+        Dips, swells and interruptions.
     """
 
     line_voltage_V: float
@@ -75,17 +87,17 @@ class Supply:
 
     @property
     def direction(self) -> int:
-        """+1 where the field turns from a to b to c, -1 where it turns the other way."""
+        """Direction of the field: +1 from a to b to c, -1 the other way."""
         return 1 if self.sequence == "abc" else -1
 
     def frequency(self, time_s: float) -> float:
-        """Frequency at one moment [Hz]."""
+        """Return the frequency at one moment [Hz]."""
         return self.frequency_Hz + self.frequency_drift_Hz * float(
             np.sin(2 * pi * time_s / self.drift_period_s)
         )
 
     def phase_voltages(self, time_s: Array) -> Array:
-        """Voltages of a, b, c against the neutral [V], shape (3, n), at the times [s], shape (n,)."""
+        """Return phase voltages of a, b, c [V], shape (3, n), at the times [s], shape (n,)."""
         swing = self.frequency_drift_Hz * self.drift_period_s / (2 * pi)
         turns = self.frequency_Hz * time_s - swing * np.cos(2 * pi * time_s / self.drift_period_s)
         angle = 2 * pi * turns
@@ -104,7 +116,10 @@ class Supply:
         return voltages
 
     def disturbed_since(self, time_s: float, memory_s: float) -> float:
-        """Begin of the earliest event felt at `time_s`, up to `memory_s` after its end; `time_s` if none."""
+        """Return when the earliest event felt at `time_s` began; `time_s` if there is none.
+
+        An event is felt up to `memory_s` after its end.
+        """
         begins = [time_s]
         for event in self.events:
             begin_s = event.latest_begin_s(time_s)

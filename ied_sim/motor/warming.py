@@ -1,4 +1,4 @@
-"""Windings that warm up: resistance as a function of time alone."""
+"""Warming of the windings: resistance as a function of time alone."""
 
 from dataclasses import dataclass
 from math import exp
@@ -9,9 +9,10 @@ COPPER_PER_K = 0.00393
 
 @dataclass(frozen=True, slots=True)
 class Warming:
-    """Windings rise by `rise_K` above the temperature the motor's parameters are of, with one time constant.
+    """Rise of the windings by `rise_K` above the temperature of the motor's parameters.
 
-    begin_s: since when, in seconds since the simulator's start; they are cold before.
+    It begins at `begin_s`, in seconds since the simulator's start, with one time constant; the windings are
+    cold before.
     """
 
     rise_K: float
@@ -19,6 +20,6 @@ class Warming:
     begin_s: float = 0.0
 
     def resistance_factor(self, time_s: float) -> float:
-        """Stator and rotor resistance over that of the parameters."""
+        """Return stator and rotor resistance over that of the parameters."""
         warm = 1 - exp(-max(0.0, time_s - self.begin_s) / self.time_constant_s)
         return 1 + COPPER_PER_K * self.rise_K * warm

@@ -30,7 +30,7 @@ Matrix = NDArray[np.float64]
 
 PHASE_AXES = np.array([0.0, 2 * pi / 3, 4 * pi / 3])
 
-# Loop currents of three coils whose common point floats: the third carries what the other two bring.
+# Loop currents of three coils whose common point floats: the third returns the sum of the other two.
 _FLOATING_POINT = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, -1.0]])
 # Terminal voltages of the delta's windings: a to b, b to c, c to a.
 _LINE_TO_LINE = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]])
@@ -40,8 +40,14 @@ _LINE_TO_LINE = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]])
 class WindingCircuit:
     """Loop matrices of one motor: m loops, the stator's first, then the fault's if any, then the rotor's two.
 
-    constant, cosine, sine: A, B, D of L(theta), shape (m, m) [H].   resistance: R, shape (m, m) [ohm].
-    drive: E, voltage around each loop for the three terminal voltages, shape (m, 3).
+    Parameters
+    ----------
+    constant, cosine, sine : ndarray, shape (m, m)
+        A, B and D of L(theta) [H].
+    resistance : ndarray, shape (m, m)
+        R [ohm].
+    drive : ndarray, shape (m, 3)
+        E, voltage around each loop for the three terminal voltages.
     """
 
     constant: Matrix
@@ -55,24 +61,24 @@ class WindingCircuit:
         return len(self.resistance)
 
     def inductance(self, angle_rad: float) -> Matrix:
-        """L(theta) at the electrical rotor angle `angle_rad`, shape (m, m) [H]."""
+        """Return L(theta) at the electrical rotor angle `angle_rad`, shape (m, m) [H]."""
         inductance: Matrix = self.constant + self.cosine * np.cos(angle_rad) + self.sine * np.sin(angle_rad)
         return inductance
 
     def line_currents(self, loop_currents: Matrix) -> Matrix:
-        """Currents into terminals a, b, c, shape (3, n) [A], of loop currents, shape (n, m) [A]."""
+        """Return currents into terminals a, b, c, shape (3, n) [A], from loop currents, shape (n, m) [A]."""
         return self.drive.T @ loop_currents.T
 
     def fastest_rate(self) -> float:
-        """Largest decay rate of the loops with the rotor held still [1/s]: what a step must resolve."""
+        """Return the largest decay rate of the loops with the rotor held still [1/s]."""
         rates = np.linalg.eigvals(np.linalg.solve(self.inductance(0.0), self.resistance))
         return float(np.max(np.abs(rates)))
 
 
 def highest_fault_resistance(parameters: MachineParameters, fastest_rate: float) -> float:
-    """Fault resistance [ohm] at which the loop of a fault of NEGLIGIBLE_LEVEL decays at `fastest_rate` [1/s].
+    """Return the fault resistance [ohm] whose loop decays at `fastest_rate` [1/s] at NEGLIGIBLE_LEVEL.
 
-    The loop of few turns has r_f / (mu L_ls), and mu_eq is then mu^2 R_s / r_f.
+    The loop of few turns decays at r_f / (mu L_ls), and mu_eq is then mu^2 R_s / r_f.
     """
     rate = fastest_rate * parameters.stator_leakage_H
     return rate**2 * NEGLIGIBLE_LEVEL / parameters.stator_resistance_ohm
@@ -86,13 +92,32 @@ def winding_circuit(
     resistance_factor: float = 1.0,
     broken_bars: float = 0.0,
 ) -> WindingCircuit:
-    """The loops of a motor, healthy (`fault` None or of no turns) or with a part of one phase bridged.
+    """Build the loops of a motor, healthy or with a part of one phase bridged.
 
-    With mu = 0 there is no fault loop at all, so a healthy motor is exactly that.
-    resistance_factor: stator and rotor resistance over that of the parameters (warm windings).
-    broken_bars: share k = n / N of the cage's bars that are broken, all in one place. One rotor coil then has
-    R (1 + 3 k / (1 - 2 k)): along its axis the cage has lost the share 2 k of its conductance, across it
-    none (Bellini et al., doi:10.1109/28.968187).
+    With `fault` None or of no turns there is no fault loop at all, so a healthy motor is exactly that.
+
+    Parameters
+    ----------
+    parameters : MachineParameters
+        Parameters of the motor.
+    connection : Connection
+        Star or delta.
+    fault : TurnFault, optional
+        The bridged turns.
+    resistance_factor : float
+        Stator and rotor resistance over that of the parameters, for warm windings.
+    broken_bars : float
+        Share k = n / N of the cage's bars that are broken, all in one place. One rotor coil then has R (1 + 3
+        k / (1 - 2 k)): along its axis the cage has lost the share 2 k of its conductance, across it none.
+
+    Returns
+    -------
+    WindingCircuit
+        The loops.
+
+    References
+    ----------
+    Bellini et al., doi:10.1109/28.968187, for broken bars.
     """
     if fault is not None and fault.turns == 0:
         fault = None

@@ -1,1 +1,1 @@
-"""The relay profiles that come with the simulator: one TOML file each, and the ICD it names."""
+"""Relay profiles: kinds of relay that can be simulated."""

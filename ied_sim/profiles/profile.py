@@ -1,7 +1,7 @@
-"""Relay profiles: how one kind of relay is triggered, tells of its records, and offers its files.
+"""Relay profiles: how one kind of relay is triggered, reports its records, and offers its files.
 
-A profile is a TOML file with an ICD beside it. docs/reference/simulator.md explains it. Profiles in
-`ied_sim/profiles` are chosen by name, any other by its path.
+A profile is a TOML file with an ICD beside it, explained in docs/simulator.md. Those of `ied_sim/profiles`
+are chosen by name, any other by its path.
 """
 
 import re
@@ -31,7 +31,10 @@ _OF_2013_ONLY = ("BINARY32", "FLOAT32")
 
 @dataclass(frozen=True, slots=True)
 class RecordFormat:
-    """Kind "COMTRADE" (.CFG, .DAT, .HDR), "CFF" or "CEV"; edition and data format of the former two."""
+    """Format of a record: "COMTRADE" (.CFG, .DAT, .HDR), "CFF" or "CEV".
+
+    COMTRADE and CFF have an edition and a data format.
+    """
 
     kind: Literal["COMTRADE", "CFF", "CEV"]
     revision: Revision = 2013
@@ -41,10 +44,10 @@ class RecordFormat:
 class Points(Table):
     """References of the relay's model, with the logical device's inst: "CON/RBGGIO1.SPCSO01".
 
-    trigger: controls whose rise makes a record.  pulse: logical nodes whose controls fall by themselves after
-    a quarter of a cycle.  start, stop: controls of the motor.  clear: control that deletes all records.
-    record_made .. unbalance: status.  metering: an MMXU.  sequence: an MSQI.  reports: the buffered report
-    control block that tells of records.
+    `trigger`: controls whose rise makes a record. `pulse`: logical nodes whose controls fall by themselves
+    after a quarter of a cycle. `start`, `stop`: controls of the motor. `clear`: control that deletes all
+    records. `record_made` to `unbalance`: status objects. `metering`: an MMXU. `sequence`: an MSQI.
+    `reports`: the buffered report control block that reports records.
     """
 
     trigger: tuple[Reference, ...] = ()
@@ -64,7 +67,7 @@ class Points(Table):
     reports: Reference | None = None
 
     def controls(self) -> Iterator[tuple[str, str]]:
-        """Key and reference of every control named here."""
+        """Yield key and reference of every control named here."""
         yield from (("trigger", reference) for reference in self.trigger)
         for key in ("start", "stop", "clear"):
             reference = getattr(self, key)
@@ -72,7 +75,7 @@ class Points(Table):
                 yield key, reference
 
     def statuses(self) -> Iterator[tuple[str, str]]:
-        """Key and reference of every status object named here."""
+        """Yield key and reference of every status object named here."""
         keys = ("record_made", "record_number", "record_started")
         for key in (*keys, "trip", "overcurrent", "thermal", "unbalance"):
             reference = getattr(self, key)
@@ -102,15 +105,16 @@ class Record(Table):
         return self
 
     def written(self) -> tuple[RecordFormat, ...]:
-        """The formats every record is written in."""
+        """Return the formats in which every record is written."""
         return tuple(_record_format(text) for text in self.formats)
 
 
 class Files(Table):
     """The file service: folder and names of the records, and which text reports are offered.
 
-    separator, listed: how names stand in listings: "/" or "\\", with their folder ("path") or without
-    ("name").  entries_per_listing: most entries of one answer; the rest follows (moreFollows).
+    `separator` and `listed` say how names stand in listings: with "/" or a backslash, with their folder
+    ("path") or without it ("name"). `entries_per_listing` is the most entries of one answer; the rest follows
+    (moreFollows).
     """
 
     folder: Folder = "EVENTS"
@@ -131,7 +135,10 @@ class Triggers(Table):
 
 
 class Profile(Table):
-    """One kind of relay. `files` None: no file service; then `record` only says how long a capture lasts."""
+    """One kind of relay.
+
+    With `files` None there is no file service, and `record` only says how long a capture lasts.
+    """
 
     description: str
     icd: str
@@ -154,12 +161,15 @@ class Profile(Table):
 
 
 def shipped() -> tuple[str, ...]:
-    """Names of the profiles that come with the simulator."""
+    """Return the names of the profiles that come with the simulator."""
     return tuple(sorted(path.stem for path in SHIPPED.glob("*.toml")))
 
 
 def read_profile(name: str, *, beside: Path | None = None) -> Profile:
-    """A shipped profile by its name, or the file of a path, relative to `beside`. Raises ProfileError."""
+    """Read a shipped profile by its name, or the file of a path, relative to `beside`.
+
+    Raises ProfileError.
+    """
     if name in shipped():
         path = SHIPPED / f"{name}.toml"
     elif name.endswith(".toml"):

@@ -1,1 +1,1 @@
-"""The simulated relay: recorder, protection, metering, and the server that offers them."""
+"""The simulated relay: recorder, protection, and the server that offers them to clients."""

@@ -1,4 +1,4 @@
-"""The relay's own clock: UTC, less right than it should be where the scenario says so."""
+"""The relay's own clock: UTC, with an error where the scenario says so."""
 
 import time
 
@@ -7,22 +7,22 @@ from ied_sim.misbehaviour import Kind, MisbehaviourState
 
 
 class RelayClock:
-    """Times inside the simulator are true UTC; these are what the relay makes of them."""
+    """Times as the relay sees them. Times inside the simulator are true UTC."""
 
     def __init__(self, misbehaviour_state: MisbehaviourState) -> None:
         self._misbehaviour_state = misbehaviour_state
 
     @staticmethod
     def now_ns() -> int:
-        """True UTC."""
+        """Return true UTC."""
         return time.time_ns()
 
     def stamped(self, time_ns: int) -> int:
-        """As time stamps of data attributes have it: UTC by the relay's clock."""
+        """Return a time as time stamps of data attributes have it: UTC by the relay's clock."""
         return time_ns + self._offset_ns(Kind.CLOCK_OFFSET)
 
     def written(self, time_ns: int) -> int:
-        """As records and reports have it: perhaps in local time."""
+        """Return a time as records and reports have it, perhaps in local time."""
         return self.stamped(time_ns) + self._offset_ns(Kind.LOCAL_TIME)
 
     def _offset_ns(self, kind: Kind) -> int:

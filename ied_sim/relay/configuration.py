@@ -22,10 +22,30 @@ class Access:
 
 @dataclass(frozen=True, slots=True)
 class RelayConfiguration:
-    """What one relay protects, what kind of relay it is, how it records, what it does wrong, whom it lets in.
+    """Configuration of one relay.
 
-    load_profile_s: time between rows of the load profile.  metering_period_s: time between updates of the
-    metered values.  metering_refresh_s: longest time until unchanged values are published again.
+    Parameters
+    ----------
+    plant : MotorPlant
+        The motor it protects.
+    profile : Profile
+        What kind of relay it is.
+    recorder : RecorderSettings
+        What a record spans, and how many are kept.
+    triggers : Triggers
+        What makes a record besides the controls.
+    protection : ProtectionSettings
+        Protection elements in use.
+    misbehaviour : tuple of Misbehaviour
+        What the relay or its network does wrong.
+    load_profile_s : float
+        Time between rows of the load profile.
+    access : Access
+        What a client must show.
+    metering_period_s : float
+        Time between updates of the metered values.
+    metering_refresh_s : float
+        Longest time until unchanged values are published again.
     """
 
     plant: MotorPlant
@@ -40,7 +60,10 @@ class RelayConfiguration:
     metering_refresh_s: float = 30.0
 
     def truth(self, time_s: float) -> dict[str, float | int | None]:
-        """The true condition at a time since the start: mu_f (the equivalent level), theta_f, load_level."""
+        """Return the motor's true condition at a time since the start.
+
+        It is mu_f (the equivalent level), theta_f and load_level.
+        """
         plant = self.plant
         parameters = plant.motor.parameters
         fault = None if plant.fault is None else plant.fault.at(time_s)

@@ -1,4 +1,4 @@
-"""The relay's folder of numbered event records, the oldest discarded for the newest."""
+"""The relay's folder of numbered event records, in which the oldest makes room for the newest."""
 
 import re
 import threading
@@ -11,16 +11,16 @@ from core.recordings.comtrade_writer import write as write_comtrade
 from ied_sim.profiles.profile import RecordFormat
 
 FIRST_NUMBER = 10000
-# What tells that a record is complete comes last into the folder and leaves it first.
+# The file that shows a record to be complete is the last to enter the folder and the first to leave it.
 _SUFFIXES_IN_ORDER = (".DAT", ".HDR", ".CFG", ".CFF", ".CEV")
 
 
 class EventFiles:
-    """Records in `folder`, at most `capacity` of them, named `prefix` and number, each in all `formats`.
+    """Records in `folder`, at most `capacity` of them, named by `prefix` and number, each in all `formats`.
 
-    They are written under `staging`, which no client sees, and renamed when complete; both directories must
-    be on one file system. Numbers go on after those found there, so a restarted relay uses none twice.
-    Raises OSError where the directories cannot be made or read.
+    Records are written under `staging`, which no client sees, and renamed when complete. Both directories
+    must be on one file system. Numbers go on after those found in the folder, so that a restarted relay uses
+    none twice. Raises OSError where the directories cannot be made or read.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class EventFiles:
         self.last_number = max(self.numbers(), default=None)
 
     def numbers(self) -> list[int]:
-        """Numbers of the complete records, oldest first."""
+        """Return the numbers of the complete records, oldest first."""
         names = (self._name.fullmatch(entry.name) for entry in self._folder.iterdir())
         return sorted({int(name[1]) for name in names if name})
 
@@ -59,8 +59,9 @@ class EventFiles:
     ) -> int:
         """Write one record completely, discard what is too old, and return the record's number.
 
-        utc_offset_min: of the clock that the recording's times are of, for formats that can tell it [min].
-        With `grow_s` the largest of its files appears half at first and grows to its size in that time.
+        `utc_offset_min` is that of the clock of the recording's times, for formats that can tell it [min].
+        With `grow_s` the largest of the record's files appears half at first and grows to its size in that
+        time.
         """
         number = FIRST_NUMBER if self.last_number is None else self.last_number + 1
         stem = f"{self._prefix}{number:05d}"
@@ -80,7 +81,7 @@ class EventFiles:
         return number
 
     def clear(self) -> None:
-        """Discard all records; numbers go on."""
+        """Discard all records. Numbers go on."""
         for number in self.numbers():
             self._discard(number)
 

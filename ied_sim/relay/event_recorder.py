@@ -1,4 +1,4 @@
-"""The event recorder: one trigger, one record, in real time."""
+"""The event recorder: one record for each trigger, in real time."""
 
 import logging
 import threading
@@ -26,7 +26,7 @@ class RecorderSettings:
 
 @dataclass(frozen=True, slots=True)
 class Capture:
-    """Analogue channels around a trigger at `time_ns`, and what the relay calls the event."""
+    """Analogue channels around a trigger at `time_ns`, and the relay's name for the event."""
 
     time_ns: int
     kind: str
@@ -34,11 +34,11 @@ class Capture:
 
 
 class EventRecorder:
-    """Captures `plant` around each trigger and hands it to `keep` once its last sample has been.
+    """Captures `plant` around each trigger and passes the capture to `store` after its last sample.
 
-    epoch_ns: UTC of the plant's time zero. A capture ends the post-trigger time after its trigger, as in a
-    relay that has to wait for its samples; a trigger meanwhile makes no second record. `keep` is called in
-    the capture's own thread.
+    `epoch_ns` is the UTC of the plant's time zero. A capture ends the post-trigger time after its trigger, as
+    in a relay that has to wait for its samples. A trigger meanwhile makes no second record. `store` is called
+    in the capture's own thread.
     """
 
     def __init__(
@@ -48,29 +48,29 @@ class EventRecorder:
         settings: RecorderSettings,
         *,
         epoch_ns: int,
-        keep: Callable[[Capture], None],
+        store: Callable[[Capture], None],
     ) -> None:
         self._relay_name = relay_name
         self._plant = plant
         self._settings = settings
         self._epoch_ns = epoch_ns
-        self._keep = keep
+        self._store = store
         self._lock = threading.Lock()
         self._stopping = threading.Event()
         self._capturing = False
         self._capture = threading.Thread()
 
-    def trigger(self, time_ns: int, kind: str, *, tell: Callable[[], None]) -> bool:
-        """Start a capture at UTC `time_ns`; False if one is under way or the recorder has stopped.
+    def trigger(self, time_ns: int, kind: str, *, on_start: Callable[[], None]) -> bool:
+        """Start a capture at UTC `time_ns`; return False if one is under way or the recorder has stopped.
 
-        tell: called when the capture is sure to begin, and back before its record can be complete.
+        `on_start` is called when the capture is sure to begin, and returns before its record can be complete.
         """
         with self._lock:
             if self._capturing or self._stopping.is_set():
                 return False
             self._capturing = True
-        # Without the lock: who is told may wait for a thread that wants to trigger.
-        tell()
+        # The lock is not held here: on_start may wait for a thread that wants to trigger.
+        on_start()
         with self._lock:
             if self._stopping.is_set():
                 return False
@@ -82,7 +82,7 @@ class EventRecorder:
         return True
 
     def stop(self) -> None:
-        """Abandon a capture under way and wait until it is gone."""
+        """Abandon a capture under way and wait until its thread has ended."""
         with self._lock:
             self._stopping.set()
         if self._capture.ident is not None:
@@ -92,14 +92,17 @@ class EventRecorder:
         try:
             recording = self._capture_event(trigger_ns)
             if recording is not None:
-                self._keep(Capture(trigger_ns, kind, recording))
+                self._store(Capture(trigger_ns, kind, recording))
         except OSError:
             log.exception("%s: an event record is lost: it cannot be written", self._relay_name)
         finally:
             self._capturing = False
 
     def _capture_event(self, trigger_ns: int) -> Recording | None:
-        """Simulate at once, wait for the samples' own time, and again if the motor was switched meanwhile."""
+        """Simulate at once and wait for the samples' own time.
+
+        The capture is simulated again if the motor was switched meanwhile.
+        """
         switched = self._switching(trigger_ns)
         recording = self._record(trigger_ns)
         complete_ns = trigger_ns + round(self._settings.post_trigger_s * NANOSECONDS_PER_SECOND)

@@ -1,4 +1,4 @@
-"""What a relay does wrong by itself: a report block taken, a report buffer flooded, a restart."""
+"""Misbehaviour of the relay itself: a report block taken, a report buffer flooded, a restart."""
 
 import logging
 from queue import SimpleQueue
@@ -12,11 +12,11 @@ from mms import GOOD, Client, MmsError, Quality, Report, Validity
 log = logging.getLogger(__name__)
 
 OCTETS_OF_A_REPORT = 40
-"""Fewer than the smallest report takes: so many changes overflow any buffer."""
+"""Fewer octets than the smallest report takes, so that enough changes are made to overflow the buffer."""
 
 
 class RelayMisbehaviour:
-    """Looks at the misbehaviour_state from time to time and acts; used by one thread."""
+    """Begins and ends the relay's own misbehaviour; used by one thread."""
 
     def __init__(
         self,
@@ -33,8 +33,8 @@ class RelayMisbehaviour:
         self._on: set[Kind] = set()
         self._waits = False
 
-    def look(self) -> None:
-        """Begin and end what has come on or gone off since the last look."""
+    def update(self) -> None:
+        """Begin and end what has come on or gone off since the last update."""
         for kind in sorted(self._misbehaviour_state.kinds):
             on = self._misbehaviour_state.is_on(kind)
             if on != (kind in self._on):
@@ -82,7 +82,7 @@ class RelayMisbehaviour:
             self._other_client, self._waits = client, False
 
     def _flood(self) -> None:
-        """Let the quality of the trip flicker: a report for each change, and nothing has happened."""
+        """Let the quality of the trip flicker: each change makes a report though nothing has happened."""
         trip = self._points.value_of("trip")
         if trip is None:
             return

@@ -38,28 +38,28 @@ class RelayPoints:
 
     @property
     def reports(self) -> str | None:
-        """The buffered report control block that tells of records."""
+        """Reference of the buffered report control block that reports records."""
         reports = self._points.reports
         return None if reports is None else self.reference(reports)
 
     def reference(self, inst_reference: str) -> str:
-        """The reference clients use, with the domain in place of the logical device's inst."""
+        """Return the reference that clients use, with the domain in place of the logical device's inst."""
         inst, _, rest = inst_reference.partition("/")
         return f"{self._domains.get(inst, inst)}/{rest}"
 
     @staticmethod
     def remote_bit(reference: str) -> str | None:
-        """Number of the remote bit ("01") that a control of RBGGIO sets and one of PRBGGIO pulses."""
+        """Return the number ("01") of the remote bit that a control of RBGGIO or PRBGGIO sets."""
         node, _, control = reference.rpartition("/")[2].partition(".")
         return control.removeprefix("SPCSO") if node.startswith(("RBGGIO", "PRBGGIO")) else None
 
     def control(self, key: str) -> str | None:
-        """Reference of the control `key` ("start"), None where the profile names none."""
+        """Return the reference of the control `key` ("start"), None where the profile names none."""
         found = getattr(self._points, key)
         return None if found is None else self.reference(found)
 
     def value_of(self, key: str) -> str | None:
-        """Reference of the value attribute of the status `key` ("record_made"), None where there is none."""
+        """Return the reference of the value of the status `key` ("record_made"), None where there is none."""
         found = getattr(self._points, key)
         if found is None:
             return None
@@ -67,10 +67,11 @@ class RelayPoints:
         return self.reference(f"{found}.{attribute}")
 
     def has(self, reference: str) -> bool:
+        """Tell whether the model has such an object or attribute."""
         return self._ied.find(reference) is not None
 
     def report_ids(self) -> dict[str, str]:
-        """By RptID, the MMS reference of the block that has it."""
+        """Return the MMS reference of each report control block by its RptID."""
         return {
             report.report_id: reference.replace(".", "$")
             for report in self._ied.report_controls()
@@ -79,7 +80,7 @@ class RelayPoints:
         }
 
     def stamps(self, attribute: str) -> tuple[str | None, str | None]:
-        """References of quality and time beside a value attribute; None for what the model lacks."""
+        """Return the references of quality and time beside a value attribute, None where missing."""
         names = attribute.split(".")
         place = next(place for place, name in enumerate(names) if name in _VALUE_ATTRIBUTES)
         data_object = ".".join(names[:place])

@@ -1,4 +1,4 @@
-"""From a capture to what the relay offers of it: files, an entry in its journal, the record's number."""
+"""Storage of captures: files, an entry in the journal, the record's number."""
 
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -23,7 +23,7 @@ TARGET_BITS = ("50P1T", "49T", "46UBT")
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """What every record says of its relay. direction: +1 for abc, -1 for acb."""
+    """What every record says of its relay. The direction is +1 for abc, -1 for acb."""
 
     relay: str
     firmware: str
@@ -32,7 +32,7 @@ class Identity:
 
 
 class RecordArchive:
-    """Keeps the captures of one relay, one at a time. Without `files` it only counts."""
+    """Stores the captures of one relay, one at a time. Without `files` it only counts."""
 
     def __init__(
         self,
@@ -51,9 +51,9 @@ class RecordArchive:
         self._misbehaviour_state = misbehaviour_state
         self.last_number = None if files is None else files.last_number
 
-    def keep(self, capture: Capture) -> int:
-        """Store a capture and return its number. Raises OSError where it cannot be written."""
-        seen = _at_trigger(capture.recording, self._identity.direction)
+    def store(self, capture: Capture) -> int:
+        """Store a capture and return its number. Raise OSError where it cannot be written."""
+        metering = _at_trigger(capture.recording, self._identity.direction)
         record = self._complete(capture.recording)
         targets = " ".join(bit for bit in TARGET_BITS if self._word[bit])
         if self._files is None:
@@ -61,23 +61,23 @@ class RecordArchive:
         else:
             number = self._files.store(
                 record,
-                self._header(record, capture.kind, seen),
-                self._summary(record, capture.kind, targets, seen),
+                self._header(record, capture.kind, metering),
+                self._summary(record, capture.kind, targets, metering),
                 utc_offset_min=round((self._misbehaviour_state.number(Kind.LOCAL_TIME) or 0.0) / 60),
                 grow_s=self._misbehaviour_state.number(Kind.GROWING_FILE) or 0.0,
             )
         self.last_number = number
-        self._journal.add_event(Event(number, capture.time_ns, capture.kind, seen, targets))
+        self._journal.add_event(Event(number, capture.time_ns, capture.kind, metering, targets))
         return number
 
     def clear(self) -> None:
-        """Forget all records."""
+        """Delete all records."""
         if self._files is not None:
             self._files.clear()
         self._journal.clear_events()
 
     def _complete(self, recording: Recording) -> Recording:
-        """With the relay word beside the samples, and in the relay's own time."""
+        """Add the relay word beside the samples, and put the times into the relay's own."""
         elapsed_ns = np.rint(recording.time_s * NANOSECONDS_PER_SECOND).astype(np.int64)
         times_ns = recording.start_time_ns + elapsed_ns
         return replace(
@@ -87,8 +87,8 @@ class RecordArchive:
             start_time_ns=self._clock.written(recording.start_time_ns),
         )
 
-    def _header(self, record: Recording, kind: str, seen: Metering) -> str:
-        """The .HDR file: what a relay's event summary tells, in plain text."""
+    def _header(self, record: Recording, kind: str, metering: Metering) -> str:
+        """Return the .HDR file: the relay's event summary in plain text."""
         seconds, nanoseconds = divmod(record.trigger_time_ns, NANOSECONDS_PER_SECOND)
         trigger = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S")
         zone = "local" if self._misbehaviour_state.is_on(Kind.LOCAL_TIME) else "UTC"
@@ -97,13 +97,13 @@ class RecordArchive:
             f"FID       {self._identity.firmware}\r\n"
             f"EVENT     {kind}\r\n"
             f"TRIGGER   {trigger}.{nanoseconds:09d} {zone}\r\n"
-            f"FREQ      {seen.frequency_Hz:.2f} Hz\r\n"
+            f"FREQ      {metering.frequency_Hz:.2f} Hz\r\n"
             f"SAMPLES   {record.samples.shape[1]} at {record.sample_rate_hz:g} Hz\r\n"
         )
 
-    def _summary(self, record: Recording, kind: str, targets: str, seen: Metering) -> EventSummary:
+    def _summary(self, record: Recording, kind: str, targets: str, metering: Metering) -> EventSummary:
         per_cycle = max(1, round(record.sample_rate_hz / (record.nominal_frequency_hz or 50.0)))
-        currents, voltages = np.abs(seen.currents_A), np.abs(seen.phase_voltages_V)
+        currents, voltages = np.abs(metering.currents_A), np.abs(metering.phase_voltages_V)
         names = [f"{quantity}{phase}" for quantity in "IV" for phase in "ABC"]
         return EventSummary(
             samples_per_cycle=per_cycle,
@@ -116,7 +116,7 @@ class RecordArchive:
 
 
 def _at_trigger(recording: Recording, direction: int) -> Metering:
-    """The phasors of the first cycles after the trigger, of as many as there are."""
+    """Return the phasors of the first cycles after the trigger, of as many as there are."""
     frequency_Hz = recording.nominal_frequency_hz or 50.0
     span = round(METERING_CYCLES / frequency_Hz * recording.sample_rate_hz)
     first = min(recording.trigger_index or 0, max(0, recording.samples.shape[1] - span))

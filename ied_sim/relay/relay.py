@@ -33,11 +33,11 @@ from scl.model_text import model_text
 
 log = logging.getLogger(__name__)
 
-WATCHFUL_PERIOD_S = 0.1
-"""Between looks while something is about to happen: a start, a trip."""
+FREQUENT_UPDATE_PERIOD_S = 0.1
+"""Time between updates while a start or a trip may be near."""
 
 OPENING_NS = 40_000_000
-"""From the command to open until a contactor's current has ended."""
+"""Time from the command to open until the contactor's current has ended."""
 
 _STAGING = ".staging"
 _TRIP_BITS = {"overcurrent": "50P1T", "thermal": "49T", "unbalance": "46UBT"}
@@ -45,59 +45,79 @@ _TRIP_KINDS = {"overcurrent": "PHASE 50 TRIP", "thermal": "THERMAL TRIP", "unbal
 
 
 class Relay:
-    """The relay `ied_name` of an SCD file, of the kind and protecting what its scenario says.
+    """One relay of an SCD file.
 
-    address: where clients find it.  files: the simulator's directory; the relay's own files are in
-    files/<IED>.  epoch_ns: UTC of the plant's time zero.  proxies: where it gets a front if it needs one.
-    Raises SimulatorError where the data model is not that of its profile; SclError, ModelError, OSError.
+    Parameters
+    ----------
+    document : Scl
+        The SCD file.
+    ied_name : str
+        Name of the relay's IED.
+    configuration : RelayConfiguration
+        What kind of relay it is and what it protects.
+    address : Address
+        Where clients find it.
+    files : pathlib.Path
+        The simulator's directory. The relay's own files are in files/<IED>.
+    epoch_ns : int
+        UTC of the plant's time zero [ns].
+    proxies : RelayProxies, optional
+        Where it gets a proxy if it needs one.
+
+    Raises
+    ------
+    SimulatorError
+        The data model is not that of its profile, or a proxy is needed and not possible.
+    SclError, ModelError, OSError
+        The model cannot be served, or the directories cannot be made.
     """
 
     def __init__(
         self,
         document: Scl,
         ied_name: str,
-        scenario: RelayConfiguration,
+        configuration: RelayConfiguration,
         *,
         address: Address,
         files: Path,
         epoch_ns: int,
         proxies: RelayProxies | None = None,
     ) -> None:
-        profile = scenario.profile
+        profile = configuration.profile
         self.name = ied_name
-        self._scenario = scenario
+        self._configuration = configuration
         self._epoch_ns = epoch_ns
-        self._rated_A = rated_current(scenario.plant.motor)
+        self._rated_A = rated_current(configuration.plant.motor)
         self._points = RelayPoints(document.ied(ied_name), profile, str(document.path))
         self.misbehaviour_state = MisbehaviourState(
-            scenario.misbehaviour, lambda: self._seconds(RelayClock.now_ns())
+            configuration.misbehaviour, lambda: self._seconds(RelayClock.now_ns())
         )
         self._check_switches()
         self._clock = RelayClock(self.misbehaviour_state)
         self._word = RelayWord()
         self._bits = dict.fromkeys(self._points.controls, False)
         self._journal = Journal(
-            scenario.recorder.capacity, since_ns=epoch_ns, profile_every_s=scenario.load_profile_s
+            configuration.recorder.capacity, since_ns=epoch_ns, profile_every_s=configuration.load_profile_s
         )
-        self._watch = MotorMonitor(scenario.plant, self._rated_A)
-        self._protection = Protection(scenario.protection, self._rated_A)
+        self._monitor = MotorMonitor(configuration.plant, self._rated_A)
+        self._protection = Protection(configuration.protection, self._rated_A)
         self._closure: Closure | None = None
         self._start_noted = True
         self._load_is_above = False
-        self._looked_ns = epoch_ns
+        self._updated_ns = epoch_ns
         self.needs_update_soon = False
         """Something has happened that the next look should not be late for."""
         self._timers: list[threading.Timer] = []
-        self._settings = relay_settings(ied_name, scenario)
+        self._settings = relay_settings(ied_name, configuration)
         self._offered: dict[str, TextMaker] = {}
         root, staging = files / ied_name, files / _STAGING / ied_name
         self._event_files = self._make_event_files(root, staging)
-        identity = Identity(ied_name, profile.firmware, scenario.plant.supply.direction, self._settings)
-        self._keeper = RecordArchive(
+        identity = Identity(ied_name, profile.firmware, configuration.plant.supply.direction, self._settings)
+        self._archive = RecordArchive(
             identity, self._event_files, self._journal, self._word, self._clock, self.misbehaviour_state
         )
         self._recorder = EventRecorder(
-            ied_name, scenario.plant, scenario.recorder, epoch_ns=epoch_ns, keep=self._keep
+            ied_name, configuration.plant, configuration.recorder, epoch_ns=epoch_ns, store=self._store
         )
         self._relay_server = RelayServer(
             ied_name,
@@ -110,34 +130,35 @@ class Relay:
             staging=staging,
             operated=self._operate,
             texts={path: self._text(maker) for path, maker in self._offered.items()},
-            access=scenario.access,
+            access=configuration.access,
         )
         self._values = RelayValues(
             self._relay_server,
             self._points,
             profile.points.metering,
             profile.points.sequence,
-            refresh_s=scenario.metering_refresh_s,
+            refresh_s=configuration.metering_refresh_s,
         )
         self._misbehaviour = RelayMisbehaviour(
             self.misbehaviour_state, self._relay_server, self._points, profile.report_buffer_bytes
         )
-        self._begin(RelayClock.now_ns())
+        self._publish_initial_values(RelayClock.now_ns())
 
     @property
     def server(self) -> Server:
+        """The relay's MMS server."""
         return self._relay_server.server
 
     @property
     def serves_itself(self) -> bool:
-        """Whether its server has a thread of its own.
+        """Whether the server has a thread of its own.
 
-        One that restarts cannot share a pump, and one that shakes hands over TLS would hold the others up.
+        A server that restarts cannot share a pump, and one with TLS handshakes would hold the others up.
         """
-        return Kind.RESTART in self.misbehaviour_state.kinds or self._scenario.access.tls is not None
+        return Kind.RESTART in self.misbehaviour_state.kinds or self._configuration.access.tls is not None
 
     def stop(self) -> None:
-        """Abandon a capture under way; the server itself belongs to its pump."""
+        """Abandon a capture under way. The server itself belongs to its pump."""
         for timer in self._timers:
             timer.cancel()
             timer.join()
@@ -147,50 +168,50 @@ class Relay:
         self._misbehaviour.stop()
         self._relay_server.close_overflow_server()
 
-    def look(self, time_ns: int) -> float:
-        """Look at the motor at UTC `time_ns`: meter, protect, keep the journal. Used by one thread.
+    def update(self, time_ns: int) -> float:
+        """Update the relay at UTC `time_ns`: meter, protect, keep the journal. Used by one thread.
 
-        Returns when it wants to look again [s].
+        It returns the time until the next update [s].
         """
         time_s = self._seconds(time_ns)
         self.needs_update_soon = False
-        self._misbehaviour.look()
-        seen = self._watch.look(time_s)
-        self._values.refresh_metering(seen, time_ns)
-        closure = self._watch.closure(time_s)
+        self._misbehaviour.update()
+        metering = self._monitor.measure(time_s)
+        self._values.refresh_metering(metering, time_ns)
+        closure = self._monitor.closure(time_s)
         self._follow_start(closure, time_s)
         self._journal.add_operation(
-            max(0.0, (time_ns - self._looked_ns) * 1e-9),
-            seen,
+            max(0.0, (time_ns - self._updated_ns) * 1e-9),
+            metering,
             running=closure is not None,
             starting=not self._start_noted,
         )
-        self._looked_ns = time_ns
-        tripped = self._protection.look(seen, time_s)
+        self._updated_ns = time_ns
+        tripped = self._protection.update(metering, time_s)
         if closure is not None and tripped:
             self._trip(tripped, time_ns)
-        self._journal.add_load_row(time_ns, seen, self._protection.thermal_capacity)
-        self._watch_load(seen, time_ns)
-        if self._start_noted and not self._is_watchful:
-            return self._scenario.metering_period_s
-        return WATCHFUL_PERIOD_S
+        self._journal.add_load_row(time_ns, metering, self._protection.thermal_capacity)
+        self._check_load_trigger(metering, time_ns)
+        if self._start_noted and not self._needs_frequent_updates:
+            return self._configuration.metering_period_s
+        return FREQUENT_UPDATE_PERIOD_S
 
     def update_metering(self, time_ns: int) -> None:
         """Meter the motor at UTC `time_ns` and publish the values."""
-        self._values.metering(self._watch.look(self._seconds(time_ns)), time_ns)
+        self._values.publish_metering(self._monitor.measure(self._seconds(time_ns)), time_ns)
 
     @property
-    def _is_watchful(self) -> bool:
-        protection = self._scenario.protection
+    def _needs_frequent_updates(self) -> bool:
+        protection = self._configuration.protection
         return bool(self.misbehaviour_state.kinds or protection.overcurrent or protection.unbalance)
 
     def _seconds(self, time_ns: int) -> float:
         return (time_ns - self._epoch_ns) * 1e-9
 
-    # what happens
+    # Events
 
     def _operate(self, action: ControlAction) -> bool | AddCause:
-        """Set or clear a control, unless it is but a test; runs in the pump's thread."""
+        """Set or clear a control, unless it is only a test; runs in the pump's thread."""
         switches = self._switches.get(action.reference)
         if self.misbehaviour_state.is_on(Kind.REFUSED_CONTROL) and switches is None:
             return AddCause.BLOCKED_BY_INTERLOCKING
@@ -205,8 +226,8 @@ class Relay:
         if rises:
             self._on_rise(action.reference, now_ns)
             if action.reference in self._points.pulsed:
-                quarter_s = 0.25 / self._scenario.plant.supply.frequency(self._seconds(now_ns))
-                self._later(
+                quarter_s = 0.25 / self._configuration.plant.supply.frequency(self._seconds(now_ns))
+                self._after(
                     quarter_s, lambda: self._set_control(action.reference, RelayClock.now_ns(), value=False)
                 )
         return True
@@ -217,7 +238,7 @@ class Relay:
         if number is not None:
             together = (each for each in self._bits if self._points.remote_bit(each) == number)
             self._word.set(f"RB{number}", any(self._bits[each] for each in together), time_ns)
-        self._values.controls({reference: value}, time_ns)
+        self._values.publish_controls({reference: value}, time_ns)
 
     def _on_rise(self, reference: str, now_ns: int) -> None:
         if reference in self._points.triggers:
@@ -228,10 +249,10 @@ class Relay:
         elif reference == self._points.control("stop"):
             self._stop_motor(now_ns)
         elif reference == self._points.control("clear"):
-            self._keeper.clear()
+            self._archive.clear()
 
     def _start_motor(self, now_ns: int) -> None:
-        contactor = self._scenario.plant.contactor
+        contactor = self._configuration.plant.contactor
         closed_s = None if contactor is None else contactor.close(self._seconds(now_ns))
         if closed_s is None:
             return
@@ -241,12 +262,12 @@ class Relay:
         for bit in ("TRIP", *_TRIP_BITS.values(), "STOPPED"):
             self._word.set(bit, False, closed_ns)  # noqa: FBT003
         self._word.set("STARTING", True, closed_ns)  # noqa: FBT003
-        self._values.status(dict.fromkeys(("trip", *_TRIP_BITS), False), now_ns)
-        if self._scenario.triggers.motor_start:
+        self._values.publish_status(dict.fromkeys(("trip", *_TRIP_BITS), False), now_ns)
+        if self._configuration.triggers.motor_start:
             self._trigger(now_ns, "ER MOTOR START")
 
     def _stop_motor(self, now_ns: int) -> None:
-        contactor = self._scenario.plant.contactor
+        contactor = self._configuration.plant.contactor
         open_ns = now_ns + OPENING_NS
         if contactor is None or not contactor.open(self._seconds(open_ns)):
             return
@@ -261,27 +282,27 @@ class Relay:
         for element in elements:
             self._journal.add_trip(element)
             self._word.set(_TRIP_BITS[element], True, now_ns)  # noqa: FBT003
-        self._values.status(dict.fromkeys(("trip", *elements), True), now_ns)
+        self._values.publish_status(dict.fromkeys(("trip", *elements), True), now_ns)
         self._stop_motor(now_ns)
-        if self._scenario.triggers.trip:
+        if self._configuration.triggers.trip:
             self._trigger(now_ns, _TRIP_KINDS[elements[0]])
 
-    def _watch_load(self, seen: Metering, now_ns: int) -> None:
-        level = self._scenario.triggers.load_above
-        above = level is not None and self._start_noted and seen.current_A > level * self._rated_A
+    def _check_load_trigger(self, metering: Metering, now_ns: int) -> None:
+        level = self._configuration.triggers.load_above
+        above = level is not None and self._start_noted and metering.current_A > level * self._rated_A
         if above and not self._load_is_above:
             self._trigger(now_ns, "ER LOAD")
         self._load_is_above = above
 
     def _follow_start(self, closure: Closure | None, time_s: float) -> None:
-        """Note a start in the journal once it has ended."""
+        """Add a start to the journal once it has ended."""
         if closure != self._closure and closure is not None and closure.closed_s >= 0:
             self._start_noted = False
         self._closure = closure
         if self._start_noted or closure is None:
             self._start_noted = True
             return
-        start = self._watch.start(closure)
+        start = self._monitor.start(closure)
         lasted_s = float(start.time_s[-1]) if start.duration_s is None else start.duration_s
         if time_s >= closure.closed_s + lasted_s:
             self._start_noted = True
@@ -291,39 +312,39 @@ class Relay:
             self._word.set("RUNNING", True, end_ns)  # noqa: FBT003
 
     def _trigger(self, now_ns: int, kind: str) -> None:
-        def tell() -> None:
+        def on_start() -> None:
             self._word.pulse("ER", now_ns, 5_000_000)
-            self._values.status({"record_made": False, "record_started": True}, now_ns)
+            self._values.publish_status({"record_made": False, "record_started": True}, now_ns)
 
-        self._recorder.trigger(now_ns, kind, tell=tell)
+        self._recorder.trigger(now_ns, kind, on_start=on_start)
 
-    def _keep(self, capture: Capture) -> None:
-        """Store a record and tell the clients of it; runs in the capture's thread."""
-        number = self._keeper.keep(capture)
+    def _store(self, capture: Capture) -> None:
+        """Store a record and report it to the clients; runs in the capture's thread."""
+        number = self._archive.store(capture)
         log.info("%s: event record %d is complete", self.name, number)
-        self._values.status(
+        self._values.publish_status(
             {"record_number": number, "record_made": True, "record_started": False}, RelayClock.now_ns()
         )
 
-    def _later(self, delay_s: float, action: Callable[[], None]) -> None:
+    def _after(self, delay_s: float, action: Callable[[], None]) -> None:
         timer = threading.Timer(delay_s, action)
         timer.daemon = True
         self._timers = [each for each in self._timers if each.is_alive()] + [timer]
         timer.start()
 
-    def _begin(self, now_ns: int) -> None:
-        """What clients see before anything has happened; the first look, within a second, meters."""
-        self._values.controls(self._bits, now_ns)
+    def _publish_initial_values(self, now_ns: int) -> None:
+        """Publish what clients see before anything has happened; the first update measures."""
+        self._values.publish_controls(self._bits, now_ns)
         fallen = dict.fromkeys(("record_made", "record_started", "trip", *_TRIP_BITS), False)
-        self._values.status({**fallen, "record_number": self._keeper.last_number or 0}, now_ns)
-        self._closure = self._watch.closure(self._seconds(now_ns))
+        self._values.publish_status({**fallen, "record_number": self._archive.last_number or 0}, now_ns)
+        self._closure = self._monitor.closure(self._seconds(now_ns))
         self._word.set("STOPPED" if self._closure is None else "RUNNING", True, now_ns)  # noqa: FBT003
-        self._looked_ns = now_ns
+        self._updated_ns = now_ns
 
-    # what it is made of
+    # Parts
 
     def _make_event_files(self, root: Path, staging: Path) -> EventFiles | None:
-        profile = self._scenario.profile
+        profile = self._configuration.profile
         staging.mkdir(parents=True, exist_ok=True)
         root.mkdir(parents=True, exist_ok=True)
         if profile.files is None:
@@ -332,20 +353,20 @@ class Relay:
         return EventFiles(
             root / profile.files.folder,
             staging,
-            capacity=self._scenario.recorder.capacity,
+            capacity=self._configuration.recorder.capacity,
             prefix=profile.files.name,
             formats=profile.record.written(),
         )
 
     def _listening_at(self, address: Address, proxies: RelayProxies | None) -> Address:
-        """Where the server listens: behind a front if clients must see what the server cannot do."""
-        files = self._scenario.profile.files
+        """Return where the server listens: behind a proxy if clients must see what the server cannot do."""
+        files = self._configuration.profile.files
         rewritten = bool(self.misbehaviour_state.kinds & MADE_BY_PROXY) or (
             files is not None
             and (files.separator != "/" or files.listed != "path" or files.entries_per_listing is not None)
         )
-        sessions = self._scenario.profile.sessions
-        encrypted = self._scenario.access.tls is not None
+        sessions = self._configuration.profile.sessions
+        encrypted = self._configuration.access.tls is not None
         if encrypted and rewritten:
             raise SimulatorError(
                 f"{self.name}: its profile or scenario needs a front between relay and clients, which could "
@@ -372,8 +393,8 @@ class Relay:
     def _snapshot(self, now_ns: int) -> RelaySnapshot:
         return RelaySnapshot(
             relay=self.name,
-            firmware=self._scenario.profile.firmware,
-            motor=self._scenario.plant.motor,
+            firmware=self._configuration.profile.firmware,
+            motor=self._configuration.plant.motor,
             rated_current_A=self._rated_A,
             journal=self._journal,
             word=self._word,

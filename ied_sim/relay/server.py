@@ -37,8 +37,9 @@ class RelayServer:
     It keeps the values. So it can begin anew as after a restart, and a second server of the library, the
     overflow server, can offer the same values to clients beyond the library's limit. The overflow server has
     report blocks of its own: one that is taken in the server is free there.
-    root: the folder clients see.  staging: where files are made before they appear in it.  texts: files made
-    at each request, by path under the root.
+
+    Clients see the folder `root`. Files are made in `staging` before they appear in it. `texts` are files
+    made at each request, by path under the root.
     """
 
     def __init__(
@@ -56,7 +57,7 @@ class RelayServer:
         texts: Mapping[str, TextSource],
         access: Access,
     ) -> None:
-        # Under one name for all: relays of one kind then have one text, which is checked once.
+        # All models have the same name: relays of one kind then share one text, which is checked once.
         self._model = sys.intern(model.replace(f"MODEL({name}){{", f"MODEL({_ANY_NAME}){{", 1))
         self._name = name
         self._points = points
@@ -100,12 +101,12 @@ class RelayServer:
             try:
                 server.update_many(changes)
             except RuntimeError:
-                # It went down in between; no lock could be held here that a handler may also want.
+                # The server may have gone down meanwhile. A lock here could be one that a handler wants.
                 if not self._down and server in (self.server, self._overflow_server):
                     raise
 
     def go_down(self) -> None:
-        """End every connection; what clients had not yet been told is forgotten."""
+        """End every connection. What clients had not yet received is forgotten."""
         self._down = True
         self.server.stop()
         self.close_overflow_server()
@@ -117,7 +118,7 @@ class RelayServer:
         self._down = False
 
     def open_overflow_server(self) -> Address | None:
-        """Where clients are served for whom the server has no session left; None while it is down.
+        """Return where clients are served for whom the server has no session left; None while it is down.
 
         Raises ServerStartFailed. Used by one thread at a time.
         """
@@ -130,13 +131,14 @@ class RelayServer:
             )
             self._overflow_server = overflow_server
             known = -1
-            while known != self._changes:  # what was published meanwhile may have been overtaken
+            while known != self._changes:  # a value published meanwhile may have been overtaken
                 known = self._changes
                 overflow_server.update_many(dict(self._values))
             overflow_server.start()
         return Address(self._overflow_server.address, self._overflow_server.port)
 
     def close_overflow_server(self) -> None:
+        """Stop the overflow server where there is one."""
         overflow_server, self._overflow_server = self._overflow_server, None
         if overflow_server is not None:
             overflow_server.stop()
@@ -165,7 +167,7 @@ class RelayServer:
         return server
 
     def _make_texts(self, request: FileRequest) -> FileAnswer:
-        """Write the texts a client lists or opens, as they are now."""
+        """Write the texts that a client lists or opens, with their present content."""
         asked = request.path.relative_to(self._root.resolve()).as_posix()
         for path, make in self._texts.items():
             listed = request.operation is FileOperation.LIST and asked in (".", Path(path).parent.as_posix())

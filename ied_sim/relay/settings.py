@@ -4,19 +4,19 @@ from ied_sim.motor.plant import rated_current
 from ied_sim.relay.configuration import RelayConfiguration
 
 
-def relay_settings(name: str, scenario: RelayConfiguration) -> tuple[tuple[str, str], ...]:
-    """Name and value of each, in the order they are listed; "OFF" for what is not in use."""
-    nameplate = scenario.plant.motor.nameplate
-    recorder, protection = scenario.recorder, scenario.protection
+def relay_settings(name: str, configuration: RelayConfiguration) -> tuple[tuple[str, str], ...]:
+    """Return name and value of each setting, in the order they are listed; "OFF" for what is not in use."""
+    nameplate = configuration.plant.motor.nameplate
+    recorder, protection = configuration.recorder, configuration.protection
     cycles = recorder.pre_trigger_s + recorder.post_trigger_s
     frequency_Hz = nameplate.rated_frequency_Hz
     overcurrent, unbalance, thermal = protection.overcurrent, protection.unbalance, protection.thermal
     return (
         ("RID", name),
         ("TID", "MOTOR"),
-        ("PHROT", scenario.plant.supply.sequence.upper()),
+        ("PHROT", configuration.plant.supply.sequence.upper()),
         ("FNOM", f"{frequency_Hz:g}"),
-        ("FLA", f"{rated_current(scenario.plant.motor):.2f}"),
+        ("FLA", f"{rated_current(configuration.plant.motor):.2f}"),
         ("VNOM", f"{nameplate.rated_voltage_V:g}"),
         ("E49MOTOR", "Y" if thermal else "N"),
         ("SF", f"{thermal.service_factor:g}" if thermal else "OFF"),
@@ -28,5 +28,5 @@ def relay_settings(name: str, scenario: RelayConfiguration) -> tuple[tuple[str, 
         ("ER", "R_TRIG RB01"),
         ("LER", f"{cycles * frequency_Hz:g}"),
         ("PRE", f"{recorder.pre_trigger_s * frequency_Hz:g}"),
-        ("LDAR", f"{scenario.load_profile_s / 60:g}"),
+        ("LDAR", f"{configuration.load_profile_s / 60:g}"),
     )

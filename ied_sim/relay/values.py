@@ -1,4 +1,4 @@
-"""A relay's values as its clients see them: statuses by their key in the profile, and what it meters."""
+"""A relay's values as its clients see them: statuses by their key in the profile, and metered values."""
 
 import cmath
 from math import degrees
@@ -13,10 +13,10 @@ from mms import Value
 
 
 class RelayValues:
-    """Publishes on one relay's server.
+    """Publishes the values on one relay's server.
 
-    metering, sequence: the profile's logical nodes, None for none.  refresh_s: longest time until metered
-    values that have not changed are published again.
+    `metering` and `sequence` are the profile's logical nodes, None for none. `refresh_s` is the longest time
+    until metered values that have not changed are published again.
     """
 
     def __init__(
@@ -36,33 +36,33 @@ class RelayValues:
         self._measured = [name for name in self._measurements(nothing) if points.has(name)]
         self._published, self._published_ns = nothing, 0
 
-    def status(self, values: dict[str, Value], time_ns: int) -> None:
+    def publish_status(self, values: dict[str, Value], time_ns: int) -> None:
         """Publish statuses by their key; those the profile does not name are left out."""
         named = {self._points.value_of(key): value for key, value in values.items()}
         found = {reference: value for reference, value in named.items() if reference is not None}
         if found:
             self._server.publish(found, time_ns)
 
-    def controls(self, values: dict[str, bool], time_ns: int) -> None:
+    def publish_controls(self, values: dict[str, bool], time_ns: int) -> None:
         """Publish the state of controls by their reference."""
         self._server.publish({f"{reference}.stVal": value for reference, value in values.items()}, time_ns)
 
-    def metering(self, seen: Metering, time_ns: int) -> None:
-        """Publish all that is metered."""
-        self._published, self._published_ns = seen, time_ns
-        values = self._measurements(seen)
+    def publish_metering(self, metering: Metering, time_ns: int) -> None:
+        """Publish all metered values."""
+        self._published, self._published_ns = metering, time_ns
+        values = self._measurements(metering)
         self._server.publish({name: values[name] for name in self._measured}, time_ns)
 
-    def refresh_metering(self, seen: Metering, time_ns: int) -> None:
-        """Publish what has changed; what has not, now and then."""
+    def refresh_metering(self, metering: Metering, time_ns: int) -> None:
+        """Publish metered values that have changed, and unchanged ones now and then."""
         refresh_ns = self._refresh_s * NANOSECONDS_PER_SECOND
-        if seen is not self._published or time_ns - self._published_ns >= refresh_ns:
-            self.metering(seen, time_ns)
+        if metering is not self._published or time_ns - self._published_ns >= refresh_ns:
+            self.publish_metering(metering, time_ns)
 
-    def _measurements(self, seen: Metering) -> dict[str, Value]:
-        """Every attribute a metering data object may have, by reference."""
+    def _measurements(self, metering: Metering) -> dict[str, Value]:
+        """Return every attribute that a metering data object may have, by reference."""
         attributes: dict[str, Value] = {}
-        for inst_reference, value in metered_values(seen, *self._nodes).items():
+        for inst_reference, value in metered_values(metering, *self._nodes).items():
             reference = self._points.reference(inst_reference)
             if isinstance(value, complex):
                 for vector in ("instCVal", "cVal"):

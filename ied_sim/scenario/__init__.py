@@ -1,1 +1,1 @@
-"""Scenario files: which motors and relays are simulated, and what happens to them."""
+"""Scenario files: the motor, its condition and its relay's configuration for each IED."""

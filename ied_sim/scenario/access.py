@@ -1,4 +1,4 @@
-"""Who may connect to a simulated relay: anybody, or who has a pinned certificate, a password, or both."""
+"""Access to a simulated relay in a scenario: a pinned certificate, a password, both, or neither."""
 
 from pathlib import Path
 from typing import Annotated, Literal
@@ -13,7 +13,7 @@ from mms.security.passwords import PASSWORD_RULE, is_password
 
 
 class TlsTable(Table):
-    """Files as the scenario names them, relative to it."""
+    """Certificates and key, as files relative to the scenario."""
 
     certificate: str
     key: str
@@ -23,13 +23,13 @@ class TlsTable(Table):
 
 
 class AccessTable(Table):
-    """[motor.access] of a scenario."""
+    """The table [motor.access] of a scenario."""
 
     tls: TlsTable | None = None
     password_file: str | None = None
 
     def access(self, folder: Path) -> Access:
-        """With the files read and found good. Raises CredentialFileError."""
+        """Read and check the files. Raise CredentialFileError where one cannot be used."""
         tls = None
         if self.tls is not None:
             newest = {"1.2": TlsVersion.TLS_1_2, "1.3": TlsVersion.TLS_1_3}[self.tls.maximum_version]
@@ -46,7 +46,7 @@ class AccessTable(Table):
 
 
 def _passwords(path: Path) -> tuple[str, ...]:
-    """One a line."""
+    """Read one password a line."""
     lines = tuple(read_secret(path).decode("latin-1").splitlines())
     if not lines or not all(map(is_password, lines)):
         raise CredentialFileError(path, f"on each line {PASSWORD_RULE}", "something else")

@@ -1,6 +1,6 @@
 """The scenario: which motor stands behind each relay, in what condition, on what supply, under what load.
 
-One TOML file, explained in docs/reference/scenario.md.
+It is one TOML file, explained in docs/scenario.md.
 """
 
 from collections.abc import Mapping
@@ -31,7 +31,7 @@ from mms import CredentialFileError
 
 
 def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayConfiguration]:
-    """Scenario of each IED by its name; `profile` for those that name none.
+    """Return the configuration of each relay by its IED; `profile` is for those that name none.
 
     Raises ScenarioError, ProfileError.
     """
@@ -51,9 +51,10 @@ def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayConfigur
 
 
 def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayConfiguration:
-    """A healthy 800 W motor (thesis Table 3.2) at half load: what a relay protects that no scenario names.
+    """Make the configuration of a relay that no scenario names.
 
-    Raises ProfileError where there is no such profile.
+    It protects a healthy 800 W motor (thesis Table 3.2) at half load. Raises ProfileError where there is no
+    such profile.
     """
     motor = _reference_motor(ied)
     kind = read_profile(profile)
@@ -87,7 +88,7 @@ def _reference_motor(name: str) -> Motor:
 
 
 def _motor(path: Path, section: MotorTable) -> Motor:
-    """The motor of the tables nameplate and parameters; the reference motor where neither is given."""
+    """Return the motor of the tables nameplate and parameters; the reference motor where neither is given."""
     if section.nameplate is None and section.parameters is None:
         return _reference_motor(section.ied)
     table = {"nameplate": section.nameplate, "parameters": section.parameters}
@@ -149,7 +150,7 @@ def _access(path: Path, section: MotorTable) -> Access:
 
 
 def _profile(path: Path, section: MotorTable, default: str) -> Profile:
-    """The motor's relay profile, with the record formats of the scenario where it names some."""
+    """Return the motor's relay profile, with the record formats of the scenario where it names some."""
     profile = (
         read_profile(default)
         if section.profile is None
@@ -166,7 +167,7 @@ def _profile(path: Path, section: MotorTable, default: str) -> Profile:
 
 
 def _recorder(record: Record, section: RecorderTable, frequency_Hz: float) -> RecorderSettings:
-    """The profile's record at this line frequency, with what the scenario puts in its place."""
+    """Return the profile's record at this line frequency, with what the scenario puts in its place."""
     per_cycle = record.samples_per_cycle
     rate_Hz = record.sample_rate_Hz if per_cycle is None else per_cycle * frequency_Hz
     before_s = record.pre_trigger_cycles / frequency_Hz
@@ -185,7 +186,7 @@ def _triggers(of_profile: Triggers, section: TriggersTable) -> Triggers:
 
 
 def _place(table: Mapping[str, object], error: ValidationError) -> str:
-    """Where the first error is, with the motor called by its IED where it has one."""
+    """Return where the first error is, with the motor called by its IED where it has one."""
     location = list(error.errors()[0]["loc"])
     if len(location) < 2 or not isinstance(location[1], int):
         return ".".join(str(part) for part in location)

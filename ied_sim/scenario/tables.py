@@ -1,7 +1,4 @@
-"""Tables of a scenario file: what may stand in each, and what it means.
-
-docs/reference/scenario.md explains them to users.
-"""
+"""Tables of a scenario file, as docs/scenario.md explains them: what may stand in each, and what it means."""
 
 from math import inf, radians, sqrt
 from typing import Annotated, Literal, Self
@@ -21,7 +18,7 @@ from ied_sim.scenario.access import AccessTable
 from ied_sim.toml_tables import Table
 
 CURRENT_HEADROOM = 12
-"""Full scale of the current channels over the rated current's peak: a start-up current must fit."""
+"""Full scale of the current channels over the peak of the rated current; a starting current must fit."""
 VOLTAGE_HEADROOM = 2
 
 Share = Annotated[float, Field(ge=-0.5, le=0.5)]
@@ -169,7 +166,7 @@ class SensorsTable(Table):
 
 
 class RecorderTable(Table):
-    """What is given here takes the place of the profile's."""
+    """The recorder. A value given here replaces the profile's."""
 
     formats: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     sample_rate_Hz: Annotated[float, Field(ge=500, le=100_000)] | None = None
@@ -180,7 +177,7 @@ class RecorderTable(Table):
 
 
 class TriggersTable(Table):
-    """What is given here takes the place of the profile's."""
+    """The triggers. A value given here replaces the profile's."""
 
     trip: bool | None = None
     motor_start: bool | None = None
@@ -239,7 +236,7 @@ class MisbehaviourTable(Table):
         return self
 
     def misbehaviour(self) -> Misbehaviour:
-        """On from the start where neither at_s nor switch says otherwise."""
+        """Return the misbehaviour; it is on from the start where neither at_s nor switch says otherwise."""
         name, default = PARAMETERS.get(self.kind, ("kind", 0.0))
         given = None if self.kind not in PARAMETERS else getattr(self, name)
         at_s = 0.0 if self.at_s is None and self.switch is None else self.at_s

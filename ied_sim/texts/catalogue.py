@@ -1,4 +1,4 @@
-"""Which report is in which file."""
+"""The text files that a relay offers, and which report is in each."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Final
@@ -25,12 +25,12 @@ MAKERS: Final[Mapping[Text, TextMaker]] = {
 
 
 def settings_text(snapshot: RelaySnapshot) -> bytes:
-    """SET_ALL.TXT: the settings by name."""
+    """Make SET_ALL.TXT: the settings by name."""
     return snapshot.report("SETTINGS", [f'{name},"{value}"' for name, value in snapshot.settings])
 
 
 def texts(offered: Iterable[Text], *, settings: bool) -> dict[str, TextMaker]:
-    """Makers of the text files a relay offers, by path under its root."""
+    """Return the makers of the text files that a relay offers, by path under its root."""
     made = {f"{FOLDER}/{name}.TXT": MAKERS[name] for name in offered}
     if settings:
         made[f"{SETTINGS_FOLDER}/SET_ALL.TXT"] = settings_text

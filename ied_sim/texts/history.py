@@ -7,7 +7,7 @@ def history(snapshot: RelaySnapshot) -> bytes:
     lines = [" #     RECORD  DATE       TIME          EVENT          CURRENT(A)  FREQ(Hz)  TARGETS"]
     lines += [
         f"{place:>2}  {event.number:>9}  {snapshot.stamp(event.time_ns)}  {event.kind:<13}  "
-        f"{event.seen.current_A:>10.2f}  {event.seen.frequency_Hz:>8.2f}  {event.targets}"
+        f"{event.metering.current_A:>10.2f}  {event.metering.frequency_Hz:>8.2f}  {event.targets}"
         for place, event in enumerate(snapshot.journal.events(), 1)
     ]
     if len(lines) == 1:
@@ -23,8 +23,8 @@ def compressed_history(snapshot: RelaySnapshot) -> bytes:
             str(event.number),
             *snapshot.date_fields(event.time_ns),
             f'"{event.kind}"',
-            f"{event.seen.current_A:.2f}",
-            f"{event.seen.frequency_Hz:.2f}",
+            f"{event.metering.current_A:.2f}",
+            f"{event.metering.frequency_Hz:.2f}",
             f'"{event.targets}"',
         ]
         for place, event in enumerate(snapshot.journal.events(), 1)

@@ -22,15 +22,15 @@ def compressed_load_profile(snapshot: RelaySnapshot) -> bytes:
 
 def _values(row: LoadRow) -> list[str]:
     """Currents [A], unbalance [%], line voltage [V], power [W, var], frequency, thermal image [%]."""
-    seen = row.seen
-    power = seen.complex_power_VA
+    metering = row.metering
+    power = metering.complex_power_VA
     return [
-        *(f"{abs(current):.3f}" for current in seen.currents_A),
-        f"{100 * seen.unbalance:.2f}",
-        f"{seen.voltage_V:.1f}",
+        *(f"{abs(current):.3f}" for current in metering.currents_A),
+        f"{100 * metering.unbalance:.2f}",
+        f"{metering.voltage_V:.1f}",
         f"{power.real:.1f}",
         f"{power.imag:.1f}",
-        f"{seen.power_factor:.3f}",
-        f"{seen.frequency_Hz:.3f}",
+        f"{metering.power_factor:.3f}",
+        f"{metering.frequency_Hz:.3f}",
         f"{100 * row.thermal_capacity:.1f}",
     ]

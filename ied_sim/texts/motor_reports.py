@@ -7,7 +7,7 @@ from ied_sim.texts.snapshot import RelaySnapshot
 
 
 def motor_starts(snapshot: RelaySnapshot) -> bytes:
-    """The last starts, newest first: a summary of each, then current and voltage as they went."""
+    """List the last starts, newest first: a summary of each, then the course of current and voltage."""
     starts = snapshot.journal.starts()
     lines = [line for logged in starts for line in _start_lines(snapshot, logged)]
     return snapshot.report("MOTOR START REPORT", lines or ["No Motor Start Data Available"])

@@ -48,10 +48,10 @@ def switch(client: Client, *, on: bool) -> None:
 
 
 def make_record(served: Simulated, client: Client) -> None:
-    before = served.relay._keeper.last_number
+    before = served.relay._archive.last_number
     client.operate(TRIGGER, value=True)
     client.operate(TRIGGER, value=False)
-    wait_until(lambda: served.relay._keeper.last_number != before, "a record")
+    wait_until(lambda: served.relay._archive.last_number != before, "a record")
 
 
 def test_replies_come_late_while_it_is_switched_on(tmp_path: Path) -> None:

@@ -81,15 +81,15 @@ def test_a_contactor_is_closed_and_opened_once() -> None:
 
 def test_a_start_is_seen_with_its_peak_and_its_length() -> None:
     motor = switched(5.0)
-    watch = MotorMonitor(motor, rated_current(REFERENCE))
-    closure = watch.closure(5.5)
+    monitor = MotorMonitor(motor, rated_current(REFERENCE))
+    closure = monitor.closure(5.5)
     assert closure is not None
-    start = watch.start(closure)
+    start = monitor.start(closure)
     assert start.current_A.max() > 4 * rated_current(REFERENCE)
     assert start.duration_s is not None
     speed = motor.operation(5.0 + start.duration_s, 0.05, RATE_HZ).speed_rad_s
     assert speed.mean() > 0.9 * 2 * np.pi * 25
-    assert watch.look(5.0 + 2.0).current_A == pytest.approx(1.203, rel=0.02)
+    assert monitor.measure(5.0 + 2.0).current_A == pytest.approx(1.203, rel=0.02)
 
 
 def test_warm_windings_have_more_resistance() -> None:

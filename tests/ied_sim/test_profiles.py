@@ -48,7 +48,7 @@ class Told:
     def __init__(self, served: Simulated, client: Client) -> None:
         self._reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
         self._values: dict[str, list[Value]] = {}
-        block = read_profile(served.relay._scenario.profile.name).points.reports
+        block = read_profile(served.relay._configuration.profile.name).points.reports
         assert block is not None
         client.subscribe(served.reference(block), self._reports)
 
@@ -147,14 +147,14 @@ def test_a_record_ends_after_it_was_told_to_begin(tmp_path: Path, monkeypatch: p
     scenario = scenario_of("rdre")
     scenario = replace(scenario, triggers=Triggers(load_above=0.1))
     with simulated(tmp_path, scenario) as served, served.client() as client:
-        publish = served.relay._values.status
+        publish = served.relay._values.publish_status
 
         def slowly(values: dict[str, Value], time_ns: int) -> None:
             if values.get("record_started"):
                 time.sleep(SHORT.post_trigger_s + 1.0)
             publish(values, time_ns)
 
-        monkeypatch.setattr(served.relay._values, "status", slowly)
+        monkeypatch.setattr(served.relay._values, "publish_status", slowly)
         told = Told(served, client)
         assert [told.next("RcdStr"), told.next("RcdStr")] == [True, False]
         assert told.next("RcdMade") is True

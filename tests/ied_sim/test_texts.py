@@ -154,6 +154,6 @@ def test_a_load_above_its_level_makes_a_record_once(tmp_path: Path) -> None:
     scenario = replace(scenario_of("sel-710-ed2"), triggers=Triggers(load_above=0.6))
     with simulated(tmp_path, scenario) as served, served.client() as client:
         wait_until(lambda: bool(table(text(client, "REPORTS/CHISTORY.TXT"))), "the load to be noticed")
-        served.relay.look(served.relay._clock.now_ns())
+        served.relay.update(served.relay._clock.now_ns())
         (row,) = table(text(client, "REPORTS/CHISTORY.TXT"))
         assert row["EVENT"] == "ER LOAD"
