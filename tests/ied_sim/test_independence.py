@@ -3,8 +3,8 @@
 import subprocess
 import sys
 
-SHARED = ("core.machines.motor_file", "core.machines.parameters", "core.recordings")
-"""What simulator and diagnosis have in common: what a nameplate says, and a file format."""
+SHARED = ("core.machines.motor_file", "core.machines.parameters", "core.recordings", "core.units")
+"""What simulator and diagnosis have in common: what a nameplate says, a file format, units."""
 
 
 def test_the_simulator_loads_nothing_of_the_diagnosis() -> None:
