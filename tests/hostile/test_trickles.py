@@ -9,7 +9,7 @@ from threading import Timer
 import pytest
 
 from mms import Client, ClientLimits, ConnectFailed, ConnectionLost, MmsError, Timeout
-from service.collector.records.directory import LINK_FAILURES
+from service.collector.records.failures import VISIT_ENDS, failure_of
 from service.collector.session.session_policy import SessionPolicy
 from service.storage.states import LinkState, RecordingState
 from testing.ports import LOOPBACK
@@ -143,7 +143,7 @@ def test_whoever_closes_waits_for_one_part_alone(
 
 
 def test_a_session_puts_the_trickle_off_and_says_so(dialogue: Dialogue, bench: Bench) -> None:
-    assert Timeout in LINK_FAILURES
+    assert failure_of(Timeout("relay", "download", 0, "too slow")) in VISIT_ENDS
     bench.policy = SessionPolicy(client=ClientLimits(throughput_window_s=0.5))
     with lying(dialogue, {crafted.FILE_READ: parts_of(1)}) as port:
         bench.relay = replace(bench.relay, port=port)

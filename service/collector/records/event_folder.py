@@ -22,6 +22,7 @@ from mms import (
     TemporarilyUnavailable,
 )
 from service.collector.records.listing import is_of_a_record, last_component, printable
+from service.collector.records.policy import RECORD_POLICY, RecordPolicy
 
 log = structlog.get_logger(__name__)
 
@@ -30,9 +31,6 @@ SPELLINGS = ("/{}", "{}/", "{}\\", "\\{}")
 """Tried where neither the plain name nor the root's listing leads anywhere."""
 
 ROOT = ""
-SEARCH_PERIOD_S, NO_FILES_PERIOD_S = 10.0, 60.0
-"""Between searches for a folder that was not there, and at a relay that seems to have no file service."""
-
 MOST_FOLDERS = 16
 """Looked into, of those the root lists."""
 
@@ -55,8 +53,16 @@ class EventFolder:
     `unread`, that recordings of the relay are not fetched, because they are in another folder than others.
     """
 
-    def __init__(self, relay: str, default: str, override: str | None = None) -> None:
+    def __init__(
+        self,
+        relay: str,
+        default: str,
+        override: str | None = None,
+        *,
+        policy: RecordPolicy = RECORD_POLICY,
+    ) -> None:
         self._relay = relay
+        self._policy = policy
         self._default = default
         self._override = override
         # Whoever has set another folder than the usual one means it, empty or not, where the relay has it.
@@ -90,8 +96,9 @@ class EventFolder:
                 return Contents(None, ())
             found = self._search(client)
         if not found:
-            period_s = NO_FILES_PERIOD_S if self.no_files else SEARCH_PERIOD_S
-            self._next_search_s = time.monotonic() + period_s
+            policy = self._policy
+            pause_s = policy.no_files_search_s if self.no_files else policy.folder_search_s
+            self._next_search_s = time.monotonic() + pause_s
             return Contents(None, ())
         self.missing, self.no_files = None, False
         meant = [each for each in found if each.directory == self._meant]

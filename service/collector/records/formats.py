@@ -5,11 +5,11 @@ raw (CR_10007.CEV) and filtered (C4_10007.CEV); others give all formats of an ev
 """
 
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
+from service.collector.records.life import Life, RecordState
 from service.collector.records.listing import ListedRecord, RefusedFile
-from service.storage.records import RemoteRecord
 
 _NUMBERED = re.compile(r"(?:HR|C[R0-9]\d?)_(\d{5,})")
 _RAW = "CR_"
@@ -17,65 +17,59 @@ _RAW = "CR_"
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """records: one for each event.  passed_over: files of the formats that are not taken, and why.
+    """states: one for each event.  passed_over: files of the formats that are not taken, and why.
 
-    replaceable: those of `records` whose event is there in another format too that may yet be taken.  early:
+    replaceable: those of `states` whose event is there in another format too that may yet be taken.  early:
     those that are event reports alone while the relay writes COMTRADE as well, which may be still to come.
     """
 
-    records: tuple[ListedRecord, ...]
+    states: tuple[RecordState, ...]
     passed_over: tuple[RefusedFile, ...]
-    replaceable: frozenset[ListedRecord]
-    early: frozenset[ListedRecord]
+    replaceable: frozenset[RecordState]
+    early: frozenset[RecordState]
 
 
-def one_format_an_event(
-    records: Iterable[ListedRecord],
-    stored: Collection[RemoteRecord],
-    refused: Collection[RemoteRecord],
-    hopeless: Collection[ListedRecord],
-) -> Chosen:
-    """COMTRADE before event reports, unless the event was taken otherwise before (stored).
+def one_format_an_event(states: Iterable[RecordState]) -> Chosen:
+    """COMTRADE before event reports, unless the event was taken otherwise before (it is in the store).
 
-    hopeless: those that have proved incomplete; taken only where there is nothing else.  refused: those that
-    are not pulled; they stand for their event only where each of its formats is refused.
+    Incomplete records are taken only where there is nothing else. Refused ones are not pulled: they stand for
+    their event only where each of its formats is refused.
     """
-    events: dict[str, list[ListedRecord]] = {}
-    for record in records:
-        events.setdefault(_event(record), []).append(record)
-    writes_comtrade = any(_rank(record) < _EVENT_REPORT for same in events.values() for record in same)
-    chosen: list[ListedRecord] = []
+    events: dict[str, list[RecordState]] = {}
+    for state in states:
+        events.setdefault(_event(state.record), []).append(state)
+    writes_comtrade = any(_rank(state.record) < _EVENT_REPORT for same in events.values() for state in same)
+    chosen: list[RecordState] = []
     passed_over: list[RefusedFile] = []
-    replaceable: set[ListedRecord] = set()
+    replaceable: set[RecordState] = set()
     for same in events.values():
-        best = min(
-            same,
-            key=lambda each: (
-                remote_of(each) not in stored,
-                remote_of(each) in refused,
-                each in hopeless,
-                _rank(each),
-                each.file_names,
-            ),
-        )
+        best = min(same, key=_order)
         chosen.append(best)
         others = [each for each in same if each is not best]
-        fate = "refused, as this is" if remote_of(best) in refused else "which is taken"
-        reason = f"the same event as {best.file_names}, {fate}"
-        passed_over.extend(RefusedFile(other.file_names, reason) for other in others)
-        if any(remote_of(other) not in refused and other not in hopeless for other in others):
+        outcome = "refused, as this is" if best.life is Life.REFUSED else "which is taken"
+        reason = f"the same event as {best.record.file_names}, {outcome}"
+        passed_over.extend(RefusedFile(other.record.file_names, reason) for other in others)
+        if any(other.life not in (Life.REFUSED, Life.INCOMPLETE) for other in others):
             replaceable.add(best)
     return Chosen(
-        records=tuple(chosen),
+        states=tuple(chosen),
         passed_over=tuple(passed_over),
         replaceable=frozenset(replaceable),
-        early=frozenset(record for record in chosen if writes_comtrade and _rank(record) >= _EVENT_REPORT),
+        early=frozenset(
+            state for state in chosen if writes_comtrade and _rank(state.record) >= _EVENT_REPORT
+        ),
     )
 
 
-def remote_of(record: ListedRecord) -> RemoteRecord:
-    """A listed record as it is remembered."""
-    return RemoteRecord(record.name, record.size_bytes, record.modified_ns)
+def _order(state: RecordState) -> tuple[bool, bool, bool, int, str]:
+    """The format of an event that sorts first is taken."""
+    return (
+        not state.in_store,
+        state.life is Life.REFUSED,
+        state.life is Life.INCOMPLETE,
+        _rank(state.record),
+        state.record.file_names,
+    )
 
 
 def _event(record: ListedRecord) -> str:

@@ -1,18 +1,20 @@
-"""What became of a relay's records: stored, refused, or seen and neither yet.
+"""The states of a relay's records: kept while the relay lists them, and written to the database.
 
-The database has it. It is kept here as well, because relays list hundreds of records again and again.
+The database knows every record the relay has ever listed. Here is only what the relay lists at present, so
+that the memory it takes does not grow with the years. A record that comes back into the listing is looked up.
 """
 
 import time
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import structlog
 
-from service.collector.records.formats import remote_of
+from service.collector.records.life import Life, RecordState, remote_of
 from service.collector.records.listing import ListedRecord
 from service.recording_store.store import StoredRecording
 from service.storage import Repository
-from service.storage.records import RemoteRecord
+from service.storage.records import RecordingEntry, RemoteRecord
+from service.storage.states import RecordingState
 
 log = structlog.get_logger(__name__)
 
@@ -20,112 +22,137 @@ log = structlog.get_logger(__name__)
 class RecordLedger:
     """Of one relay's records. Used by that relay's session alone, which alone writes them.
 
-    stored: those whose files are in the store.  refused: those that are not pulled again.  doubted: those of
-    the stored ones that may be others by now.
+    revision: another number whenever a record was stored, refused, given up for another format, or is in
+    doubt again. As long as it and the listing are the same, the same records are waited for.
     """
 
     def __init__(self, relay: str, motor: str, repository: Repository) -> None:
         self._relay = relay
         self._motor = motor
         self._repository = repository
-        self._asked = False
-        self.stored: set[RemoteRecord] = set()
-        self.refused: set[RemoteRecord] = set()
-        self.doubted: set[RemoteRecord] = set()
+        self._states: dict[ListedRecord, RecordState] = {}
         self._announced: set[RemoteRecord] = set()
+        self._has_begun = False
+        self.revision = 0
 
-    def recall(self) -> None:
-        """What became of the records before; years of them, so not in the thread that starts all."""
-        if self._asked:
+    def follow(self, listed: Collection[ListedRecord]) -> list[RecordState]:
+        """Return the states of all records listed now, in their order; forget all others.
+
+        A record the relay gives no time for is looked up in the database only in the first listing: later, a
+        new record may look like one that is gone.
+        """
+        before = {state.remote: state for state in self._states.values()}
+        new = [record for record in listed if record not in self._states]
+        unseen = {remote_of(record) for record in new} - before.keys()
+        known = self._repository.remote_recordings(
+            self._relay, [remote for remote in unseen if remote.modified_ns or not self._has_begun]
+        )
+        if not self._has_begun:
+            self._announced.update(self._repository.announced_remote_records(self._relay))
+            self._has_begun = True
+        begun = {record: self._begin(record, before, known) for record in new}
+        waited_since_s = {state.name: state.first_s for state in before.values()}
+        for state in begun.values():
+            state.first_s = None if state.is_decided else waited_since_s.get(state.name)
+        states = [begun.get(record) or self._states[record] for record in listed]
+        self._states = {state.record: state for state in states}
+        self.revision += 1
+        return states
+
+    def _begin(
+        self,
+        record: ListedRecord,
+        before: dict[RemoteRecord, RecordState],
+        known: dict[RemoteRecord, RecordingEntry],
+    ) -> RecordState:
+        """The state of a record that is listed anew, as far as it is known from before."""
+        state = RecordState(record)
+        same, recording = before.get(state.remote), known.get(state.remote)
+        if same is not None:  # its files are listed otherwise, for instance in another folder
+            state.in_store = same.in_store
+            if same.is_decided:
+                state.life = same.life
+        elif recording is not None and recording.state is not RecordingState.ANNOUNCED:
+            state.in_store = recording.digest is not None
+            state.life = Life.STORED if state.in_store else Life.REFUSED
+        return state
+
+    def pass_over(self, states: Iterable[RecordState]) -> None:
+        """Do not wait for these: another format of their event is taken."""
+        for state in states:
+            if not state.is_decided and state.life is not Life.INCOMPLETE:
+                state.begin_anew(Life.LISTED)
+
+    def announce(self, state: RecordState) -> None:
+        """Write down that a record was seen and is about to be pulled."""
+        if state.in_store or state.remote in self._announced:
             return
-        known = self._repository.known_remote_records(self._relay)
-        self.refused.update(self._repository.refused_remote_records(self._relay))
-        self.stored.update(known - self.refused)
-        self._announced.update(self._repository.announced_remote_records(self._relay))
-        self._asked = True
+        self._repository.announce_recording(self._relay, self._motor, state.remote, now_ns=time.time_ns())
+        self._announced.add(state.remote)
 
-    def is_stored(self, record: ListedRecord) -> bool:
-        return remote_of(record) in self.stored
-
-    def is_decided(self, record: ListedRecord) -> bool:
-        """Whether it is stored beyond doubt, or refused."""
-        return self.is_refused(record) or (self.is_stored(record) and not self.is_doubted(record))
-
-    def is_doubted(self, record: ListedRecord) -> bool:
-        return remote_of(record) in self.doubted
-
-    def is_refused(self, record: ListedRecord) -> bool:
-        return remote_of(record) in self.refused
-
-    def announce(self, record: ListedRecord) -> None:
-        """It is seen, and about to be pulled."""
-        remote = remote_of(record)
-        if remote not in self._announced and remote not in self.stored:
-            self._repository.announce_recording(self._relay, self._motor, remote, now_ns=time.time_ns())
-            self._announced.add(remote)
-
-    def note_failed_pull(self, record: ListedRecord, reason: str) -> int:
-        """Returns how often in all, also before a restart."""
-        log.warning("record not pulled", relay=self._relay, record=record.name, reason=reason)
+    def count_attempt(self, state: RecordState, reason: str) -> int:
+        """Count a failed attempt in the database; return how many there were in all, before restarts too."""
+        log.warning("record not pulled", relay=self._relay, record=state.name, reason=reason)
         return self._repository.note_failed_pull(
-            self._relay, self._motor, remote_of(record), reason, now_ns=time.time_ns()
+            self._relay, self._motor, state.remote, reason, now_ns=time.time_ns()
         )
 
-    def keep(self, record: ListedRecord, stored: StoredRecording, recording_request_id: str | None) -> None:
-        """Its files are in the store; the event report, if any, gets it."""
-        remote = remote_of(record)
+    def keep(self, state: RecordState, stored: StoredRecording, recording_request_id: str | None) -> None:
+        """Write down that its files are in the store; the recording request, if any, gets it."""
         added = self._repository.add_recording(
             stored,
             motor=self._motor,
             now_ns=time.time_ns(),
             ied=self._relay,
-            remote=remote,
+            remote=state.remote,
             recording_request_id=recording_request_id,
         )
-        self.stored.add(remote)
-        self.doubted.discard(remote)
-        self._announced.discard(remote)
+        state.in_store = True
+        self._decide(state, Life.STORED)
         log.info(
             "record stored" if added.created else "record known already",
             relay=self._relay,
-            record=record.name,
+            record=state.name,
             size_bytes=stored.size_bytes,
             recording=added.recording.id,
         )
 
-    def refuse(self, record: ListedRecord, reason: str, recording_request_id: str | None) -> None:
-        """It is not pulled again; the event report, if any, fails with the reason."""
-        remote = remote_of(record)
+    def refuse(self, state: RecordState, reason: str, recording_request_id: str | None) -> None:
+        """Write down that it is not pulled again; the recording request, if any, fails with the reason."""
         self._repository.reject_remote_record(
             self._relay,
             self._motor,
-            remote,
+            state.remote,
             reason,
             now_ns=time.time_ns(),
             recording_request_id=recording_request_id,
         )
-        self.refused.add(remote)
-        self.doubted.discard(remote)
-        self._announced.discard(remote)
+        self._decide(state, Life.REFUSED)
 
-    def give_up_all_but(self, records: Iterable[ListedRecord]) -> None:
-        """Records that were seen, and that the relay replaced or discarded before they could be pulled."""
-        if not self._announced:
-            return
-        for remote in self._announced - set(map(remote_of, records)):
+    def _decide(self, state: RecordState, life: Life) -> None:
+        state.begin_anew(life)
+        self.revision += 1
+        self._announced.discard(state.remote)
+
+    def give_up(self, state: RecordState) -> None:
+        """Wait no longer for the missing files of a record whose event is there in another format."""
+        state.begin_anew(Life.INCOMPLETE)
+        self.revision += 1
+
+    def give_up_all_but(self, states: Iterable[RecordState]) -> None:
+        """Write down which announced records the relay replaced or discarded before they could be pulled."""
+        for remote in self._announced - {state.remote for state in states}:
             reason = f"{remote.name}: the relay discarded or changed it before it could be pulled"
             self._repository.give_up_remote_record(self._relay, remote, reason)
             self._announced.discard(remote)
             log.warning("record gone", relay=self._relay, record=remote.name, reason=reason)
 
-    def forget_the_untimed_but(self, records: Iterable[ListedRecord]) -> None:
-        """Where a relay gives no times, a new record may look like one that is gone."""
-        for known in (self.stored, self.refused):
-            untimed = {remote for remote in known if not remote.modified_ns}
-            if untimed:
-                known -= untimed.difference(map(remote_of, records))
-        self.doubted &= self.stored
+    def pull_untimed_again(self) -> None:
+        """Pull once more what is stored and has no time.
 
-    def doubt_the_untimed(self) -> None:
-        """Where a relay gives no times, a new record of the same name and size looks like the old one."""
-        self.doubted.update(remote for remote in self.stored if not remote.modified_ns)
+        Where a relay gives no times, a new record of the same name and size looks like the old one.
+        """
+        for state in self._states.values():
+            if state.life is Life.STORED and not state.record.modified_ns:
+                state.begin_anew(Life.SETTLING)
+                self.revision += 1

@@ -14,8 +14,9 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from mms import Client, CredentialFileError, MmsError, ProtocolError
 from service.collector.records.allowance import DailyAllowance
-from service.collector.records.directory import RecordDirectory, Scan
+from service.collector.records.directory import RecordDirectory
 from service.collector.records.event_folder import EventFolder
+from service.collector.records.scan import Scan
 from service.collector.session.clock_monitor import ClockMonitor
 from service.collector.session.discovery import Discovery
 from service.collector.session.link import Link
@@ -81,7 +82,12 @@ class RelaySession:
         self._subscription = ReportSubscription(
             relay.name, repository, self._link, retry_s=policy.report_retry_s
         )
-        self._folder = EventFolder(relay.name, settings.events_directory, relay.overrides.events_directory)
+        self._folder = EventFolder(
+            relay.name,
+            settings.events_directory,
+            relay.overrides.events_directory,
+            policy=policy.records,
+        )
         self._directory = RecordDirectory(
             relay,
             motor,
@@ -92,6 +98,7 @@ class RelaySession:
             alarms=alarms,
             allowance=allowance,
             on_bytes=self._link.received,
+            policy=policy.records,
         )
         self._clock = ClockMonitor(relay.name, repository)
         self._triggers = TriggerQueue(
@@ -272,9 +279,9 @@ class RelaySession:
         self._triggers.recall()
         expected = time.monotonic() < self._record_expected_until_s
         if self._record_expected_until_s and not expected:
-            self._directory.doubt_the_untimed()
+            self._directory.pull_untimed_again()
             self._record_expected_until_s = 0.0
-        scan = self._directory.scan(client, self._triggers.claim, told=expected)
+        scan = self._directory.scan(client, self._triggers.claim, expected=expected)
         triggered = self._triggers.follow(client, scan)
         if not triggered and not scan.waiting:
             self._clock.measure_if_due(client)

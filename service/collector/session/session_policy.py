@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from mms import ClientLimits
+from service.collector.records.policy import RECORD_POLICY, RecordPolicy
 from service.timing.backoff import Backoff
 
 RECONNECT = Backoff(first_s=0.5, longest_s=10.0)
@@ -13,6 +14,7 @@ CLIENT_LIMITS = ClientLimits()
 class SessionPolicy:
     """Times and limits of a session that are no settings; tests use shorter ones.
 
+    records: what is waited for, and what each kind of failure leads to.
     client: how much the MMS client takes from a relay that keeps answering.
     reconnect: pauses between visits that fail.
     report_retry_s: between attempts to get a report block, where all are refused: another client may have
@@ -24,6 +26,7 @@ class SessionPolicy:
     good_visit_s: a visit that goes well for so long is a good one; one good answer is not enough.
     """
 
+    records: RecordPolicy = RECORD_POLICY
     client: ClientLimits = CLIENT_LIMITS
     reconnect: Backoff = RECONNECT
     report_retry_s: float = 60.0

@@ -1,9 +1,10 @@
 """Recordings: announced by a relay or uploaded, stored, and queued for diagnosis in the same transaction."""
 
 import uuid
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import astuple, dataclass
 
-from sqlalchemy import ColumnElement, delete, func, select
+from sqlalchemy import ColumnElement, delete, func, select, tuple_
 from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
@@ -23,6 +24,9 @@ from service.storage.repository.recording_requests import KIND, diagnose_rows, f
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingSource, RecordingState
 
+RECORDS_A_QUERY = 500
+"""Databases limit how many values a query may hold."""
+
 
 @dataclass(frozen=True, slots=True)
 class AddedRecording:
@@ -33,29 +37,31 @@ class AddedRecording:
 
 
 class RecordingRows(Sessions):
-    def known_remote_records(self, ied: str) -> frozenset[RemoteRecord]:
-        """Records of a relay that are stored or refused already: no need to pull them again."""
-        query = (
-            select(RemoteRecordRow)
-            .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
-            .where(RemoteRecordRow.ied == ied, RecordingRow.state != RecordingState.ANNOUNCED)
-        )
-        with self._read() as session:
-            return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
+    def remote_recordings(
+        self, ied: str, remotes: Collection[RemoteRecord]
+    ) -> dict[RemoteRecord, RecordingEntry]:
+        """The recordings of those of these records of a relay that were seen before.
 
-    def refused_remote_records(self, ied: str) -> frozenset[RemoteRecord]:
-        """Those of the known ones that never came into the store."""
-        query = (
-            select(RemoteRecordRow)
-            .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
-            .where(
-                RemoteRecordRow.ied == ied,
-                RecordingRow.state != RecordingState.ANNOUNCED,
-                RecordingRow.digest.is_(None),
-            )
+        What is read grows with the records asked for, not with what the relay listed in all its years.
+        """
+        listed = tuple_(RemoteRecordRow.name, RemoteRecordRow.size_bytes, RemoteRecordRow.modified_ns)
+        query = select(RemoteRecordRow, RecordingRow).join(
+            RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id
         )
+        asked = list(remotes)
+        known: dict[RemoteRecord, RecordingEntry] = {}
         with self._read() as session:
-            return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
+            for first in range(0, len(asked), RECORDS_A_QUERY):
+                some = asked[first : first + RECORDS_A_QUERY]
+                # The names let the primary key be searched; the whole key keeps out others of these names.
+                of_these = query.where(
+                    RemoteRecordRow.ied == ied,
+                    RemoteRecordRow.name.in_({remote.name for remote in some}),
+                    listed.in_([astuple(remote) for remote in some]),
+                )
+                for row, held in session.execute(of_these):
+                    known[record_of(RemoteRecord, row)] = recording(held)
+        return known
 
     def announced_remote_records(self, ied: str) -> frozenset[RemoteRecord]:
         """Records of a relay that were seen and are neither stored nor refused."""

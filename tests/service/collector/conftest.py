@@ -3,12 +3,13 @@
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Thread
 
 import pytest
 
+from service.collector.records.policy import RecordPolicy
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
 from service.configuration.settings import Settings
@@ -95,6 +96,10 @@ class Bench:
 
     def with_settings(self, **changes: object) -> "Bench":
         self.settings = self.settings.model_copy(update=changes)
+        return self
+
+    def with_record_policy(self, policy: RecordPolicy) -> "Bench":
+        self.policy = replace(self.policy, records=policy)
         return self
 
     def link(self) -> LinkState:

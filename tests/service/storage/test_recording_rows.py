@@ -8,6 +8,19 @@ from service.storage.states import ClockQuality, RecordingRequestState, Recordin
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 
 REMOTE = RemoteRecord("C_0001", 11, NOW_NS)
+TOUCHED = RemoteRecord(REMOTE.name, REMOTE.size_bytes, REMOTE.modified_ns + 5)
+
+
+def known(repository: Repository) -> set[RemoteRecord]:
+    """Those of both that came to an end."""
+    recordings = repository.remote_recordings("A1_SEL710", [REMOTE, TOUCHED])
+    return {remote for remote, entry in recordings.items() if entry.state is not RecordingState.ANNOUNCED}
+
+
+def refused_ones(repository: Repository) -> set[RemoteRecord]:
+    """Those of the known ones that never came into the store."""
+    recordings = repository.remote_recordings("A1_SEL710", known(repository))
+    return {remote for remote, entry in recordings.items() if entry.digest is None}
 
 
 def record(store: RecordingStore, content: bytes = b"samples") -> StoredRecording:
@@ -21,7 +34,7 @@ def test_a_pulled_record_is_stored_and_queued_with_its_recording_request(
     repository.mark_triggered(request.id, now_ns=NOW_NS)
     announced = repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=NOW_NS)
     assert announced.state is RecordingState.ANNOUNCED
-    assert repository.known_remote_records("A1_SEL710") == frozenset()
+    assert not known(repository)
 
     stored = record(store)
     added = repository.add_recording(
@@ -34,8 +47,8 @@ def test_a_pulled_record_is_stored_and_queued_with_its_recording_request(
     )
     assert added.created
     assert (added.recording.id, added.recording.state) == (announced.id, RecordingState.FETCHED)
-    assert repository.known_remote_records("A1_SEL710") == {REMOTE}
-    assert repository.refused_remote_records("A1_SEL710") == frozenset()
+    assert known(repository) == {REMOTE}
+    assert not refused_ones(repository)
     assert repository.recording_request(request.id).state is RecordingRequestState.FETCHED
     assert repository.recording_request(request.id).recording_id == announced.id
     files = [(f.name, f.size_bytes, f.sha256) for f in repository.recording_files(announced.id)]
@@ -60,16 +73,15 @@ def test_pulled_twice_stored_once(repository: Repository, store: RecordingStore)
 def test_the_same_content_under_another_time_stamp_is_the_same_recording(
     repository: Repository, store: RecordingStore
 ) -> None:
-    touched = RemoteRecord(REMOTE.name, REMOTE.size_bytes, REMOTE.modified_ns + 5)
     first = repository.add_recording(
         record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
     )
-    repository.announce_recording("A1_SEL710", "PUMP-A1", touched, now_ns=NOW_NS)
+    repository.announce_recording("A1_SEL710", "PUMP-A1", TOUCHED, now_ns=NOW_NS)
     again = repository.add_recording(
-        record(store), motor="PUMP-A1", ied="A1_SEL710", remote=touched, now_ns=NOW_NS
+        record(store), motor="PUMP-A1", ied="A1_SEL710", remote=TOUCHED, now_ns=NOW_NS
     )
     assert again.recording.id == first.recording.id
-    assert repository.known_remote_records("A1_SEL710") == {REMOTE, touched}
+    assert known(repository) == {REMOTE, TOUCHED}
     assert len(repository.recordings(limit=10).items) == 1, "the announcement it replaced is gone"
 
 
@@ -107,7 +119,6 @@ def test_a_recording_diagnosed_before_ends_a_request_that_gets_it(
 def test_a_record_listed_under_a_new_time_is_not_the_one_a_trigger_made(
     repository: Repository, store: RecordingStore
 ) -> None:
-    touched = RemoteRecord(REMOTE.name, REMOTE.size_bytes, REMOTE.modified_ns + 5)
     repository.add_recording(record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS)
     request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.mark_triggered(request.id, now_ns=NOW_NS)
@@ -115,28 +126,41 @@ def test_a_record_listed_under_a_new_time_is_not_the_one_a_trigger_made(
         record(store),
         motor="PUMP-A1",
         ied="A1_SEL710",
-        remote=touched,
+        remote=TOUCHED,
         recording_request_id=request.id,
         now_ns=NOW_NS,
     )
     assert repository.recording_request(request.id).state is RecordingRequestState.TRIGGERED
-    assert repository.known_remote_records("A1_SEL710") == {REMOTE, touched}
+    assert known(repository) == {REMOTE, TOUCHED}
 
 
 def test_a_refused_record_is_not_pulled_again(repository: Repository) -> None:
     request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     assert repository.note_failed_pull("A1_SEL710", "PUMP-A1", REMOTE, "timeout", now_ns=NOW_NS) == 1
     assert repository.note_failed_pull("A1_SEL710", "PUMP-A1", REMOTE, "timeout", now_ns=NOW_NS) == 2
-    assert repository.known_remote_records("A1_SEL710") == frozenset()
+    assert not known(repository)
     refused = repository.reject_remote_record(
         "A1_SEL710", "PUMP-A1", REMOTE, "larger than 64 MB", recording_request_id=request.id, now_ns=NOW_NS
     )
     assert (refused.state, refused.reason) == (RecordingState.REJECTED, "larger than 64 MB")
-    assert repository.known_remote_records("A1_SEL710") == {REMOTE}
-    assert repository.refused_remote_records("A1_SEL710") == {REMOTE}
+    assert known(repository) == {REMOTE}
+    assert refused_ones(repository) == {REMOTE}
     assert repository.recording_request(request.id).reason == "larger than 64 MB"
     rejected = repository.recordings(limit=10, state=RecordingState.REJECTED)
     assert [r.id for r in rejected.items] == [refused.id]
+
+
+def test_records_are_known_by_name_size_and_time(repository: Repository) -> None:
+    many = [RemoteRecord(f"C_{number:04}", 11, NOW_NS + number) for number in range(1200)]
+    seen = many[::100]
+    for remote in seen:
+        repository.announce_recording("A1_SEL710", "PUMP-A1", remote, now_ns=NOW_NS)
+    found = repository.remote_recordings("A1_SEL710", many)
+    assert {remote: entry.name for remote, entry in found.items()} == {each: each.name for each in seen}
+    others = [RemoteRecord(each.name, 12, each.modified_ns) for each in seen]
+    assert repository.remote_recordings("A1_SEL710", others) == {}
+    assert repository.remote_recordings("A2_SEL710", seen) == {}
+    assert repository.remote_recordings("A1_SEL710", []) == {}
 
 
 def test_an_upload_is_one_recording_a_motor(repository: Repository, store: RecordingStore) -> None:
@@ -173,7 +197,7 @@ def test_a_pull_of_what_was_uploaded_is_known(repository: Repository, store: Rec
     )
     assert (pulled.created, pulled.recording) == (False, uploaded.recording)
     assert repository.recordings(limit=10).items == (uploaded.recording,), "the announcement is gone"
-    assert repository.known_remote_records("A1_SEL710") == {REMOTE}, "it is not pulled again"
+    assert known(repository) == {REMOTE}, "it is not pulled again"
 
 
 @pytest.mark.parametrize("other", [{"C_0001.DAT": b"SAMPLES"}, {"C_0001.CFG": b"CONFIG"}])

@@ -1,12 +1,14 @@
 """Where a relay keeps its recordings: found over real MMS, however it is called."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from mms import Client
 from service.collector.records.event_folder import Contents, EventFolder
+from service.collector.records.policy import RECORD_POLICY
 from service.plant import Overrides
 from service.storage.states import LinkState, RecordingRequestState
 from testing.waiting import eventually
@@ -119,12 +121,9 @@ def test_of_empty_folders_the_one_that_gets_a_recording_is_it(client: Client, re
     assert folder.contents(client).directory == "COMTRADE", "from now on"
 
 
-def test_a_folder_that_goes_and_comes(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.records.event_folder.SEARCH_PERIOD_S", 0.1)
+def test_a_folder_that_goes_and_comes(bench: Bench, relay: ScriptedRelay) -> None:
     relay.events.rmdir()
-    with bench.session():
+    with bench.with_record_policy(replace(RECORD_POLICY, folder_search_s=0.1)).session():
         assert eventually(lambda: "looked for" in (bench.repository.ied(NAME).link_reason or ""))
         assert bench.link() is LinkState.UP
         relay.events.mkdir()

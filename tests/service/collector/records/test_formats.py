@@ -6,24 +6,25 @@ from pathlib import Path
 import pytest
 
 from core.recordings import read
-from service.collector.records.directory import PULL_ATTEMPTS
-from service.collector.records.formats import one_format_an_event, remote_of
-from service.collector.records.listing import ListedRecord, understand
+from service.collector.records.formats import one_format_an_event
+from service.collector.records.life import Life, RecordState
+from service.collector.records.listing import understand
 from service.storage.states import AlarmKind, RecordingRequestState, RecordingState
 from testing.relays.simulated import IED, scenario_of, simulated
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import at, expecting
+from tests.service.collector.records.policies import WRONG_IN_A_ROW, with_first_pause
 from tests.service.collector.records.test_listing import listed
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
 
 
-def records(*names: str) -> tuple[ListedRecord, ...]:
-    return understand(listed(*names), "EVENTS").records
+def states_of(*names: str) -> list[RecordState]:
+    return [RecordState(record) for record in understand(listed(*names), "EVENTS").records]
 
 
 def chosen(*names: str) -> list[str]:
-    return [record.file_names for record in one_format_an_event(records(*names), (), (), ()).records]
+    return [state.record.file_names for state in one_format_an_event(states_of(*names)).states]
 
 
 @pytest.mark.parametrize(
@@ -43,28 +44,36 @@ def test_one_format_of_each_event_is_taken(names: list[str], taken: list[str]) -
     assert chosen(*names) == taken
 
 
+def report_and_comtrade() -> tuple[RecordState, RecordState]:
+    """Of one event."""
+    both = states_of("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
+    report, comtrade = sorted(both, key=lambda state: state.name)
+    return report, comtrade
+
+
 def test_what_was_taken_stays_taken() -> None:
-    both = records("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
-    (report,) = (record for record in both if record.suffixes == {".CEV"})
-    kept = one_format_an_event(both, {remote_of(report)}, (), ())
-    assert kept.records == (report,)
+    report, comtrade = report_and_comtrade()
+    report.life, report.in_store = Life.STORED, True
+    kept = one_format_an_event([report, comtrade])
+    assert kept.states == (report,)
     assert [(file.name, file.reason) for file in kept.passed_over] == [
         ("HR_10007.CFG, HR_10007.DAT", "the same event as CR_10007.CEV, which is taken")
     ]
 
 
 def test_a_refused_format_comes_last() -> None:
-    both = records("CR_10007.CEV", "HR_10007.CFG", "HR_10007.DAT")
-    report, comtrade = sorted(both, key=lambda record: record.name)
-    without = one_format_an_event(both, (), {remote_of(comtrade)}, {report})
-    assert without.records == (report,)
+    report, comtrade = report_and_comtrade()
+    assert one_format_an_event([report, comtrade]).replaceable == {comtrade}
+    report.life, comtrade.life = Life.INCOMPLETE, Life.REFUSED
+    without = one_format_an_event([report, comtrade])
+    assert without.states == (report,)
     assert without.replaceable == frozenset(), "the other one is refused"
-    neither = one_format_an_event(both, (), {remote_of(comtrade), remote_of(report)}, ())
-    assert neither.records == (comtrade,)
+    report.life = Life.REFUSED
+    neither = one_format_an_event([report, comtrade])
+    assert neither.states == (comtrade,)
     assert [file.reason for file in neither.passed_over] == [
         "the same event as HR_10007.CFG, HR_10007.DAT, refused, as this is"
     ]
-    assert one_format_an_event(both, (), (), ()).replaceable == {comtrade}
 
 
 def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
@@ -176,9 +185,9 @@ def test_a_wish_fails_where_each_format_is_refused(bench: Bench, relay: Scripted
 
 
 def test_an_event_report_stands_in_for_a_comtrade_that_is_listed_only(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+    bench: Bench, relay: ScriptedRelay
 ) -> None:
-    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.002)
+    bench.with_record_policy(with_first_pause(0.002))
     relay.absent = {"HR_10007"}
     relay.write_record("HR_10007")
     relay.write_file("CR_10007.CEV", b"event report of the same event")
@@ -186,7 +195,7 @@ def test_an_event_report_stands_in_for_a_comtrade_that_is_listed_only(
         assert eventually(lambda: bench.is_stored("CR_10007"))
     refused = bench.recording("HR_10007")
     assert refused is not None
-    assert (refused.state, refused.attempts) == (RecordingState.REJECTED, PULL_ATTEMPTS)
+    assert (refused.state, refused.attempts) == (RecordingState.REJECTED, WRONG_IN_A_ROW)
     assert "EVENTS/HR_10007.CFG" in (refused.reason or "")
 
 

@@ -1,13 +1,13 @@
 """What a relay may do to the store: names, sizes and amounts that are refused, and told."""
 
 import time
+from dataclasses import replace
 from pathlib import Path
-
-import pytest
 
 from core.units import NANOSECONDS_PER_DAY
 from mms.binding.prototypes import PROTOTYPES
 from service.collector.records.allowance import BLOCK_BYTES, DailyAllowance
+from service.collector.records.policy import RECORD_POLICY
 from service.collector.session.relay_alarms import AND_MORE, RelayAlarms
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.waiting import eventually
@@ -93,10 +93,8 @@ def test_a_name_that_cannot_be_trusted_is_an_alarm_while_it_is_listed(
     assert len(bench.repository.alarms(limit=10).items) == 1, "a restart raises no second one"
 
 
-def test_a_record_that_grows_for_ever_is_an_alarm_until_it_stops(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.records.directory.UNSTEADY_S", 0.5)
+def test_a_record_that_grows_for_ever_is_an_alarm_until_it_stops(bench: Bench, relay: ScriptedRelay) -> None:
+    bench.with_record_policy(replace(RECORD_POLICY, unsteady_s=0.5))
     relay.write_file("HR_1.CFG", b"configuration")
     size = 0
     with bench.session():
@@ -119,9 +117,9 @@ def shifty(bench: Bench) -> list[RecordingState]:
 
 
 def test_a_record_of_another_size_at_each_look_is_asked_for_a_few_times_only(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+    bench: Bench, relay: ScriptedRelay
 ) -> None:
-    monkeypatch.setattr("service.collector.records.directory.ATTEMPTS_OF_A_NAME", 3)
+    bench.with_record_policy(replace(RECORD_POLICY, wrong_listings_a_day=3))
     relay.shifts = True
     relay.write_record("SHIFTY")
     with bench.session():

@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.collector.records.listing import ListedRecord, understand
-from service.collector.records.settling import Settling
+from service.collector.records.listing import understand
 
 
 @dataclass(frozen=True)
@@ -95,47 +94,6 @@ def test_other_files_are_ignored_and_said_to_be() -> None:
 def test_a_record_tells_what_it_lacks() -> None:
     (record,) = understand(listed("X.CFG", "X.HDR"), "EVENTS").records
     assert record.missing == (".DAT",)
-
-
-def whole(size: int = 100) -> ListedRecord:
-    return understand([Entry("X.CFG", size), Entry("X.DAT", size)], "EVENTS").records[0]
-
-
-def test_a_record_is_ready_once_it_stands_still() -> None:
-    settling = Settling(settle_s=0.25, untold_s=0.25, patience_s=30, unsteady_s=60)
-    assert settling.look([whole(10)], 0.0, told=True).waiting == (whole(10),)
-    assert settling.look([whole(20)], 0.3, told=True).waiting == (whole(20),), "it grew: wait again"
-    assert settling.look([whole(20)], 0.4, told=True).waiting == (whole(20),)
-    assert settling.look([whole(20)], 0.6, told=True).ready == (whole(20),)
-
-
-def test_a_record_that_nobody_told_of_must_stand_still_for_longer() -> None:
-    settling = Settling(settle_s=0.25, untold_s=2.0, patience_s=30, unsteady_s=60)
-    assert settling.look([whole()], 0.0, told=False).waiting == (whole(),)
-    assert settling.look([whole()], 1.9, told=False).waiting == (whole(),)
-    assert settling.look([whole()], 1.9, told=True).ready == (whole(),)
-    assert settling.look([whole()], 2.0, told=False).ready == (whole(),)
-
-
-def test_a_record_without_its_data_is_given_up_in_the_end() -> None:
-    (half,) = understand(listed("X.CFG"), "EVENTS").records
-    settling = Settling(settle_s=0.25, untold_s=0.25, patience_s=30, unsteady_s=60)
-    assert settling.look([half], 0.0, told=True).waiting == (half,)
-    assert settling.look([half], 29.0, told=True).waiting == (half,)
-    assert settling.look([half], 30.0, told=True).incomplete == (half,)
-
-
-def test_a_record_that_goes_on_changing_is_waited_for_no_longer() -> None:
-    settling = Settling(settle_s=0.25, untold_s=0.25, patience_s=30, unsteady_s=60)
-    for tenth in range(599):
-        assert settling.look([whole(100 + tenth)], tenth / 10, told=True).waiting
-    assert settling.look([whole(1000)], 60.0, told=True).unsteady == (whole(1000),)
-    assert settling.look([whole(1001)], 60.1, told=True).unsteady == (whole(1001),)
-    assert settling.look([whole(1001)], 60.4, told=True).ready == (whole(1001),), "it stands still at last"
-    assert settling.look([], 60.5, told=True).waiting == ()
-    assert settling.look([whole(1)], 60.6, told=True).waiting == (whole(1),), (
-        "another record of the same name"
-    )
 
 
 names = st.text(max_size=120) | st.lists(

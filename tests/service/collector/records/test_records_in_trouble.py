@@ -2,13 +2,18 @@
 
 import os
 import time
+from dataclasses import replace
 
-import pytest
-
-from service.collector.records.directory import MANY_ATTEMPTS, PULL_ATTEMPTS
+from service.collector.records.policy import RECORD_POLICY, Attempts, Failure
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
+from tests.service.collector.records.policies import (
+    WRONG_IN_A_ROW,
+    with_alarm_after,
+    with_first_pause,
+    with_rules,
+)
 from tests.service.collector.scripted_relay import ScriptedRelay
 
 
@@ -24,11 +29,8 @@ def test_a_relay_that_pauses_while_it_writes_is_waited_for(bench: Bench, relay: 
     assert recording.size_bytes == 3000 + len(b"configuration")
 
 
-def test_two_records_reported_at_once_are_both_expected(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.records.directory.UNTOLD_SETTLE_S", 3600.0)
-    with bench.session():
+def test_two_records_reported_at_once_are_both_expected(bench: Bench, relay: ScriptedRelay) -> None:
+    with bench.with_record_policy(replace(RECORD_POLICY, settle_s=3600.0)).session():
         assert eventually(lambda: bench.link() is LinkState.UP)
         relay.write_record("HR_1", report=False)
         relay.write_file("HR_2.CFG", b"configuration")
@@ -61,10 +63,9 @@ def files_of(bench: Bench, name: str) -> dict[str, bytes]:
     return {file.name: (folder / file.name).read_bytes() for file in listed}
 
 
-def test_a_file_that_silences_the_relay_holds_up_no_other(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.records.directory.MANY_ATTEMPTS", 1)
+def test_a_file_that_silences_the_relay_holds_up_no_other(bench: Bench, relay: ScriptedRelay) -> None:
+    at_once = with_alarm_after(Attempts(since_start=1), Failure.LINK_LOST, Failure.PROTOCOL_BROKEN)
+    bench.with_record_policy(at_once)
     relay.stuck.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():
@@ -100,15 +101,13 @@ def states(bench: Bench) -> list[RecordingState]:
     return [recording.state for recording in bench.recordings()]
 
 
-def test_a_relay_that_denies_its_files_for_long_loses_none(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.0001)
-    monkeypatch.setattr("service.collector.records.directory.ATTEMPTS_OF_A_NAME", PULL_ATTEMPTS)
+def test_a_relay_that_denies_its_files_for_long_loses_none(bench: Bench, relay: ScriptedRelay) -> None:
+    policy = replace(with_first_pause(0.0001), wrong_listings_a_day=WRONG_IN_A_ROW)
+    bench.with_record_policy(policy)
     relay.denied.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():
-        assert eventually(lambda: attempts(bench, "HR_1") > PULL_ATTEMPTS + 1)
+        assert eventually(lambda: attempts(bench, "HR_1") > WRONG_IN_A_ROW + 1)
     with bench.session():  # a restart neither forgives nor forgets
         before = attempts(bench, "HR_1")
         assert eventually(lambda: attempts(bench, "HR_1") > before)
@@ -121,36 +120,35 @@ def test_a_relay_that_denies_its_files_for_long_loses_none(
         assert eventually(lambda: bench.alarms() == {})
     (alarm,) = bench.repository.alarms(limit=10).items
     assert "EVENTS/HR_1.CFG': file access denied" in alarm.reason
-    assert f", {MANY_ATTEMPTS} times" in alarm.reason
+    assert ", 5 times" in alarm.reason
 
 
 def test_a_denied_record_that_is_then_not_found_is_no_worse_than_others(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
+    bench: Bench, relay: ScriptedRelay
 ) -> None:
-    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.000001)
+    bench.with_record_policy(with_first_pause(0.000001))
     relay.denied.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():
-        assert eventually(lambda: attempts(bench, "HR_1") > PULL_ATTEMPTS)
+        assert eventually(lambda: attempts(bench, "HR_1") > WRONG_IN_A_ROW)
         denied = attempts(bench, "HR_1")
         relay.absent.add("HR_1")
         relay.denied.clear()
         assert eventually(lambda: states(bench) == [RecordingState.REJECTED])
-    assert attempts(bench, "HR_1") >= denied + PULL_ATTEMPTS
+    assert attempts(bench, "HR_1") >= denied + WRONG_IN_A_ROW
 
 
-def test_a_record_denied_for_a_day_is_refused_and_stays_an_alarm(
-    bench: Bench, relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.0001)
-    monkeypatch.setattr("service.collector.records.directory.DENIED_ATTEMPTS", PULL_ATTEMPTS + 2)
+def test_a_record_denied_for_a_day_is_refused_and_stays_an_alarm(bench: Bench, relay: ScriptedRelay) -> None:
+    policy = with_first_pause(0.0001)
+    denied = replace(policy.rules[Failure.DENIED], refuse_after=(Attempts(in_all=WRONG_IN_A_ROW + 2),))
+    bench.with_record_policy(with_rules({Failure.DENIED: denied}, policy))
     relay.denied.add("HR_1")
     relay.write_record("HR_1")
     with bench.session():
         assert eventually(lambda: states(bench) == [RecordingState.REJECTED])
         listings = relay.listings
         assert eventually(lambda: relay.listings > listings + 2)
-        assert attempts(bench, "HR_1") == PULL_ATTEMPTS + 2
+        assert attempts(bench, "HR_1") == WRONG_IN_A_ROW + 2
         assert bench.alarms() == {AlarmKind.FILE_UNSTEADY: ["HR_1"]}
         for path in relay.events.iterdir():
             path.unlink()

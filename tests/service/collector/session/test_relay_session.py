@@ -17,6 +17,7 @@ from service.storage.states import AlarmKind, LinkState, RecordingRequestState, 
 from service.timing.backoff import Backoff
 from testing.waiting import eventually
 from tests.service.collector.conftest import MOTOR, Bench
+from tests.service.collector.records.policies import with_first_pause
 from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
 
 SOON = Backoff(first_s=0.05, longest_s=10.0)
@@ -327,11 +328,11 @@ def test_without_the_report_control_block_the_directory_is_polled(bench: Bench, 
 
 
 def test_a_link_out_of_the_events_folder_is_not_followed(
-    bench: Bench, relay: ScriptedRelay, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    bench: Bench, relay: ScriptedRelay, tmp_path: Path
 ) -> None:
     secret = tmp_path / "secret"
     secret.write_bytes(b"not the relay's to give")
-    monkeypatch.setattr("service.collector.records.retrying.FIRST_PAUSE_S", 0.01)
+    bench.with_record_policy(with_first_pause(0.01))
     (relay.events / "HR_1.DAT").symlink_to(secret)
     relay.write_file("HR_1.CFG", b"configuration")
     with bench.session():
