@@ -70,11 +70,11 @@ class Bench:
     def request(self) -> str:
         return self.repository.request_recording(MOTOR, now_ns=time.time_ns()).id
 
-    def report(self, report_id: str) -> RecordingRequest:
-        return self.repository.recording_request(report_id)
+    def requested(self, request_id: str) -> RecordingRequest:
+        return self.repository.recording_request(request_id)
 
-    def reaches(self, report_id: str, state: RecordingRequestState) -> bool:
-        return eventually(lambda: self.report(report_id).state is state)
+    def reaches(self, request_id: str, state: RecordingRequestState) -> bool:
+        return eventually(lambda: self.requested(request_id).state is state)
 
     def recordings(self) -> list[RecordingEntry]:
         return list(self.repository.recordings(limit=100).items)

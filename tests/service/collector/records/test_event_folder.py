@@ -103,10 +103,10 @@ def test_a_second_folder_is_told_of_the_relay(bench: Bench, relay: ScriptedRelay
 def test_a_trigger_without_a_folder_names_what_was_looked_for(bench: Bench, relay: ScriptedRelay) -> None:
     relay.silent = True
     relay.events.rmdir()
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FAILED)
-    reason = bench.report(report_id).reason or ""
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+    reason = bench.requested(request_id).reason or ""
     assert "expected a record within 2 s of the trigger; no directory of event recordings" in reason
     assert relay.edges == 1, "the folder may come with the first record"
 

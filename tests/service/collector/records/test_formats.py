@@ -77,15 +77,15 @@ def test_a_refused_format_comes_last() -> None:
 
 
 def test_a_relay_of_event_reports_alone(bench: Bench, tmp_path: Path) -> None:
-    """A wish becomes a stored event report."""
+    """A request becomes a stored event report."""
     scenario = scenario_of("sel-710-ed1")
     record = scenario.profile.record.model_copy(update={"formats": ("CEV",)})
     scenario = replace(scenario, profile=scenario.profile.model_copy(update={"record": record}))
     with simulated(tmp_path / "relays", scenario) as served:
         here = at(expecting(bench, served.document.ied(IED)), served)
-        wish = here.request()
+        request_id = here.request()
         with here.session():
-            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FETCHED, 20)
+            assert eventually(lambda: here.requested(request_id).state is RecordingRequestState.FETCHED, 20)
     (recording,) = here.recordings()
     assert recording.digest is not None
     stored = here.store.find(recording.digest)
@@ -134,21 +134,21 @@ def states(bench: Bench) -> dict[str, RecordingState]:
 
 
 def test_an_event_report_stands_in_for_a_comtrade_too_large(bench: Bench, relay: ScriptedRelay) -> None:
-    """The wish for the record gets it, and is not failed by the refusal before."""
+    """The request gets the record, and is not failed by the refusal before."""
     relay.silent = True
-    wish = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(wish, RecordingRequestState.TRIGGERED)
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
         relay.write_file("CR_10007.CEV", b"event report of the same event")
         relay.write_record("HR_10007", b"x" * 200_000)  # larger than max_file_bytes
-        assert bench.reaches(wish, RecordingRequestState.FETCHED), bench.report(wish).reason
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED), bench.requested(request_id).reason
         assert bench.alarms() == {AlarmKind.FILE_TOO_LARGE: ["HR_10007"]}
         taken = {"HR_10007.CFG, HR_10007.DAT": "the same event as CR_10007.CEV, which is taken"}
         assert eventually(lambda: ignored(bench) == taken)
     assert states(bench) == {"CR_10007": RecordingState.FETCHED, "HR_10007": RecordingState.REJECTED}
     report = bench.recording("CR_10007")
     assert report is not None
-    assert bench.report(wish).recording_id == report.id
+    assert bench.requested(request_id).recording_id == report.id
     refused = bench.recording("HR_10007")
     assert refused is not None
     assert "(setting max_file_bytes), found 200000" in (refused.reason or "")
@@ -167,15 +167,15 @@ def test_a_refusal_of_the_past_hides_no_other_format(bench: Bench, relay: Script
         assert eventually(lambda: bench.is_stored("CR_10007"))
 
 
-def test_a_wish_fails_where_each_format_is_refused(bench: Bench, relay: ScriptedRelay) -> None:
+def test_a_request_fails_where_each_format_is_refused(bench: Bench, relay: ScriptedRelay) -> None:
     relay.silent = True
-    wish = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(wish, RecordingRequestState.TRIGGERED)
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
         relay.write_file("CR_10007.CEV", b"x" * 150_000)
         relay.write_record("HR_10007", b"x" * 200_000)
-        assert bench.reaches(wish, RecordingRequestState.FAILED)
-        assert "CR_10007.CEV: expected at most 100000 bytes" in (bench.report(wish).reason or "")
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+        assert "CR_10007.CEV: expected at most 100000 bytes" in (bench.requested(request_id).reason or "")
         listings = relay.listings
         assert eventually(lambda: relay.listings > listings + 3)
     refused = {"CR_10007": RecordingState.REJECTED, "HR_10007": RecordingState.REJECTED}

@@ -50,9 +50,9 @@ def test_a_trigger_whose_record_must_wait_says_so(bench: Bench, relay: ScriptedR
     relay.write_record("HR_0")
     with bench.with_settings(max_relay_bytes_per_day=RECORD_BYTES).session():
         assert eventually(lambda: bench.is_stored("HR_0"))
-        report = bench.request()
-        assert bench.reaches(report, RecordingRequestState.FAILED)
-    assert "max_relay_bytes_per_day" in (bench.report(report).reason or "")
+        request_id = bench.request()
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+    assert "max_relay_bytes_per_day" in (bench.requested(request_id).reason or "")
 
 
 def test_an_allowance_begins_anew_each_day_of_utc() -> None:
@@ -157,9 +157,9 @@ def test_nothing_is_deleted_on_a_relay(bench: Bench, relay: ScriptedRelay) -> No
     relay.write_record("HR_1", b"x" * 200_000)
     relay.write_record("HR_2")
     before = {path: path.read_bytes() for path in relay.events.iterdir()}
-    report = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     assert before.items() <= {path: path.read_bytes() for path in relay.events.iterdir()}.items()
     of_clients = {name for name in PROTOTYPES if "Connection_" in name and "file" in name.lower()}
     reading = {"getFileDirectoryEx", "fileOpen", "fileRead", "fileClose"}

@@ -155,15 +155,15 @@ def test_a_record_denied_for_a_day_is_refused_and_stays_an_alarm(bench: Bench, r
         assert eventually(lambda: bench.alarms() == {})
 
 
-def test_a_wish_for_a_record_that_is_denied_fails_in_time_with_the_reason(
+def test_a_request_for_a_record_that_is_denied_fails_in_time_with_the_reason(
     bench: Bench, relay: ScriptedRelay
 ) -> None:
     relay.denied.add("HR_10001")
-    wish = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(wish, RecordingRequestState.FAILED)
-        assert "its record could not be fetched within 2 s" in (bench.report(wish).reason or "")
-        assert "file access denied" in (bench.report(wish).reason or "")
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+        assert "its record could not be fetched within 2 s" in (bench.requested(request_id).reason or "")
+        assert "file access denied" in (bench.requested(request_id).reason or "")
 
 
 def test_a_trigger_waits_until_what_is_there_is_taken(bench: Bench, relay: ScriptedRelay) -> None:
@@ -171,14 +171,14 @@ def test_a_trigger_waits_until_what_is_there_is_taken(bench: Bench, relay: Scrip
     relay.write_record("HR_1")
     with bench.session():
         assert eventually(lambda: bench.recording("HR_1") is not None)
-        report_id = bench.request()
+        request_id = bench.request()
         time.sleep(0.5)  # it is asked for at once where nothing is in the way
         assert relay.edges == 0
         relay.busy = False
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     made = bench.recording("HR_10001")
     assert made is not None
-    assert bench.report(report_id).recording_id == made.id
+    assert bench.requested(request_id).recording_id == made.id
 
 
 def untime(relay: ScriptedRelay) -> None:

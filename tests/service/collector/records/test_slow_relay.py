@@ -26,8 +26,8 @@ def test_a_record_that_comes_while_old_ones_are_fetched_again_is_not_missed(
     relay.silent = True
     with bench.session():
         assert eventually(lambda: stored(bench) == len(OLD_RECORDS))
-        report_id = bench.request()
-        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
+        request_id = bench.request()
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
         relay.opening_s = OPENING_S
         for path in relay.events.iterdir():
             changed_s = path.stat().st_mtime - 3600
@@ -36,14 +36,14 @@ def test_a_record_that_comes_while_old_ones_are_fetched_again_is_not_missed(
         relay.announce()
         assert eventually(lambda: relay.opened > opened)
         relay.write_record("HR_10001")
-        assert eventually(lambda: bench.report(report_id).state is not RecordingRequestState.TRIGGERED)
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED), bench.report(report_id).reason
+        assert eventually(lambda: bench.requested(request_id).state is not RecordingRequestState.TRIGGERED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED), bench.requested(request_id).reason
     made = bench.recording("HR_10001")
     assert made is not None
-    assert bench.report(report_id).recording_id == made.id
+    assert bench.requested(request_id).recording_id == made.id
 
 
-def test_wishes_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
+def test_requests_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
     bench: Bench, relay: ScriptedRelay
 ) -> None:
     for name in OLD_RECORDS:
@@ -51,7 +51,7 @@ def test_wishes_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
     relay.opening_s = OPENING_S
     with bench.session():
         assert eventually(lambda: stored(bench) == 1)
-        wishes = [bench.request() for _ in range(2)]
+        request_ids = [bench.request() for _ in range(2)]
         relay.stop()
         assert eventually(lambda: bench.link() is LinkState.DOWN)
         again = bench.start_relay()
@@ -61,9 +61,9 @@ def test_wishes_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
         assert eventually(lambda: bench.link() is LinkState.DOWN)
         last = bench.start_relay()
         try:
-            assert all(bench.reaches(wish, RecordingRequestState.FETCHED) for wish in wishes), [
-                bench.report(wish).reason for wish in wishes
-            ]
+            assert all(
+                bench.reaches(request_id, RecordingRequestState.FETCHED) for request_id in request_ids
+            ), [bench.requested(request_id).reason for request_id in request_ids]
         finally:
             last.stop()
 
@@ -71,13 +71,15 @@ def test_wishes_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
 def test_a_record_that_takes_long_to_write_is_not_missed(bench: Bench, relay: ScriptedRelay) -> None:
     relay.silent = True
     with bench.session():
-        report_id = bench.request()
-        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
+        request_id = bench.request()
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
         relay.write_record("HR_10001", b"x")
         began_s = time.monotonic()
         while time.monotonic() < began_s + bench.settings.record_timeout_s + 1.0:
             with (relay.events / "HR_10001.DAT").open("ab") as file:
                 file.write(b"x")
             time.sleep(0.05)  # it never stands still for as long as it must
-        assert bench.report(report_id).state is RecordingRequestState.RECORDED, bench.report(report_id).reason
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.requested(request_id).state is RecordingRequestState.RECORDED, bench.requested(
+            request_id
+        ).reason
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)

@@ -68,9 +68,9 @@ class Stamps:
 
 def test_a_trigger_compares_the_clocks(bench: Bench, relay: ScriptedRelay) -> None:
     relay.clock_offset_s, relay.clock_quality = OFFSET_S, NOT_SYNCHRONISED
-    report = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     ied = bench.repository.ied(NAME)
     assert ied.clock_offset_ns is not None
     assert ied.clock_uncertainty_ns is not None
@@ -87,9 +87,9 @@ def test_a_trigger_compares_the_clocks(bench: Bench, relay: ScriptedRelay) -> No
 
 
 def test_a_relay_that_stamps_nothing_has_no_known_clock(bench: Bench, relay: ScriptedRelay) -> None:
-    report = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     assert bench.repository.ied(NAME).clock_offset_ns is None
     assert [recording.clock_quality for recording in bench.recordings()] == [None]
 

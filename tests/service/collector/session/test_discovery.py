@@ -45,17 +45,17 @@ def visited(bench: Bench) -> bool:
 
 
 def granted(bench: Bench) -> bool:
-    """Whether a wish becomes a stored record."""
-    wish = bench.request()
-    return eventually(lambda: bench.report(wish).state is RecordingRequestState.FETCHED, 20)
+    """Whether a request becomes a stored record."""
+    request_id = bench.request()
+    return eventually(lambda: bench.requested(request_id).state is RecordingRequestState.FETCHED, 20)
 
 
 def refusal(bench: Bench) -> str:
-    """Why a wish is not granted."""
-    wish = bench.request()
-    assert eventually(lambda: bench.report(wish).state is RecordingRequestState.FAILED)
-    assert bench.report(wish).triggered_ns is None, "nothing was operated"
-    return bench.report(wish).reason or ""
+    """Why a request is not granted."""
+    request_id = bench.request()
+    assert eventually(lambda: bench.requested(request_id).state is RecordingRequestState.FAILED)
+    assert bench.requested(request_id).triggered_ns is None, "nothing was operated"
+    return bench.requested(request_id).reason or ""
 
 
 @pytest.mark.parametrize("profile", ["sel-710-ed2", "sel-710-ed1", "rdre", "rdre-readonly", "files-none"])
@@ -227,9 +227,9 @@ def test_a_trigger_that_was_ruled_out_or_does_not_exist(bench: Bench, relay: Scr
         assert "the motors file says that it is not to be triggered" in refusal(bench)
     with expecting(bench, ied, Overrides(trigger=f"{NAME}CON/RBGGIO9.SPCSO01")).session():
         assert eventually(lambda: bench.alarms() == {AlarmKind.RELAY_DIFFERS: ["trigger"]})
-        wish = bench.request()
-        assert bench.reaches(wish, RecordingRequestState.FAILED)
-    assert "refuses the trigger" in (bench.report(wish).reason or "")
+        request_id = bench.request()
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+    assert "refuses the trigger" in (bench.requested(request_id).reason or "")
     assert relay.edges == 0
 
 

@@ -38,9 +38,9 @@ def test_a_relay_has_one_request_at_a_time(bench: Bench, relay: ScriptedRelay) -
             assert eventually(lambda: bench.link() is LinkState.UP)
             for number in range(RECORDS):
                 relay.write_record(f"OWN_{number}", bytes(RECORD_BYTES))
-                wish = bench.request()
+                request_id = bench.request()
                 session.wake()
-                assert bench.reaches(wish, RecordingRequestState.FETCHED)
+                assert bench.reaches(request_id, RecordingRequestState.FETCHED)
             assert eventually(lambda: len(bench.recordings()) == 2 * RECORDS)
         finally:
             session.stop()

@@ -23,16 +23,16 @@ from tests.service.collector.scripted_relay import CONTROL, NAME, ScriptedRelay
 SOON = Backoff(first_s=0.05, longest_s=10.0)
 
 
-def test_a_wish_becomes_a_stored_record(bench: Bench, relay: ScriptedRelay) -> None:
+def test_a_request_becomes_a_stored_record(bench: Bench, relay: ScriptedRelay) -> None:
     with bench.session() as session:
         assert eventually(lambda: bench.link() is LinkState.UP)
-        report_id = bench.request()
+        request_id = bench.request()
         session.wake()
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
-    report = bench.report(report_id)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
+    request = bench.requested(request_id)
     (recording,) = bench.recordings()
-    assert report.recording_id == recording.id
-    assert report.triggered_ns is not None
+    assert request.recording_id == recording.id
+    assert request.triggered_ns is not None
     assert recording.digest is not None
     stored = bench.store.find(recording.digest)
     assert (stored.directory / "HR_10001.DAT").read_bytes() == b"record 1"
@@ -58,13 +58,13 @@ def test_a_report_hurries_the_next_record(bench: Bench, relay: ScriptedRelay) ->
         assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
 
 
-def test_each_wish_gets_its_own_record_one_at_a_time(bench: Bench, relay: ScriptedRelay) -> None:
-    wishes = [bench.request() for _ in range(3)]
+def test_each_request_gets_its_own_record_one_at_a_time(bench: Bench, relay: ScriptedRelay) -> None:
+    request_ids = [bench.request() for _ in range(3)]
     with bench.session():
-        assert all(bench.reaches(wish, RecordingRequestState.FETCHED) for wish in wishes)
-    reports = [bench.report(wish) for wish in wishes]
-    assert len({report.recording_id for report in reports}) == 3
-    for earlier, later in pairwise(reports):
+        assert all(bench.reaches(request_id, RecordingRequestState.FETCHED) for request_id in request_ids)
+    requests = [bench.requested(request_id) for request_id in request_ids]
+    assert len({request.recording_id for request in requests}) == 3
+    for earlier, later in pairwise(requests):
         assert earlier.fetched_ns is not None
         assert later.triggered_ns is not None
         assert earlier.fetched_ns <= later.triggered_ns
@@ -76,9 +76,9 @@ def test_a_remote_bit_left_set_is_cleared_first(bench: Bench, relay: ScriptedRel
         relay.silent = True
         client.operate(CONTROL, True)  # noqa: FBT003 - the value of a control
         relay.silent = False
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     assert relay.edges == 2
 
 
@@ -87,9 +87,9 @@ def test_a_remote_bit_that_cannot_be_read_is_cleared(
     bench: Bench, relay: ScriptedRelay, refusal: DataAccessError
 ) -> None:
     relay.unreadable_while_set = refusal
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     assert relay.edges == 1
     assert not relay.is_set
     assert bench.repository.link_figures(NAME).connections == 1
@@ -97,19 +97,19 @@ def test_a_remote_bit_that_cannot_be_read_is_cleared(
 
 def test_a_refused_trigger_says_why_and_the_link_stays(bench: Bench, relay: ScriptedRelay) -> None:
     relay.refuses = True
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FAILED)
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
         assert eventually(lambda: bench.link() is LinkState.UP)
-    assert "refuses the trigger" in (bench.report(report_id).reason or "")
+    assert "refuses the trigger" in (bench.requested(request_id).reason or "")
 
 
 def test_a_trigger_without_record_fails_at_its_time_limit(bench: Bench, relay: ScriptedRelay) -> None:
     relay.silent = True
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FAILED)
-    assert "expected a record within 2 s" in (bench.report(report_id).reason or "")
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+    assert "expected a record within 2 s" in (bench.requested(request_id).reason or "")
     assert relay.edges == 1
 
 
@@ -117,24 +117,24 @@ def test_a_crash_between_trigger_and_record_neither_triggers_twice_nor_loses_it(
     bench: Bench, relay: ScriptedRelay
 ) -> None:
     relay.silent = True
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
     assert eventually(lambda: relay.edges == 1)
     relay.write_record("HR_10001", b"made while the collector was away")
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     assert relay.edges == 1
     assert len(bench.recordings()) == 1
 
 
-def test_a_crash_just_before_the_operation_costs_the_wish_and_nothing_else(
+def test_a_crash_just_before_the_operation_costs_the_request_and_nothing_else(
     bench: Bench, relay: ScriptedRelay
 ) -> None:
-    report_id = bench.request()
-    bench.repository.mark_triggered(report_id, now_ns=time.time_ns())
+    request_id = bench.request()
+    bench.repository.mark_triggered(request_id, now_ns=time.time_ns())
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FAILED)
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
     assert relay.edges == 0
 
 
@@ -166,15 +166,15 @@ def test_a_record_whose_time_changes_is_not_what_the_next_trigger_made(
     relay.silent = True
     with bench.session():
         assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])
-        report_id = bench.request()
-        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
+        request_id = bench.request()
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
     for file in relay.events.iterdir():
         os.utime(file, (1_000_000_000, 1_000_000_000))
     relay.write_record("HR_2", b"made while the collector was away")
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     recordings = {recording.name: recording.id for recording in bench.recordings()}
-    assert bench.report(report_id).recording_id == recordings["HR_2"]
+    assert bench.requested(request_id).recording_id == recordings["HR_2"]
 
 
 def test_a_clock_that_is_set_ends_no_report(
@@ -183,34 +183,34 @@ def test_a_clock_that_is_set_ends_no_report(
     right_ns = time.time_ns
     relay.silent = True
     bench.settings = bench.settings.model_copy(update={"record_timeout_s": 20.0})
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
         monkeypatch.setattr(time, "time_ns", lambda: right_ns() + 3600 * NANOSECONDS_PER_SECOND)
         relay.write_record("HR_10001", b"after the clock was set")
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
 
 
-def test_a_cut_ends_no_wish_that_waits_for_its_turn(bench: Bench, relay: ScriptedRelay) -> None:
+def test_a_cut_ends_no_request_that_waits_for_its_turn(bench: Bench, relay: ScriptedRelay) -> None:
     long_ago_ns = time.time_ns() - 3600 * NANOSECONDS_PER_SECOND
-    wishes = [bench.repository.request_recording(MOTOR, now_ns=long_ago_ns).id for _ in range(3)]
+    request_ids = [bench.repository.request_recording(MOTOR, now_ns=long_ago_ns).id for _ in range(3)]
     relay.stop()
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.DOWN)
         again = bench.start_relay()
         try:
-            assert all(bench.reaches(wish, RecordingRequestState.FETCHED) for wish in wishes)
+            assert all(bench.reaches(request_id, RecordingRequestState.FETCHED) for request_id in request_ids)
         finally:
             again.stop()
 
 
 def test_a_relay_that_is_down_says_so_and_comes_back(bench: Bench) -> None:
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.DOWN)
         assert str(bench.relay.port) in (bench.repository.ied(NAME).link_reason or "")
-        assert bench.reaches(report_id, RecordingRequestState.FAILED)
-        assert "does not answer" in (bench.report(report_id).reason or "")
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+        assert "does not answer" in (bench.requested(request_id).reason or "")
         relay = bench.start_relay()
         try:
             assert eventually(lambda: bench.link() is LinkState.UP, within_s=15)
@@ -247,11 +247,11 @@ def test_a_record_too_large_is_rejected_with_its_recording_request(
     bench: Bench, relay: ScriptedRelay
 ) -> None:
     relay.silent = True
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
         relay.write_record("HR_1", b"x" * 200_000)
-        assert bench.reaches(report_id, RecordingRequestState.FAILED)
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
     (recording,) = bench.recordings()
     assert recording.state is RecordingState.REJECTED
     assert "HR_1.DAT: expected at most 100000 bytes" in (recording.reason or "")
@@ -261,11 +261,11 @@ def test_a_record_listed_before_the_trigger_is_not_the_triggered_one(
     bench: Bench, relay: ScriptedRelay
 ) -> None:
     relay.write_record("HR_1", b"a trip of its own", report=False)
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     recordings = {recording.name: recording.id for recording in bench.recordings()}
-    assert bench.report(report_id).recording_id == recordings["HR_10001"]
+    assert bench.requested(request_id).recording_id == recordings["HR_10001"]
     assert set(recordings) == {"HR_1", "HR_10001"}
 
 
@@ -278,15 +278,15 @@ def test_a_record_that_could_not_be_fetched_before_the_trigger_is_not_the_trigge
     bench = bench.with_settings(record_timeout_s=10.0)
     with bench.session():
         assert eventually(lambda: bench.recording("HR_1") is not None)
-        report_id = bench.request()
-        assert bench.reaches(report_id, RecordingRequestState.TRIGGERED)
+        request_id = bench.request()
+        assert bench.reaches(request_id, RecordingRequestState.TRIGGERED)
     relay.denied.clear()
     with bench.session():
         assert eventually(lambda: bench.is_stored("HR_1"))
         relay.write_record("HR_10001", b"what the trigger made")
-        assert bench.reaches(report_id, RecordingRequestState.FETCHED)
+        assert bench.reaches(request_id, RecordingRequestState.FETCHED)
     recordings = {recording.name: recording.id for recording in bench.recordings()}
-    assert bench.report(report_id).recording_id == recordings["HR_10001"]
+    assert bench.requested(request_id).recording_id == recordings["HR_10001"]
 
 
 def test_the_entry_id_is_saved_only_when_its_record_is_safe(
@@ -313,10 +313,10 @@ def test_a_full_disk_is_not_blamed_on_the_relay(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(Incoming, "keep", disk_full)
-    report_id = bench.request()
+    request_id = bench.request()
     with bench.session():
-        assert bench.reaches(report_id, RecordingRequestState.FAILED)
-    assert "is not visited: OSError: [Errno 28] No space left" in (bench.report(report_id).reason or "")
+        assert bench.reaches(request_id, RecordingRequestState.FAILED)
+    assert "is not visited: OSError: [Errno 28] No space left" in (bench.requested(request_id).reason or "")
 
 
 def test_without_the_report_control_block_the_directory_is_polled(bench: Bench, relay: ScriptedRelay) -> None:

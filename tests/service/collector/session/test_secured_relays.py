@@ -65,9 +65,9 @@ def test_a_record_is_pulled_over_tls_with_a_password(bench: Bench, pki: Pki, tmp
         here = visiting(bench, served, access)
         with here.session() as session:
             assert eventually(lambda: here.link() is LinkState.UP)
-            wish = here.request()
+            request_id = here.request()
             session.wake()
-            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FETCHED, 20)
+            assert eventually(lambda: here.requested(request_id).state is RecordingRequestState.FETCHED, 20)
         (recording,) = here.recordings()
         assert recording.digest is not None
         stored = here.store.find(recording.digest)

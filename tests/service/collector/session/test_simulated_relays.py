@@ -72,7 +72,7 @@ def always(kind: Kind, number: float = 0.0, for_s: float = float("inf")) -> Misb
     ],
     ids=lambda each: each if isinstance(each, str) else "-".join(m.kind for m in each) or "well",
 )
-def test_a_wish_becomes_a_stored_record(
+def test_a_request_becomes_a_stored_record(
     bench: Bench, tmp_path: Path, profile: str, misbehaviour: tuple[Misbehaviour, ...]
 ) -> None:
     scenario = scenario_of(profile, *misbehaviour)
@@ -81,9 +81,9 @@ def test_a_wish_becomes_a_stored_record(
         here = of(bench, served, scenario.profile.files.folder)
         with here.session() as session:
             assert eventually(lambda: here.link() is LinkState.UP)
-            wish = here.request()
+            request_id = here.request()
             session.wake()
-            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FETCHED, 20)
+            assert eventually(lambda: here.requested(request_id).state is RecordingRequestState.FETCHED, 20)
         (recording,) = here.recordings()
         assert recording.digest is not None
         stored = here.store.find(recording.digest)
@@ -98,21 +98,21 @@ def test_a_record_that_is_never_as_long_as_listed_is_refused_in_writing(bench: B
         here = of(bench, served, "EVENTS")
         with here.session() as session:
             assert eventually(lambda: here.link() is LinkState.UP)
-            wish = here.request()
+            request_id = here.request()
             session.wake()
-            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FAILED)
+            assert eventually(lambda: here.requested(request_id).state is RecordingRequestState.FAILED)
         (recording,) = here.recordings()
     assert recording.digest is None
-    assert "expected" in (here.report(wish).reason or "")
+    assert "expected" in (here.requested(request_id).reason or "")
 
 
-def test_a_refused_control_fails_the_wish_with_its_reason(bench: Bench, tmp_path: Path) -> None:
+def test_a_refused_control_fails_the_request_with_its_reason(bench: Bench, tmp_path: Path) -> None:
     with simulated(tmp_path / "relays", scenario_of("sel-710-ed2", always(Kind.REFUSED_CONTROL))) as served:
         here = of(bench, served, "EVENTS")
-        wish = here.request()
+        request_id = here.request()
         with here.session():
-            assert eventually(lambda: here.report(wish).state is RecordingRequestState.FAILED)
-    assert "blocked by interlocking" in (here.report(wish).reason or "")
+            assert eventually(lambda: here.requested(request_id).state is RecordingRequestState.FAILED)
+    assert "blocked by interlocking" in (here.requested(request_id).reason or "")
 
 
 def test_a_record_of_a_motor_start_is_stored_though_nobody_asked(bench: Bench, tmp_path: Path) -> None:

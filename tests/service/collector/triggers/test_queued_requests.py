@@ -61,11 +61,11 @@ def test_a_queue_does_not_hurry_the_listings(bench: Bench, silent: ScriptedRelay
         assert not eventually(lambda: silent.edges > 1, within_s=0.5)
         before = silent.listings
         assert not eventually(lambda: silent.listings > before, within_s=WATCHED_S)
-        assert bench.report(second).state is RecordingRequestState.REQUESTED
+        assert bench.requested(second).state is RecordingRequestState.REQUESTED
         silent.write_record("HR_1")
         assert bench.reaches(first, RecordingRequestState.FETCHED)
         assert bench.reaches(second, RecordingRequestState.TRIGGERED)
-    ended, granted = bench.report(first).fetched_ns, bench.report(second).triggered_ns
+    ended, granted = bench.requested(first).fetched_ns, bench.requested(second).triggered_ns
     assert ended is not None
     assert granted is not None
     assert granted - ended < AT_ONCE_S * SECOND_NS
@@ -78,7 +78,7 @@ def test_the_next_follows_at_once_where_no_record_came(bench: Bench, silent: Scr
         first, second = bench.request(), bench.request()
         assert bench.reaches(first, RecordingRequestState.FAILED)
         assert bench.reaches(second, RecordingRequestState.TRIGGERED)
-    failed, granted = bench.report(first).failed_ns, bench.report(second).triggered_ns
+    failed, granted = bench.requested(first).failed_ns, bench.requested(second).triggered_ns
     assert failed is not None
     assert granted is not None
     assert granted - failed < AT_ONCE_S * SECOND_NS
