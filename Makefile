@@ -1,5 +1,6 @@
-# make install | demo | test | lint | bench | fuzz SECONDS=60 | interop LIBIEC61850=TREE      (PYTHON=python3.11 make install: another interpreter)
+# make install | demo | test | test-all | lint | bench | fuzz SECONDS=60 | interop LIBIEC61850=TREE      (PYTHON=python3.11 make install: another interpreter)
 # make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
+# make hostile CASES=5000 SEED=1     (a relay that answers nonsense: docs/evidence/interoperability.md)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
 PYTHON ?= python3
 BIN := .venv/bin
@@ -7,9 +8,10 @@ STAMP := .venv/.installed
 WARM := .venv/.compiled
 # Matrices are small here: threads of the linear algebra library only take cores from the tests' own processes.
 export OPENBLAS_NUM_THREADS ?= 1
-COMPOSE ?= docker compose
+# docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
+COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test chaos compose-test lint docs bench interop fuzz lock clean
+.PHONY: install demo test test-all hostile chaos compose-test lint docs bench interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -32,8 +34,20 @@ $(WARM): $(STAMP) $(wildcard core/machines/*.py ied_sim/motor/*.py)
 demo: install
 	$(BIN)/mcc demo
 
+# What a change can break, within minutes.
 test: install
-	$(BIN)/python -m pytest --cov --cov-report=term
+	$(BIN)/python -m pytest -q -m "not campaign"
+
+# The same with coverage, and the campaigns; the containers where an engine answers.
+test-all: install
+	$(BIN)/python -m pytest -q --cov
+	$(MAKE) hostile
+	$(MAKE) chaos
+	$(if $(COMPOSE),$(MAKE) compose-test,@echo "compose-test: not run, no Docker engine answers here and COMPOSE names no other compose command")
+
+# A relay that answers nonsense, against clients and against the whole service.
+hostile: install
+	$(BIN)/python -m tests.hostile --cases $(or $(CASES),5000) --seed $(or $(SEED),1)
 
 # Needs both cores to itself: it holds a service, its relays and all their faults.
 chaos: install
@@ -42,6 +56,7 @@ chaos: install
 		$(if $(FAULTS),--faults $(FAULTS)) $(if $(JSON),--json $(JSON)) $(if $(DATA),--data $(DATA))
 
 compose-test: install
+	@test -n "$(COMPOSE)" || { echo "compose-test: no Docker engine answers; name a compose command with COMPOSE" >&2; exit 1; }
 	$(BIN)/python -m tests.deployment.enterprise $(COMPOSE)
 
 lint: install

@@ -37,7 +37,13 @@ def plant(tmp_path: Path) -> Path:
 
 
 def run(*arguments: str | Path) -> tuple[int, str, str]:
-    """Exit code, stdout and stderr of a call that ends by itself."""
+    """Exit code, stdout and stderr of a call that ends before it serves."""
+    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    return done.exit_code, done.stdout, done.stderr
+
+
+def run_process(*arguments: str | Path) -> tuple[int, str, str]:
+    """The same of a call that ends when it begins to serve, which blocks signals of its process."""
     command = [sys.executable, "-m", "ied_sim", *map(str, arguments)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     return done.returncode, done.stdout, done.stderr
@@ -103,14 +109,14 @@ def test_a_taken_port_is_named_with_its_relay(plant: Path) -> None:
     with socket.socket() as other:
         other.bind((address.host, address.port))
         other.listen()
-        code, _, error = run("--scd", plant)
+        code, _, error = run_process("--scd", plant)
     assert code == 1
     assert f"A3_SEL710: cannot listen on 127.0.0.1 port {address.port}" in error
 
 
 @pytest.mark.parametrize("arguments", [("--truth",), ()])
 def test_an_unknown_relay_is_named(plant: Path, arguments: tuple[str, ...]) -> None:
-    code, _, error = run("--scd", plant, "--ied", "C9_SEL710", *arguments)
+    code, _, error = run_process("--scd", plant, "--ied", "C9_SEL710", *arguments)
     assert code == 1
     assert "C9_SEL710" in error
     assert "A1_SEL710" in error
@@ -134,7 +140,7 @@ def test_a_scenario_for_a_relay_that_is_not_there_is_refused(plant: Path, tmp_pa
 
 def test_a_directory_that_cannot_be_made_is_named(plant: Path, tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("a file where the directory should be", encoding="utf-8")
-    code, _, error = run("--scd", plant, "--files", tmp_path / "taken")
+    code, _, error = run_process("--scd", plant, "--files", tmp_path / "taken")
     assert code == 1
     assert "taken" in error
 

@@ -97,6 +97,7 @@ def test_the_demo_can_be_interrupted_on_its_way_up(tmp_path: Path) -> None:
     assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
 
 
+@pytest.mark.campaign  # plays a whole round, as the first test does, to see how the demo ends after it
 def test_ctrl_c_ends_the_endless_demo(tmp_path: Path) -> None:
     with start_demo(tmp_path) as demo:
         assert demo.stdout is not None

@@ -4,12 +4,17 @@ import re
 import shutil
 import signal
 import socket
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
 import pytest
 
 import scl
+from service.application.serve import serve
+from service.cli.output import one_line
+from service.cli.run_service import TROUBLES
+from service.configuration.settings import Settings
 from service.demo import MOTORS
 from testing.service.processes import descendants, is_alive, running_service, serve_in_vain
 from testing.waiting import eventually
@@ -46,11 +51,26 @@ def test_a_missing_scd_is_one_line(tmp_path: Path) -> None:
     assert "expected" in line
 
 
+@pytest.fixture(autouse=True)
+def _handler_of_sigterm() -> Iterator[None]:
+    """Kept: the service installs its own, also where it runs in this process."""
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)
+
+
+def refusal(data: Path, *, scd: Path = scl.DEMO_PLANT_SCD, motors: Path = MOTORS) -> str:
+    """Why the service does not start, in this process; the test above sees how a process says it."""
+    with pytest.raises(TROUBLES) as refused:
+        serve(Settings(data_directory=data, scd=scd, motors=motors))
+    return one_line(str(refused.value))
+
+
 def test_a_damaged_scd_names_the_line(tmp_path: Path) -> None:
     damaged = tmp_path / "damaged.scd"
     text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
     damaged.write_text(text[: len(text) // 2], encoding="utf-8")
-    line = serve_in_vain(tmp_path / "data", MCC_SCD=str(damaged))
+    line = refusal(tmp_path / "data", scd=damaged)
     assert "damaged.scd: line " in line
 
 
@@ -64,7 +84,7 @@ def test_a_motor_known_to_one_file_only_is_named(tmp_path: Path, surplus: bool) 
     motors.write_text(
         text + table.replace("PUMP-A1", "PUMP-X9") if surplus else text.replace(table, ""), encoding="utf-8"
     )
-    line = serve_in_vain(tmp_path / "data", MCC_SCD=str(scl.DEMO_PLANT_SCD), MCC_MOTORS=str(motors))
+    line = refusal(tmp_path / "data", motors=motors)
     assert "motors.toml" in line
     assert ("PUMP-X9" if surplus else "PUMP-A1") in line
 
@@ -78,12 +98,12 @@ def test_a_busy_port_is_named(tmp_path: Path) -> None:
 
 def test_a_data_directory_that_cannot_be_made_is_named(tmp_path: Path) -> None:
     shutil.copy(MOTORS, tmp_path / "file")
-    line = serve_in_vain(tmp_path / "file" / "data", MCC_SCD=str(scl.DEMO_PLANT_SCD))
+    line = refusal(tmp_path / "file" / "data")
     assert str(tmp_path / "file") in line
 
 
 def test_a_database_that_cannot_be_opened_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "statorwatch.sqlite").mkdir()
-    line = serve_in_vain(tmp_path / "data", MCC_SCD=str(scl.DEMO_PLANT_SCD))
+    line = refusal(tmp_path / "data")
     assert "statorwatch.sqlite: expected a database that can be read and written" in line
