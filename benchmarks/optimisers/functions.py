@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.optimisers.peers import BUDGET, METHODS, Task, first_success, run
+from benchmarks.optimisers.test_functions import FUNCTIONS, TestFunction, by_name
 from benchmarks.reporting import spread, table
-from core.optimisers.test_functions import FUNCTIONS, TestFunction, by_name
 
 Array = NDArray[np.float64]
 Lines = tuple[str, ...]

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.optimisers import least_squares
 from benchmarks.optimisers.motor_problems import BOUNDS, CYCLE_S, random_problem
 from benchmarks.optimisers.peers import (
     BUDGET,
@@ -27,7 +28,6 @@ from core.commissioning.commissioning import commission
 from core.commissioning.prior import PARAMETERS
 from core.diagnosis.search import HYBRID_SETTINGS
 from core.machines.candidates import LoadLaw
-from core.optimisers import least_squares
 from testing.machines.motors import REFERENCE
 from testing.machines.starts import plate_of
 
@@ -35,9 +35,9 @@ Array = NDArray[np.float64]
 Lines = tuple[str, ...]
 
 FIRST_TRUTH = 1_000
-"""Lower seeds served to set the hybrid; the page is measured on others."""
+"""Lower seeds served to set multistart; the page is measured on others."""
 START_GLOBAL = 40
-"""HCPA's points in the hybrid's first round on the cost of a start."""
+"""HCPA's points in multistart's first round on the cost of a start."""
 WITHIN = 0.01
 SURE = 2.6
 """Standard deviations that 99 % of normal errors keep within."""
@@ -55,11 +55,11 @@ independent physics (`benchmarks/optimisers/motor_problems.py`). Both goals ask 
 mu_f, T_d and load within 1 %.
 
 Methods that know no choice of three get theta_f as a rounded range; DIRECT-L also as three searches, one a
-winding, in turn. The hybrid is told more than they are: the residuals whose squares the cost sums, that
+winding, in turn. Multistart is told more than they are: the residuals whose squares the cost sums, that
 theta_f is a choice of three, and that T_d is an angle. `by cost alone` sees the cost as the others do and
 takes T_d as a range, but keeps the choice.
 
-How the hybrid was set: some 30 settings (global points, starts, adaptiveness, rounds) were tried on truths 0
+How multistart was set: some 30 settings (global points, starts, adaptiveness, rounds) were tried on truths 0
 to 99. The first whole table had it at a median of 113 evaluations with 100 global points, and dual annealing
 at 109: it lost. The global stage was then cut to 60 points (40, 60 and 100 found all hundred truths, at a
 median of 59, 77 and 113), the diagnosis likewise, and measured again here on truths from 1,000 on, which no
@@ -73,7 +73,7 @@ of switching, which is given as a relay's contactor input would: with the one se
 0.1 ms early, 8 of the 20 best fits lay 1 to 2 % off the truth (`mcc commission` fits the switching flux
 instead). Both goals ask for R_s, R_r', L_ls, L_s, H, load and T_d within 1 %.
 
-The hybrid is told the residuals and that T_d is an angle, `by cost alone` neither. Its 40 global points are
+Multistart is told the residuals and that T_d is an angle, `by cost alone` neither. Its 40 global points are
 one of five settings (20, 30, 40, 60, 100 points) tried on truths 0 to 39: each found all of them, at a median
 of 77, 87, 97, 117 and 157 evaluations (the instant then as seen in the currents). SHGO triangulates its
 points, which in seven dimensions takes too long; the genetic algorithm and the pattern search are in the
@@ -163,7 +163,7 @@ def motor(truths: int) -> Iterator[Lines]:
     for seed in range(truths):
         one = random_problem(FIRST_TRUTH + seed)
         problems.append(problem_of(BOUNDS, one.cost, one.residuals, one.truth, (1,)))
-    searches = _searches(tuple(METHODS), periodic=2, hybrid_global=HYBRID_SETTINGS.max_global)
+    searches = _searches(tuple(METHODS), periodic=2, first_points=HYBRID_SETTINGS.max_global)
     searches[EACH_WINDING] = _direct_for_each_winding
     yield from _measured(remarks, problems, searches)
 
@@ -180,7 +180,7 @@ def start(truths: int) -> Iterator[Lines]:
     ]
     names = tuple(name for name in METHODS if name not in MISSING_IN_START)
     lines: Lines = ()
-    for lines in _measured(remarks, problems, _searches(names, periodic=6, hybrid_global=START_GLOBAL)):
+    for lines in _measured(remarks, problems, _searches(names, periodic=6, first_points=START_GLOBAL)):
         yield lines
     yield (*lines, "", *_commissioned(starts, problems))
 
@@ -211,16 +211,16 @@ Search = Callable[[Problem, int], tuple[Array, Array]]
 """Points (n, d) and costs (n,) of one search, from a problem and a seed."""
 
 
-def _searches(names: tuple[str, ...], *, periodic: int, hybrid_global: int) -> dict[str, Search]:
+def _searches(names: tuple[str, ...], *, periodic: int, first_points: int) -> dict[str, Search]:
     searches: dict[str, Search] = {}
     for name in names:
-        searches[name] = _search(name, periodic, hybrid_global, by_residuals=name == "hybrid")
-        if name == "hybrid":
-            searches["hybrid, by cost alone"] = _search(name, periodic, hybrid_global, by_residuals=False)
+        searches[name] = _search(name, periodic, first_points, by_residuals=name == "multistart")
+        if name == "multistart":
+            searches[f"{name}, by cost alone"] = _search(name, periodic, first_points, by_residuals=False)
     return searches
 
 
-def _search(name: str, periodic: int, hybrid_global: int, *, by_residuals: bool) -> Search:
+def _search(name: str, periodic: int, first_points: int, *, by_residuals: bool) -> Search:
     def search(problem: Problem, seed: int) -> tuple[Array, Array]:
         lower, upper = np.array(problem.bounds).T
         knows = name in KNOW_CHOICES
@@ -237,7 +237,7 @@ def _search(name: str, periodic: int, hybrid_global: int, *, by_residuals: bool)
             residuals=(lambda unit: problem.residuals(at(unit))) if by_residuals else None,
             choices=problem.choices if knows else (),
             periodic=(periodic,) if by_residuals else (),
-            hybrid_global=hybrid_global,
+            first_points=first_points,
         )
         points, costs = run(METHODS[name], task, budget=BUDGET, seed=seed)
         return at(points), costs
@@ -310,13 +310,15 @@ def _median(evaluations: list[float]) -> str:
 
 
 def _ahead(medians: dict[str, tuple[float, float]]) -> Iterator[str]:
-    """How the hybrid stands beside the best of the others: medians to the best fit and to the truth."""
+    """How multistart stands beside the best of the others: medians to the best fit and to the truth."""
     others = {name: both for name, both in medians.items() if name in OTHERS}
     if not others:
         return
     for goal, title in enumerate(("best fit", "truth")):
         best = min(others, key=lambda name: others[name][goal])
-        ours = ", ".join(f"{name} {medians[name][goal]:.0f}" for name in medians if name.startswith("hybrid"))
+        ours = ", ".join(
+            f"{name} {medians[name][goal]:.0f}" for name in medians if name.startswith("multistart")
+        )
         theirs = f"{best} {others[best][goal]:.0f}" if np.isfinite(others[best][goal]) else "none"
         yield f"Evaluations to the {title}, median: {ours}; the best of the others' methods: {theirs}."
     yield ""

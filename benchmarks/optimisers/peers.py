@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import Bounds, direct, dual_annealing, shgo
 
-from core.optimisers import genetic, hcpa, hybrid, pattern_search
-from core.optimisers.hybrid import Refinement
+from benchmarks.optimisers import multistart
+from benchmarks.optimisers.multistart import Refinement
+from core.optimisers import genetic, hcpa, pattern_search
 
 Array = NDArray[np.float64]
 BUDGET = 2_000
@@ -24,7 +25,7 @@ CMA_STEP = 0.25
 """First standard deviation, of the unit box."""
 CMA_RESTARTS = 8
 ROUNDS = 6
-"""Of the hybrid: more than any budget here."""
+"""Of multistart: more than any budget here."""
 
 
 class BudgetSpent(Exception):  # noqa: N818
@@ -42,7 +43,7 @@ class Task:
 
     residuals: vectors whose squares sum to the cost, where it is such a sum.
     choices: coordinates that know only the values 0, 0.5 and 1.  periodic: those whose bounds are the same.
-    hybrid_global: HCPA's points in the hybrid's first round.
+    first_points: HCPA's points in multistart's first round.
     is_enough: whether new points (m, d) with costs (m,) let the search end early.
     """
 
@@ -52,7 +53,7 @@ class Task:
     choices: tuple[int, ...] = ()
     periodic: tuple[int, ...] = ()
     is_enough: Callable[[Array, Array], bool] = _never
-    hybrid_global: int = 100
+    first_points: int = 100
 
 
 class Trace:
@@ -120,13 +121,13 @@ def our_hcpa_deep(task: Task, budget: int, seed: int, trace: Trace) -> None:
     trace.take(found.points, found.costs)
 
 
-def our_hybrid(task: Task, budget: int, seed: int, trace: Trace) -> None:
+def our_multistart(task: Task, budget: int, seed: int, trace: Trace) -> None:
     """One start for each choice or three without any; rounds until the budget is spent."""
     del seed
-    found = hybrid.minimise(
+    found = multistart.minimise(
         task.cost, _box(task), residuals=task.residuals, allowed=_allowed(task), periodic=task.periodic,
         refinement=Refinement(starts=1 if task.choices else 3, rounds=ROUNDS),
-        max_global=task.hybrid_global, max_evaluations=budget, batch=True, callback=task.is_enough,
+        max_global=task.first_points, max_evaluations=budget, batch=True, callback=task.is_enough,
     )  # fmt: skip
     trace.take(found.points, found.costs)
 
@@ -196,7 +197,7 @@ def cma_es(task: Task, budget: int, seed: int, trace: Trace) -> None:
 
 
 METHODS: dict[str, Method] = {
-    "hybrid": our_hybrid,
+    "multistart": our_multistart,
     "HCPA, Table 4.1": our_hcpa,
     "HCPA, deep": our_hcpa_deep,
     "genetic": our_genetic,
@@ -207,7 +208,7 @@ METHODS: dict[str, Method] = {
     "scipy dual annealing": scipy_dual_annealing,
     "CMA-ES": cma_es,
 }
-KNOW_CHOICES = ("hybrid", "HCPA, Table 4.1", "HCPA, deep")
+KNOW_CHOICES = ("multistart", "HCPA, Table 4.1", "HCPA, deep")
 """Methods that can be told that a coordinate has three values; for the others it is a rounded range."""
 
 

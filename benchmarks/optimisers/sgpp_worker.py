@@ -14,7 +14,7 @@ import pysgpp
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from core.optimisers.test_functions import by_name
+from benchmarks.optimisers.test_functions import by_name
 
 ADAPTIVENESS = 0.85
 """SG++'s own default, gamma: 0 global, 1 greedy."""

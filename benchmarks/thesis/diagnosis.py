@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult
 
+from benchmarks.optimisers import multistart
 from benchmarks.optimisers.motor_problems import CYCLE_S, MotorProblem, motor_problem
+from benchmarks.optimisers.multistart import Refinement
 from benchmarks.reporting import table
 from benchmarks.thesis.plots import curves, scatter
 from core.machines.shorted_winding import ShortedWinding
-from core.optimisers import genetic, hcpa, hybrid, pattern_search
-from core.optimisers.hybrid import Refinement
+from core.optimisers import genetic, hcpa, pattern_search
 from testing.machines.steady_faults import FaultModel
 
 Array = NDArray[np.float64]
@@ -83,7 +84,7 @@ def ga(cost: Cost, seed: int = 0, generations: int = 25) -> OptimizeResult:
 
 
 def refined(of: MotorProblem) -> OptimizeResult:
-    return hybrid.minimise(
+    return multistart.minimise(
         three(of), BOUNDS, residuals=lambda points: of.residuals(np.insert(points, 2, 0.0, axis=1)),
         refinement=Refinement(starts=1), allowed=WINDINGS, batch=True,
     )  # fmt: skip
@@ -92,7 +93,8 @@ def refined(of: MotorProblem) -> OptimizeResult:
 def lines(images: Path) -> Iterator[str]:
     """The section's lines; plots go into the folder."""
     yield "Records of the thesis's additional winding from windings in phase variables, 10 kHz, 0.5 s in"
-    yield "steady running unless said otherwise; the model is the thesis's. `hybrid` refines what HCPA found."
+    yield "steady running unless said otherwise; the model is the thesis's."
+    yield "`multistart` refines what HCPA found."
     for part in (_adaptiveness, _windows, _comparison, _unbalance, _pattern_search):
         yield ""
         yield from part(images)
@@ -115,7 +117,7 @@ def _adaptiveness(images: Path) -> Iterator[str]:
         rows.append([f"{alpha:g}", thesis, _point(found.x), str(found.nfev), f"{found.fun:.3g}"])
         panels.append((f"alpha = {alpha:g}", found.points, found.x))
     best = refined(of)
-    rows.append(["hybrid", "", _point(best.x), str(best.nfev), f"{best.fun:.3g}"])
+    rows.append(["multistart", "", _point(best.x), str(best.nfev), f"{best.fun:.3g}"])
     yield from table(["alpha", "thesis", "ours", "evaluations", "cost [A^2]"], rows)
     scatter(images / "diagnosis-adaptiveness.png", panels)
     yield ""
@@ -132,7 +134,7 @@ def _windows(images: Path) -> Iterator[str]:
     windows = (0.1, 0.3, 0.5, 1.0)
     shown: dict[str, list[tuple[str, Array, Array]]] = {"mu_f": [], "load": []}
     for snr in (10.0, 20.0, 30.0):
-        for label in ("200 points", "500 points", "hybrid"):
+        for label in ("200 points", "500 points", "multistart"):
             errors = np.array(
                 [[_errors(snr, window, label, seed) for seed in range(SEEDS)] for window in windows]
             )
@@ -158,7 +160,7 @@ def _windows(images: Path) -> Iterator[str]:
 
 def _errors(snr: float, window: float, label: str, seed: int) -> tuple[float, float, float, float]:
     of = problem(0.08, 2, 0.27, snr_db=snr, seconds=window, seed=seed)
-    found = refined(of) if label == "hybrid" else improved_hcpa(three(of), most=int(label.split()[0]))
+    found = refined(of) if label == "multistart" else improved_hcpa(three(of), most=int(label.split()[0]))
     mu, winding, load = found.x
     samples = of.case.samples_compared
     return abs(mu / 0.08 - 1), abs(winding - 2), abs(load / 0.27 - 1), float(found.fun) / samples
@@ -178,7 +180,7 @@ def _comparison(images: Path) -> Iterator[str]:
         ("GA", "[0.0799, 2.0012, 0.2704], 520, 119 s", lambda: runs[10]),
         ("HCPA", "[0.0800, 2.0000, 0.2733], 547, 131 s", lambda: plain_hcpa(cost)),
         ("improved HCPA", "[0.0800, 2.0000, 0.2699], 524, 106 s", lambda: improved_hcpa(cost)),
-        ("hybrid", "", lambda: refined(of)),
+        ("multistart", "", lambda: refined(of)),
     )
     rows = []
     for name, thesis, search in searches:
@@ -220,7 +222,7 @@ def _unbalance(images: Path) -> Iterator[str]:
                 "improved HCPA": [],
                 "GA": [],
                 "GA, 40 generations": [],
-                "hybrid": [],
+                "multistart": [],
             }
             for load in LOADS:
                 of = problem(mu, 1, load, vuf=vuf)
@@ -230,7 +232,7 @@ def _unbalance(images: Path) -> Iterator[str]:
                 cells["GA, 40 generations"].append(
                     float(np.median([_relative(ga(cost, seed, 40), mu) for seed in range(11)]))
                 )
-                cells["hybrid"].append(_relative(refined(of), mu))
+                cells["multistart"].append(_relative(refined(of), mu))
             rows.append([f"{mu:.0%}", f"{vuf:.0%}", *(f"{max(values):.2%}" for values in cells.values())])
             shown += [
                 (f"{name}, VUF {vuf:.0%}", np.array(LOADS), 100 * np.maximum(values, 1e-6))
@@ -239,7 +241,7 @@ def _unbalance(images: Path) -> Iterator[str]:
             ]
         panels.append((f"mu_f = {mu:.0%}", "load", "relative error of mu_f [%]", shown))
     yield from table(
-        ["mu_f", "VUF", "improved HCPA", "GA (median of 11 seeds)", "GA, 40 generations", "hybrid"], rows
+        ["mu_f", "VUF", "improved HCPA", "GA (median of 11 seeds)", "GA, 40 generations", "multistart"], rows
     )
     curves(images / "diagnosis-unbalance.png", panels, logarithmic=True)
     yield ""

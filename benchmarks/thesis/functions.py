@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult
 
+from benchmarks.optimisers import clusters, multistart
+from benchmarks.optimisers.multistart import Refinement
+from benchmarks.optimisers.test_functions import TestFunction, by_name
 from benchmarks.reporting import table
 from benchmarks.thesis.plots import contour
-from core.optimisers import clusters, hcpa, hybrid
-from core.optimisers.hybrid import Refinement
-from core.optimisers.test_functions import TestFunction, by_name
+from core.optimisers import hcpa
 
 Array = NDArray[np.float64]
 DEEP = 40
@@ -68,13 +69,13 @@ def lines(images: Path) -> Iterator[str]:
     yield "HCPA with Table 4.1's parameters and as many evaluations as the thesis allows (500 global and 500"
     yield "local unless said otherwise), in the thesis's boxes. `needs level`: the least level of any dyadic"
     yield "point that prints as the thesis's; HCPA only evaluates levels below L0. `deep`: the same"
-    yield f"evaluations with fineness {DEEP}, no exclusion. `hybrid`: HCPA, then local refinement."
+    yield f"evaluations with fineness {DEEP}, no exclusion. `multistart`: HCPA, then local refinement."
     yield ""
     rows = [_row(printed) for printed in PRINTED]
     yield from table(
         [
             "function", "evaluations allowed", "thesis: minimum at", "needs level", "L0",
-            "HCPA: minimum at", "evaluations", "deep", "hybrid, evaluations", "true minimum",
+            "HCPA: minimum at", "evaluations", "deep", "multistart, evaluations", "true minimum",
         ],
         rows,
     )  # fmt: skip
@@ -106,7 +107,7 @@ def _row(printed: Printed) -> list[str]:
     function = by_name(printed.function)
     ours = _run(printed)
     deep = _run(printed, deep=True)
-    best = _hybrid(printed)
+    best = _multistart(printed)
     dimensions = len(function.bounds)
     fineness = hcpa.RECOMMENDED.get(dimensions, hcpa.RECOMMENDED_BEYOND)[0]
     at = f"{printed.minimum:g}" + (f" at ({_shortened(printed.point)})" if printed.point else "")
@@ -124,10 +125,10 @@ def _row(printed: Printed) -> list[str]:
     ]
 
 
-def _hybrid(printed: Printed) -> OptimizeResult:
+def _multistart(printed: Printed) -> OptimizeResult:
     function = by_name(printed.function)
     budget = printed.max_global + printed.max_local
-    return hybrid.minimise(
+    return multistart.minimise(
         function.fun, function.bounds, max_evaluations=budget, refinement=Refinement(rounds=2), batch=True
     )
 
@@ -154,10 +155,10 @@ def _remarks() -> Iterator[str]:
     for terms in (5, 7, 10):
         printed = next(one for one in PRINTED if one.function == f"Shekel {terms}")
         function = by_name(printed.function)
-        deep, best = _run(printed, deep=True), _hybrid(printed)
+        deep, best = _run(printed, deep=True), _multistart(printed)
         reached = [
             name
-            for name, found in (("HCPA, deep", deep), ("the hybrid", best))
+            for name, found in (("HCPA, deep", deep), ("multistart", best))
             if found.fun - function.minimum < GOOD / 2
         ]
         reaching = " and ".join(reached) or "neither"

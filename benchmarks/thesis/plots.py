@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult
 
-from core.optimisers.test_functions import TestFunction
+from benchmarks.optimisers.test_functions import TestFunction
 
 Array = NDArray[np.float64]
 DOTS_PER_INCH = 70

@@ -11,17 +11,18 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult
 
-from core.optimisers import clusters, genetic, hcpa, hybrid, latin_hypercube, nelder_mead, pattern_search
-from core.optimisers.hybrid import Refinement
+from benchmarks.optimisers import clusters, multistart, nelder_mead
+from benchmarks.optimisers.multistart import Refinement
+from benchmarks.optimisers.test_functions import FUNCTIONS, TestFunction, by_name
+from core.optimisers import genetic, hcpa, latin_hypercube, pattern_search
 from core.optimisers.objective import OptimiserError
-from core.optimisers.test_functions import FUNCTIONS, TestFunction, by_name
 
 Array = NDArray[np.float64]
 Minimise = Callable[..., OptimizeResult]
 
 OPTIMISERS: dict[str, Minimise] = {
     "hcpa": partial(hcpa.minimise, max_global=150, max_local=50),
-    "hybrid": partial(hybrid.minimise, max_global=60, max_evaluations=200),
+    "multistart": partial(multistart.minimise, max_global=60, max_evaluations=200),
     "genetic": partial(genetic.minimise, generations=8),
     "pattern search": partial(pattern_search.minimise, max_evaluations=200),
     "pattern search, D+1, samples": partial(
@@ -95,7 +96,7 @@ def test_the_callback_stops_the_search(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "most"), [("hybrid", 200), ("pattern search", 200), ("Nelder-Mead", 200), ("hcpa", 200)]
+    ("name", "most"), [("multistart", 200), ("pattern search", 200), ("Nelder-Mead", 200), ("hcpa", 200)]
 )
 def test_no_more_is_evaluated_than_allowed(name: str, most: int) -> None:
     def valley(x: Array) -> float:
@@ -118,13 +119,13 @@ def test_the_stated_minimum_is_the_least_value_near_it(function: TestFunction) -
 
 
 @pytest.mark.parametrize("name", ["Goldstein-Price", "Rosenbrock", "Branin", "Himmelblau", "Hartman 3"])
-def test_the_hybrid_finds_the_minimum_in_a_box_that_flatters_nobody(name: str) -> None:
+def test_multistart_finds_the_minimum_in_a_box_that_flatters_nobody(name: str) -> None:
     function = by_name(name)
     lower, upper = np.array(function.bounds).T
     inwards = 0.13 * (upper - lower) * np.minimum(1.0, np.arange(1, lower.size + 1) / 2)
     assert (function.minimisers[0] > lower + inwards).any()
     box = list(zip(np.minimum(lower + inwards, function.minimisers.min(axis=0) - 0.07), upper, strict=True))
-    result = hybrid.minimise(function.fun, box, max_global=200, batch=True)
+    result = multistart.minimise(function.fun, box, max_global=200, batch=True)
     assert result.fun == pytest.approx(function.minimum, abs=1e-5)
 
 
@@ -132,7 +133,7 @@ def test_a_further_round_goes_on_where_the_last_one_ended() -> None:
     function = by_name("Shekel 5")
     box = [(0.3, 9.0), (1.1, 10.0), (0.9, 9.5), (0.2, 9.7)]
     found = [
-        hybrid.minimise(
+        multistart.minimise(
             function.fun, box, refinement=Refinement(rounds=rounds), max_evaluations=3_000, batch=True
         )
         for rounds in (1, 2, 4)
@@ -161,7 +162,7 @@ def test_least_squares_refines_every_hypothesis_round_a_closed_coordinate() -> N
     def cost(points: Array) -> Array:
         return np.asarray((residuals(points) ** 2).sum(axis=1))
 
-    result = hybrid.minimise(
+    result = multistart.minimise(
         cost, [(0.0, 1.0), (0.0, 2.0), (0.0, 1.0)], residuals=residuals, refinement=Refinement(starts=1),
         max_global=40, allowed=(None, (0, 1, 2), None), periodic=(2,), batch=True,
     )  # fmt: skip
@@ -252,8 +253,8 @@ def test_the_genetic_algorithm_keeps_its_elite_and_counts_as_the_thesis_does() -
         (partial(nelder_mead.minimise, max_evaluations=0), "max_evaluations"),
         (partial(clusters.minimise, clusters=0), "clusters"),
         (partial(clusters.minimise, clusters=2, share=0.0), "share"),
-        (partial(hybrid.minimise, periodic=(4,)), "periodic"),
-        (partial(hybrid.minimise, refinement=Refinement(starts=0)), "starts"),
+        (partial(multistart.minimise, periodic=(4,)), "periodic"),
+        (partial(multistart.minimise, refinement=Refinement(starts=0)), "starts"),
     ],
 )
 def test_impossible_arguments_are_named(call: Minimise, word: str) -> None:

@@ -10,7 +10,8 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 from scipy.spatial.distance import cdist
 
-from core.optimisers import hcpa, nelder_mead
+from benchmarks.optimisers import nelder_mead
+from core.optimisers import hcpa
 from core.optimisers.evaluations import Evaluations, Halted
 from core.optimisers.objective import (
     Array,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from core.optimisers import least_squares
+from benchmarks.optimisers import least_squares
 from core.optimisers.objective import OptimiserError
 
 Array = NDArray[np.float64]

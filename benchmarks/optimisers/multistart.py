@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult
 from scipy.optimize import minimize as scipy_minimize
 
-from core.optimisers import hcpa, least_squares
+from benchmarks.optimisers import least_squares
+from core.optimisers import hcpa
 from core.optimisers.evaluations import Evaluations, Halted
 from core.optimisers.objective import (
     Array,
