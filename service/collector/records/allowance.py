@@ -1,13 +1,13 @@
-"""How much a relay may send in a day, so that one relay gone wild cannot fill the disk for all."""
+"""How much a relay may send in a day, so that one faulty relay cannot fill the disk for all."""
 
 from core.units import NANOSECONDS_PER_DAY
 
 BLOCK_BYTES = 4096
-"""What even the smallest file takes on a disk, and counts for."""
+"""The smallest file takes so much of a disk, and counts for so much."""
 
 
 class DailyAllowance:
-    """Bytes of one relay, counted by days of UTC.
+    """Counts the bytes of one relay by days of UTC.
 
     The first record of a day is always allowed: a limit smaller than one record delays, it does not refuse.
     """
@@ -18,12 +18,12 @@ class DailyAllowance:
         self.used_bytes = used_bytes
 
     def allows(self, sizes: tuple[int, ...], now_ns: int) -> bool:
-        """Whether files of these sizes fit into what is left of the day."""
+        """Return whether files of these sizes fit into what is left of the day."""
         self._begin_day(now_ns)
         return self.used_bytes == 0 or self.used_bytes + sum(map(on_disk, sizes)) <= self.limit_bytes
 
     def charge(self, number_of_bytes: int, now_ns: int) -> None:
-        """So many came, whatever became of them."""
+        """Count bytes that came, whatever became of them."""
         self._begin_day(now_ns)
         self.used_bytes += number_of_bytes
 
@@ -34,10 +34,10 @@ class DailyAllowance:
 
 
 def on_disk(size: int) -> int:
-    """Size in whole blocks, at least one [bytes]."""
+    """Return a size in whole blocks, at least one [bytes]."""
     return max(1, -(-size // BLOCK_BYTES)) * BLOCK_BYTES
 
 
 def beyond_its_end(size: int) -> int:
-    """What a file of this size leaves empty of its last block [bytes]."""
+    """Return how much of its last block a file of this size leaves empty [bytes]."""
     return on_disk(size) - size

@@ -33,12 +33,12 @@ from service.storage.states import AlarmKind
 log = structlog.get_logger(__name__)
 
 ClaimRequest = Callable[[str], str | None]
-"""Tells the recording request, if any, that a new record of this name belongs to."""
+"""Returns the recording request, if any, that a new record of this name belongs to."""
 
 
 @dataclass(frozen=True, slots=True)
 class _View:
-    """What a listing comes to, for as long as neither it nor the ledger's revision changes.
+    """What a listing comes to. It holds while neither the listing nor the ledger's revision changes.
 
     new: records that are waited for, oldest first.  names: of all records.
     """
@@ -72,7 +72,7 @@ class RecordDirectory:
         on_bytes: Callable[[int], None],
         policy: RecordPolicy = RECORD_POLICY,
     ) -> None:
-        """on_bytes: is told how many bytes of a file came."""
+        """on_bytes: gets the number of bytes of every part of a file that came."""
         self._relay = relay.name
         self._store = store
         self._folder = folder
@@ -109,14 +109,18 @@ class RecordDirectory:
         return self._outcome(view, unsteady, held_back)
 
     def pull_untimed_again(self) -> None:
-        """A record was announced, and nothing new came: what has no time may be new, and is pulled again.
+        """Pull once more what is stored and has no time, at the next scan.
 
+        This is for a record that was announced where nothing new was listed: it may look like an old one.
         Contents that are known make no second recording.
         """
         self._ledger.pull_untimed_again()
 
     def _view_of(self, contents: Contents, directory: str) -> _View:
-        """Relays list hundreds of records again and again; all but a few listings are as the one before."""
+        """Return what the listing comes to.
+
+        Relays list hundreds of records again and again, and nearly every listing is as the one before.
+        """
         before = self._view
         if before is not None and before.contents == contents:
             if before.revision == self._ledger.revision:
@@ -135,7 +139,7 @@ class RecordDirectory:
         return _View(contents, listing, states, self._ledger.revision, chosen, tuple(new), names)
 
     def _settle(self, view: _View, *, expected: bool) -> None:
-        """Look at each new record: has it come whole, and stopped changing?"""
+        """Judge each new record by whether it has come whole and stopped changing."""
         policy = self._policy
         still_s = policy.expected_settle_s if expected else policy.settle_s
         other_format_s = min(policy.other_format_s, self._record_timeout_s / 2)
@@ -150,7 +154,10 @@ class RecordDirectory:
     def _ready_and_unsteady(
         self, new: tuple[RecordState, ...]
     ) -> tuple[list[RecordState], list[RecordState]]:
-        """Records whose listing proved wrong too often today are not asked for, though they stand still."""
+        """Return the records that may be pulled, and those that are not waited for in a hurry.
+
+        Records whose listing proved wrong too often today are not asked for, though they stand still.
+        """
         ready: list[RecordState] = []
         unsteady = [state for state in new if state.life is Life.UNSTEADY]
         now_ns = time.time_ns()
@@ -179,7 +186,7 @@ class RecordDirectory:
             self._alarms.keep(AlarmKind.FILE_UNSTEADY, lacking)
 
     def _end_incomplete(self, view: _View, directory: str, claim: ClaimRequest) -> None:
-        """Files that are not coming any more: another format is taken, or the record refused."""
+        """Take another format in place of a record whose files are not coming, or refuse the record."""
         for state in view.new:
             if state.life is not Life.INCOMPLETE:
                 continue
@@ -192,7 +199,7 @@ class RecordDirectory:
                 self._refuse(state, reason, claim)
 
     def _take_all(self, client: Client, ready: list[RecordState], claim: ClaimRequest) -> tuple[str, ...]:
-        """Pull what is ready as far as the day's limit allows; the names of those that must wait."""
+        """Pull what is ready as far as the day's limit allows. Return the names of those that must wait."""
         for number, state in enumerate(ready):
             sizes = tuple(file.size for file in state.record.files)
             too_large = max(sizes) > self._max_file_bytes
@@ -257,7 +264,7 @@ class RecordDirectory:
             self._refuse(state, final_reason, claim)
 
     def _refuse(self, state: RecordState, reason: str, claim: ClaimRequest) -> None:
-        """The record is not pulled again; its request fails only where no other format is left."""
+        """Do not pull the record again. Its request fails only where no other format is left."""
         has_another = self._view is not None and state in self._view.chosen.replaceable
         self._ledger.refuse(state, reason, None if has_another else claim(state.name))
         outcome = "record refused, another format is taken" if has_another else "record refused"

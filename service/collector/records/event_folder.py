@@ -1,4 +1,4 @@
-"""Where a relay keeps its event recordings: found by looking, unless somebody has said.
+"""Finds the folder in which a relay keeps its event recordings, unless it is configured.
 
 Relays name the folder EVENTS or COMTRADE, in capitals or not, with a slash or backslash before or behind,
 and some do not list it at the root. A folder that was once seen to hold recordings is the one; until then all
@@ -28,29 +28,29 @@ log = structlog.get_logger(__name__)
 
 USUAL = ("EVENTS", "COMTRADE")
 SPELLINGS = ("/{}", "{}/", "{}\\", "\\{}")
-"""Tried where neither the plain name nor the root's listing leads anywhere."""
+"""Spellings to try where neither the plain name nor the root's listing leads to a folder."""
 
 ROOT = ""
 MOST_FOLDERS = 16
-"""Looked into, of those the root lists."""
+"""So many of the folders that the root lists are looked into."""
 
 NO_SERVICE_CODES = (4, 98, 99)
-"""Of the library's: service not supported, not implemented, and what it makes of a reject."""
+"""Error codes of the library: service not supported, not implemented, and a reject."""
 
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """What a folder lists. `directory` None: there is none at present."""
+    """What a folder lists. `directory` is None while there is no folder."""
 
     directory: str | None
     entries: tuple[FileEntry, ...]
 
 
 class EventFolder:
-    """Of one relay. default: the folder to be tried first.  override: the only one to be tried.
+    """The folder of one relay. default: the folder to be tried first.  override: the only one to be tried.
 
-    `missing` says in words why there is no folder; `no_files`, that the relay has no file service at all;
-    `unread`, that recordings of the relay are not fetched, because they are in another folder than others.
+    `missing` says in words why there is no folder. `no_files` means that the relay has no file service at
+    all. `unread` says that recordings of the relay are not fetched, because they are in a second folder.
     """
 
     def __init__(
@@ -65,8 +65,8 @@ class EventFolder:
         self._policy = policy
         self._default = default
         self._override = override
-        # Whoever has set another folder than the usual one means it, empty or not, where the relay has it.
-        self._meant = override or (None if default == USUAL[0] else default)
+        # A folder other than the usual one was set on purpose. It is used where the relay has it, even empty.
+        self._configured = override or (None if default == USUAL[0] else default)
         self._candidates: list[str] = []
         self._is_sure = False
         self._look_beside = False
@@ -81,12 +81,12 @@ class EventFolder:
         return self._candidates[0] if self._candidates else None
 
     def begin(self) -> None:
-        """A new connection: what was not there may be there now."""
+        """Search again at a new connection, because a folder may be there now."""
         self._next_search_s = 0.0
         self._look_beside = True
 
     def contents(self, client: Client) -> Contents:
-        """The contents of the folder. Raises MmsError (the link, or a listing that cannot be right)."""
+        """Return the contents of the folder. Raises MmsError (the link, or an impossible listing)."""
         found = [] if not self._candidates else self._look_into(client, self._candidates)
         if not found:
             self._is_sure = False
@@ -101,9 +101,9 @@ class EventFolder:
             self._next_search_s = time.monotonic() + pause_s
             return Contents(None, ())
         self.missing, self.no_files = None, False
-        meant = [each for each in found if each.directory == self._meant]
-        chosen = next(filter(_holds_records, meant or found), (meant or found)[0])
-        if _holds_records(chosen) or meant:
+        configured = [each for each in found if each.directory == self._configured]
+        chosen = next(filter(_holds_records, configured or found), (configured or found)[0])
+        if _holds_records(chosen) or configured:
             self._is_sure = True
         if chosen.directory != self.directory:
             log.info("events directory", relay=self._relay, directory=chosen.directory)
@@ -115,9 +115,9 @@ class EventFolder:
         return chosen
 
     def _note_unread(self, client: Client, chosen: Contents) -> None:
-        """Whether another folder of a usual name holds recordings too, unless one was meant."""
+        """Note whether another folder of a usual name holds recordings too, unless one was configured."""
         self.unread = None
-        if self._meant is not None or not _holds_records(chosen):
+        if self._configured is not None or not _holds_records(chosen):
             return
         names = [
             name for name in USUAL if name.casefold() != (chosen.directory or "").strip("/\\").casefold()
@@ -138,7 +138,7 @@ class EventFolder:
             log.warning("another events directory", relay=self._relay, reason=self.unread)
 
     def _look_into(self, client: Client, directories: list[str]) -> list[Contents]:
-        """Those that are there; no further than the first that holds recordings."""
+        """Return the folders that exist, up to the first that holds recordings."""
         found: list[Contents] = []
         for directory in directories:
             try:
@@ -152,7 +152,7 @@ class EventFolder:
                 self.no_files = True
                 continue
             found.append(contents)
-            if directory == self._meant or _holds_records(contents):
+            if directory == self._configured or _holds_records(contents):
                 break
         return found
 
@@ -161,7 +161,7 @@ class EventFolder:
         self.no_files = False
         names = [self._override] if self._override is not None else [*dict.fromkeys((self._default, *USUAL))]
         found = self._look_into(client, names)
-        is_settled = any(each.directory == self._meant or _holds_records(each) for each in found)
+        is_settled = any(each.directory == self._configured or _holds_records(each) for each in found)
         if self._override is None and not self.no_files and not is_settled:
             known = {contents.directory for contents in found}
             found += self._look_into(client, [name for name in self._at_root(client) if name not in known])
@@ -176,7 +176,7 @@ class EventFolder:
         return found
 
     def _at_root(self, client: Client) -> Iterator[str]:
-        """Folders that hold recordings as the root lists them, or are called as usual; the root itself."""
+        """Yield the folders with recordings or of a usual name that the root lists; maybe the root itself."""
         try:
             entries = client.files(ROOT)
         except (NotFound, AccessDenied):

@@ -1,4 +1,4 @@
-"""Kinds of failure of a pull, told by the error it ends with, and what people read of them."""
+"""The kind of failure behind an error that ends a pull, and its words for people."""
 
 from mms import (
     AccessDenied,
@@ -37,12 +37,12 @@ VISIT_ENDS = frozenset({Failure.LINK_LOST, Failure.PROTOCOL_BROKEN})
 
 
 def failure_of(error: Exception) -> Failure:
-    """Return the kind of a pull's failure, by the most special class that is listed."""
+    """Return the kind of failure, by the most special class of the error that is listed."""
     return next(_KINDS[kind] for kind in type(error).__mro__ if kind in _KINDS)
 
 
 def reason_of(failure: Failure, record_name: str, error: Exception) -> str:
-    """Return why the record is not there yet, in words for whoever waits for it."""
+    """Return why the record is not there yet, in words for a person who waits for it."""
     if failure in (Failure.DENIED, Failure.NOT_AS_LISTED):
         return f"{record_name}: {error}"
     return str(error)

@@ -1,7 +1,7 @@
 """The states of a relay's records: kept while the relay lists them, and written to the database.
 
-The database knows every record the relay has ever listed. Here is only what the relay lists at present, so
-that the memory it takes does not grow with the years. A record that comes back into the listing is looked up.
+The database knows every record the relay has ever listed. This module holds only those the relay lists at
+present, so that memory does not grow with the years. A record that comes back into the listing is looked up.
 """
 
 import time
@@ -20,10 +20,10 @@ log = structlog.get_logger(__name__)
 
 
 class RecordLedger:
-    """Of one relay's records. Used by that relay's session alone, which alone writes them.
+    """The records of one relay. Used by that relay's session alone, which alone writes them.
 
-    revision: another number whenever a record was stored, refused, given up for another format, or is in
-    doubt again. As long as it and the listing are the same, the same records are waited for.
+    revision: grows when the listing changes, and when a record is stored, refused, given up for another
+    format, or to be pulled once more. While it stays the same, the same records are waited for.
     """
 
     def __init__(self, relay: str, motor: str, repository: Repository) -> None:
@@ -51,7 +51,9 @@ class RecordLedger:
             self._announced.update(self._repository.announced_remote_records(self._relay))
             self._has_begun = True
         begun = {record: self._begin(record, before, known) for record in new}
-        waited_since_s = {state.name: state.first_s for state in before.values()}
+        waited_since_s = {
+            state.name: state.first_s for state in self._states.values() if state.first_s is not None
+        }
         for state in begun.values():
             state.first_s = None if state.is_decided else waited_since_s.get(state.name)
         states = [begun.get(record) or self._states[record] for record in listed]
@@ -65,10 +67,10 @@ class RecordLedger:
         before: dict[RemoteRecord, RecordState],
         known: dict[RemoteRecord, RecordingEntry],
     ) -> RecordState:
-        """The state of a record that is listed anew, as far as it is known from before."""
+        """Return the state of a record that is listed anew, as far as it is known from before."""
         state = RecordState(record)
         same, recording = before.get(state.remote), known.get(state.remote)
-        if same is not None:  # its files are listed otherwise, for instance in another folder
+        if same is not None:  # its files are listed in another way, for instance in another folder
             state.in_store = same.in_store
             if same.is_decided:
                 state.life = same.life

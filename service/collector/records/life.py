@@ -23,10 +23,10 @@ class Life(StrEnum):
 
 
 DECIDED = frozenset({Life.STORED, Life.REFUSED})
-"""Nothing more is asked of the relay."""
+"""Records of which nothing more is asked of the relay."""
 
 WHOLE = frozenset({Life.READY, Life.RETRYING})
-"""It was whole and stood still for long enough."""
+"""Records that have come whole and stood still for long enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class RecordState:
         return self.failures.total()
 
     def settle(self, now_s: float, times: SettlingTimes) -> None:
-        """Take another look at a record that is waited for: has it come whole, and stopped changing?"""
+        """Judge a record that is waited for, by whether it has come whole and stopped changing."""
         if self.life in WHOLE or self.life is Life.INCOMPLETE:
             return
         if self.since_s is None:
@@ -115,11 +115,14 @@ class RecordState:
 
 
 def remote_of(record: ListedRecord) -> RemoteRecord:
-    """A listed record as the database knows it."""
+    """Return a listed record as the database knows it."""
     return RemoteRecord(record.name, record.size_bytes, record.modified_ns)
 
 
 def in_turn(states: list[RecordState], now_s: float) -> list[RecordState]:
-    """Records that may be asked for now; last the one that failed most, which may end the visit again."""
+    """Return the records that may be asked for now.
+
+    Those that failed most come last, because they may end the visit again.
+    """
     due = [state for state in states if state.pause_s(now_s) <= 0]
     return sorted(due, key=lambda state: state.attempts)

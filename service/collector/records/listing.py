@@ -1,4 +1,4 @@
-"""From a relay's directory listing to recordings: which files belong together, and under which names.
+"""Groups the files of a relay's directory listing into records, and checks their names.
 
 A relay's file names are hostile until checked here: nothing later makes a local path of them or prints them
 raw.
@@ -11,7 +11,7 @@ from typing import Protocol
 REQUIRED_SUFFIXES = (".CFG", ".DAT")
 OPTIONAL_SUFFIXES = (".HDR", ".INF")
 WHOLE_SUFFIXES = (".CFF", ".CEV")
-"""Files that are a recording each: COMTRADE 2013 combined, SEL Compressed ASCII event report."""
+"""Files that are a whole recording each: COMTRADE 2013 combined, SEL Compressed ASCII event report."""
 
 RECORD_SUFFIXES = REQUIRED_SUFFIXES + OPTIONAL_SUFFIXES + WHOLE_SUFFIXES
 LONGEST_NAME = 100
@@ -19,7 +19,7 @@ MOST_IGNORED = 100
 
 
 class FileEntry(Protocol):
-    """What the MMS layer tells of a remote file."""
+    """A remote file as the MMS layer lists it."""
 
     @property
     def name(self) -> str: ...
@@ -57,7 +57,7 @@ class ListedRecord:
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Suffixes a COMTRADE record cannot do without and this one does not have."""
+        """Suffixes that a COMTRADE record needs and this one lacks."""
         if self.suffixes & set(WHOLE_SUFFIXES):
             return ()
         return tuple(suffix for suffix in REQUIRED_SUFFIXES if suffix not in self.suffixes)
@@ -68,7 +68,7 @@ class ListedRecord:
 
     @property
     def file_names(self) -> str:
-        """For people."""
+        """The names of all files, for people to read."""
         return ", ".join(file.local_name for file in self.files)
 
 
@@ -82,7 +82,7 @@ class RefusedFile:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """A directory of a relay, understood.
+    """The contents of a relay's directory, sorted into records and other files.
 
     ignored: files that belong to no recording, at most MOST_IGNORED of `ignored_in_all`.
     """
@@ -134,12 +134,12 @@ def understand(entries: Iterable[FileEntry], directory: str) -> Listing:
 
 
 def is_of_a_record(name: str) -> bool:
-    """Whether a file, by its name alone, belongs to a recording."""
+    """Return whether a file, by its name alone, belongs to a recording."""
     return _suffix(last_component(name)) in RECORD_SUFFIXES
 
 
 def printable(name: str) -> str:
-    """A relay's file name, safe to print."""
+    """Return a relay's file name in a form that is safe to print."""
     return name if name.isprintable() and len(name) <= LONGEST_NAME else ascii(name)[:LONGEST_NAME]
 
 
@@ -150,7 +150,7 @@ def _why_ignored(name: str) -> str:
 
 
 def objection(name: str, directory: str) -> str | None:
-    """Why a listed name is not to be trusted; None if it is."""
+    """Return why a listed name is not to be trusted; None if it is."""
     local_name = last_component(name)
     parent = _posix(name).rpartition("/")[0]
     if parent.strip("/").upper() not in ("", _posix(directory).strip("/").upper()):
@@ -165,12 +165,12 @@ def objection(name: str, directory: str) -> str | None:
 
 
 def last_component(name: str) -> str:
-    """Relays separate folders with either slash."""
+    """Return the name without its folders. Relays separate them with either slash."""
     return _posix(name).rpartition("/")[2]
 
 
 def remote_name(name: str, directory: str) -> str:
-    """What to ask the relay for: some list full paths, some list bare names."""
+    """Return the name to ask the relay for: some relays list full paths, some list bare names."""
     if "/" in _posix(name) or not directory.strip("/\\"):
         return name
     slash = "\\" if directory.endswith("\\") else "/"

@@ -108,7 +108,7 @@ class RecordPolicy:
     unsteady_s: how long a record may go on changing before it is an alarm.
     wrong_listings_a_day: how often a record of one name may prove not to be as listed, of whatever size and
     time it is listed each time, before it is an alarm and waits for the next day of UTC.
-    soon_s: nobody hurries for a record whose next attempt is further away.
+    soon_s: a record whose next attempt is further away does not hurry the listings.
     folder_search_s, no_files_search_s: between two searches for a folder that was not there, and at a relay
     that seems to have no file service.
     """

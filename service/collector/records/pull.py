@@ -1,4 +1,4 @@
-"""One record from a relay to the recording store: every file, every byte, or nothing."""
+"""Pulls one record from a relay into the recording store: every byte of every file, or nothing."""
 
 from collections.abc import Callable
 from typing import BinaryIO
@@ -13,7 +13,7 @@ class RecordTooLargeError(ValueError):
 
 
 class _Counted:
-    """A file that tells how much was written to it."""
+    """A file that reports how much was written to it."""
 
     def __init__(self, sink: BinaryIO, on_bytes: Callable[[int], None]) -> None:
         self._sink = sink
@@ -32,7 +32,7 @@ def pull(
     max_file_bytes: int,
     on_bytes: Callable[[int], None],
 ) -> StoredRecording:
-    """Stream the files of one record into the store; `on_bytes` is told of every part that came.
+    """Stream the files of one record into the store; `on_bytes` gets the size of every part that came.
 
     The store keeps the record only when all files are there. Raises RecordTooLargeError, MmsError
     (FileSizeMismatch when a file is not as long as listed), RecordingStoreError for a name the store refuses,

@@ -171,7 +171,7 @@ class TriggerQueue:
     def _is_held_up(self, scan: Scan) -> bool:
         """Whether the trigger waits for older records that are about to be taken.
 
-        After a crash in between, nobody would know that they were there before the trigger.
+        Otherwise, after a crash in between, it would not be known that they were there before the trigger.
         """
         now_s = time.monotonic()
         if not scan.waiting:

@@ -23,8 +23,8 @@ class UnansweredRequests:
         now_s = time.monotonic()
         for request in self._repository.open_recording_requests(self._relay):
             if self._deadlines.ends_without_answer(request, now_s):
-                told = f"{self._relay} {reason}"
-                self._repository.fail_recording_request(request.id, told, now_ns=time.time_ns())
+                text = f"{self._relay} {reason}"
+                self._repository.fail_recording_request(request.id, text, now_ns=time.time_ns())
                 log.warning(
-                    "recording request failed", relay=self._relay, recording_request=request.id, reason=told
+                    "recording request failed", relay=self._relay, recording_request=request.id, reason=text
                 )

@@ -69,6 +69,16 @@ def test_a_record_that_goes_on_changing_is_waited_for_no_longer(looks: Looks) ->
     assert looks.at(60.6, whole(1)) is Life.SETTLING, "another record of the same name"
 
 
+def test_another_format_of_its_name_does_not_hide_how_long_it_changes(bench: Bench) -> None:
+    ledger = RecordLedger(NAME, MOTOR, bench.repository)
+    (combined,) = understand(listed("X.CFF"), "EVENTS").records
+    for size, now_s in ((100, 0.0), (200, 70.0)):
+        state, other = ledger.follow([whole(size), combined])
+        ledger.pass_over([other])
+        state.settle(now_s, SettlingTimes(still_s=0.25, incomplete_s=30, unsteady_s=60))
+    assert state.life is Life.UNSTEADY
+
+
 def state_of(name: str) -> RecordState:
     return RecordState(understand(listed(f"{name}.CFG", f"{name}.DAT"), "EVENTS").records[0])
 
