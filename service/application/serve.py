@@ -37,7 +37,7 @@ from service.storage import Repository, connect, migrate
 log = structlog.get_logger(__name__)
 
 LAST_REQUESTS_S = 3
-"""How long the requests under way get when the service stops."""
+"""Time for the requests under way when the service stops."""
 
 
 class ServeError(RuntimeError):
@@ -67,7 +67,7 @@ def serve(settings: Settings) -> None:
 
 
 def _prepared(settings: Settings, plant: Plant) -> Repository:
-    """The database, brought up to date. Raises StorageError, ServeError."""
+    """Open the database and bring it up to date. Raises StorageError, ServeError."""
     try:
         migrate(settings.database_url)
         repository = Repository(connect(settings.database_url))
@@ -103,7 +103,7 @@ def collect(settings: Settings) -> None:
 
 
 def _plant(settings: Settings) -> Plant:
-    """Raises PlantError, SettingsError."""
+    """Read the plant. Raises PlantError, SettingsError."""
     plant = read_plant(settings)
     for relay in clear_passwords(settings.relays, [relay.name for relay in plant.relays]):
         log.warning("the relay's password goes over the network in clear: configure TLS for it", relay=relay)
@@ -154,7 +154,7 @@ def _parts(
 
 
 def _require_writable(directory: Path) -> None:
-    """Raises ServeError where nothing can be kept."""
+    """Raise ServeError where no file can be written."""
     try:
         directory.mkdir(parents=True, exist_ok=True)
         with TemporaryFile(dir=directory):
@@ -168,7 +168,7 @@ def _require_writable(directory: Path) -> None:
 
 @contextmanager
 def _listener(settings: Settings) -> Iterator[socket.socket]:
-    """The API's socket, taken before anything is started that a busy port would only have to stop again."""
+    """The API's socket. It is opened before anything is started, since a busy port would end it all again."""
     address = settings.bind_address
     family = socket.AF_INET6 if isinstance(address, IPv6Address) else socket.AF_INET
     try:
@@ -183,6 +183,6 @@ def _listener(settings: Settings) -> Iterator[socket.socket]:
 
 
 def _stop(_number: int, _frame: FrameType | None) -> None:
-    """SIGTERM is the ordinary end: leave every block in order, on the way up as well as in service."""
+    """Handle SIGTERM, the ordinary end: leave every block in order, also during the start."""
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     raise SystemExit(0)

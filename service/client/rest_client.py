@@ -1,4 +1,4 @@
-"""The service's own REST API, from outside: what the command line and the demo use."""
+"""A client of the service's REST API, for the command line and the demo."""
 
 from collections.abc import Iterator, Mapping
 from http import HTTPStatus
@@ -23,7 +23,7 @@ class ServiceError(RuntimeError):
 
 
 class ServiceClient:
-    """Speaks to one service. Documents come back as JSON objects; every failure is a ServiceError."""
+    """A client of one service. It returns documents as JSON objects; every failure is a ServiceError."""
 
     def __init__(self, url: str) -> None:
         self._url = url
@@ -78,7 +78,7 @@ class ServiceClient:
         return _document(self._request("POST", path, {}, headers))
 
     def release(self, ied: str) -> None:
-        """Have a relay visited again that was set aside. Raises ServiceError."""
+        """End the quarantine of a relay. Raises ServiceError."""
         self._request("DELETE", f"{API}/ieds/{segment(ied)}/quarantine", {})
 
     def event_report(self, report_id: str) -> Document:

@@ -1,4 +1,4 @@
-"""Verdicts, fault levels and times in words, the same wherever a person reads them."""
+"""Verdicts, fault levels and times as text for people, the same in every command."""
 
 from rich.text import Text
 
@@ -21,5 +21,5 @@ def level(mu_f: object, ci95: object) -> str:
 
 
 def to_the_second(time: object) -> str:
-    """An RFC 3339 time of the API, whose fractions nobody reads: "2026-01-31 12:00:00 UTC"."""
+    """An RFC 3339 time of the API, without the fractions of a second: "2026-01-31 12:00:00 UTC"."""
     return f"{str(time)[:19].replace('T', ' ')} UTC"

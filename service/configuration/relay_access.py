@@ -1,7 +1,7 @@
-"""What the service shows a relay that does not speak with everybody: certificates, a password.
+"""The credentials that the service shows to a relay: certificates, a password.
 
-Settings hold paths only. Secrets are read where they are used, at each connect, from files that are their
-owner's alone or from the environment; so nothing that prints or hands on settings can tell them.
+Settings hold paths only. Secrets are read at each connect, from files that only their owner can read or from
+the environment. So nothing that prints settings or hands them on can reveal a secret.
 """
 
 import os
@@ -25,7 +25,7 @@ _VERSIONS: Final = {"1.2": TlsVersion.TLS_1_2, "1.3": TlsVersion.TLS_1_3}
 
 
 class RelayTls(BaseModel):
-    """Files of TLS with one relay, PEM or DER; `port` where the SCD's is not the one that speaks TLS."""
+    """Files for TLS with one relay (PEM or DER). port: for TLS, where it is not the port of the SCD."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -56,24 +56,24 @@ class RelayAccess(BaseModel):
 
 
 class AccessError(ValueError):
-    """A password in the environment cannot be used; the message does not show it."""
+    """A password in the environment cannot be used. The message does not show it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Credentials:
-    """For one connect."""
+    """What is shown to a relay in one connect."""
 
     tls: TlsConfiguration | None
     password: SecretStr | None
 
     @property
     def spoken_password(self) -> str | None:
-        """As it is. Hand it on at once, keep it nowhere."""
+        """The password in clear. Hand it on at once and keep it nowhere."""
         return None if self.password is None else self.password.get_secret_value()
 
 
 def credentials(relays: Mapping[str, RelayAccess], name: str) -> Credentials:
-    """What the settings and the environment say of the relay `name`; nothing for one they do not name.
+    """Return what the settings and the environment have for the relay `name`; nothing if they do not name it.
 
     Raises CredentialFileError, AccessError.
     """
@@ -84,7 +84,7 @@ def credentials(relays: Mapping[str, RelayAccess], name: str) -> Credentials:
 
 
 def clear_passwords(relays: Mapping[str, RelayAccess], names: Iterable[str]) -> tuple[str, ...]:
-    """The relays whose password anybody on the way can read: it is sent without TLS."""
+    """Return the relays whose password is sent without TLS, so that others on the network can read it."""
     found = []
     for name in names:
         access = relays.get(name, RelayAccess())
@@ -95,7 +95,7 @@ def clear_passwords(relays: Mapping[str, RelayAccess], names: Iterable[str]) -> 
 
 
 def named_in_environment() -> tuple[str, ...]:
-    """The relays whose password the environment holds."""
+    """Return the relays whose password is in the environment."""
     return tuple(
         variable.removeprefix(PASSWORD_VARIABLE)
         for variable in os.environ

@@ -25,7 +25,7 @@ RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
 
 
 class SettingsError(ValueError):
-    """A setting cannot be used: which one, where it came from, what was expected and what was found."""
+    """A setting cannot be used; it says which one, from where, what was expected and what was found."""
 
     def __init__(self, source: str, field: str, *, expected: str, found: str) -> None:
         self.source = source
@@ -36,7 +36,7 @@ class SettingsError(ValueError):
 
 
 def sqlite_url(data_directory: Path) -> str:
-    """SQLAlchemy URL of the SQLite file in a data directory."""
+    """Return the SQLAlchemy URL of the SQLite file in a data directory."""
     return f"sqlite:///{data_directory / 'statorwatch.sqlite'}"
 
 
@@ -83,9 +83,9 @@ class Settings(BaseSettings):
 
     @classmethod
     def load(cls, config: Path | None = None, options: Mapping[str, object] | None = None) -> Self:
-        """Settings from a TOML file (may be None), the environment and `options` of the command line.
+        """Read a TOML file (may be None), the environment and `options` of the command line.
 
-        Relative paths in the file are meant from the file's own folder. Options that are None were not given.
+        Relative paths in the file start at the file's own folder. Options that are None were not given.
         Raises SettingsError.
         """
         table = {} if config is None else _read_table(config)
@@ -124,7 +124,7 @@ def _read_table(config: Path) -> dict[str, object]:
 
 
 def _anchored(table: object, folder: Path) -> object:
-    """A relay's table, with its relative paths meant from `folder`."""
+    """A relay's table, with relative paths that start at `folder`."""
     if not isinstance(table, dict):
         return table
     return {

@@ -1,6 +1,6 @@
-"""The plant as the service sees it: sites, relays with their references, motors with their parameters."""
+"""The plant as the service sees it: sites, relays with what they offer, motors with their parameters."""
 
-from service.plant.acquisition import Acquisition, offered, promised
+from service.plant.acquisition import Acquisition, acquisition_from_offer, acquisition_from_scl
 from service.plant.differences import Difference, differences
 from service.plant.errors import PlantError
 from service.plant.files import read_plant
@@ -27,8 +27,8 @@ __all__ = [
     "Schedule",
     "Site",
     "TriggerAction",
+    "acquisition_from_offer",
+    "acquisition_from_scl",
     "differences",
-    "offered",
-    "promised",
     "read_plant",
 ]

@@ -1,13 +1,14 @@
-"""How recordings are had of one relay: what of it the service uses, and where that is not as promised.
+"""How recordings are acquired from a relay: what the service uses, and where that differs from its SCL.
 
-What somebody overrode comes first, then what the relay offers, then (where it could not be asked) its SCL.
+An entry of the motors file comes first. Then comes what the relay itself offers, or what its SCL says where
+the relay could not be asked.
 """
 
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from service.plant.metering import Measurand, measurands_offered
+from service.plant.metering import Measurand, measurands_from_offer
 from service.plant.model import Relay
 from service.plant.offer import Offer
 from service.plant.overrides import NONE, TriggerAction
@@ -18,7 +19,7 @@ _REMOTE_BITS = re.compile(r"/RBGGIO\d+\.SPCSO\d+$")
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """Something the service uses that the relay has otherwise than promised, and what is done about it.
+    """Something the service uses that differs from the relay's SCL, and what is done about it.
 
     subject: "trigger", "record-made", "reports", "metering".
     """
@@ -29,11 +30,13 @@ class Deviation:
 
 @dataclass(frozen=True, slots=True)
 class Acquisition:
-    """What is used of one relay, None or empty where it has none.
+    """What is used of one relay; None or empty where the relay lacks it.
 
-    trigger: the control that makes a record; no_trigger: why there is none.  record_made, record_number:
-    status of its recorder.  report_controls: blocks that tell of a record, the best first.
-    asked: whether the relay itself was asked, or its SCL taken at its word.
+    trigger: the control that makes a record.
+    no_trigger: why there is none.
+    record_made, record_number: status of its recorder.
+    report_controls: report control blocks that announce a record, the best one first.
+    asked: whether the relay itself was asked; otherwise this is what its SCL says.
     """
 
     trigger: str | None
@@ -47,8 +50,8 @@ class Acquisition:
     deviations: tuple[Deviation, ...] = ()
 
 
-def promised(relay: Relay) -> Acquisition:
-    """What the SCL says, taken at its word."""
+def acquisition_from_scl(relay: Relay) -> Acquisition:
+    """Return what the relay offers by its SCL alone."""
     overrides = relay.overrides
     return Acquisition(
         trigger=_chosen(overrides.trigger, relay.trigger_control),
@@ -62,8 +65,8 @@ def promised(relay: Relay) -> Acquisition:
     )
 
 
-def offered(relay: Relay, offer: Offer, is_control: Callable[[str], bool]) -> Acquisition:
-    """What the relay itself offers. is_control: whether one of its data objects can be operated."""
+def acquisition_from_offer(relay: Relay, offer: Offer, is_control: Callable[[str], bool]) -> Acquisition:
+    """Return what the relay itself offers. is_control: whether one of its data objects can be operated."""
     overrides = relay.overrides
     promises = [
         relay.trigger_control,
@@ -74,7 +77,7 @@ def offered(relay: Relay, offer: Offer, is_control: Callable[[str], bool]) -> Ac
     ]
     points = recognise_offer(offer, is_control, [promise for promise in promises if promise is not None])
     trigger = _chosen(overrides.trigger, points.trigger)
-    measurands = measurands_offered(offer, relay.measurands)
+    measurands = measurands_from_offer(offer, relay.measurands)
     deviations = (
         _deviation("trigger", relay.trigger_control, points.trigger, "it cannot be asked for a record")
         if overrides.trigger is None
@@ -99,7 +102,7 @@ def offered(relay: Relay, offer: Offer, is_control: Callable[[str], bool]) -> Ac
 
 
 def _promised_reports(relay: Relay) -> tuple[str, ...]:
-    """The one its SCL promises, then the others that tell of a record too."""
+    """The report control of its SCL, then the others that announce a record too."""
     first = () if relay.report_control is None else (relay.report_control,)
     if relay.expected is None or relay.record_made is None:
         return first

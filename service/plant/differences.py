@@ -1,4 +1,4 @@
-"""Where a relay is not what its SCL says: names that are missing, that nobody expected, or that changed."""
+"""Where a relay differs from its SCL: names that are missing, unexpected or changed."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from itertools import islice
 from service.plant.offer import Offer, ReportBlock, node_class
 
 MOST_DIFFERENCES = 200
-"""A relay of quite another kind differs in everything; whoever reads it has understood by then."""
+"""Enough to see that a relay is of quite another kind."""
 
 LONGEST = 300
 
@@ -25,8 +25,11 @@ class DifferenceKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """expected: what the SCL says, None where it has no such thing.  found: what the relay offers, None where
-    it lacks it."""
+    """One difference.
+
+    expected: what the SCL says; None where it has no such thing.
+    found: what the relay offers; None where it lacks it.
+    """
 
     kind: DifferenceKind
     expected: str | None
@@ -34,7 +37,7 @@ class Difference:
 
 
 def differences(expected: Offer, found: Offer) -> tuple[Difference, ...]:
-    """At most MOST_DIFFERENCES. A renamed logical device is one difference, not one for all that is in it."""
+    """Return at most MOST_DIFFERENCES. A renamed logical device counts once, with all that is in it."""
     return tuple(islice(_differences(expected, found), MOST_DIFFERENCES))
 
 
@@ -67,9 +70,9 @@ def _differences(expected: Offer, found: Offer) -> Iterator[Difference]:
 
 
 def _namesakes(expected: Offer, found: Offer) -> dict[str, str]:
-    """The relay's name of each logical device the SCL has; devices the relay lacks are left out.
+    """The relay's name of each logical device of the SCL; devices that the relay lacks are left out.
 
-    By their name; then by what the names of all devices of an IED end in (its inst); then by their nodes.
+    Devices are matched by name, then by the end of the name (its inst), then by their logical nodes.
     """
     names = {device: device for device in expected.devices if device in found.devices}
     unmatched = [device for device in found.devices if device not in names]
@@ -86,7 +89,7 @@ def _namesakes(expected: Offer, found: Offer) -> dict[str, str]:
 
 
 def _common_ending(one: str, other: str) -> int:
-    """Length of what two names end in, 0 below three characters: every inst is longer."""
+    """Length of the common end of two names; 0 below three characters, since every inst is longer."""
     length = 0
     while length < min(len(one), len(other)) and one[-1 - length] == other[-1 - length]:
         length += 1
@@ -94,7 +97,7 @@ def _common_ending(one: str, other: str) -> int:
 
 
 def _renamed(offer: Offer, names: Mapping[str, str]) -> Offer:
-    """What the SCL says in the relay's own names, without the devices that the relay lacks."""
+    """The offer of the SCL with the relay's own names, without the devices that the relay lacks."""
 
     def named(reference: str) -> str:
         device, slash, rest = reference.partition("/")

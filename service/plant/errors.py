@@ -1,10 +1,10 @@
-"""What the plant's files got wrong, and where."""
+"""Errors in the plant's files."""
 
 from pathlib import Path
 
 
 class PlantError(ValueError):
-    """The plant's files do not make a plant: which file, which field, what was expected and found."""
+    """The plant's files cannot be used; it says which file and field, and what was expected and found."""
 
     def __init__(self, path: Path, field: str, *, expected: str, found: str) -> None:
         self.path = path

@@ -1,7 +1,7 @@
-"""Makes the plant of its two files.
+"""Reads the plant from its two files.
 
-The SCD says which relay protects which motor, where it answers and what it offers; the motors file gives
-nameplate and equivalent circuit of each motor. Both must name the same motors.
+The SCD says which relay protects which motor, at which address, and what it offers. The motors file gives the
+nameplate and the equivalent circuit of each motor. Both must name the same motors.
 """
 
 import tomllib
@@ -15,16 +15,16 @@ from core.machines.parameters import Motor
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
 from service.configuration.settings import Settings, SettingsError
 from service.plant.errors import PlantError
-from service.plant.metering import measurands
+from service.plant.metering import measurands_from_scl
 from service.plant.model import Plant, PlantMotor, Relay, Site
-from service.plant.offer import promised_by
+from service.plant.offer import offer_from_scl
 from service.plant.overrides import OverrideError, Overrides, overrides_from_table
 from service.plant.recognition import recognise
 from service.plant.schedule import Schedule
 
 
 def read_plant(settings: Settings) -> Plant:
-    """The plant of the settings' two files. Raises PlantError, or SettingsError where one is not set."""
+    """Read the two files that the settings name. Raises PlantError, or SettingsError where one is not set."""
     plant = plant_of_files(
         _given(settings.scd, "scd", "the path of the plant's SCD file"),
         _given(settings.motors, "motors", "the path of the plant's motors file (TOML)"),
@@ -40,15 +40,17 @@ def read_plant(settings: Settings) -> Plant:
 
 
 def _at_its_port(relay: Relay, access: Mapping[str, RelayAccess]) -> Relay:
-    """The relay at its port for TLS, where the settings name one."""
+    """The relay, at its port for TLS if the settings give one."""
     tls = access.get(relay.name, RelayAccess()).tls
     return relay if tls is None or tls.port is None else replace(relay, port=tls.port)
 
 
 def plant_of_files(scd_path: Path, motors_path: Path, subnetwork: str | None = None) -> Plant:
-    """The plant, its relays at the addresses they have on the subnetwork, where one is given.
+    """Read the plant.
 
-    Raises PlantError: which file, which field, what was expected and what was found.
+    subnetwork: relays get the addresses that they have on it; their first address if None.
+
+    Raises PlantError.
     """
     try:
         configuration = scl.read(scd_path)
@@ -78,7 +80,7 @@ class _Entry:
 
 
 def _motors(path: Path) -> dict[str, _Entry]:
-    """What the motors file says, by the motors' names."""
+    """What the motors file says of each motor, by its name."""
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
@@ -189,7 +191,7 @@ def _one_relay_an_address(configuration: scl.Scl, relays: Iterable[str]) -> None
 
 
 def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder, overrides: Overrides) -> Relay:
-    """What the relay's model promises, and what the motors file says of it."""
+    """The relay with what its SCL offers and what the motors file says of it."""
     ied = configuration.ied(feeder.ied)
     address = configuration.address(feeder.ied)
     points = recognise(ied)
@@ -205,7 +207,7 @@ def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder, overrides: Overrides
         fault_number=points.record_number,
         report_control=points.report_control,
         metering_data_set=points.metering_data_set,
-        measurands=measurands(ied),
-        expected=promised_by(ied),
+        measurands=measurands_from_scl(ied),
+        expected=offer_from_scl(ied),
         overrides=overrides,
     )

@@ -1,4 +1,4 @@
-"""What a relay measures all the time, found in its own data model: logical nodes MMXU and MSTA."""
+"""Finds what a relay measures all the time in its data model: logical nodes MMXU and MSTA."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -13,10 +13,11 @@ _VALUES = ("cVal.mag.f", "mag.f")
 
 @dataclass(frozen=True, slots=True)
 class Measurand:
-    """Where a relay tells a quantity.
+    """Where a relay has a quantity.
 
-    reference: of the value (functional constraint MX).  multiplier: of the power of ten it is given in (CF),
-    None where the model has none and the value is in plain units.
+    reference: of the value (functional constraint MX).
+    multiplier: reference of the power of ten that the value is given in (CF); None where the model has none
+    and the value is in plain units.
     """
 
     quantity: MeteredQuantity
@@ -25,22 +26,22 @@ class Measurand:
 
     @property
     def stamp(self) -> str:
-        """Reference of the relay's time of its latest change (IEC 61850-7-3, `t`; MX)."""
+        """Reference of the time stamp of its latest change (IEC 61850-7-3, `t`; MX)."""
         value = next(each for each in _VALUES if self.reference.endswith(f".{each}"))
         return f"{self.reference.removesuffix(value)}t"
 
 
-def measurands(ied: Ied) -> tuple[Measurand, ...]:
-    """Each quantity once: as the first MMXU or MSTA that has it tells it."""
+def measurands_from_scl(ied: Ied) -> tuple[Measurand, ...]:
+    """Return each quantity once, from the first MMXU or MSTA that has it."""
     return tuple(
         found for quantity in MeteredQuantity if (found := _first(_places(ied, quantity))) is not None
     )
 
 
-def measurands_offered(offer: Offer, expected: Iterable[Measurand]) -> tuple[Measurand, ...]:
-    """Each quantity once: where the SCL expects it if that is offered, else where the standard has it.
+def measurands_from_offer(offer: Offer, expected: Iterable[Measurand]) -> tuple[Measurand, ...]:
+    """Return each quantity once: where the SCL has it if that is offered, else where the standard has it.
 
-    Attributes are not looked up: who samples finds out whether they are there.
+    Attributes are not looked up here. Sampling shows whether they exist.
     """
     known = {each.quantity: each for each in expected if offer.has(each.reference)}
     found = (known.get(quantity) or _standard(offer, quantity) for quantity in MeteredQuantity)

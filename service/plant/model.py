@@ -17,7 +17,7 @@ class Site:
 
 @dataclass(frozen=True, slots=True)
 class Relay:
-    """A motor relay: where it answers, and what its SCL promises of the references the service uses.
+    """A motor relay: its address, and the references of its SCL that the service uses.
 
     trigger_control: control whose operation makes an event recording, "A1_SEL710CON/RBGGIO1.SPCSO01", None
     where there is none.
@@ -26,8 +26,8 @@ class Relay:
     where there is none.
     metering_data_set: data set with the measured currents, None where the relay offers none.
     measurands: what it measures all the time.
-    expected: all that the SCL promises, to be compared with what the relay offers.
-    overrides: what somebody has decided against all recognition.
+    expected: all that the SCL describes, for comparison with what the relay offers.
+    overrides: what the motors file says instead of what would be recognised.
     """
 
     name: str
@@ -48,9 +48,11 @@ class Relay:
 
 @dataclass(frozen=True, slots=True)
 class PlantMotor:
-    """A motor where it stands: `motor` is what the diagnosis needs, `relay` the name of its relay.
+    """A motor at its place in the plant.
 
-    schedule: when it is recorded without anybody asking.
+    motor: its data for the diagnosis.
+    relay: name of the relay that protects it.
+    schedule: when it is recorded regularly; None where it is not.
     """
 
     motor: Motor
@@ -71,13 +73,13 @@ class Plant:
     motors: tuple[PlantMotor, ...]
 
     def motor(self, name: str) -> PlantMotor:
-        """Raises KeyError for a motor the plant does not have."""
+        """Return a motor by its name. Raises KeyError."""
         return {motor.name: motor for motor in self.motors}[name]
 
     def relay(self, name: str) -> Relay:
-        """Raises KeyError for a relay the plant does not have."""
+        """Return a relay by its name. Raises KeyError."""
         return {relay.name: relay for relay in self.relays}[name]
 
     def motor_of(self, relay: str) -> PlantMotor:
-        """The motor a relay protects. Raises KeyError for a relay the plant does not have."""
+        """Return the motor that a relay protects. Raises KeyError."""
         return {motor.relay: motor for motor in self.motors}[relay]

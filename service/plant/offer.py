@@ -1,6 +1,6 @@
-"""What a relay offers to its clients, by names: as its SCL promises it, or as the relay itself tells.
+"""The names a relay offers to its clients, from its SCL or from the relay itself.
 
-Both take the same form here, so one recognition serves both and they can be compared.
+Both have the same form here, so that the same rules apply to both and they can be compared.
 """
 
 import re
@@ -26,7 +26,7 @@ class ReportBlock:
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """Names a relay offers.
+    """The names that a relay offers.
 
     nodes: data objects of each logical node "LD/LN".  data_sets: members "LD/LN.DO.DA[FC]" of each data set
     "LD/LN.name".  report_blocks: in the order they are offered.
@@ -69,8 +69,8 @@ def node_class(name: str) -> str | None:
     return None if found is None else found[1]
 
 
-def promised_by(ied: Ied) -> Offer:
-    """What an SCL file says a relay offers."""
+def offer_from_scl(ied: Ied) -> Offer:
+    """Return what a relay offers according to its SCL."""
     return Offer(
         nodes={
             node.reference: tuple(data_object.name for data_object in node.data_objects)

@@ -1,11 +1,11 @@
-"""What the motors file decides about a relay against all recognition: the table [motor.relay]."""
+"""The table [motor.relay] of the motors file, which overrides what is recognised in a relay."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
 NONE = "none"
-"""Written in the place of a reference: not to be used, whatever the relay offers."""
+"""In place of a reference: use none, whatever the relay offers."""
 
 _REFERENCES = {
     "trigger": 'a control such as "A1_SEL710CON/RBGGIO1.SPCSO01", or "none"',
@@ -17,7 +17,8 @@ _LONGEST = 200
 class TriggerAction(StrEnum):
     """How a trigger is operated.
 
-    SET_RESET: true, and false after a moment (a remote bit).  PULSE: true alone; it falls by itself.
+    SET_RESET: to true, and to false a moment later (a remote bit).
+    PULSE: to true alone; it goes back by itself.
     """
 
     SET_RESET = "set-reset"
@@ -26,7 +27,7 @@ class TriggerAction(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
-    """None: as recognised. `NONE` in the place of a reference: none is used."""
+    """What to use of a relay. None: what is recognised; `NONE` in place of a reference: nothing."""
 
     trigger: str | None = None
     trigger_action: TriggerAction | None = None
@@ -38,7 +39,7 @@ AS_RECOGNISED = Overrides()
 
 
 class OverrideError(ValueError):
-    """A key of the table cannot be used: which, what was expected and what was found."""
+    """A key of the table cannot be used; it says which one, what was expected and what was found."""
 
     def __init__(self, field: str, *, expected: str, found: str) -> None:
         super().__init__(f"{field}: expected {expected}, found {found}")
@@ -48,7 +49,7 @@ class OverrideError(ValueError):
 
 
 def overrides_from_table(table: object) -> Overrides:
-    """Raises OverrideError for an unknown key or a value that cannot be one."""
+    """Read the table. Raises OverrideError for an unknown key or a value that cannot be used."""
     if not isinstance(table, Mapping):
         raise OverrideError("relay", expected="a table", found=repr(table))
     given = dict(table)

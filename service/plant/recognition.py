@@ -1,19 +1,19 @@
-"""What the service recognises in a relay's model: how to trigger it, and what tells of its records.
+"""Recognises in a relay's model how the relay is triggered and how it announces its records.
 
-The same rules read an SCL file and what a relay itself offers.
+The same rules serve for an SCL file and for what a relay itself offers.
 """
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from scl.ied_model import Ied
-from service.plant.offer import Offer, promised_by
+from service.plant.offer import Offer, offer_from_scl
 
 REMOTE_BIT = "RBGGIO1.SPCSO01"
 """Remote bit RB01 of the SEL-700 family, which the relay's event report trigger equation (ER) listens to."""
 
 RECORD_TRIGGER = "RcdTrg"
-"""Of an RDRE (IEC 61850-7-4): falls by itself."""
+"""Data object of an RDRE (IEC 61850-7-4) that goes back by itself."""
 
 NO_TRIGGER = (
     "no control that makes a record (remote bit RB01, or RcdTrg of an RDRE): "
@@ -26,11 +26,14 @@ NO_CURRENTS = "no data set with the currents of an MMXU"
 
 @dataclass(frozen=True, slots=True)
 class RecognisedPoints:
-    """References of the points, None for those the model lacks; `missing` says in words what that means.
+    """References of the points, None for those that the model lacks.
 
-    trigger: a control that has the relay record an event.  record_made, record_number: status of its
-    recorder.  report_controls: reports whose data set holds record_made, buffered ones first.
-    report_control: the first buffered one.  metering_data_set: one that holds the currents.
+    trigger: a control that makes the relay record an event.
+    record_made, record_number: status of its recorder.
+    report_controls: reports whose data set holds record_made, buffered ones first.
+    report_control: the first buffered one.
+    metering_data_set: a data set that holds the currents.
+    missing: what the model lacks, and what follows from that, in words.
     """
 
     trigger: str | None
@@ -55,26 +58,27 @@ class RecognisedPoints:
 
 
 def recognise(ied: Ied) -> RecognisedPoints:
-    """The points of one relay, from its SCL."""
+    """Return the points of one relay, from its SCL."""
     controls = {placed.reference for placed in ied.data_objects(common_data_class="SPC")}
-    return recognise_offer(promised_by(ied), controls.__contains__)
+    return recognise_offer(offer_from_scl(ied), controls.__contains__)
 
 
 def recognise_offer(
     offer: Offer, is_control: Callable[[str], bool], expected: Sequence[str] = ()
 ) -> RecognisedPoints:
-    """The points among what is offered.
+    """Return the points among what is offered.
 
-    is_control: whether a data object can be operated, asked of few.  expected: references to be preferred
-    where there is a choice, or others of the same node and object where the logical device has another name.
+    is_control: whether a data object can be operated. It is called for a few candidates only.
+    expected: references to prefer where there is a choice, or their namesakes in a logical device of another
+    name.
     """
 
     def order(references: Iterable[str]) -> list[str]:
-        return sorted(references, key=lambda found: _strangeness(found, expected))
+        return sorted(references, key=lambda found: _rank(found, expected))
 
     bits = order(f"{node}.SPCSO01" for node in offer.nodes if node.endswith("/RBGGIO1"))
     triggers = [*filter(offer.has, bits), *order(offer.objects("RDRE", RECORD_TRIGGER))]
-    triggers.sort(key=lambda found: _strangeness(found, expected))
+    triggers.sort(key=lambda found: _rank(found, expected))
     record_made = next(iter(order(offer.objects("RDRE", "RcdMade"))), None)
     recorder = "" if record_made is None else record_made.partition(".")[0]
     numbers = order(offer.objects("RDRE", "FltNum"))
@@ -91,7 +95,7 @@ def recognise_offer(
 def _reports(offer: Offer, record_made: str, expected: Sequence[str]) -> list[str]:
     telling = set(offer.data_sets_covering(record_made))
     blocks = [block for block in offer.report_blocks if block.data_set in telling]
-    blocks.sort(key=lambda block: (not block.buffered, _strangeness(block.reference, expected)))
+    blocks.sort(key=lambda block: (not block.buffered, _rank(block.reference, expected)))
     return [block.reference for block in blocks]
 
 
@@ -99,12 +103,12 @@ def _metering_data_set(offer: Offer, expected: Sequence[str]) -> str | None:
     currents = next(iter(offer.objects("MMXU", "A")), None)
     if currents is None:
         return None
-    found = sorted(offer.data_sets_covering(currents), key=lambda data_set: _strangeness(data_set, expected))
+    found = sorted(offer.data_sets_covering(currents), key=lambda data_set: _rank(data_set, expected))
     return next(iter(found), None)
 
 
-def _strangeness(reference: str, expected: Sequence[str]) -> int:
-    """The place of what is expected; more for its namesake in another logical device, most for all else."""
+def _rank(reference: str, expected: Sequence[str]) -> int:
+    """The sort key of a reference: expected ones first, then their namesakes in other logical devices."""
     if reference in expected:
         return expected.index(reference)
     tails = {known.partition("/")[2] for known in expected}

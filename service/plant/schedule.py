@@ -1,4 +1,4 @@
-"""When a motor is to be recorded without anybody asking: a cron expression, in UTC."""
+"""When a motor is recorded regularly: a cron expression, in UTC."""
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -19,7 +19,7 @@ class Schedule:
 
     @classmethod
     def parse(cls, expression: str) -> Self:
-        """Raises ValueError: what was expected."""
+        """Read a cron expression. Raises ValueError with what was expected."""
         words = expression.split()
         if len(words) != FIELDS:
             raise ValueError(f"{FIELDS} fields (minute, hour, day of the month, month, day of the week)")
@@ -33,6 +33,6 @@ class Schedule:
         return schedule
 
     def next_after(self, time_ns: int) -> int:
-        """The first time later than `time_ns` [ns UTC]."""
+        """Return the first time later than `time_ns` [ns UTC]."""
         after = datetime.fromtimestamp(time_ns // NANOSECONDS_PER_SECOND, UTC)
         return int(next(CronSim(self.expression, after)).timestamp()) * NANOSECONDS_PER_SECOND

@@ -1,4 +1,4 @@
-"""The name of an installation of the service: one for each data directory, for ever."""
+"""The identifier of an installation of the service, one for each data directory."""
 
 import uuid
 from contextlib import suppress
@@ -8,14 +8,14 @@ FILE = "installation"
 
 
 def installation_id(data_directory: Path) -> str:
-    """Read, or chosen the first time. Raises OSError where nothing can be kept then."""
+    """Return the identifier, made at the first call. Raises OSError where it cannot be written then."""
     path = data_directory / FILE
     if not path.exists():
         chosen = path.with_name(f"{FILE}.{uuid.uuid4().hex}")
         try:
             chosen.write_text(f"{uuid.uuid4()}\n", encoding="ascii")
             with suppress(FileExistsError):
-                path.hardlink_to(chosen)  # appears whole, and only for the first who tries
+                path.hardlink_to(chosen)  # complete, and for the first process only
         finally:
             chosen.unlink(missing_ok=True)
     return path.read_text(encoding="ascii").strip()

@@ -1,4 +1,4 @@
-"""Logs of the service's processes: one event a line on stderr, JSON unless a person is watching."""
+"""Logs of the service's processes: one event per line on stderr, as JSON unless stderr is a terminal."""
 
 import logging
 import sys
@@ -7,11 +7,11 @@ import structlog
 from structlog.typing import Processor
 
 QUIET = ("alembic", "httpx", "uvicorn.access")
-"""Libraries whose INFO is no news."""
+"""Libraries whose INFO messages are not logged."""
 
 
 def configure_logging(process: str) -> None:
-    """Send this process's events, and those of the libraries it uses, to stderr."""
+    """Send the events of this process and of the libraries it uses to stderr."""
 
     def name_process(
         _logger: object, _method: str, event: structlog.typing.EventDict

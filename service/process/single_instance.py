@@ -1,4 +1,4 @@
-"""One process at a time on one data directory."""
+"""A lock that lets one process at a time work on a data directory."""
 
 import fcntl
 import os
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 class AlreadyRunningError(RuntimeError):
-    """Another process works on the same data."""
+    """Another process works on the same data directory."""
 
     def __init__(self, path: Path, holder: str) -> None:
         self.path = path
@@ -20,9 +20,9 @@ class AlreadyRunningError(RuntimeError):
 
 @contextmanager
 def exclusive(path: Path, *, wait: bool) -> Iterator[None]:
-    """Hold the lock file `path` while the block runs; the system lets go of it when the process dies.
+    """Hold the lock file `path` while the block runs; the system releases it when the process dies.
 
-    Waits for the present holder, or raises AlreadyRunningError.
+    wait: wait for the process that holds it; otherwise AlreadyRunningError is raised.
     """
     with path.open("a+", encoding="ascii") as file:
         try:

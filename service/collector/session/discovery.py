@@ -14,7 +14,14 @@ from service.collector.records.event_folder import ROOT
 from service.collector.records.listing import RefusedFile
 from service.collector.session.browsing import browse, control_model
 from service.collector.session.relay_alarms import RelayAlarms
-from service.plant import Acquisition, Difference, Relay, differences, offered, promised
+from service.plant import (
+    Acquisition,
+    Difference,
+    Relay,
+    acquisition_from_offer,
+    acquisition_from_scl,
+    differences,
+)
 from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import AlarmKind
@@ -31,7 +38,7 @@ class Discovery:
         self._relay = relay
         self._repository = repository
         self._alarms = alarms
-        self._acquisition = promised(relay)
+        self._acquisition = acquisition_from_scl(relay)
         self._control_model: str | None = None
         self._differences: list[dict[str, object]] = []
         self._browsed_ns = 0
@@ -46,9 +53,9 @@ class Discovery:
         self._browsed_ns = time.time_ns()
         self._differences = []
         if offer is None:
-            self._acquisition = promised(self._relay)
+            self._acquisition = acquisition_from_scl(self._relay)
         else:
-            self._acquisition = offered(
+            self._acquisition = acquisition_from_offer(
                 self._relay, offer, lambda control: bool(control_model(client, control))
             )
             if self._relay.expected is not None:

@@ -29,7 +29,7 @@ from mms import (
 from service.collector.records.scan import Scan
 from service.collector.triggers.deadlines import RequestDeadlines
 from service.collector.triggers.unanswered import UnansweredRequests
-from service.plant import Acquisition, Relay, TriggerAction, promised
+from service.plant import Acquisition, Relay, TriggerAction, acquisition_from_scl
 from service.storage import Repository
 from service.storage.records import RecordingRequest
 from service.storage.states import IN_THE_RELAY, RecordingRequestState
@@ -70,7 +70,7 @@ class TriggerQueue:
         gateway: str | None = None,
     ) -> None:
         self._relay = relay
-        self._acquisition = promised(relay)
+        self._acquisition = acquisition_from_scl(relay)
         self._repository = repository
         self._clock = clock
         self._gateway = gateway

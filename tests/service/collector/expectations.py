@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 from scl.ied_model import Ied
-from service.plant.metering import measurands
-from service.plant.offer import promised_by
+from service.plant.metering import measurands_from_scl
+from service.plant.offer import offer_from_scl
 from service.plant.overrides import AS_RECOGNISED, Overrides
 from service.plant.recognition import recognise
 from testing.relays.simulated import Simulated
@@ -21,8 +21,8 @@ def expecting(bench: Bench, ied: Ied, overrides: Overrides = AS_RECOGNISED) -> B
         fault_number=points.record_number,
         report_control=points.report_control,
         metering_data_set=points.metering_data_set,
-        measurands=measurands(ied),
-        expected=promised_by(ied),
+        measurands=measurands_from_scl(ied),
+        expected=offer_from_scl(ied),
         overrides=overrides,
     )
     return replace(bench, relay=relay)

@@ -12,7 +12,7 @@ import scl
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError, Timestamp
 from service.collector.session.clock_monitor import ClockMonitor, clock_reading
-from service.plant.metering import measurands
+from service.plant.metering import measurands_from_scl
 from service.storage.states import ClockQuality, RecordingRequestState
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
@@ -127,7 +127,7 @@ def test_a_clock_is_read_though_nobody_triggers(bench: Bench, relay: ScriptedRel
 @pytest.fixture
 def monitor(bench: Bench) -> ClockMonitor:
     found = ClockMonitor(NAME, bench.repository)
-    found.begin(measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))
+    found.begin(measurands_from_scl(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))
     return found
 
 
@@ -162,7 +162,7 @@ def test_a_clock_is_not_read_all_the_time(bench: Bench, relay: ScriptedRelay, mo
         first = found[1]
         assert found == [None, first, first, first]
         assert first is not None
-        monitor.begin(measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))  # a new connection
+        monitor.begin(measurands_from_scl(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))  # a new connection
         for _ in range(2):
             stamps.change()
             monitor.measure_if_due(client)

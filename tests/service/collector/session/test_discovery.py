@@ -15,7 +15,7 @@ from scl import Address
 from scl.ied_model import Ied
 from service.collector.session.browsing import browse
 from service.plant import Overrides, TriggerAction, differences
-from service.plant.offer import node_class, promised_by
+from service.plant.offer import node_class, offer_from_scl
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState
 from testing.relays.simulated import IED, scenario_of, simulated
 from testing.waiting import eventually
@@ -61,7 +61,7 @@ def refusal(bench: Bench) -> str:
 @pytest.mark.parametrize("profile", ["sel-710-ed2", "sel-710-ed1", "rdre", "rdre-readonly", "files-none"])
 def test_a_relay_as_its_scl_says_differs_in_nothing(tmp_path: Path, profile: str) -> None:
     with simulated(tmp_path / "relays", scenario_of(profile)) as served, served.client() as client:
-        expected = promised_by(served.document.ied(IED))
+        expected = offer_from_scl(served.document.ied(IED))
         offer = browse(client, expected)
     assert offer is not None
     assert differences(expected, offer) == ()
@@ -262,7 +262,7 @@ def test_the_class_of_a_node_is_in_its_name(name: str, ln_class: str | None) -> 
 
 
 def test_a_device_of_quite_another_name_is_known_by_its_nodes() -> None:
-    expected = promised_by(scl_of("rdre"))
+    expected = offer_from_scl(scl_of("rdre"))
     other = replace(
         expected,
         nodes={node.replace("R1Mot1/", "QQ/"): names for node, names in expected.nodes.items()},

@@ -15,7 +15,7 @@ from service.collector.session.browsing import browse
 from service.collector.session.metering import Metering
 from service.collector.session.relay_session import RelaySession
 from service.plant import Measurand, MeteredQuantity, Relay
-from service.plant.metering import measurands, measurands_offered
+from service.plant.metering import measurands_from_offer, measurands_from_scl
 from service.storage.records import Sample
 from testing.waiting import eventually
 from tests.service.collector.conftest import MOTOR, Bench
@@ -32,11 +32,13 @@ def metered(bench: Bench, relay: ScriptedRelay) -> Relay:
     relay.server.update_many(
         {f"{MMXU}.A.phsA.cVal.mag.f": CURRENT_A, f"{MMXU}.Hz.mag.f": FREQUENCY_HZ},
     )
-    return replace(bench.relay, measurands=measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))
+    return replace(bench.relay, measurands=measurands_from_scl(scl.read(scl.DEMO_PLANT_SCD).ied(NAME)))
 
 
 def test_the_model_says_what_a_relay_measures() -> None:
-    found = {each.quantity: each.reference for each in measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME))}
+    found = {
+        each.quantity: each.reference for each in measurands_from_scl(scl.read(scl.DEMO_PLANT_SCD).ied(NAME))
+    }
     assert found[MeteredQuantity.IA] == f"{MMXU}.A.phsA.cVal.mag.f"
     assert found[MeteredQuantity.FREQUENCY] == f"{MMXU}.Hz.mag.f"
     assert {quantity.value for quantity in found} >= {
@@ -161,7 +163,7 @@ def test_statistics_are_sampled_where_the_relay_has_them(tmp_path: Path, bench: 
     document = scl.read(path)
     msta = f"{NAME}MET/METMSTA1"
     statistics = {"average_current_A": 5.5, "maximum_power_W": 810.0, "maximum_ib_A": 11.5}
-    promised = {each for each in measurands(document.ied(NAME)) if each.quantity.is_statistic}
+    promised = {each for each in measurands_from_scl(document.ied(NAME)) if each.quantity.is_statistic}
     assert {each.quantity for each in promised} == {*statistics, "maximum_ia_A", "maximum_ic_A"}
     server = Server(model_text(document, NAME), port=bench.relay.port)
     server.start()
@@ -177,7 +179,7 @@ def test_statistics_are_sampled_where_the_relay_has_them(tmp_path: Path, bench: 
         with Client.connect("127.0.0.1", bench.relay.port) as client:
             offer = browse(client, None)
             assert offer is not None
-            found = measurands_offered(offer, ())
+            found = measurands_from_offer(offer, ())
             assert promised <= set(found)
             metering = Metering(bench.relay, MOTOR, period_s=60, on_sample=samples.append)
             metering.begin(found)

@@ -5,7 +5,7 @@ from threading import Thread
 
 import scl
 from service.collector.session.relay_session import RelaySession
-from service.plant.metering import measurands
+from service.plant.metering import measurands_from_scl
 from service.storage.records import Sample
 from service.storage.states import LinkState, RecordingRequestState
 from testing.waiting import eventually
@@ -27,7 +27,7 @@ def test_a_relay_has_one_request_at_a_time(bench: Bench, relay: ScriptedRelay) -
     settings = bench.settings.model_copy(update={"metering_period_s": 0.1, "record_timeout_s": 15.0})
     with outstanding.before(relay.port) as port:
         metered = replace(
-            bench.relay, port=port, measurands=measurands(scl.read(scl.DEMO_PLANT_SCD).ied(NAME))
+            bench.relay, port=port, measurands=measurands_from_scl(scl.read(scl.DEMO_PLANT_SCD).ied(NAME))
         )
         session = RelaySession(
             metered, MOTOR, bench.repository, bench.store, settings, on_sample=samples.append

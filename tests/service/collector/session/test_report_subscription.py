@@ -15,7 +15,7 @@ from service.collector.records.allowance import DailyAllowance
 from service.collector.session.link import Link
 from service.collector.session.report_subscription import ReportQueue, ReportSubscription
 from service.collector.session.session_policy import SessionPolicy
-from service.plant import promised
+from service.plant import acquisition_from_scl
 from service.storage.states import LinkState
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
@@ -129,7 +129,7 @@ def test_an_overflow_is_told_where_it_means_one(bench: Bench, relay: ScriptedRel
             relay.write_record("HR_1")
             assert eventually(lambda: bench.repository.entry_id(NAME) is not None)
     with Client.connect("127.0.0.1", relay.port) as client, capture_logs() as logs:
-        subscription.begin(client, ReportQueue(Event()), promised(bench.relay))
+        subscription.begin(client, ReportQueue(Event()), acquisition_from_scl(bench.relay))
         subscription.handle(report)
         assert [entry["event"] for entry in logs].count(OVERFLOWED) == int(resumed)
         subscription.handle(report)
