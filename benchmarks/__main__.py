@@ -6,7 +6,7 @@ from benchmarks.machine_models import speed as machine_models
 from benchmarks.optimisers import many_points
 from benchmarks.recordings import reading_speed
 from benchmarks.simulator import plant
-from mms.binding.stderr_filter import filter_tls_log_from_stderr
+from mms import filter_tls_log_from_stderr
 
 SUBJECTS = (machine_models, diagnosis, many_points, reading_speed, plant, pull_speed)
 

@@ -19,7 +19,7 @@ from ied_sim.profiles.standalone import IED_NAME, standalone
 from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.scenario.scenario import healthy_reference, read_scenario
 from ied_sim.simulator import Simulator
-from mms.binding.stderr_filter import filter_tls_log_from_stderr
+from mms import filter_tls_log_from_stderr
 from scl import Address
 
 app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})

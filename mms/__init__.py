@@ -5,6 +5,7 @@ Server      one simulated IED made from a model text
 ServerPump  one thread that drives many servers
 """
 
+from mms.binding.stderr_filter import filter_tls_log_from_stderr
 from mms.client.client import Client, DataSetMember
 from mms.client.files import FileEntry
 from mms.client.limits import ClientLimits
@@ -36,6 +37,8 @@ from mms.errors import (
     ValueRefused,
 )
 from mms.references import FunctionalConstraint
+from mms.security.credential_files import read_secret
+from mms.security.passwords import PASSWORD_RULE, is_password
 from mms.security.tls import TlsConfiguration, TlsVersion
 from mms.server.file_access import FileAnswer, FileOperation, FileRequest
 from mms.server.pump import ServerPump
@@ -45,6 +48,7 @@ from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Val
 __all__ = [
     "GOOD",
     "MOST_CONNECTIONS",
+    "PASSWORD_RULE",
     "AccessDenied",
     "AddCause",
     "AssociationBroken",
@@ -92,4 +96,7 @@ __all__ = [
     "Validity",
     "Value",
     "ValueRefused",
+    "filter_tls_log_from_stderr",
+    "is_password",
+    "read_secret",
 ]

@@ -9,9 +9,8 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from benchmarks.interoperability.peers import PeerError, linked
-from mms import Client, TlsConfiguration
+from mms import Client, TlsConfiguration, filter_tls_log_from_stderr
 from mms.binding.library import shared_library
-from mms.binding.stderr_filter import filter_tls_log_from_stderr
 from service.collector.records.listing import understand
 from service.collector.records.pull import pull
 from service.recording_store.store import RecordingStore

@@ -7,9 +7,7 @@ from pydantic import Field
 
 from ied_sim.relay.configuration import Access
 from ied_sim.toml_tables import Table
-from mms import CredentialFileError, TlsConfiguration, TlsVersion
-from mms.security.credential_files import read_secret
-from mms.security.passwords import PASSWORD_RULE, is_password
+from mms import PASSWORD_RULE, CredentialFileError, TlsConfiguration, TlsVersion, is_password, read_secret
 
 
 class TlsTable(Table):

@@ -12,9 +12,7 @@ from typing import Annotated, Final, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, SecretStr
 
-from mms import CredentialFileError, TlsConfiguration, TlsVersion
-from mms.security.credential_files import read_secret
-from mms.security.passwords import PASSWORD_RULE, is_password
+from mms import PASSWORD_RULE, CredentialFileError, TlsConfiguration, TlsVersion, is_password, read_secret
 
 AbsolutePath = Annotated[Path, AfterValidator(Path.absolute)]
 

@@ -13,7 +13,7 @@ from typing import BinaryIO, NoReturn
 
 import structlog
 
-from mms.binding.stderr_filter import filter_tls_log_from_stderr
+from mms import filter_tls_log_from_stderr
 from service.collector.gateway.gateway import Gateway, GatewayIdentity
 from service.collector.session.visit_marks import VisitMarks
 from service.configuration.settings import Settings

@@ -17,7 +17,7 @@ from testing.ports import free_port
 from testing.relays.pki import Pki
 from testing.relays.simulated import IED, Simulated, scenario_of, simulated
 from testing.waiting import wait_until
-from tests.ied_sim.test_scenario import MINIMAL
+from tests.ied_sim.scenario.test_scenario import MINIMAL
 
 TLS = 'tls = {certificate = "relay.pem", key = "relay.key", ca = "authority.pem", pinned = ["client.pem"]}'
 PASSWORDS = ("OTTER", "TAIL of 7")

@@ -17,7 +17,7 @@ from ied_sim.motor.supply import Supply, SupplyEvent
 from ied_sim.motor.warming import COPPER_PER_K, Warming
 from ied_sim.motor.windings import winding_circuit
 from testing.machines.motors import MEDIUM, REFERENCE
-from tests.ied_sim.plants import plant
+from tests.ied_sim.motor.plants import plant
 
 RATE_HZ = 2_000.0
 

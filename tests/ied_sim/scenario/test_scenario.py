@@ -15,7 +15,7 @@ from ied_sim.scenario import tables as scenario_tables
 from ied_sim.scenario.scenario import healthy_reference, read_scenario
 from ied_sim.toml_tables import Table
 
-REPOSITORY = Path(__file__).parents[2]
+REPOSITORY = Path(__file__).parents[3]
 DEMO = REPOSITORY / "service" / "demo" / "scenario.toml"
 
 MINIMAL = """

@@ -12,7 +12,7 @@ from ied_sim.motor.load import Load
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Harmonic, Supply
 from testing.machines.motors import LARGE, REFERENCE
-from tests.ied_sim.plants import plant, short
+from tests.ied_sim.motor.plants import plant, short
 
 RATE_HZ = 10_000.0
 FINE = Sensors(full_scale_A=10.0, full_scale_V=700.0)

@@ -14,7 +14,7 @@ from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant,
 from ied_sim.motor.supply import Harmonic, Supply
 from ied_sim.motor.windings import highest_fault_resistance, winding_circuit
 from testing.machines.motors import LARGE, MEDIUM, REFERENCE
-from tests.ied_sim.plants import plant, short
+from tests.ied_sim.motor.plants import plant, short
 
 Array = NDArray[np.float64]
 RPM = 30 / pi

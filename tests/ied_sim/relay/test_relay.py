@@ -17,7 +17,7 @@ from mms import FunctionalConstraint, Timestamp
 from scl import DEMO_PLANT_SCD, Address
 from scl import read as read_scl
 from testing.waiting import wait_until
-from tests.ied_sim.serving import IED, SHORT_RECORD, TRIGGER_BIT, ServedRelay, served_relay
+from tests.ied_sim.relay.serving import IED, SHORT_RECORD, TRIGGER_BIT, ServedRelay, served_relay
 
 
 @pytest.fixture

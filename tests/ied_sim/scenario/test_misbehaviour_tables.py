@@ -8,7 +8,7 @@ from ied_sim.errors import ScenarioError, SimulatorError
 from ied_sim.misbehaviour import Kind, Misbehaviour, MisbehaviourState
 from ied_sim.scenario.scenario import read_scenario
 from testing.relays.simulated import scenario_of, simulated
-from tests.ied_sim.test_scenario import MINIMAL
+from tests.ied_sim.scenario.test_scenario import MINIMAL
 
 SWITCH = "CON/RBGGIO1.SPCSO30"
 
