@@ -84,8 +84,8 @@ class OrphanedRequestEnder:
 
     def _end_dead_gateways(self, now_s: float) -> None:
         """Free the relays of gateways that died with their host: no other gateway may be left to do it."""
-        for gateway, beats in self._peers.dead(self._repository.beats(), now_s).items():
-            if self._repository.end_gateway(gateway, beats=beats, now_ns=time.time_ns()):
+        for gateway, count in self._peers.dead(self._repository.heartbeats(), now_s).items():
+            if self._repository.end_gateway(gateway, heartbeats=count, now_ns=time.time_ns()):
                 log.warning("gateway is dead; its relays are free", gateway=gateway)
 
     def _fail(self, request: RecordingRequest, waited_s: float) -> None:

@@ -133,13 +133,13 @@ class Gateway:
         unvisited = share.surplus - self._ending.keys()
         if unvisited:
             self._repository.give_back_relays(self._identity.id, unvisited)
-        self._end_dead_peers(share.beats)
+        self._end_dead_peers(share.heartbeats)
 
     def _end_dead_peers(self, heartbeats: dict[str, int]) -> None:
         """Free the relays of the gateways whose counters stand still."""
         peers = {gateway: count for gateway, count in heartbeats.items() if gateway != self._identity.id}
         for gateway, count in self._peers.dead(peers, time.monotonic()).items():
-            if self._repository.end_gateway(gateway, beats=count, now_ns=time.time_ns()):
+            if self._repository.end_gateway(gateway, heartbeats=count, now_ns=time.time_ns()):
                 log.warning("a gateway is dead, its relays are shared out", gateway=gateway)
 
     def _update_quarantined(self, held: frozenset[str]) -> None:

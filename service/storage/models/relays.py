@@ -10,14 +10,14 @@ from service.storage.states import AlarmKind, LinkState
 
 
 class GatewayRow(Base):
-    """A process that visits relays. `beats` goes on as long as it lives."""
+    """A process that visits relays. `heartbeats` goes up as long as it lives."""
 
     __tablename__ = "gateways"
 
     id: Mapped[str] = mapped_column(primary_key=True)
     host: Mapped[str]
     process_id: Mapped[int]
-    beats: Mapped[int]
+    heartbeats: Mapped[int] = mapped_column("beats")
     started_ns: Mapped[int]
 
 

@@ -1,8 +1,8 @@
-"""Which gateway visits which relay: one lease a relay, for as long as its gateway's counter goes on.
+"""Which gateway visits which relay: one lease a relay, for as long as its gateway's counter goes up.
 
-No clock is compared with another. A gateway bumps its counter; whoever has seen a counter stand still for the
-time of a lease, by a clock of its own that only goes forward, may declare that gateway dead. A gateway that
-cannot bump its counter for less than that ends its visits by itself
+No clock is compared with that of another host. A gateway increases its heartbeat counter. Whoever has seen a
+counter stand still for the time of a lease, by its own monotonic clock, may declare that gateway dead. A
+gateway that could not increase its counter for four fifths of that time, by its own boot clock, ends itself
 (service/collector/gateway/lease_watchdog.py).
 """
 
@@ -29,7 +29,7 @@ class Share:
 
     held: frozenset[str]
     surplus: frozenset[str]
-    beats: dict[str, int]
+    heartbeats: dict[str, int]
 
 
 class LeaseRows(Sessions):
@@ -37,7 +37,9 @@ class LeaseRows(Sessions):
         """A gateway that starts, holding nothing. Whatever had its id before must be known to be dead."""
         with self._write() as session:
             _end(session, gateway, now_ns)
-            session.add(GatewayRow(id=gateway, host=host, process_id=process_id, beats=0, started_ns=now_ns))
+            session.add(
+                GatewayRow(id=gateway, host=host, process_id=process_id, heartbeats=0, started_ns=now_ns)
+            )
 
     def share_relays(self, gateway: str, relays: Collection[str], *, most: int) -> Share:
         """Bumps the gateway's counter and takes what is free of these relays, up to its fair share.
@@ -48,7 +50,7 @@ class LeaseRows(Sessions):
             own = session.get(GatewayRow, gateway)
             if own is None:
                 raise LeaseLostError(gateway)
-            own.beats += 1
+            own.heartbeats += 1
             rows = session.scalars(select(GatewayRow)).all()
             in_service = set(session.scalars(select(IedRow.name).where(IedRow.in_service)))
             wanted = sorted(in_service.intersection(relays))
@@ -60,21 +62,23 @@ class LeaseRows(Sessions):
                 if _take(session, ied, gateway):
                     held.add(ied)
             staying = sorted(held.intersection(wanted))[:fair]
-            return Share(frozenset(held), frozenset(held.difference(staying)), {r.id: r.beats for r in rows})
+            return Share(
+                frozenset(held), frozenset(held.difference(staying)), {r.id: r.heartbeats for r in rows}
+            )
 
     def give_back_relays(self, gateway: str, relays: Collection[str]) -> None:
         """Ends leases of relays that are not visited any more."""
         with self._write() as session:
             session.execute(delete(LeaseRow).where(LeaseRow.gateway == gateway, LeaseRow.ied.in_(relays)))
 
-    def end_gateway(self, gateway: str, *, now_ns: int, beats: int | None = None) -> bool:
-        """Frees the relays of a gateway that is dead; with `beats`, only if that is still its counter.
+    def end_gateway(self, gateway: str, *, now_ns: int, heartbeats: int | None = None) -> bool:
+        """Frees the relays of a gateway that is dead; with `heartbeats`, only if that is still its counter.
 
         False when there was nothing to end.
         """
         with self._write() as session:
             row = session.get(GatewayRow, gateway)
-            if row is None or beats not in (None, row.beats):
+            if row is None or heartbeats not in (None, row.heartbeats):
                 return False
             _end(session, gateway, now_ns)
             return True
@@ -98,10 +102,10 @@ class LeaseRows(Sessions):
         with self._read() as session:
             return frozenset(session.scalars(select(LeaseRow.ied)))
 
-    def beats(self) -> dict[str, int]:
+    def heartbeats(self) -> dict[str, int]:
         """Every gateway's counter."""
         with self._read() as session:
-            return {row.id: row.beats for row in session.scalars(select(GatewayRow))}
+            return {row.id: row.heartbeats for row in session.scalars(select(GatewayRow))}
 
     def gateway_of(self, ied: str) -> str | None:
         """The gateway that holds a relay; None while none does."""

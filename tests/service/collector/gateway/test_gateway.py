@@ -319,7 +319,7 @@ def test_a_trigger_needs_the_lease(hall: Hall) -> None:
         repository.mark_triggered(report.id, now_ns=NOW_NS, gateway="b")
     assert repository.recording_request(report.id).triggered_ns is None
     assert repository.mark_triggered(report.id, now_ns=NOW_NS, gateway="a").triggered_ns == NOW_NS
-    assert not repository.end_gateway("a", now_ns=NOW_NS, beats=7), "it has gone on since"
-    assert repository.end_gateway("a", now_ns=NOW_NS, beats=1)
+    assert not repository.end_gateway("a", now_ns=NOW_NS, heartbeats=7), "it has gone on since"
+    assert repository.end_gateway("a", now_ns=NOW_NS, heartbeats=1)
     with pytest.raises(LeaseLostError):
         repository.share_relays("a", [motor.relay], most=10)
