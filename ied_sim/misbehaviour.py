@@ -8,7 +8,7 @@ from math import inf
 
 
 class Kind(StrEnum):
-    """Kinds of misbehaviour; docs/simulator.md tells what each does."""
+    """Kinds of misbehaviour; docs/reference/simulator.md tells what each does."""
 
     SLOW_REPLIES = "slow-replies"
     CUT_MID_FILE = "cut-mid-file"

@@ -1,6 +1,6 @@
 """The scenario: which motor stands behind each relay, in what condition, on what supply, under what load.
 
-It is one TOML file, explained in docs/scenario.md.
+It is one TOML file, explained in docs/reference/scenario.md.
 """
 
 from collections.abc import Mapping

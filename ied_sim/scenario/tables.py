@@ -1,4 +1,7 @@
-"""Tables of a scenario file, as docs/scenario.md explains them: what may stand in each, and what it means."""
+"""Tables of a scenario file: what each may contain, and what it means.
+
+docs/reference/scenario.md explains them to users.
+"""
 
 from math import inf, radians, sqrt
 from typing import Annotated, Literal, Self

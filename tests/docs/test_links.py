@@ -12,6 +12,9 @@ DOCS_PATH = re.compile(r"(?<![\w/.])docs/[\w./-]*\w")
 CODE_PATH = re.compile(
     r"`((?:benchmarks|core|docs|examples|ied_sim|mms|scl|service|testing|tests|\.ci|\.github)/[\w./-]*\w)`"
 )
+TEST_ID = re.compile(r"`((?:[\w.-]+/)*test_\w+\.py)(?:::(\w+))?`")
+MODULE = re.compile(r"python -m ((?:benchmarks|core|ied_sim|mms|scl|service|tests)[\w.]*\w)")
+MAKE = re.compile(r"(?:`|^    )make ([a-z][a-z-]*)", re.MULTILINE)
 HISTORY = {"CHANGELOG.md", "track-record.md"}
 """Pages that tell of the past; code they name may have moved since."""
 
@@ -37,6 +40,29 @@ def test_code_paths_exist(page: Path) -> None:
         path for path in CODE_PATH.findall(page.read_text(encoding="utf-8")) if "__pycache__" not in path
     ]
     assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
+@pytest.mark.parametrize("page", pages(), ids=name)
+def test_tests_that_are_named_exist(page: Path) -> None:
+    missing = []
+    for path, function in TEST_ID.findall(page.read_text(encoding="utf-8")):
+        places = [folder / path for folder in (ROOT, ROOT / "tests", ROOT / "tests" / "service")]
+        found = [place for place in places if place.is_file()]
+        if not found or (function and f"def {function}(" not in found[0].read_text(encoding="utf-8")):
+            missing.append(f"{path}::{function}")
+    assert missing == []
+
+
+@pytest.mark.parametrize("page", pages(), ids=name)
+def test_commands_that_are_named_exist(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+    assert [target for target in MAKE.findall(text) if target not in targets] == []
+    assert [module for module in MODULE.findall(text) if not _runs(ROOT / module.replace(".", "/"))] == []
+
+
+def _runs(module: Path) -> bool:
+    return module.with_suffix(".py").is_file() or (module / "__main__.py").is_file()
 
 
 def test_every_documentation_path_that_is_named_exists() -> None:
