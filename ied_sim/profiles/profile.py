@@ -1,7 +1,7 @@
 """Relay profiles: how one kind of relay is triggered, reports its records, and offers its files.
 
-A profile is a TOML file with an ICD beside it; docs/reference/simulator.md explains it. Those of `ied_sim/profiles`
-are chosen by name, any other by its path.
+A profile is a TOML file with an ICD beside it; docs/reference/simulator.md explains it. Profiles in
+`ied_sim/profiles` are chosen by name, any other by its path.
 """
 
 import re
