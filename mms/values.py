@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from enum import Enum, IntEnum
 from typing import Final, TypeAlias
 
-_SECOND_NS: Final = 1_000_000_000
+NANOSECONDS_PER_SECOND: Final = 1_000_000_000
+NANOSECONDS_PER_MILLISECOND: Final = 1_000_000
 _FRACTION_BITS: Final = 24
 
 
@@ -214,8 +215,8 @@ class Timestamp:
         ValueError
             The time is outside 1970 to 2106, or the quality is no octet.
         """
-        seconds, rest = divmod(self.ns, _SECOND_NS)
-        fraction = round(rest * (1 << _FRACTION_BITS) / _SECOND_NS)
+        seconds, rest = divmod(self.ns, NANOSECONDS_PER_SECOND)
+        fraction = round(rest * (1 << _FRACTION_BITS) / NANOSECONDS_PER_SECOND)
         seconds += fraction >> _FRACTION_BITS
         fraction &= (1 << _FRACTION_BITS) - 1
         if not 0 <= seconds < 1 << 32 or not 0 <= self.quality < 256:
@@ -237,8 +238,8 @@ class Timestamp:
             The time.
         """
         fraction = int.from_bytes(octets[4:7], "big")
-        ns = int.from_bytes(octets[:4], "big") * _SECOND_NS + round(
-            fraction * _SECOND_NS / (1 << _FRACTION_BITS)
+        ns = int.from_bytes(octets[:4], "big") * NANOSECONDS_PER_SECOND + round(
+            fraction * NANOSECONDS_PER_SECOND / (1 << _FRACTION_BITS)
         )
         return cls(ns, octets[7])
 

@@ -6,9 +6,8 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Final
 
-from mms.values import BitString, DataAccessError, Quality, Timestamp, Value
+from mms.values import NANOSECONDS_PER_MILLISECOND, BitString, DataAccessError, Quality, Timestamp, Value
 
-_MILLISECOND_NS: Final = 1_000_000
 _NESTING_LIMIT: Final = 16  # IEC 61850-7-3 needs 4 levels; a hostile peer may send thousands
 
 
@@ -102,7 +101,7 @@ _READERS: Final[dict[int, Callable[[ctypes.CDLL, int], Value]]] = {
         ctypes.string_at(lib.MmsValue_getUtcTimeBuffer(pointer), 8)
     ),
     _Type.BINARY_TIME: lambda lib, pointer: Timestamp(
-        int(lib.MmsValue_getBinaryTimeAsUtcMs(pointer)) * _MILLISECOND_NS, 0
+        int(lib.MmsValue_getBinaryTimeAsUtcMs(pointer)) * NANOSECONDS_PER_MILLISECOND, 0
     ),
     _Type.DATA_ACCESS_ERROR: _data_access_error,
 }
@@ -247,7 +246,7 @@ def _write_time(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
 def _write_binary_time(lib: ctypes.CDLL, pointer: int, value: Value | Quality) -> None:
     if not isinstance(value, Timestamp) or value.ns < 0:
         raise TypeMismatchError("a Timestamp from 1970 on", value)
-    lib.MmsValue_setBinaryTime(pointer, value.ns // _MILLISECOND_NS)
+    lib.MmsValue_setBinaryTime(pointer, value.ns // NANOSECONDS_PER_MILLISECOND)
 
 
 _WRITERS: Final[dict[int, Callable[[ctypes.CDLL, int, Value | Quality], None]]] = {

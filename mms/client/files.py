@@ -13,10 +13,10 @@ from mms.binding.callbacks import guarded
 from mms.binding.prototypes import FileReadHandler
 from mms.client.connection import Connection
 from mms.client.throughput import ThroughputLimit
+from mms.values import NANOSECONDS_PER_MILLISECOND
 
 log: Final = logging.getLogger("mms")
 
-_MILLISECOND_NS: Final = 1_000_000
 _LONGEST_NAME: Final = 255
 
 
@@ -123,7 +123,7 @@ def _listing(
     entries = []
     for item in connection.items(found):
         name = lib.FileDirectoryEntry_getFileName(item).decode("latin-1")
-        changed_ns = int(lib.FileDirectoryEntry_getLastModified(item)) * _MILLISECOND_NS
+        changed_ns = int(lib.FileDirectoryEntry_getLastModified(item)) * NANOSECONDS_PER_MILLISECOND
         entries.append(FileEntry(name, int(lib.FileDirectoryEntry_getFileSize(item)), changed_ns))
         lib.FileDirectoryEntry_destroy(item)
     lib.LinkedList_destroyStatic(found)

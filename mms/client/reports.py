@@ -19,11 +19,10 @@ from mms.binding.prototypes import ReportHandler
 from mms.binding.value_conversion import decode
 from mms.client.connection import Connection
 from mms.references import object_reference
-from mms.values import Value
+from mms.values import NANOSECONDS_PER_MILLISECOND, Value
 
 log: Final = logging.getLogger("mms")
 
-_MILLISECOND_NS: Final = 1_000_000
 _RCB_ROOM: Final = len("$TimeofEntry")
 _ENTRY_ID_OCTETS: Final = 8
 
@@ -346,6 +345,7 @@ def _copy(lib: ctypes.CDLL, reference: str, report: int) -> Report:
             members.append(ReportMember(index, _text(name), value, Reason(reasons)))
     entry = decode(lib, lib.ClientReport_getEntryId(report))
     timed = bool(lib.ClientReport_hasTimestamp(report))
+    time_ns = int(lib.ClientReport_getTimestamp(report)) * NANOSECONDS_PER_MILLISECOND if timed else None
     return Report(
         rcb_reference=reference,
         report_id=_text(lib.ClientReport_getRptId(report)) or "",
@@ -353,7 +353,7 @@ def _copy(lib: ctypes.CDLL, reference: str, report: int) -> Report:
         sequence_number=int(lib.ClientReport_getSeqNum(report))
         if lib.ClientReport_hasSeqNum(report)
         else None,
-        timestamp_ns=int(lib.ClientReport_getTimestamp(report)) * _MILLISECOND_NS if timed else None,
+        timestamp_ns=time_ns,
         buffer_overflow=bool(lib.ClientReport_hasBufOvfl(report))
         and bool(lib.ClientReport_getBufOvfl(report)),
         data_set=_text(lib.ClientReport_getDataSetName(report))

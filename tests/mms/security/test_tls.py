@@ -27,6 +27,7 @@ from mms import (
     TlsVersion,
 )
 from mms.binding.library import library
+from mms.security import credential_files
 from mms.security.credential_files import describe_certificate
 from mms.security.tls import TlsContext
 from testing.ports import LOOPBACK
@@ -174,7 +175,7 @@ def test_a_relay_whose_certificate_is_out_of_time_is_not_trusted(
     of_client = replace(pki.of_client(), pinned=(outdated.certificate_file,))
     with pytest.raises(ValueError, match="valid now"):
         of_relay.check()
-    monkeypatch.setattr("mms.security.credential_files._require_valid_now", lambda *_: None)
+    monkeypatch.setattr(credential_files, "_require_valid_now", lambda *_: None)
     with start_relay(tls=of_relay) as relay, pytest.raises(RelayNotTrusted, match=reason):
         connect(relay, of_client)
 
