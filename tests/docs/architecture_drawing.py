@@ -31,6 +31,7 @@ DRAWINGS = {
     "house": Drawing("service", beside=("ied_sim", "core", "scl", "mms")),
     "collector": Drawing("service.collector"),
     "core": Drawing("core"),
+    "mms": Drawing("mms"),
     "ied_sim": Drawing("ied_sim"),
 }
 
