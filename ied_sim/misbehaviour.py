@@ -111,6 +111,7 @@ class MisbehaviourState:
         return None
 
     def is_on(self, kind: Kind) -> bool:
+        """Tell whether a kind is on."""
         return self.number(kind) is not None
 
     def _is_on(self, each: Misbehaviour) -> bool:

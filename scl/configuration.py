@@ -12,7 +12,7 @@ from scl.ied_model import Ied
 MMS_PORT = 102
 
 HOST_NAME = re.compile(r"(?=.{1,253}$)[A-Za-z0-9]([A-Za-z0-9-]{0,62})(\.[A-Za-z0-9][A-Za-z0-9-]{0,62})*")
-"""RFC 1123."""
+"""Host names of RFC 1123."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,7 +32,7 @@ class _Checker:
         self._undescribed = {document.qualified(tag): tag for tag in UNDESCRIBED}
         self._tags = {**{qualified: tag for qualified, (tag, _) in self._rules.items()}, **self._undescribed}
         self._sound: set[_Shape] = set()
-        # By tag and names of attributes: what is wrong with them, and which have a value to look at.
+        # By tag and names of attributes: what is wrong with them, and which have a value to check.
         self._known_attributes: dict[_Shape, tuple[tuple[str, ...], tuple[str, ...]]] = {}
         self._known_values: dict[tuple[str, str, str], str | None] = {}
 
@@ -42,7 +42,7 @@ class _Checker:
             element = pending.pop()
             tag = element.tag
             children = list(element)
-            # The same few shapes come by the hundred thousand: one found sound is not looked at again.
+            # The same few shapes come by the hundred thousand, so a sound one is checked once.
             shape = tag, tuple([child.tag for child in children])
             if shape not in self._sound:
                 known = self._rules.get(str(tag))

@@ -115,7 +115,7 @@ class Document:
         name = etree.QName(self.root)
         self._prefix = f"{{{NAMESPACE}}}" if name.namespace else ""
         self._names: dict[tuple[str, ...], tuple[str, ...]] = {}
-        self._names_seen: set[str] = set()  # found to be names
+        self._names_seen: set[str] = set()  # values already checked
         if name.localname != "SCL" or name.namespace not in (NAMESPACE, None):
             raise self.error(self.root, f"a root element SCL of {NAMESPACE}", str(self.root.tag))
         if not name.namespace:

@@ -51,7 +51,7 @@ class IedSection:
         self._addresses = addresses
         self._name = document.name(element, "name")
         self._type = element.get("type", "")
-        # data sets name logical devices by inst, of any access point; their references need the domain
+        # A data set names logical devices by inst, of any access point; its references need the domain.
         self._domains: dict[str, str] = {}
         for point in document.children(element, "AccessPoint"):
             for device in document.children(document.child(point, "Server"), "LDevice"):

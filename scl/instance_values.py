@@ -22,7 +22,7 @@ class InstanceValues:
         self._document = document
         self._instance_tags = frozenset(document.qualified(tag) for tag in ("DOI", "SDI", "DAI"))
         self._value_tag = document.qualified("Val")
-        # by the identity of the type's own attribute, which the templates keep as long as they read
+        # The key holds the identity of the type's attribute, which the templates keep alive while they read.
         self._valued: dict[tuple[int, str], DataAttribute] = {}
 
     def apply(self, node: etree._Element, objects: tuple[DataObject, ...]) -> tuple[DataObject, ...]:

@@ -27,7 +27,7 @@ MOST_LINES = 1_000_000
 TRANSIENT = 128
 OWNER_SHOWN = 64
 
-# libiec61850's numbers, enum FunctionalConstraint and enum DataAttributeType
+# Numbers of libiec61850's enums FunctionalConstraint and DataAttributeType.
 CONSTRAINTS = {constraint: number for number, constraint in enumerate(FunctionalConstraint)}
 TYPES = {
     "BOOLEAN": 0,
@@ -73,7 +73,7 @@ INTEGER_RANGES = {
     "INT8": (-(2**7), 2**7 - 1),
     "INT16": (-(2**15), 2**15 - 1),
     "INT24": (-(2**23), 2**23 - 1),
-    # the parser reads every signed number into 32 bits
+    # The parser reads every signed number into 32 bits.
     "INT32": (-(2**31), 2**31 - 1),
     "INT64": (-(2**31), 2**31 - 1),
     "INT128": (-(2**31), 2**31 - 1),
@@ -136,7 +136,7 @@ def model_text(scl: Scl, ied_name: str) -> str:
 
 
 def _is_too_long(line: str) -> bool:
-    if len(line) <= LONGEST_WORD:  # nor is then any word of it too long
+    if len(line) <= LONGEST_WORD:  # then no word of it is too long either
         return False
     words = line.partition("=")[0].split()
     return len(line.encode()) > LONGEST_LINE_BYTES or max(map(len, words)) > LONGEST_WORD
@@ -195,7 +195,7 @@ def _object_parts(data_object: DataObject, *, transient: bool) -> Iterator[str]:
         yield from _object(part, transient=transient)
     for attribute in data_object.attributes:
         if attribute.fc is FunctionalConstraint.SE:
-            # an editable setting is also read as the active group's: libiec61850 wants both, SG first
+            # An editable setting is also read as the active group's. libiec61850 needs both, SG first.
             yield from _attribute(attribute, FunctionalConstraint.SG, transient=transient)
         yield from _attribute(attribute, attribute.fc, transient=transient)
 

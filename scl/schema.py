@@ -115,7 +115,7 @@ ANYWHERE: Final = ("Text", "Private")
 """Children that every element may have, before all others."""
 
 UNDESCRIBED: Final = frozenset(("Text", "Private", "Services"))
-"""Elements whose contents are not looked at: words, a vendor's own, and what a relay's tools may do."""
+"""Elements whose contents are not checked: text, a vendor's own, and what a relay's tools may do."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -278,7 +278,7 @@ class Templates:
             return 0
         number = decimal(text)
         if number is None or number > MOST_ATTRIBUTES:
-            # edition 2 lets another attribute hold the count; the model then has no fixed array
+            # In edition 2 another attribute may hold the count; the model then has no fixed array.
             self._document.note(element, f"array count {text!r} is no number: taken as no array")
             return 0
         return number

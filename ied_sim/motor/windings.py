@@ -58,6 +58,7 @@ class WindingCircuit:
 
     @property
     def loops(self) -> int:
+        """Number of loops."""
         return len(self.resistance)
 
     def inductance(self, angle_rad: float) -> Matrix:

@@ -153,10 +153,12 @@ class Profile(Table):
 
     @property
     def name(self) -> str:
+        """Name of the profile: that of its file."""
         return self.path.stem
 
     @property
     def icd_path(self) -> Path:
+        """Path of the ICD beside the profile."""
         return self.path.parent / self.icd
 
 

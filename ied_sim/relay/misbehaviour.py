@@ -45,6 +45,7 @@ class RelayMisbehaviour:
             self._take_report()
 
     def stop(self) -> None:
+        """Close the connection of the other client, if there is one."""
         if self._other_client is not None:
             self._other_client.close()
 

@@ -32,6 +32,8 @@ Duration = Annotated[float, Field(gt=0)]
 
 
 class HarmonicTable(Table):
+    """A harmonic voltage of the supply."""
+
     order: Annotated[int, Field(ge=2, le=50)]
     fraction: Annotated[float, Field(ge=0, le=0.5)]
     angle_deg: float = 0.0
@@ -44,6 +46,8 @@ class HarmonicTable(Table):
 
 
 class SupplyEventTable(Table):
+    """A dip, swell or interruption of the supply."""
+
     at_s: float
     duration_s: Duration
     factor: Annotated[float, Field(ge=0, le=1.5)]
@@ -57,11 +61,14 @@ class SupplyEventTable(Table):
         return self
 
     def event(self) -> SupplyEvent:
+        """Return the event."""
         phases = tuple(sorted({"abc".index(phase) for phase in self.phases}))
         return SupplyEvent(self.at_s, self.duration_s, self.factor, phases, self.every_s)
 
 
 class SupplyTable(Table):
+    """The supply; voltage and frequency are the motor's rated ones by default."""
+
     line_voltage_V: Duration | None = None
     frequency_Hz: Annotated[float, Field(gt=10, lt=500)] | None = None
     frequency_drift_Hz: Annotated[float, Field(ge=0, le=2)] = 0.0
@@ -73,6 +80,7 @@ class SupplyTable(Table):
     events: tuple[SupplyEventTable, ...] = ()
 
     def supply(self, nameplate: Nameplate) -> Supply:
+        """Return the supply of a motor."""
         return Supply(
             line_voltage_V=self.line_voltage_V or nameplate.rated_voltage_V,
             frequency_Hz=self.frequency_Hz or nameplate.rated_frequency_Hz,
@@ -87,11 +95,15 @@ class SupplyTable(Table):
 
 
 class CyclePointTable(Table):
+    """One point of a load cycle."""
+
     at_s: Annotated[float, Field(ge=0)]
     level: Level
 
 
 class LoadTable(Table):
+    """The load."""
+
     level: Level = 0.5
     swing: Annotated[float, Field(ge=0, le=0.5)] = 0.0
     swing_period_s: Annotated[float, Field(ge=0.1)] = 20.0
@@ -109,6 +121,7 @@ class LoadTable(Table):
         return self
 
     def load(self) -> Load:
+        """Return the load."""
         cycle = None
         if self.cycle is not None and self.cycle_period_s is not None:
             cycle = LoadCycle(tuple((point.at_s, point.level) for point in self.cycle), self.cycle_period_s)
@@ -116,11 +129,15 @@ class LoadTable(Table):
 
 
 class TimelinePointTable(Table):
+    """One point of a fault's development."""
+
     at_s: float
     level: Turns
 
 
 class FaultTable(Table):
+    """Shorted turns, of a constant level or one that develops."""
+
     phase: Literal["a", "b", "c"]
     level: Turns | None = None
     timeline: Annotated[tuple[TimelinePointTable, ...], Field(min_length=1)] | None = None
@@ -134,21 +151,27 @@ class FaultTable(Table):
         return self
 
     def course(self) -> FaultCourse:
+        """Return the fault's development."""
         constant = ((0.0, self.level or 0.0),)
         points = tuple((p.at_s, p.level) for p in self.timeline) if self.timeline else constant
         return FaultCourse("abc".index(self.phase), points, self.resistance_ohm)
 
 
 class WarmingTable(Table):
+    """The warming of the windings."""
+
     rise_K: Annotated[float, Field(ge=0, le=300)]
     time_constant_s: Duration = 1800.0
     begin_s: float = 0.0
 
     def warming(self) -> Warming:
+        """Return the warming."""
         return Warming(self.rise_K, self.time_constant_s, self.begin_s)
 
 
 class SensorsTable(Table):
+    """The sensors; their ranges follow from the motor by default."""
+
     gain_errors: SixShares = (0.0,) * 6
     offsets: SixShares = (0.0,) * 6
     current_delay_us: Annotated[float, Field(ge=0, le=20_000)] = 0.0
@@ -157,6 +180,7 @@ class SensorsTable(Table):
     full_scale_V: Duration | None = None
 
     def sensors(self, motor: Motor) -> Sensors:
+        """Return the sensors at a motor."""
         phase_peak_V = sqrt(2 / 3) * motor.nameplate.rated_voltage_V
         return Sensors(
             full_scale_A=self.full_scale_A or CURRENT_HEADROOM * sqrt(2) * rated_current(motor),
@@ -188,27 +212,36 @@ class TriggersTable(Table):
 
 
 class DefiniteTimeTable(Table):
+    """A definite-time element of the protection."""
+
     pickup: Duration
     delay_s: Annotated[float, Field(ge=0)] = 0.0
 
     def element(self) -> DefiniteTime:
+        """Return the element."""
         return DefiniteTime(self.pickup, self.delay_s)
 
 
 class ThermalTable(Table):
+    """The thermal overload element of the protection."""
+
     service_factor: Annotated[float, Field(ge=1, le=2)] = 1.15
     time_constant_s: Duration = 600.0
 
     def element(self) -> ThermalOverload:
+        """Return the element."""
         return ThermalOverload(self.service_factor, self.time_constant_s)
 
 
 class ProtectionTable(Table):
+    """The protection; an element without a table is not in use."""
+
     overcurrent: DefiniteTimeTable | None = None
     unbalance: DefiniteTimeTable | None = None
     thermal: ThermalTable | None = None
 
     def settings(self) -> ProtectionSettings:
+        """Return the settings."""
         overcurrent, unbalance, thermal = self.overcurrent, self.unbalance, self.thermal
         return ProtectionSettings(
             overcurrent=None if overcurrent is None else overcurrent.element(),
@@ -218,6 +251,8 @@ class ProtectionTable(Table):
 
 
 class MisbehaviourTable(Table):
+    """One misbehaviour; a kind has at most one of the numbers."""
+
     kind: Kind
     at_s: Annotated[float, Field(ge=0)] | None = None
     for_s: Duration = inf
@@ -248,6 +283,8 @@ class MisbehaviourTable(Table):
 
 
 class MotorTable(Table):
+    """A motor and its relay."""
+
     ied: Annotated[str, Field(min_length=1)]
     profile: str | None = None
     seed: Annotated[int, Field(ge=0)] = 0
@@ -268,6 +305,8 @@ class MotorTable(Table):
 
 
 class FileTable(Table):
+    """A whole scenario file."""
+
     motor: tuple[MotorTable, ...]
 
 

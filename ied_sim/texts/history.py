@@ -4,6 +4,7 @@ from ied_sim.texts.snapshot import DATE_LABELS, RelaySnapshot
 
 
 def history(snapshot: RelaySnapshot) -> bytes:
+    """Make HISTORY.TXT."""
     lines = [" #     RECORD  DATE       TIME          EVENT          CURRENT(A)  FREQ(Hz)  TARGETS"]
     lines += [
         f"{place:>2}  {event.number:>9}  {snapshot.stamp(event.time_ns)}  {event.kind:<13}  "
@@ -16,6 +17,7 @@ def history(snapshot: RelaySnapshot) -> bytes:
 
 
 def compressed_history(snapshot: RelaySnapshot) -> bytes:
+    """Make CHISTORY.TXT."""
     labels = ("REC_NUM", "REF_NUM", *DATE_LABELS, "EVENT", "CURRENT", "FREQ", "TARGETS")
     rows = (
         [

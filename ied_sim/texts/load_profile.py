@@ -1,4 +1,4 @@
-"""LDP.TXT and CLDP.TXT: the load profile, what was metered every so often, oldest first."""
+"""LDP.TXT and CLDP.TXT: the load profile, which is what was metered at intervals, oldest first."""
 
 from ied_sim.monitoring.journal import LoadRow
 from ied_sim.texts.snapshot import DATE_LABELS, RelaySnapshot
@@ -7,6 +7,7 @@ LABELS = ("IA_MAG", "IB_MAG", "IC_MAG", "UBI_PCT", "VAVE", "P", "Q", "PF", "FREQ
 
 
 def load_profile(snapshot: RelaySnapshot) -> bytes:
+    """Make LDP.TXT."""
     lines = ["DATE       TIME          " + "".join(f"{label:>12}" for label in LABELS)]
     lines += [
         f"{snapshot.stamp(row.time_ns)}  " + "".join(f"{value:>12}" for value in _values(row))
@@ -16,12 +17,13 @@ def load_profile(snapshot: RelaySnapshot) -> bytes:
 
 
 def compressed_load_profile(snapshot: RelaySnapshot) -> bytes:
+    """Make CLDP.TXT."""
     rows = ([*snapshot.date_fields(row.time_ns), *_values(row)] for row in snapshot.journal.load())
     return snapshot.compressed((*DATE_LABELS, *LABELS), rows)
 
 
 def _values(row: LoadRow) -> list[str]:
-    """Currents [A], unbalance [%], line voltage [V], power [W, var], frequency, thermal image [%]."""
+    """Return currents [A], unbalance [%], line voltage [V], power [W, var], frequency, thermal image [%]."""
     metering = row.metering
     power = metering.complex_power_VA
     return [

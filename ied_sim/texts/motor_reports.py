@@ -7,7 +7,7 @@ from ied_sim.texts.snapshot import RelaySnapshot
 
 
 def motor_starts(snapshot: RelaySnapshot) -> bytes:
-    """List the last starts, newest first: a summary of each, then the course of current and voltage."""
+    """Make MSR.TXT: a summary of each of the last starts, newest first, then its current and voltage."""
     starts = snapshot.journal.starts()
     lines = [line for logged in starts for line in _start_lines(snapshot, logged)]
     return snapshot.report("MOTOR START REPORT", lines or ["No Motor Start Data Available"])
@@ -29,6 +29,7 @@ def _start_lines(snapshot: RelaySnapshot, logged: LoggedStart) -> Iterator[str]:
 
 
 def motor_statistics(snapshot: RelaySnapshot) -> bytes:
+    """Make MOT.TXT: running hours, starts, currents and trips."""
     found = snapshot.journal.statistics
     total_s = found.running_s + found.stopped_s
     share = 100 * found.running_s / total_s if total_s else 0.0

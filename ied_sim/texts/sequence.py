@@ -4,6 +4,7 @@ from ied_sim.texts.snapshot import DATE_LABELS, RelaySnapshot
 
 
 def sequence(snapshot: RelaySnapshot) -> bytes:
+    """Make SER.TXT."""
     lines = ["#     DATE       TIME          ELEMENT     STATE"]
     lines += [
         f"{place:<5} {snapshot.stamp(change.time_ns)}  {change.bit:<10}  "
@@ -14,6 +15,7 @@ def sequence(snapshot: RelaySnapshot) -> bytes:
 
 
 def compressed_sequence(snapshot: RelaySnapshot) -> bytes:
+    """Make CSER.TXT."""
     rows = (
         [
             str(place),

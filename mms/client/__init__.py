@@ -1,1 +1,1 @@
-"""The MMS client."""
+"""The MMS client: one association with a relay, and the services over it."""

@@ -1,1 +1,1 @@
-"""The MMS server."""
+"""The MMS server: one simulated IED, and the thread that drives many."""
