@@ -31,7 +31,7 @@ LEASES_EXPIRED = 3
 
 
 def gateway_id(settings: Settings, number: int) -> str:
-    """The id of one of an installation's gateways."""
+    """Return the id of one of the gateways of an installation."""
     return f"{installation_id(settings.data_directory)}/{number}"
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import structlog
 
-from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
+from core.units import SECONDS_PER_DAY
 from service.storage import Repository
 from service.storage.records import Quarantine
 
@@ -31,7 +31,7 @@ class QuarantinePolicy:
 
     def probation_after_s(self, quarantine: Quarantine) -> float:
         """Return how long a relay must work after this quarantine until it is trusted again [s]."""
-        return max(self.probation_s, (quarantine.until_ns - quarantine.since_ns) / NANOSECONDS_PER_SECOND)
+        return max(self.probation_s, quarantine.pause_s)
 
 
 def quarantine_relay(repository: Repository, relay: str, reason: str, policy: QuarantinePolicy) -> None:
@@ -43,5 +43,6 @@ def quarantine_relay(repository: Repository, relay: str, reason: str, policy: Qu
         longest_pause_s=policy.longest_pause_s,
         now_ns=time.time_ns(),
     )
-    pause_s = (quarantine.until_ns - quarantine.since_ns) / NANOSECONDS_PER_SECOND
-    log.error("relay set aside", relay=relay, reason=reason, times=quarantine.times, pause_s=pause_s)
+    log.error(
+        "relay set aside", relay=relay, reason=reason, times=quarantine.times, pause_s=quarantine.pause_s
+    )

@@ -19,7 +19,7 @@ from service.storage import NotFoundError, Repository
 log = structlog.get_logger(__name__)
 
 CRASHES = frozenset({signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS, signal.SIGFPE, signal.SIGILL})
-"""What a fault inside the C library ends a process with. SIGKILL is somebody's wish."""
+"""What a fault inside the C library ends a process with. SIGKILL comes from outside."""
 
 
 def blame_after_end(

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from core.units import NANOSECONDS_PER_SECOND
 from service.storage.states import AlarmKind, ClockQuality, LinkState
 
 
@@ -28,6 +29,11 @@ class Quarantine:
     times: int
     since_ns: int
     until_ns: int
+
+    @property
+    def pause_s(self) -> float:
+        """For how long the relay is set aside [s]."""
+        return (self.until_ns - self.since_ns) / NANOSECONDS_PER_SECOND
 
     def holds(self, now_ns: int) -> bool:
         """Whether the relay is to be left alone at `now_ns`, by a clock that may have been set since.

@@ -15,7 +15,7 @@ PAUSE_S = 60.0
 
 def pause_s(quarantine: Quarantine | None) -> float:
     assert quarantine is not None
-    return (quarantine.until_ns - quarantine.since_ns) / SECOND_NS
+    return quarantine.pause_s
 
 
 def test_pauses_grow_up_to_a_day(repository: Repository) -> None:

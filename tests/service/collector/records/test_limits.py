@@ -8,7 +8,6 @@ from core.units import NANOSECONDS_PER_DAY
 from mms.binding.prototypes import PROTOTYPES
 from service.collector.records.allowance import BLOCK_BYTES, DailyAllowance
 from service.collector.records.policy import RECORD_POLICY
-from service.collector.session.relay_alarms import AND_MORE, RelayAlarms
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
@@ -164,19 +163,6 @@ def test_nothing_is_deleted_on_a_relay(bench: Bench, relay: ScriptedRelay) -> No
     of_clients = {name for name in PROTOTYPES if "Connection_" in name and "file" in name.lower()}
     reading = {"getFileDirectoryEx", "fileOpen", "fileRead", "fileClose"}
     assert {name.partition("_")[2] for name in of_clients} == reading, "there is no way to ask for more"
-
-
-def test_a_million_bad_names_are_a_thousand_alarms_and_one(bench: Bench) -> None:
-    alarms = RelayAlarms(NAME, bench.repository, most=3)
-    for number in range(50):
-        alarms.raise_alarm(AlarmKind.FILE_REFUSED, f"bad {number}", "outside")
-    subjects = ["bad 0", "bad 1", "bad 2", AND_MORE]
-    assert bench.alarms() == {AlarmKind.FILE_REFUSED: subjects}
-    alarms = RelayAlarms(NAME, bench.repository)
-    alarms.keep(AlarmKind.FILE_REFUSED, {"bad 1"})
-    assert bench.alarms() == {AlarmKind.FILE_REFUSED: ["bad 1", AND_MORE]}
-    alarms.keep(AlarmKind.FILE_REFUSED, ())
-    assert bench.alarms() == {}
 
 
 def test_nothing_is_written_outside_the_store(bench: Bench, relay: ScriptedRelay, tmp_path: Path) -> None:
