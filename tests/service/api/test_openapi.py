@@ -12,11 +12,12 @@ from schemathesis.core.result import Ok
 from schemathesis.specs.openapi.checks import positive_data_acceptance
 
 from service.api import ApiContext, create_app
-from service.configuration.settings import Settings, sqlite_url
+from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
-from service.storage import Repository, connect, migrate
+from service.storage import Repository, connect
 from service.storage.records import Sample
 from service.storage.states import AlarmKind, LinkState
+from testing.service.database import make_database
 from testing.service.plants import NOW_NS, fault, two_motor_plant
 from testing.service.small_record import CFG, DAT
 from tests.service.api.serving import serving
@@ -37,8 +38,7 @@ NO_WRONG_REQUESTS = {
 def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BaseSchema]:
     """A running API with something in every table."""
     data: Path = tmp_path_factory.mktemp("api")
-    migrate(sqlite_url(data))
-    engine = connect(sqlite_url(data))
+    engine = connect(make_database(data))
     repository = Repository(engine)
     repository.sync_plant(two_motor_plant())
     store = RecordingStore(data / "recordings")

@@ -15,10 +15,11 @@ from service.collector.session.session_policy import SESSION_POLICY, SessionPoli
 from service.configuration.settings import Settings
 from service.plant import Plant, PlantMotor, Relay, Site
 from service.recording_store.store import RecordingStore
-from service.storage import Repository, connect, migrate
+from service.storage import Repository, connect
 from service.storage.records import RecordingEntry, RecordingRequest
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.ports import LOOPBACK, free_port
+from testing.service.database import make_database
 from testing.service.plants import motor
 from testing.waiting import eventually
 from tests.service.collector.scripted_relay import (
@@ -117,7 +118,7 @@ def bench(tmp_path: Path) -> Bench:
         max_file_bytes=100_000,
     )
     settings.data_directory.mkdir()
-    migrate(settings.database_url)
+    make_database(settings.data_directory)
     relay = Relay(
         name=NAME,
         site="FACTORY_A",

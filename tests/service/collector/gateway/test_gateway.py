@@ -28,8 +28,9 @@ from service.demo import MOTORS
 from service.demo.addresses import free_ports
 from service.plant import Plant, read_plant
 from service.recording_store.store import RecordingStore
-from service.storage import LeaseLostError, Repository, connect, migrate
+from service.storage import LeaseLostError, Repository, connect
 from service.storage.states import LinkState
+from testing.service.database import make_database
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.waiting import eventually
 
@@ -91,7 +92,7 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
     settings = Settings(
         data_directory=tmp_path / "data",
         recordings_directory=tmp_path / "recordings",
-        database_url=f"sqlite:///{tmp_path / 'shared.sqlite'}",
+        database_url=make_database(tmp_path),
         scd=scd,
         motors=MOTORS,
         lease_s=LEASE_S,
@@ -100,7 +101,6 @@ def hall(tmp_path: Path) -> Iterator[Hall]:
         request_timeout_s=1.0,
     )
     settings.data_directory.mkdir()
-    migrate(settings.database_url)
     plant = read_plant(settings)
     repository = Repository(connect(settings.database_url))
     repository.sync_plant(plant)
