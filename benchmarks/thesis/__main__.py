@@ -23,9 +23,9 @@ TITLES = {
 PREAMBLE = """\
 # The thesis's experiments, repeated
 
-Written by `python -m benchmarks.thesis`; each section names the command that repeats it. Figures of the
-thesis stand as printed there, ours as measured. "Thesis" is the one on motor condition monitoring with
-hyperbolic cross points that the nomenclature page names; its motor is the 800 W machine of its Table 3.2.
+This page is written by `python -m benchmarks.thesis`; each section names the command that repeats it. Figures of
+the thesis are as printed there, ours as measured. "The thesis" is the one on motor condition monitoring with
+hyperbolic cross points that the nomenclature page names. Its motor is the 800 W machine of its Table 3.2.
 """
 
 
