@@ -49,18 +49,18 @@ WINDOW_RECORDS = tuple((10_000.0, cycles) for cycles in (5.0, 10.0, 25.0, 50.0))
 PREAMBLE = """\
 # How accurate the diagnosis is
 
-This page is written by `python -m benchmarks.accuracy`; each section names the command that repeats it. Every
-figure is given as it was found, also where it falls short of what is expected.
+This page is written by `python -m benchmarks.accuracy`; each section names the command that repeats it.
+Every figure is given as it was found, also where it falls short of what is expected.
 
 **Records** come from physics that shares no code with the estimator: the simulator's windings in phase
 variables, integrated in time (`ied_sim/motor/windings.py`). For the thesis's model an additional shorted
-winding is made of the same coils (`testing/machines/disturbed_records.py`). Speed ripple, star point and fault
-loop are part of both. The motor is the thesis's (800 W, 380 V, 50 Hz, star) unless said otherwise. The diagnosis
-always uses its nameplate's parameters.
+winding is made of the same coils (`testing/machines/disturbed_records.py`). Speed ripple, star point and
+fault loop are part of both. The motor is the thesis's (800 W, 380 V, 50 Hz, star) unless said otherwise.
+The diagnosis always uses its nameplate's parameters.
 
 **The bound** is that of Cramér and Rao, from an independent phasor model that is differentiated numerically
-(`benchmarks/accuracy/bound.py`). Unknown are mu_f, load and time offset; with noise on the voltages, both of
-their sequences too. No unbiased estimator has a smaller standard deviation. The noise is white, with one
+(`benchmarks/accuracy/bound.py`). Unknown are mu_f, load and time offset; with noise on the voltages, both
+of their sequences too. No unbiased estimator has a smaller standard deviation. The noise is white, with one
 standard deviation on the three currents: 0.1 of their rms value at 20 dB.
 
 **Rates** are given with their 95 % intervals after Clopper and Pearson.

@@ -23,9 +23,10 @@ TITLES = {
 PREAMBLE = """\
 # The thesis's experiments, repeated
 
-This page is written by `python -m benchmarks.thesis`; each section names the command that repeats it. Figures of
-the thesis are as printed there, ours as measured. "The thesis" is the one on motor condition monitoring with
-hyperbolic cross points that the nomenclature page names. Its motor is the 800 W machine of its Table 3.2.
+This page is written by `python -m benchmarks.thesis`; each section names the command that repeats it.
+Figures of the thesis are as printed there, ours as measured. "The thesis" is the one on motor condition
+monitoring with hyperbolic cross points that the nomenclature page names. Its motor is the 800 W machine of
+its Table 3.2.
 """
 
 
