@@ -205,6 +205,7 @@ def test_a_cut_ends_no_request_that_waits_for_its_turn(bench: Bench, relay: Scri
 
 
 def test_a_relay_that_is_down_says_so_and_comes_back(bench: Bench) -> None:
+    bench.policy = SessionPolicy(reconnect=Backoff(first_s=0.05, longest_s=0.5))
     request_id = bench.request()
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.DOWN)

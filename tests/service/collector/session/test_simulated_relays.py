@@ -14,12 +14,14 @@ from ied_sim.misbehaviour import Kind, Misbehaviour
 from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import rated_current
 from ied_sim.profiles.profile import Triggers
+from service.collector.session.session_policy import SessionPolicy
 from service.plant.recognition import recognise
 from service.storage.states import LinkState, RecordingRequestState, RecordingState
 from testing.relays.simulated import IED, Simulated, scenario_of, simulated, text
 from testing.waiting import eventually
 from tests.service.collector.conftest import MOTOR, Bench
 from tests.service.collector.expectations import at, expecting
+from tests.service.collector.records.policies import with_first_pause
 from tests.service.collector.scripted_relay import NAME
 
 RISES_S = 3.0
@@ -94,6 +96,7 @@ def test_a_request_becomes_a_stored_record(
 
 def test_a_record_that_is_never_as_long_as_listed_is_refused_in_writing(bench: Bench, tmp_path: Path) -> None:
     scenario = scenario_of("sel-710-ed2", always(Kind.WRONG_SIZE, 7))
+    bench.policy = SessionPolicy(records=with_first_pause(0.005))
     with simulated(tmp_path / "relays", scenario) as served:
         here = of(bench, served, "EVENTS")
         with here.session() as session:
