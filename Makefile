@@ -67,9 +67,9 @@ lint: install
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/ci.yml
 
-# What pages have from the code: the drawings of the architecture, the commands and their options.
+# The drawings of docs/explanation/architecture.md, from the code.
 docs: install
-	$(BIN)/python -m tests.docs
+	$(BIN)/python -m tests.docs.architecture_drawing
 
 # The second one ends with 1 where a command answers too slowly.
 bench: install

@@ -1,6 +1,8 @@
 """Local refinement: Gauss-Newton on the model's currents, Levenberg-Marquardt where that overshoots.
 
-The Jacobian comes from central differences, all of them one batch of compiled steady states. The covariance
+scipy.optimize.least_squares finds the same minima in as many rounds, but takes nearly twice the time a fit,
+and its import takes as long as ten diagnoses; `python -m benchmarks.refinement` measures both. The Jacobian
+comes from central differences, all of them one batch of compiled steady states. The covariance
 allows for coloured noise, on currents and voltages: it is how their phasors vary from cycle to cycle.
 
 The delay between a relay's currents and voltages has a prior: it is a few sample times, rarely more. A light

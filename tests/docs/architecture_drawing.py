@@ -5,12 +5,13 @@ grimp, the library that import-linter uses. The drawings are Mermaid flowcharts,
 """
 
 import ast
+import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import grimp
 
-from tests.docs.pages import ROOT, between_markers
+from tests.docs.pages import ROOT
 
 PAGE = ROOT / "docs" / "explanation" / "architecture.md"
 PACKAGES = ("core", "scl", "mms", "ied_sim", "service")
@@ -124,13 +125,19 @@ def drawn(page: str) -> str:
     for name, drawing in DRAWINGS.items():
         shown = rooms(graph, drawing)
         lines = [*flowchart(drawing, shown, reduced(arrows(graph, shown))), "", *table(shown)]
-        page = between_markers(page, f"drawing {name}", lines)
+        begin, end = f"<!-- drawing {name}: begin -->\n", f"<!-- drawing {name}: end -->"
+        before, _, rest = page.partition(begin)
+        _, found, after = rest.partition(end)
+        if not found:
+            raise ValueError(f"{PAGE.name}: expected the markers of the drawing {name}, found none")
+        page = before + begin + "\n" + "\n".join(lines) + "\n\n" + end + after
     return page
 
 
-def main() -> None:
+def main() -> int:
     PAGE.write_text(drawn(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())
