@@ -67,9 +67,9 @@ lint: install
 	$(BIN)/check-jsonschema --builtin-schema vendor.compose-spec docker-compose.yml
 	$(BIN)/check-jsonschema --builtin-schema vendor.github-workflows .github/workflows/ci.yml
 
-# The drawings of docs/explanation/architecture.md, from the code.
+# What pages have from the code: the drawings of the architecture, the commands and their options.
 docs: install
-	$(BIN)/python -m tests.docs.architecture_drawing
+	$(BIN)/python -m tests.docs
 
 # The second one ends with 1 where a command answers too slowly.
 bench: install

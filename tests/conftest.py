@@ -1,7 +1,6 @@
 """What holds for all tests: their order, and how many processes run them."""
 
 import os
-from collections.abc import Sequence
 from pathlib import PurePath
 
 import pytest
@@ -11,29 +10,28 @@ from hypothesis import settings
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
-LONGEST_FIRST = (
-    "tests/integration",
-    "tests/service/demo",
-    "tests/hostile",
-    "tests/service/collector",
-    "tests/service",
-    "tests/ied_sim",
-)
-"""Files with long tests come first, so that no process is left alone with one at the end."""
+BUSY = ("tests/integration", "tests/service/demo", "tests/service/jobs")
+WAITING = ("tests/service/collector", "tests/hostile")
+"""Folders of long tests: those that start services keep a core busy, those of relays mostly wait."""
 
 PROCESSES_OF_A_CORE = 2
-"""Tests of relays and services wait for half of their time."""
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """Half of the tests' time is waiting."""
     del config
     return PROCESSES_OF_A_CORE * len(os.sched_getaffinity(0))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    items.sort(key=lambda item: _rank(PurePath(item.nodeid.partition("::")[0]), LONGEST_FIRST))
+    """Run long tests first, busy files and waiting ones in turns, so that no core is idle."""
+    files = dict.fromkeys(_file(item) for item in items)
+    places = {file: float(len(files)) for file in files}
+    for folders in (BUSY, WAITING):
+        group = [file for file in files if any(file.is_relative_to(folder) for folder in folders)]
+        places |= {file: number / len(group) for number, file in enumerate(group)}
+    items.sort(key=lambda item: places[_file(item)])
 
 
-def _rank(file: PurePath, folders: Sequence[str]) -> int:
-    """Place of the first folder that holds the file; behind all of them where none does."""
-    return next((k for k, folder in enumerate(folders) if file.is_relative_to(folder)), len(folders))
+def _file(item: pytest.Item) -> PurePath:
+    return PurePath(item.nodeid.partition("::")[0])

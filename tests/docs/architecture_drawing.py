@@ -5,13 +5,12 @@ grimp, the library that import-linter uses. The drawings are Mermaid flowcharts,
 """
 
 import ast
-import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import grimp
 
-from tests.docs.pages import ROOT
+from tests.docs.pages import ROOT, between_markers
 
 PAGE = ROOT / "docs" / "explanation" / "architecture.md"
 PACKAGES = ("core", "scl", "mms", "ied_sim", "service")
@@ -125,19 +124,13 @@ def drawn(page: str) -> str:
     for name, drawing in DRAWINGS.items():
         shown = rooms(graph, drawing)
         lines = [*flowchart(drawing, shown, reduced(arrows(graph, shown))), "", *table(shown)]
-        begin, end = f"<!-- drawing {name}: begin -->\n", f"<!-- drawing {name}: end -->"
-        before, _, rest = page.partition(begin)
-        _, found, after = rest.partition(end)
-        if not found:
-            raise ValueError(f"{PAGE.name}: expected the markers of the drawing {name}, found none")
-        page = before + begin + "\n" + "\n".join(lines) + "\n\n" + end + after
+        page = between_markers(page, f"drawing {name}", lines)
     return page
 
 
-def main() -> int:
+def main() -> None:
     PAGE.write_text(drawn(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

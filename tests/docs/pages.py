@@ -1,7 +1,7 @@
 """Finds the pages of the documentation and the text files that may name them."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -31,3 +31,19 @@ def anchors(page: Path) -> set[str]:
     """Return the anchors that code hosts make of a page's headings."""
     headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+def between_markers(page: str, name: str, lines: Iterable[str]) -> str:
+    """Return the page with `lines` in place of what is between the markers of that name.
+
+    Raises
+    ------
+    ValueError
+        The page does not have both markers.
+    """
+    begin, end = f"<!-- {name}: begin -->\n", f"<!-- {name}: end -->"
+    before, _, rest = page.partition(begin)
+    _, found, after = rest.partition(end)
+    if not found:
+        raise ValueError(f"expected the markers of {name}, found none")
+    return before + begin + "\n" + "\n".join(lines).strip() + "\n\n" + end + after

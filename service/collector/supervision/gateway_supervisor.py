@@ -117,7 +117,10 @@ class GatewaySupervisor:
             except OSError as error:  # no process or memory left at the moment
                 ended = f"it does not start: {error}"
             lasted_s = time.monotonic() - started_s
-            self._on_exit(exit_code)
+            try:
+                self._on_exit(exit_code)
+            except Exception:  # the collector is started again whatever goes wrong in between
+                log.exception("what is done after the collector's end failed")
             if self._stopping.is_set():
                 return
             delay_s = delay.after_run_s(lasted_s)

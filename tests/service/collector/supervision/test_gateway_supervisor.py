@@ -110,6 +110,21 @@ def test_a_collector_that_cannot_be_started_is_tried_again(tmp_path: Path) -> No
     supervised.stop()
 
 
+def test_a_bug_in_what_follows_an_end_keeps_no_collector_from_its_restart(tmp_path: Path) -> None:
+    ends: list[int | None] = []
+
+    def fail(exit_code: int | None) -> None:
+        ends.append(exit_code)
+        raise RuntimeError("a bug")
+
+    supervised = GatewaySupervisor(
+        Settings(data_directory=tmp_path), (sys.executable, "-c", "raise SystemExit(3)"), on_exit=fail
+    )
+    supervised.start()
+    assert eventually(lambda: ends[:2] == [3, 3])
+    supervised.stop()
+
+
 @pytest.mark.parametrize(
     ("stable_after_s", "expected_s"),
     [(60.0, [0.001, 0.002, 0.004, 0.004]), (-1.0, [0.001, 0.001, 0.001, 0.001])],

@@ -1,0 +1,6 @@
+"""Write what pages have from the code: `make docs`."""
+
+from tests.docs import architecture_drawing, command_reference
+
+architecture_drawing.main()
+command_reference.main()

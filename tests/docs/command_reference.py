@@ -1,0 +1,57 @@
+"""Write the commands and their options into docs/reference/commands.md, from the programs: `make docs`."""
+
+import re
+from collections.abc import Iterator
+
+import typer
+
+import ied_sim.cli
+import service.cli.app
+from tests.docs.pages import ROOT, between_markers
+
+PAGE = ROOT / "docs" / "reference" / "commands.md"
+TYPES = re.compile(r" <(?:bool|int|float|str|path|list\[\w+\])>")
+"""Names of Python types, which tell a reader nothing."""
+
+
+def commands() -> Iterator[tuple[str, typer.core.TyperCommand]]:
+    """Yield each command with the words that start it, in the order of its program's help."""
+    group = typer.main.get_command(service.cli.app.app)
+    assert isinstance(group, typer.core.TyperGroup)
+    for name, command in group.commands.items():
+        assert isinstance(command, typer.core.TyperCommand)
+        yield f"mcc {name}", command
+    alone = typer.main.get_command(ied_sim.cli.app)
+    assert isinstance(alone, typer.core.TyperCommand)
+    yield "ied-sim", alone
+
+
+def lines(name: str, command: typer.core.TyperCommand) -> Iterator[str]:
+    """Yield a command's section: what it does, and a table of its arguments and options."""
+    yield f"## {name}"
+    yield ""
+    yield command.help or ""
+    yield ""
+    yield "| Argument or option | Meaning |"
+    yield "|---|---|"
+    context = typer.Context(command, info_name=name)
+    for parameter in command.params:
+        record = parameter.get_help_record(context)
+        if record is not None:
+            usage, meaning = (text.replace("|", "\\|") for text in record)
+            yield f"| `{TYPES.sub('', usage)}` | {meaning.strip()} |"
+    yield ""
+
+
+def written(page: str) -> str:
+    """Return the page with its commands made anew between their markers."""
+    made = [line for name, command in commands() for line in lines(name, command)]
+    return between_markers(page, "commands", made)
+
+
+def main() -> None:
+    PAGE.write_text(written(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
