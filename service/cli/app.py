@@ -1,4 +1,4 @@
-"""The commands of `mcc` and their options. What they do lives next door, imported when a command runs."""
+"""The commands of `mcc` and their options. Each imports its module when it runs, so that `--help` is fast."""
 
 import sys
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ Url = Annotated[str, typer.Option("--url", envvar="MCC_URL", help="Address of th
 MotorName = Annotated[str, typer.Argument(metavar="MOTOR", help="The motor's name in the plant's SCD.")]
 
 INTERRUPTED = 130
-"""What Typer makes of Ctrl-C."""
+"""Typer's exit code after Ctrl-C."""
 
 DEFAULT_URL = "http://127.0.0.1:8710"
 

@@ -1,4 +1,4 @@
-"""`mcc commission`: recordings of a motor's starts in, the motor's file out; no service needed."""
+"""`mcc commission`: writes a motor's file from recordings of its starts, without a service."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -30,11 +30,13 @@ from service.cli.output import (
 def commission_motor(
     records: Sequence[Path], nameplate: Path, output: Path, *, load: str, as_json: bool
 ) -> None:
-    """Read, estimate, write, print.
+    """Read the recordings, estimate the parameters, write the motor's file and print the result.
 
-    Raises CommandError where a recording is no start or cannot be read, where the motor's file cannot be
-    used or written or is one of those that are read, or where the recordings tell no parameter at all: then
-    nothing is written. Warnings also go to stderr.
+    Warnings also go to stderr.
+
+    Raises CommandError, and writes nothing, where a recording cannot be read or holds no start, where the
+    motor's file cannot be used or written or is one of the files read, or where the recordings determine no
+    parameter at all.
     """
     law = None if load == "auto" else LoadLaw[load.upper()]
     _check_output(output, nameplate, records)
@@ -63,10 +65,7 @@ def commission_motor(
 
 
 def _check_output(output: Path, nameplate: Path, records: Sequence[Path]) -> None:
-    """Before anything is computed: whether the file can be there, and is none of those that are read.
-
-    Raises CommandError (wrong use).
-    """
+    """Raise CommandError (wrong use) where the output cannot be written or is one of the files read."""
     folder = output.parent
     if output.is_dir():
         found = "a folder; name the file in it"
@@ -86,7 +85,7 @@ def _check_output(output: Path, nameplate: Path, records: Sequence[Path]) -> Non
 
 
 def _is_same(output: Path, read: Path) -> bool:
-    """However the two are spelled or linked; a recording may have parts beside it, named alike."""
+    """Whether two paths lead to the same file, or `output` to a part of the recording `read`."""
     one, other = output.resolve(), read.resolve()
     part = one.suffix.lower() != ".toml" and one.with_suffix("") == other.with_suffix("")
     return part or one == other or (one.exists() and other.exists() and one.samefile(other))
@@ -140,7 +139,7 @@ def _interval(one: Estimate, scale: float = 1.0) -> str:
 
 @contextmanager
 def _bar() -> Iterator[Callable[[float, str], None]]:
-    """A bar on stderr while the work lasts; nothing where nobody watches."""
+    """Show a progress bar on stderr, if that is a terminal."""
     console = progress()
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:

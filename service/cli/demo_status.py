@@ -1,4 +1,4 @@
-"""`mcc demo-status`: what the demo has found out so far, and whether it is right."""
+"""`mcc demo-status`: the latest verdicts of a demo plant, and whether they are right."""
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table

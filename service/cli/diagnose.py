@@ -1,4 +1,4 @@
-"""`mcc diagnose`: one recording, one motor, one verdict; no service needed."""
+"""`mcc diagnose`: the verdict of one recording of one motor, without a service."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -27,9 +27,9 @@ def diagnose_recording(
     lenient: bool,
     as_json: bool,
 ) -> None:
-    """Read, diagnose, print; what a lenient reader repaired is among the reasons.
+    """Read a recording, diagnose it and print the result, with what a lenient reader repaired as reasons.
 
-    baseline: recordings of the same motor known to be healthy; their standing asymmetry is taken off.
+    baseline: healthy recordings of the same motor, whose standing asymmetry is subtracted.
 
     Raises CommandError where the recording or the motor file cannot be used, or the method is not known.
     """

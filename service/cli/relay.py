@@ -1,4 +1,4 @@
-"""`mcc relay`: what a running service uses of one relay, and where that is not what its SCL says."""
+"""`mcc relay`: what a running service uses of one relay, and where that differs from its SCL."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""`mcc trigger`, `mcc motors`, `mcc health`: a running service, asked over its REST API."""
+"""`mcc trigger`, `mcc motors`, `mcc health`, `mcc release`: requests to the REST API of a running service."""
 
 import time
 from collections.abc import Mapping
@@ -19,9 +19,11 @@ NO_RECORDING = "no recording yet"
 
 
 def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_json: bool) -> None:
-    """Ask for an event report; with `wait_s`, follow it to its verdict. Raises CommandError.
+    """Request a recording of a motor and, for at most `wait_s`, follow it to its verdict.
 
-    The same `key` again asks for nothing new and follows the first one's report.
+    The same `key` again requests nothing new; the first request with it is followed.
+
+    Raises CommandError.
     """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         report = service.request_event_report(motor, idempotency_key=key)
@@ -54,7 +56,7 @@ def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_js
 
 
 def list_motors(url: str, *, as_json: bool) -> None:
-    """Print one line for each of the plant's motors: where it is and how it is. Raises CommandError."""
+    """Print one line for each motor of the plant: its place and its condition. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         motors = list(service.items("/motors", health="true", limit="1000"))
         overviews = [_overview(_listed_health(motor)) for motor in motors]
@@ -87,7 +89,7 @@ def show_health(url: str, motor: str, *, as_json: bool) -> None:
 
 
 def release_relay(url: str, relay: str, *, as_json: bool) -> None:
-    """Have a relay visited again that was set aside. Raises CommandError."""
+    """End the quarantine of a relay. Raises CommandError."""
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         before = service.get(f"/ieds/{segment(relay)}")
         service.release(relay)
@@ -111,7 +113,7 @@ def _listed_health(motor: Document) -> Document:
 
 
 def _warn_of_a_link_that_is_down(service: ServiceClient, motor: str) -> None:
-    """The wish is noted and may yet be granted; who made it wants to know that it will take its time."""
+    """Print a warning where the relay does not answer: the request is stored, but may take long."""
     health = _health(service, motor)
     if health["link_state"] == "down":
         words = one_line(f"{motor}: the link to {health['ied']} is down: {health['link_reason']}")
@@ -167,7 +169,7 @@ def _condition(health: Document) -> list[tuple[str, RenderableType]]:
 
 
 def _last_recording(health: Document) -> str | None:
-    """When it was made; what became of it where that is not a diagnosis."""
+    """When the last recording was made, and its state where it is not diagnosed."""
     last = health["last_recording"]
     if not isinstance(last, Mapping):
         return None

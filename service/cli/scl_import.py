@@ -1,4 +1,4 @@
-"""`mcc import-scl`: what an SCL file describes, as far as the service is concerned."""
+"""`mcc import-scl`: what the service finds in an SCL file."""
 
 from pathlib import Path
 
@@ -79,7 +79,7 @@ def _describe_relay(document: Scl, ied: Ied) -> dict[str, object]:
 
 
 def _warnings(document: Scl) -> list[str]:
-    """What is odd in the file, and every address the service could not use."""
+    """The reader's warnings, and every address that the service could not use."""
     warnings = [str(warning) for warning in document.warnings]
     addressed = []
     for ied in document.ieds:
@@ -94,7 +94,7 @@ def _warnings(document: Scl) -> list[str]:
 
 
 def _address(document: Scl, ied_name: str) -> Address | None:
-    """None where there is none yet, as in an ICD (of a kind of relay). Raises SclError (unusable)."""
+    """The address of a relay; None without one, as in an ICD. Raises SclError for an unusable one."""
     try:
         document.connected_access_point(ied_name)
     except SclError:
@@ -103,7 +103,7 @@ def _address(document: Scl, ied_name: str) -> Address | None:
 
 
 def _usable_address(document: Scl, ied_name: str) -> Address | None:
-    """None also for an address that cannot be one: a warning says so."""
+    """The address of a relay; None also for an unusable one, which is among the warnings."""
     try:
         return _address(document, ied_name)
     except SclError:
@@ -123,7 +123,7 @@ def _motors(document: Scl) -> RenderableType:
 
 
 def _relays(document: Scl) -> Table:
-    """References are shown without the relay's name, with which each of them begins."""
+    """The table of relays, with references that leave out the relay's name at their beginning."""
     table = Table(title="Relays", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("relay\nmake", "address"):
         table.add_column(heading, no_wrap=True)

@@ -1,4 +1,4 @@
-"""Where the demo listens: the ports its SCD names, or others when somebody has them already."""
+"""The ports of the demo: those of its SCD, or other free ones where they are taken."""
 
 import socket
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ LOOPBACK = "127.0.0.1"
 
 
 def addressed_scd(scd: Path, directory: Path) -> Path:
-    """The SCD itself when all its ports are free, else a copy in `directory` with free ones.
+    """Return the SCD itself if all its ports are free, else a copy in `directory` with free ports.
 
     Raises SclError, OSError.
     """
@@ -28,7 +28,7 @@ def addressed_scd(scd: Path, directory: Path) -> Path:
 
 
 def free_port(wanted: int) -> int:
-    """The wanted port of the loopback interface if it is free, else another."""
+    """Return the wanted port of the loopback interface if it is free, else another."""
     return wanted if is_free(wanted) else free_ports(1)[0]
 
 
@@ -44,7 +44,7 @@ def is_free(port: int) -> bool:
 
 
 def free_ports(count: int) -> Sequence[int]:
-    """Different free ports of the loopback interface."""
+    """Return different free ports of the loopback interface."""
     with ExitStack() as stack:
         sockets = [stack.enter_context(socket.socket()) for _ in range(count)]
         for probe in sockets:

@@ -1,4 +1,4 @@
-"""What the demo found out, beside the truth: as a table for people and a document for programs."""
+"""The demo's diagnoses beside the truth, as a table for people and a document for programs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ FOOTNOTE = "the interval is the record's own scatter; see docs/explanation/diagn
 
 @dataclass(frozen=True, slots=True)
 class DemoDiagnosis:
-    """One event report's diagnosis (as `mcc diagnose --json`), or the reason there is none."""
+    """The diagnosis of one requested recording (as `mcc diagnose --json`), or why there is none."""
 
     document: Document | None
     seconds: float | None
@@ -30,7 +30,7 @@ class DemoDiagnosis:
 
 @dataclass(frozen=True, slots=True)
 class DemoMotor:
-    """One motor of the demo plant and what was found out about it."""
+    """One motor of the demo plant with its diagnoses."""
 
     name: str
     site: str
@@ -47,18 +47,18 @@ class DemoMotor:
 
 
 def document(motors: Sequence[DemoMotor], seconds: float) -> dict[str, object]:
-    """What `mcc demo --json FILE` writes."""
+    """Return the document that `mcc demo --json FILE` writes."""
     return {"seconds": round(seconds, 3), "motors": [motor.as_dict() for motor in motors]}
 
 
 def slowest(motors: Sequence[DemoMotor]) -> float | None:
-    """Longest time from a trigger to the stored diagnosis [s]; the relay's own recording is part of it."""
+    """Return the longest time from a trigger to the stored diagnosis [s], the relay's recording included."""
     times = [diagnosis.seconds for motor in motors for diagnosis in motor.diagnoses]
     return max((seconds for seconds in times if seconds is not None), default=None)
 
 
 def table(motors: Sequence[DemoMotor]) -> Table:
-    """Every motor's diagnoses beside its truth."""
+    """Return a table of every motor's diagnoses beside its truth."""
     shown = Table(
         title="Diagnoses and truth",
         title_justify="left",
@@ -68,7 +68,7 @@ def table(motors: Sequence[DemoMotor]) -> Table:
         collapse_padding=True,
     )
     for heading in ("motor", "truth", "verdict"):
-        shown.add_column(heading)  # these may wrap on a narrow terminal: the figures stay whole
+        shown.add_column(heading)  # these wrap on a narrow terminal, so that the figures stay whole
     for heading in ("mu_f %", "95 % scatter", "load", "trigger to\ndiagnosis s"):
         shown.add_column(heading, justify="right", no_wrap=True)
     for motor in motors:
@@ -83,7 +83,7 @@ def table(motors: Sequence[DemoMotor]) -> Table:
 
 
 def truth_text(truth: Truth) -> str:
-    """The truth in words: "5 % b, load 0.65"."""
+    """Return the truth in words: "5 % b, load 0.65"."""
     condition = "healthy" if truth.phase is None else f"{100 * truth.mu_f:g} % {truth.phase}"
     return f"{condition}, load {truth.load_level:g}"
 

@@ -1,4 +1,4 @@
-"""A round of the demo: each motor's relay is triggered, each diagnosis is waited for."""
+"""A round of the demo: triggers the relay of each motor and waits for each diagnosis."""
 
 import time
 from collections.abc import Callable, Sequence
@@ -12,7 +12,7 @@ LIMIT_S = 40.0
 POLL_PERIOD_S = 0.1
 
 STATES = ("triggered", "recorded", "fetched", "diagnosed")
-"""What an event report goes through after it was requested."""
+"""The states of a recording request after the first, in their order."""
 
 
 @dataclass
@@ -31,7 +31,7 @@ def play_round(
     advance: Callable[[int], None],
     pause: Callable[[float], None],
 ) -> None:
-    """Trigger all motors at once; give each one more diagnosis, or the reason why there is none.
+    """Trigger all motors at once; add to each its new diagnosis, or the reason why there is none.
 
     `advance` is told how many states the event reports went through since it was told last, in all
     len(motors) * len(STATES). `pause` waits some seconds. Raises ServiceError.
@@ -54,7 +54,7 @@ def play_round(
 
 
 def _ended(service: ServiceClient, report: Document, *, late: bool) -> DemoDiagnosis | None:
-    """What an event report has come to; None while it is under way."""
+    """The result of a recording request; None while it is under way."""
     state = report["state"]
     if state == "diagnosed":
         recording = service.get(f"/recordings/{segment(str(report['recording_id']))}")

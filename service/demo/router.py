@@ -1,8 +1,8 @@
-"""The demo enterprise's router: the one way between a factory's network and the wide-area network.
+"""The router of the demo enterprise, between the network of a factory and the wide-area network.
 
-A TCP relay. It listens wherever the SCD says that a relay of the factory is reached from outside, and
-passes every connection on to the address the relay has inside. So it needs no rights of the system and no
-route in any other host, and the relays have no way out of their network.
+It forwards TCP connections. It listens at every address at which, by the SCD, a relay of the factory is
+reached from outside, and passes each connection on to the relay's address inside. So it needs no privileges
+and no route on any other host, and the relays have no way out of their network.
 
 `python -m service.demo.router --scd FILE --inside FACTORY_A --outside WAN`
 """
@@ -25,22 +25,22 @@ from service.process.logs import configure_logging
 log = structlog.get_logger(__name__)
 
 CONNECT_TIMEOUT_S = 3.0
-"""Shorter than the service's own, so that the service hears a clear end and not silence."""
+"""Shorter than the service's own, so that the service sees a closed connection before its time runs out."""
 
 MOST_CONNECTIONS = 8
-"""To one relay at a time: as many as relays give associations, and a bound on the router's memory."""
+"""To one relay at a time. Relays allow about as many associations, and it limits the router's memory."""
 
 CHUNK_BYTES = 65536
 
 EVERY_INTERFACE = "0.0.0.0"  # noqa: S104 - a router's name may resolve to its address on either network
 
 KEEP_ALIVE = {socket.TCP_KEEPIDLE: 10, socket.TCP_KEEPINTVL: 5, socket.TCP_KEEPCNT: 3}
-"""Times [s] and probes. A relay has few associations to give: none to ends that are gone."""
+"""Times [s] and probes. A relay allows few associations, so dead connections must end soon."""
 
 
 @dataclass(frozen=True, slots=True)
 class Passage:
-    """From a port of the router to a relay."""
+    """Forwards connections from a port of the router to a relay."""
 
     relay: str
     port: int
@@ -50,7 +50,7 @@ class Passage:
     )
 
     async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        """One connection, until either side ends it; ended at once when MOST_CONNECTIONS are open."""
+        """Forward one connection until either side ends it; refuse it when MOST_CONNECTIONS are open."""
         if self._places.locked():
             client, *_ = writer.get_extra_info("peername") or ("gone",)
             reason = f"{MOST_CONNECTIONS} connections are open"
@@ -85,7 +85,7 @@ class Passage:
 
 
 def passages(scd: Path, inside: str, outside: str) -> list[Passage]:
-    """One for each relay of the subnetwork `inside`, at the port it has on `outside`. Raises SclError."""
+    """Return one for each relay of the subnetwork `inside`, at its port on `outside`. Raises SclError."""
     document = scl.read(scd)
     within, without = document.seen_from(inside), document.seen_from(outside)
     relays = dict.fromkeys(
@@ -95,7 +95,7 @@ def passages(scd: Path, inside: str, outside: str) -> list[Passage]:
 
 
 async def route(ways: Sequence[Passage], stop: asyncio.Event) -> None:
-    """Pass connections on until `stop` is set. Raises OSError when a port cannot be had."""
+    """Forward connections until `stop` is set. Raises OSError where a port cannot be opened."""
     servers = []
     for way in ways:
         servers.append(await asyncio.start_server(way.serve, EVERY_INTERFACE, way.port, limit=CHUNK_BYTES))
@@ -106,7 +106,7 @@ async def route(ways: Sequence[Passage], stop: asyncio.Event) -> None:
 
 
 async def _copy(source: asyncio.StreamReader, sink: asyncio.StreamWriter) -> None:
-    """Until the source's end, which is the sink's too: MMS has no use for half a connection."""
+    """Copy until the source ends, and close the sink then: MMS does not use half-open connections."""
     while chunk := await source.read(CHUNK_BYTES):
         sink.write(chunk)
         await sink.drain()

@@ -1,4 +1,4 @@
-"""Where a running demo plant stands: each motor's latest verdict beside the truth."""
+"""The state of a running demo plant: each motor's latest verdict beside the truth."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ LINK = ("link_state", "link_reason")
 
 @dataclass(frozen=True, slots=True)
 class MotorStatus:
-    """One motor: what is known of it (as GET motors/{name}/health tells), and what is true."""
+    """One motor: its health as the service reports it (GET motors/{name}/health), and the truth."""
 
     health: Document
     truth: Truth
@@ -33,7 +33,7 @@ class MotorStatus:
 
 
 def ask_status(service: ServiceClient, truths: Mapping[str, Truth]) -> list[MotorStatus]:
-    """Every motor of the service. `truths`: by name of the relay. Raises ServiceError."""
+    """Return the status of every motor. truths: by name of the relay. Raises ServiceError."""
     return [
         MotorStatus(service.get(f"/motors/{segment(str(motor['name']))}/health"), truths[str(motor["ied"])])
         for motor in service.items("/motors")

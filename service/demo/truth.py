@@ -1,4 +1,4 @@
-"""What the simulated motors are really like, asked of the simulator: nothing is written down twice."""
+"""The true condition of the simulated motors, from the simulator itself, so that it is defined once."""
 
 import subprocess
 import sys
@@ -11,7 +11,7 @@ TIMEOUT_S = 60.0
 
 
 class TruthError(RuntimeError):
-    """The simulator did not tell the truth of its motors."""
+    """The simulator did not report the condition of its motors."""
 
 
 class Truth(BaseModel):
@@ -25,7 +25,7 @@ class Truth(BaseModel):
 
     @property
     def verdict(self) -> str:
-        """What a diagnosis should come to."""
+        """The right verdict."""
         return "healthy" if self.theta_f is None else "fault"
 
     @property
@@ -37,7 +37,7 @@ _TRUTHS = TypeAdapter(dict[str, Truth])
 
 
 def ask_simulator(scd: Path, scenario: Path) -> Mapping[str, Truth]:
-    """The truth of each simulated relay's motor, by name of the relay. Raises TruthError."""
+    """Return the true condition of each simulated relay's motor, by name of the relay. Raises TruthError."""
     command = [sys.executable, "-m", "ied_sim", "--scd", str(scd), "--scenario", str(scenario), "--truth"]
     try:
         answer = subprocess.run(  # noqa: S603 - our own module
@@ -46,7 +46,7 @@ def ask_simulator(scd: Path, scenario: Path) -> Mapping[str, Truth]:
             text=True,
             timeout=TIMEOUT_S,
             check=True,
-            start_new_session=True,  # Ctrl-C is for the demo
+            start_new_session=True,  # so that Ctrl-C reaches the demo alone
         )
         return _TRUTHS.validate_json(answer.stdout)
     except subprocess.CalledProcessError as error:

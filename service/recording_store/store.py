@@ -4,8 +4,8 @@
     <root>/incoming/<writer>/<random>/...      while they arrive
 
 The digest is the SHA-256 of the list of (name, SHA-256 of the content), so the same record is stored once
-however often it is pulled. A folder appears under its digest complete and on disk (fsync) or not at all: rows
-in the database may point to it from then on.
+however often it is pulled. A folder appears under its digest only when it is complete and on disk (fsync).
+From then on rows of the database may refer to it.
 """
 
 import os
@@ -26,7 +26,7 @@ _DIGEST = re.compile(r"[0-9a-f]{64}")
 
 
 class RecordingStoreError(ValueError):
-    """Files that cannot be stored, or are not stored: what was asked for and why it cannot be."""
+    """Files cannot be stored, or stored files are missing or changed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,27 +48,27 @@ class StoredRecording:
 
     @property
     def size_bytes(self) -> int:
-        """Sum over the files [bytes]."""
+        """Size of all files together [bytes]."""
         return sum(file.size_bytes for file in self.files)
 
     @property
     def name(self) -> str:
-        """Name of the record: that of its leading file without suffix."""
+        """Name of the record: that of its entry file without suffix."""
         return self.entry.stem
 
     @property
     def waveform_files(self) -> tuple[StoredFile, ...]:
-        """Those that say what was recorded; without the ones that only describe it (.HDR, .INF)."""
+        """The files with the samples, without those that only describe them (.HDR, .INF)."""
         return tuple(file for file in self.files if Path(file.name).suffix in WAVEFORM_SUFFIXES)
 
     @property
     def entry(self) -> Path:
-        """The file a reader starts from (.CFG, .CFF or .CEV)."""
+        """The file that a reader opens first (.CFG, .CFF or .CEV)."""
         return _entry(self.directory, (file.name for file in self.files))
 
 
 class Incoming:
-    """Files of one record while they arrive; `keep` moves them to their place."""
+    """The files of one record while they arrive. `keep` moves them to their place."""
 
     def __init__(self, directory: Path, root: Path) -> None:
         self._directory = directory
@@ -76,7 +76,7 @@ class Incoming:
 
     @contextmanager
     def create(self, name: str) -> Iterator[BinaryIO]:
-        """A new file to stream into, on disk when the block ends. Raises RecordingStoreError (bad name)."""
+        """Open a new file, which is on disk when the block ends. Raises RecordingStoreError (bad name)."""
         path = self._directory / safe_name(name)
         try:
             sink = path.open("xb")
@@ -88,7 +88,7 @@ class Incoming:
             os.fsync(sink.fileno())
 
     def keep(self) -> StoredRecording:
-        """Moves the files to the folder of their content; the same content twice is one folder."""
+        """Move the files to the folder of their content, which may be there already."""
         files = _describe(self._directory)
         _entry(self._directory, (file.name for file in files))
         digest = manifest_digest(files)
@@ -107,9 +107,9 @@ class Incoming:
 
 
 class RecordingStore:
-    """Content-addressed folders below `root`; several processes may store at once.
+    """Folders below `root`, named by their content. Several processes may store at once.
 
-    writer: a name that no other process has at the same time, and that this one has again after a restart.
+    writer: a name that no other process uses at the same time, and that this one uses again after a restart.
     """
 
     def __init__(self, root: Path, writer: str = "service") -> None:
@@ -119,7 +119,7 @@ class RecordingStore:
 
     @contextmanager
     def incoming(self) -> Iterator[Incoming]:
-        """A place for the files of one record; what was not kept is removed when the block ends."""
+        """A place for the files of one record. What is not kept is removed when the block ends."""
         directory = self._incoming / uuid.uuid4().hex
         directory.mkdir()
         try:
@@ -128,7 +128,7 @@ class RecordingStore:
             shutil.rmtree(directory, ignore_errors=True)
 
     def store(self, files: Mapping[str, Path | bytes]) -> StoredRecording:
-        """Stores the files (name in the record -> content or a file to copy) as one record."""
+        """Store the files (name in the record -> content or a file to copy) as one record."""
         with self.incoming() as incoming:
             for name, content in files.items():
                 with incoming.create(name) as sink:
@@ -140,7 +140,7 @@ class RecordingStore:
             return incoming.keep()
 
     def find(self, digest: str) -> StoredRecording:
-        """The record of this digest. Raises RecordingStoreError when its files are gone or were changed."""
+        """Return the record of a digest. Raises RecordingStoreError where its files are missing or changed."""
         directory = self._present(digest)
         files = _describe(directory)
         if manifest_digest(files) != digest:
@@ -148,12 +148,12 @@ class RecordingStore:
         return StoredRecording(digest, directory, files)
 
     def entry(self, digest: str) -> Path:
-        """The file a reader starts from, without hashing anything. Raises RecordingStoreError."""
+        """Return the file that a reader opens first, without hashing any. Raises RecordingStoreError."""
         directory = self._present(digest)
         return _entry(directory, (path.name for path in directory.iterdir()))
 
     def discard_incoming(self) -> int:
-        """Removes what an earlier run of this writer left half arrived; for its start, before it stores."""
+        """Remove incomplete records of an earlier run of this writer. For use before anything is stored."""
         left_over = list(self._incoming.iterdir())
         for directory in left_over:
             shutil.rmtree(directory)
@@ -167,9 +167,9 @@ class RecordingStore:
 
 
 def safe_name(name: str) -> str:
-    """The file name to store under: last part of a relay's path, upper case, letters of a portable set only.
+    """Return the name to store a file under: the end of its path in upper case and portable characters.
 
-    Names come from relays and uploads and are not to be trusted: they never leave the record's folder.
+    Names come from relays and uploads and cannot be trusted; this one stays inside the record's folder.
     """
     last = re.split(r"[\\/]", name)[-1]
     safe = re.sub(r"[^A-Z0-9._-]", "_", last.upper())
@@ -181,7 +181,7 @@ def safe_name(name: str) -> str:
 
 
 def manifest_digest(files: tuple[StoredFile, ...]) -> str:
-    """SHA-256 over the sorted (name, SHA-256) of the files, hexadecimal."""
+    """Return the SHA-256 of the sorted (name, SHA-256) of the files, hexadecimal."""
     lines = sorted(f"{file.name}\t{file.sha256}\n" for file in files)
     return sha256("".join(lines).encode("ascii")).hexdigest()
 
