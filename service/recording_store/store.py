@@ -140,7 +140,7 @@ class RecordingStore:
             return incoming.keep()
 
     def find(self, digest: str) -> StoredRecording:
-        """Return the record of a digest. Raises RecordingStoreError where its files are missing or changed."""
+        """Return the record of a digest. Raises RecordingStoreError if its files are missing or changed."""
         directory = self._present(digest)
         files = _describe(directory)
         if manifest_digest(files) != digest:
