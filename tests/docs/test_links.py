@@ -81,3 +81,9 @@ def test_the_index_leads_to_every_page() -> None:
         (index.parent / link.partition("#")[0]).resolve() for link in LINK.findall(index.read_text("utf-8"))
     }
     assert {page for page in pages() if page.is_relative_to(index.parent)} - linked == {index}
+
+
+def test_the_index_names_every_example() -> None:
+    index = (ROOT / "docs" / "README.md").read_text(encoding="utf-8")
+    examples = [file.name for file in (ROOT / "examples").glob("*.py") if file.name != "__init__.py"]
+    assert [example for example in examples if f"`examples/{example}`" not in index] == []
