@@ -9,7 +9,7 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel
-from sqlalchemy.exc import OperationalError, TimeoutError  # noqa: A004 - that of the database
+from sqlalchemy.exc import DataError, OperationalError, TimeoutError  # noqa: A004 - that of the database
 from starlette.exceptions import HTTPException
 from structlog.typing import FilteringBoundLogger
 
@@ -106,6 +106,12 @@ def _with_status(status: HTTPStatus) -> Callable[[Request, Exception], JSONRespo
     return answer
 
 
+def _unstorable(request: Request, error: Exception) -> JSONResponse:
+    """A text with a NUL in it, say, which PostgreSQL cannot hold."""
+    detail = f"the database cannot hold a value of this request: {getattr(error, 'orig', error)}"
+    return problem_response(request.url.path, HTTPStatus.UNPROCESSABLE_ENTITY, detail)
+
+
 def install(app: FastAPI) -> None:
     """Makes `app` answer every error with a problem document."""
 
@@ -124,6 +130,7 @@ def install(app: FastAPI) -> None:
 
     for error_type, status in STATUS_OF.items():
         app.add_exception_handler(error_type, _with_status(status))
+    app.add_exception_handler(DataError, _unstorable)
 
     @app.exception_handler(RecordingStoreError)
     def _damaged(request: Request, error: RecordingStoreError) -> JSONResponse:

@@ -9,7 +9,7 @@ from functools import partial
 
 import structlog
 from pebble import ProcessExpired
-from sqlalchemy.exc import DBAPIError, SQLAlchemyError, StatementError
+from sqlalchemy.exc import SQLAlchemyError
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
@@ -18,6 +18,7 @@ from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore, RecordingStoreError
+from service.storage.errors import UnstorableDiagnosisError
 from service.storage.records import ClaimedJob
 from service.storage.repository import Repository
 from service.timing.periodic_worker import PeriodicWorker
@@ -167,10 +168,8 @@ class JobRunner:
                     self._repository.finish_job(
                         job.id, diagnosis, recorded_ns=recorded_ns, now_ns=time.time_ns()
                     )
-                except StatementError as error:
-                    if isinstance(error, DBAPIError):
-                        raise
-                    self._retry(claimed, f"the diagnosis cannot be stored: {error.orig}")
+                except UnstorableDiagnosisError as error:
+                    self._retry(claimed, f"the diagnosis cannot be stored: {error}")
                     return
                 log.info(
                     "recording diagnosed",

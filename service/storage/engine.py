@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping
 from functools import partial
 
-from sqlalchemy import Connection, Engine, create_engine, event, make_url
+from sqlalchemy import Connection, Engine, create_engine, event, func, make_url, select
 from sqlalchemy.engine.interfaces import DBAPIConnection
 from sqlalchemy.exc import ArgumentError
 from sqlalchemy.pool import ConnectionPoolEntry
@@ -39,6 +39,8 @@ def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
     # A figure that is not a number has no place in a JSON document; better to fail here than in a reader.
     serializer = partial(json.dumps, allow_nan=False)
     if parsed.get_backend_name() != "sqlite":
+        if parsed.drivername == "postgresql":
+            parsed = parsed.set(drivername="postgresql+psycopg")
         try:
             return create_engine(parsed, json_serializer=serializer, pool_pre_ping=True)
         except ModuleNotFoundError as error:
@@ -66,6 +68,12 @@ def busy_timeout_s_of(options: Mapping[str, object]) -> float:
     timeout_s = options.get(WAITS_S, BUSY_TIMEOUT_S)
     assert isinstance(timeout_s, float)  # noqa: S101 - `connect` has set it
     return timeout_s
+
+
+def one_at_a_time(connection: Connection, work: str) -> None:
+    """Wait until no other transaction does this work; for what two services may begin at the same time."""
+    if connection.dialect.name == "postgresql":
+        connection.execute(select(func.pg_advisory_xact_lock(func.hashtext(f"statorwatch {work}"))))
 
 
 def _prepare_sqlite(connection: DBAPIConnection, entry: ConnectionPoolEntry) -> None:

@@ -33,6 +33,10 @@ class UnusableBaselineError(StorageError):
         super().__init__(f"recording {recording_id} cannot be part of a baseline: {reason}")
 
 
+class UnstorableDiagnosisError(StorageError):
+    """A diagnosis with a figure that is no number: no JSON document can hold it."""
+
+
 class LeaseLostError(StorageError):
     """A gateway does not hold the lease, of all its relays or of one, that it needs for what it wants."""
 

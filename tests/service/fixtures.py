@@ -1,5 +1,7 @@
 """A migrated SQLite file, a repository on it that knows the small plant, and a recording store."""
 
+import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,13 +14,44 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.models import JobRow, RecordingRequestRow, RecordingRow, StateCountRow
 from testing.service.plants import two_motor_plant
+from testing.service.postgresql import INSTALLED, PostgresServer, binaries, serving_postgresql
+
+
+@pytest.fixture(scope="session")
+def migrated_sqlite(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A migrated file to copy: migrating anew for each test would take longer than most tests."""
+    url = sqlite_url(tmp_path_factory.mktemp("migrated"))
+    migrate(url)
+    path = Path(url.removeprefix("sqlite:///"))
+    assert not path.with_name(f"{path.name}-wal").exists(), "all of it is in the one file"
+    return path
 
 
 @pytest.fixture
-def database_url(tmp_path: Path) -> str:
+def database_url(tmp_path: Path, migrated_sqlite: Path) -> str:
     url = sqlite_url(tmp_path)
-    migrate(url)
+    shutil.copy(migrated_sqlite, url.removeprefix("sqlite:///"))
     return url
+
+
+@pytest.fixture(scope="session")
+def postgresql() -> Iterator[PostgresServer]:
+    """A server for the session. Where none is installed the test is skipped, and fails where CI=true."""
+    folder = binaries()
+    if folder is None:
+        reason = f"no PostgreSQL server in {INSTALLED}: apt-get install postgresql"
+        if os.environ.get("CI") == "true":
+            pytest.fail(reason)
+        pytest.skip(reason)
+    with serving_postgresql(folder) as server:
+        yield server
+
+
+@pytest.fixture
+def postgresql_url(postgresql: PostgresServer) -> Iterator[str]:
+    """A migrated database of its own on the server."""
+    with postgresql.database() as url:
+        yield url
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection
 
-from service.storage.engine import connect
+from service.storage.engine import connect, one_at_a_time
 from service.storage.errors import StorageError
 
 
@@ -21,6 +21,7 @@ def migrate(url: str) -> None:
     engine = connect(url)
     try:
         with engine.begin() as connection:
+            one_at_a_time(connection, "migrate")
             settings = config(connection)
             _require_known(connection, settings)
             command.upgrade(settings, "head")

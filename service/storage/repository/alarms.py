@@ -22,7 +22,7 @@ class AlarmRows(Sessions):
         Raises NotFoundError.
         """
         with self._write() as session:
-            found(session, IedRow, ied, "IED")
+            found(session, IedRow, ied, "IED", lock=True)
             return alarm(raised(session, ied, kind, subject, reason, now_ns))
 
     def clear_alarms(self, ied: str, alarm_ids: Collection[str], *, now_ns: int) -> None:

@@ -28,7 +28,7 @@ class BaselineRows(Sessions):
         UnusableBaselineError (one that is not diagnosed, or was refused).
         """
         with self._write() as session:
-            found(session, MotorRow, motor, "motor")
+            found(session, MotorRow, motor, "motor", lock=True)
             for recording_id in recording_ids:
                 _check(session, motor, recording_id)
             session.execute(delete(BaselineRecordingRow).where(BaselineRecordingRow.motor == motor))

@@ -1,13 +1,15 @@
 """The queue of diagnoses to be made, and their results."""
 
+import json
 import uuid
+from collections.abc import Mapping
 
 from sqlalchemy import Select, func, or_, select, update
 from sqlalchemy.orm import Session, joinedload
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis
-from service.storage.errors import NotFoundError, StateConflictError
+from service.storage.errors import NotFoundError, StateConflictError, UnstorableDiagnosisError
 from service.storage.models import DiagnosisRow, JobRow, RecordingRow
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
 from service.storage.repository.baselines import baseline_rows
@@ -77,7 +79,7 @@ class JobRows(Sessions):
     def finish_job(self, job_id: str, diagnosis: Diagnosis, *, recorded_ns: int, now_ns: int) -> None:
         """Keep the result: diagnosis, job, recording and requests in one transaction; again changes nothing.
 
-        recorded_ns: trigger time written in the record. Raises NotFoundError.
+        recorded_ns: trigger time written in the record. Raises NotFoundError, UnstorableDiagnosisError.
         """
         with self._write() as session:
             row = found(session, JobRow, job_id, "job")
@@ -210,8 +212,18 @@ def _diagnosis_row(
         load_level=diagnosis.load_level,
         method=diagnosis.method,
         model=diagnosis.model,
-        document=diagnosis.as_dict(),
+        document=_document(diagnosis),
     )
+
+
+def _document(diagnosis: Diagnosis) -> Mapping[str, object]:
+    """Raises UnstorableDiagnosisError."""
+    document = diagnosis.as_dict()
+    try:
+        json.dumps(document, allow_nan=False)
+    except ValueError as error:
+        raise UnstorableDiagnosisError(str(error)) from error
+    return document
 
 
 def _with_result(recording_id: str) -> Select[JobRow]:

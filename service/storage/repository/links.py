@@ -56,7 +56,7 @@ class LinkRows(Sessions):
         day_bytes: a UTC day (days since 1970) and all that counts against its limit. Raises NotFoundError.
         """
         with self._write() as session:
-            row = found(session, IedRow, ied, "IED")
+            row = found(session, IedRow, ied, "IED", lock=True)
             change_link(session, row, state, reason, now_ns)
             if state is LinkState.UP:
                 row.last_success_ns = now_ns

@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.plant import AveragingStep, MeteredQuantity
+from service.storage.engine import one_at_a_time
 from service.storage.models import MeasurementRow, MotorRow
 from service.storage.records import Cursor, Measurement, Page, Sample
 from service.storage.repository.sessions import Order, Sessions, found, page_of
@@ -56,6 +57,7 @@ class MeasurementRows(Sessions):
         """
         for finer, step_s in pairwise(step.value for step in AveragingStep):
             with self._write() as session:
+                one_at_a_time(session.connection(), "average measurements")
                 step_ns = step_s * NANOSECONDS_PER_SECOND
                 to_ns = (now_ns - LATENESS_NS) // step_ns * step_ns
                 latest = session.scalar(

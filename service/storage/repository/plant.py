@@ -3,6 +3,7 @@
 from sqlalchemy import select, update
 
 from service.plant import Plant
+from service.storage.engine import one_at_a_time
 from service.storage.models import IedRow, MotorRow, SiteRow
 from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
 from service.storage.repository.sessions import Sessions, found, page_of, record_of
@@ -16,6 +17,7 @@ class PlantRows(Sessions):
         What left the plant is put out of service, not deleted: its recordings stay.
         """
         with self._write() as session:
+            one_at_a_time(session.connection(), "sync plant")
             for table in (SiteRow, IedRow, MotorRow):
                 session.execute(update(table).values(in_service=False))
             for site in plant.sites:

@@ -26,6 +26,7 @@ class QuarantineRows(Sessions):
         Raises NotFoundError.
         """
         with self._write() as session:
+            found(session, IedRow, ied, "IED", lock=True)
             times = _times(session, ied) + 1
             # The exponent is bounded: floats are.
             pause_s = min(first_pause_s * 2.0 ** min(times - 1, 64), longest_pause_s)
@@ -36,13 +37,14 @@ class QuarantineRows(Sessions):
     def suspect(self, ieds: Collection[str], reason: str, *, pause_s: float, now_ns: int) -> None:
         """Notes relays of which one did harm. Raises NotFoundError."""
         with self._write() as session:
-            for ied in ieds:
+            for ied in sorted(ieds):  # in one order, for two who lock them
+                found(session, IedRow, ied, "IED", lock=True)
                 _put(session, ied, reason, _times(session, ied), now_ns, pause_s)
 
     def release(self, ied: str, *, now_ns: int) -> None:
         """Forgets whatever was held against a relay; harmless where nothing was. Raises NotFoundError."""
         with self._write() as session:
-            relay = found(session, IedRow, ied, "IED")
+            relay = found(session, IedRow, ied, "IED", lock=True)
             row = session.get(QuarantineRow, ied)
             if row is not None:
                 session.delete(row)

@@ -32,7 +32,7 @@ class RecordingRequestRows(Sessions):
         Raises NotFoundError, OutOfServiceError for a motor that left the plant.
         """
         with self._write() as session:
-            where = found(session, MotorRow, motor, "motor")
+            where = found(session, MotorRow, motor, "motor", lock=True)
             if idempotency_key is not None:
                 same = select(RecordingRequestRow).where(
                     RecordingRequestRow.motor == motor, RecordingRequestRow.idempotency_key == idempotency_key
@@ -53,7 +53,7 @@ class RecordingRequestRows(Sessions):
         key = f"schedule {due_ns}"
         of_motor = select(RecordingRequestRow).where(RecordingRequestRow.motor == motor)
         with self._write() as session:
-            where = found(session, MotorRow, motor, "motor")
+            where = found(session, MotorRow, motor, "motor", lock=True)
             earlier = only(session, of_motor.where(RecordingRequestRow.idempotency_key == key))
             if earlier is not None:
                 return recording_request(earlier)
@@ -116,7 +116,7 @@ class RecordingRequestRows(Sessions):
         False, and nothing is changed, where its state is another by now or a gateway holds its relay.
         """
         with self._write() as session:
-            row = found(session, RecordingRequestRow, request.id, KIND)
+            row = found(session, RecordingRequestRow, request.id, KIND, lock=True)
             if row.state is not request.state or session.get(LeaseRow, row.ied) is not None:
                 return False
             fail_row(row, reason, now_ns)
@@ -128,7 +128,7 @@ class RecordingRequestRows(Sessions):
         Raises NotFoundError, StateConflictError, LeaseLostError where that gateway does not hold it.
         """
         with self._write() as session:
-            row = found(session, RecordingRequestRow, request_id, KIND)
+            row = found(session, RecordingRequestRow, request_id, KIND, lock=True)
             if gateway is not None:
                 require_lease(session, row.ied, gateway)
             if _advances(row, {RecordingRequestState.REQUESTED}, RecordingRequestState.TRIGGERED):
@@ -138,7 +138,7 @@ class RecordingRequestRows(Sessions):
     def mark_recorded(self, request_id: str, *, now_ns: int) -> RecordingRequest:
         """The relay reported the record. Raises NotFoundError, StateConflictError."""
         with self._write() as session:
-            row = found(session, RecordingRequestRow, request_id, KIND)
+            row = found(session, RecordingRequestRow, request_id, KIND, lock=True)
             before = {RecordingRequestState.REQUESTED, RecordingRequestState.TRIGGERED}
             if _advances(row, before, RecordingRequestState.RECORDED):
                 row.recorded_ns = now_ns
@@ -147,7 +147,7 @@ class RecordingRequestRows(Sessions):
     def fail_recording_request(self, request_id: str, reason: str, *, now_ns: int) -> RecordingRequest:
         """Give a request up, with the reason. Raises NotFoundError, StateConflictError (has ended)."""
         with self._write() as session:
-            row = found(session, RecordingRequestRow, request_id, KIND)
+            row = found(session, RecordingRequestRow, request_id, KIND, lock=True)
             fail_row(row, reason, now_ns)
             return recording_request(row)
 
@@ -211,8 +211,11 @@ def fail_row(row: RecordingRequestRow, reason: str, now_ns: int) -> None:
 
 
 def _waiting_for(session: Session, recording_id: str) -> list[RecordingRequestRow]:
-    query = select(RecordingRequestRow).where(
-        RecordingRequestRow.recording_id == recording_id, RecordingRequestRow.state.not_in(ENDED)
+    query = (
+        select(RecordingRequestRow)
+        .where(RecordingRequestRow.recording_id == recording_id, RecordingRequestRow.state.not_in(ENDED))
+        .order_by(RecordingRequestRow.id)
+        .with_for_update(key_share=True)
     )
     return list(session.scalars(query))
 

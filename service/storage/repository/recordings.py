@@ -137,7 +137,9 @@ class RecordingRows(Sessions):
                 row.state = RecordingState.REJECTED
                 row.reason = reason
             if recording_request_id is not None:
-                fail_row(found(session, RecordingRequestRow, recording_request_id, KIND), reason, now_ns)
+                fail_row(
+                    found(session, RecordingRequestRow, recording_request_id, KIND, lock=True), reason, now_ns
+                )
             return recording(row)
 
     def add_recording(
@@ -163,7 +165,7 @@ class RecordingRows(Sessions):
         if (ied is None) != (remote is None):
             raise ValueError("a recording comes from a relay (ied and remote) or is uploaded (neither)")
         with self._write() as session:
-            found(session, MotorRow, motor, "motor")
+            found(session, MotorRow, motor, "motor", lock=True)
             row = _stored_before(session, motor, ied, remote.name if remote else stored.name, stored)
             created = row is None
             sent_before = row is not None and row.ied is not None
@@ -259,6 +261,7 @@ def _of_the_same_waveform(
 
 def _announced(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
     """The recording of what the relay lists, whatever became of it; a new announcement the first time."""
+    found(session, MotorRow, motor, "motor", lock=True)
     link = _link(session, ied, remote)
     if link is None:
         return _announce(session, ied, motor, remote, now_ns)
@@ -273,7 +276,6 @@ def _to_fill(session: Session, ied: str, motor: str, remote: RemoteRecord, now_n
 
 def _announce(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
     found(session, IedRow, ied, "IED")
-    found(session, MotorRow, motor, "motor")
     row = RecordingRow(
         id=str(uuid.uuid4()),
         motor=motor,
@@ -368,7 +370,7 @@ def _list_files(session: Session, row: RecordingRow, stored: StoredRecording) ->
 
 def _attach(session: Session, recording_request_id: str, row: RecordingRow, now_ns: int) -> None:
     """Give the request its recording, and its end where the recording has come to one already."""
-    fetch_row(found(session, RecordingRequestRow, recording_request_id, KIND), row.id, now_ns)
+    fetch_row(found(session, RecordingRequestRow, recording_request_id, KIND, lock=True), row.id, now_ns)
     session.flush()
     if row.state is RecordingState.DIAGNOSED:
         diagnose_rows(session, row.id, now_ns)

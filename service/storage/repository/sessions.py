@@ -68,9 +68,13 @@ class Sessions:
             self._turn.release()
 
 
-def found(session: Session, row_type: type[Row], key: str, kind: str) -> Row:
-    """The row of this key. Raises NotFoundError."""
-    row = session.get(row_type, key)
+def found(session: Session, row_type: type[Row], key: str, kind: str, *, lock: bool = False) -> Row:
+    """Return the row of this key. Raises NotFoundError.
+
+    lock: other writers that ask for the same wait until this transaction has ended, and see what it did.
+    On PostgreSQL only; SQLite lets one write at a time anyway.
+    """
+    row = session.get(row_type, key, with_for_update={"key_share": True} if lock else None)
     if row is None:
         raise NotFoundError(kind, key)
     return row

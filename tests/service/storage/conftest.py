@@ -1,17 +1,30 @@
+"""Every test of the storage runs on both databases, unless it says that it is about one of them."""
+
 from collections.abc import Iterator
 
 import pytest
-from sqlalchemy import Engine
 
 from service.storage.states import JobState, RecordingRequestState, RecordingState
-from tests.service.fixtures import database_url, engine, repository, state_counts, store
+from tests.service.fixtures import database_url as sqlite_database_url
+from tests.service.fixtures import engine, repository, state_counts, store
 
-__all__ = ["database_url", "engine", "repository", "store"]
+__all__ = ["engine", "repository", "sqlite_database_url", "store"]
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url(request: pytest.FixtureRequest) -> str:
+    url = request.getfixturevalue("sqlite_database_url" if request.param == "sqlite" else "postgresql_url")
+    assert isinstance(url, str)
+    return url
 
 
 @pytest.fixture(autouse=True)
-def the_state_counts_are_right(engine: Engine) -> Iterator[None]:
+def the_state_counts_are_right(request: pytest.FixtureRequest) -> Iterator[None]:
     """Whatever a test has done, the counts that are kept are those of the tables."""
+    if "repository" not in request.fixturenames:
+        yield
+        return
+    engine = request.getfixturevalue("engine")
     yield
     kept, counted = state_counts(engine)
     assert kept == counted

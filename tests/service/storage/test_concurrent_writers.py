@@ -8,6 +8,8 @@ from contextlib import closing
 from multiprocessing.queues import Queue
 from threading import Thread
 
+import pytest
+
 from service.storage import Repository, connect
 from service.storage.records import RemoteRecord
 from service.storage.states import LinkState
@@ -49,6 +51,10 @@ def test_two_processes_write_at_once(database_url: str, repository: Repository) 
     assert counts.recordings == {"announced": ROUNDS}, "each record is announced once, whoever saw it first"
 
 
+ON_SQLITE = pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+
+
+@ON_SQLITE
 def test_who_waits_for_the_writer_goes_on_as_soon_as_it_is_done(
     database_url: str, repository: Repository
 ) -> None:

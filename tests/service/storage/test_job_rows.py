@@ -1,10 +1,10 @@
 from dataclasses import replace
 
 import pytest
-from sqlalchemy.exc import StatementError
 
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository, StateConflictError
+from service.storage.errors import UnstorableDiagnosisError
 from service.storage.records import ClaimedJob, RemoteRecord
 from service.storage.states import JobState, RecordingRequestState, RecordingState
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
@@ -135,7 +135,7 @@ def test_only_a_stored_recording_can_be_diagnosed(repository: Repository) -> Non
 def test_a_result_that_is_no_json_is_refused(repository: Repository, recording_id: str) -> None:
     job_id = claim(repository).job.id
     broken = replace(fault(), residual_rms_A=float("nan"))
-    with pytest.raises(StatementError, match="not JSON compliant"):
+    with pytest.raises(UnstorableDiagnosisError, match="not JSON compliant"):
         repository.finish_job(job_id, broken, recorded_ns=NOW_NS, now_ns=NOW_NS)
     assert repository.job(recording_id, job_id).job.state is JobState.RUNNING
 

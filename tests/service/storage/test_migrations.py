@@ -12,6 +12,8 @@ from service.storage.migrations import config
 from service.storage.models import Base
 from testing.service.plants import NOW_NS
 
+ON_SQLITE = pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+
 
 def test_migrations_make_the_tables_of_the_models(engine: Engine) -> None:
     with engine.connect() as connection:
@@ -44,6 +46,7 @@ def test_a_newer_versions_database_is_left_alone(database_url: str, engine: Engi
         migrate(database_url)
 
 
+@ON_SQLITE
 def test_sqlite_is_shared_safely(engine: Engine) -> None:
     with engine.connect() as connection:
         pragmas = {
@@ -64,28 +67,30 @@ def test_a_path_with_a_percent_sign(tmp_path: Path) -> None:
     assert (tmp_path / "100%.sqlite").is_file()
 
 
-def test_a_database_of_the_first_version_keeps_what_it_holds(tmp_path: Path) -> None:
-    url = f"sqlite:///{tmp_path / 'old.sqlite'}"
-    engine = connect(url)
+def test_a_database_of_the_first_version_keeps_what_it_holds(database_url: str) -> None:
+    engine = connect(database_url)
     with engine.begin() as connection:
+        command.downgrade(config(connection), "base")
         command.upgrade(config(connection), "0001")
         for statement in (
-            "INSERT INTO sites VALUES ('FACTORY_A', 'Factory A', 1)",
+            "INSERT INTO sites VALUES ('FACTORY_A', 'Factory A', true)",
             "INSERT INTO ieds (name, site, host, port, manufacturer, type, in_service, link_state)"
-            " VALUES ('A1', 'FACTORY_A', '10.0.0.7', 102, 'SEL', 'SEL-710', 1, 'up')",
-            "INSERT INTO motors VALUES ('PUMP-A1', 'pump', 'FACTORY_A', 'A1', 1)",
+            " VALUES ('A1', 'FACTORY_A', '10.0.0.7', 102, 'SEL', 'SEL-710', true, 'up')",
+            "INSERT INTO motors VALUES ('PUMP-A1', 'pump', 'FACTORY_A', 'A1', true)",
             "INSERT INTO event_reports (id, motor, ied, state, requested_ns)"
             " VALUES ('r', 'PUMP-A1', 'A1', 'diagnosed', 5)",
             "INSERT INTO recordings (id, motor, ied, source, name, size_bytes, state, attempts, announced_ns)"
             " VALUES ('x', 'PUMP-A1', 'A1', 'relay', 'HR_1', 7, 'announced', 0, 5)",
         ):
             connection.execute(text(statement))
-    migrate(url)
+    migrate(database_url)
     repository = Repository(engine)
     assert repository.motor("PUMP-A1").schedule is None
     assert repository.recording_request("r").origin == "request"
     assert repository.recording("x").clock_quality is None
     assert repository.ied("A1").link_state == "up"
+    assert repository.counts().recordings == {"announced": 1}
+    assert repository.counts().recording_requests == {"diagnosed": 1}
     assert repository.link_changes("A1", limit=10).items == ()
     engine.dispose()
 
