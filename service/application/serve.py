@@ -33,8 +33,12 @@ from service.process.installation import installation_id
 from service.process.single_instance import exclusive
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
+from service.timing.backoff import Backoff
 
 log = structlog.get_logger(__name__)
+
+LONGEST_RETRY_S = 3600.0
+"""Before another attempt of a diagnosis, however many failed."""
 
 LAST_REQUESTS_S = 3
 """Time for the requests under way when the service stops."""
@@ -139,8 +143,10 @@ def _parts(
             workers=settings.workers,
             job_timeout_s=settings.job_timeout_s,
             attempts=settings.job_attempts,
-            retry_delay_s=settings.job_retry_delay_s,
+            backoff=Backoff(settings.job_retry_delay_s, LONGEST_RETRY_S),
+            lease_s=settings.lease_s,
         ),
+        installation=installation_id(settings.data_directory),
         prepare_worker=prepare_worker,
     )
     workers = background_workers(

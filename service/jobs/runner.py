@@ -1,6 +1,7 @@
 """Takes jobs from the database, has them done in worker processes, writes the results back."""
 
 import time
+import uuid
 from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor, Future
@@ -13,34 +14,45 @@ from sqlalchemy.exc import SQLAlchemyError
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
-from core.units import NANOSECONDS_PER_SECOND
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore, RecordingStoreError
-from service.storage.errors import UnstorableDiagnosisError
+from service.storage.errors import RunnerEndedError, UnstorableDiagnosisError
 from service.storage.records import ClaimedJob
 from service.storage.repository import Repository
+from service.timing.backoff import Backoff
+from service.timing.boot_clock import boot_time_s
+from service.timing.peer_liveness import PeerLiveness
 from service.timing.periodic_worker import PeriodicWorker
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
+RENEWALS_A_LEASE = 3
+
 
 @dataclass(frozen=True, slots=True)
 class JobLimits:
-    """How many at once, how long each [s], how often, how soon again [s]."""
+    """What the settings say of jobs.
 
-    workers: int = 2
-    job_timeout_s: float = 60.0
-    attempts: int = 3
-    retry_delay_s: float = 2.0
+    workers: how many at once.  job_timeout_s: how long each may take.  attempts: how often it is tried.
+    backoff: pauses before it is tried again.  lease_s: others do the jobs of a runner that has not renewed
+    its lease for so long.
+    """
+
+    workers: int
+    job_timeout_s: float
+    attempts: int
+    backoff: Backoff
+    lease_s: float
 
 
 class JobRunner:
     """One thread feeds a pool of worker processes.
 
-    A worker that dies or takes too long costs its own job an attempt and nothing else. Whatever was running
-    when the service was killed is queued again by `start`.
+    A worker that dies or takes too long costs its own job an attempt and nothing else. Services that share a
+    database share its jobs: what was running when a service was killed is queued again when that installation
+    starts anew, or by another's runner once the lease has run out.
     """
 
     def __init__(
@@ -51,6 +63,7 @@ class JobRunner:
         task: Task,
         *,
         limits: JobLimits,
+        installation: str,
         prepare_worker: Callable[[], None] = follow_service,
         poll_period_s: float = 0.2,
     ) -> None:
@@ -59,6 +72,10 @@ class JobRunner:
         self._motors = motors
         self._task = task
         self._limits = limits
+        self._installation = installation
+        self._id = str(uuid.uuid4())
+        self._peers = PeerLiveness(limits.lease_s)
+        self._renew_at_s = 0.0
         self._pool = WorkerPool(limits.workers, prepare_worker)
         self._pool_problem: str | None = None
         self._in_flight: dict[str, Future[Outcome]] = {}
@@ -67,8 +84,8 @@ class JobRunner:
         self._worker = PeriodicWorker("the job runner", self._step, period_s=poll_period_s, at_once=True)
 
     def start(self) -> None:
-        """Queue interrupted jobs again and start the thread, which starts the workers."""
-        self._repository.requeue_interrupted_jobs(now_ns=time.time_ns(), max_attempts=self._limits.attempts)
+        """Queue this installation's interrupted jobs again and start the thread, which starts the workers."""
+        self._register()
         self._worker.start()
 
     def stop(self) -> None:
@@ -89,6 +106,8 @@ class JobRunner:
 
     def _step(self) -> None:
         """Write results back and claim what workers are free for. Raises SQLAlchemyError: try again."""
+        if boot_time_s() >= self._renew_at_s:
+            self._renew()
         while self._results:
             self._settle(*self._results[0])
             self._results.popleft()
@@ -102,33 +121,60 @@ class JobRunner:
         while len(self._in_flight) < self._limits.workers and self._claim():
             pass
 
+    def _register(self) -> None:
+        """Begin as a new runner, which holds no job."""
+        self._in_flight.clear()
+        self._id = str(uuid.uuid4())
+        self._repository.register_runner(
+            self._id,
+            installation=self._installation,
+            now_ns=time.time_ns(),
+            max_attempts=self._limits.attempts,
+        )
+
+    def _renew(self) -> None:
+        """Renew the lease, and take the jobs from runners that have not renewed theirs."""
+        try:
+            renewals = self._repository.renew_runner(self._id)
+        except RunnerEndedError as error:
+            log.warning("begins anew without its jobs", error=str(error))
+            self._register()
+            return
+        self._renew_at_s = boot_time_s() + self._limits.lease_s / RENEWALS_A_LEASE
+        del renewals[self._id]
+        for runner, count in self._peers.dead(renewals, time.monotonic()).items():
+            if self._repository.end_runner(
+                runner, renewals=count, now_ns=time.time_ns(), max_attempts=self._limits.attempts
+            ):
+                log.warning("another job runner is gone: its jobs are queued again", runner=runner)
+
     def _give_back(self) -> None:
         """Jobs nobody does any more: as if they had not been claimed."""
         for job_id in list(self._in_flight):
-            self._repository.release_job(job_id)
+            self._repository.release_job(job_id, runner=self._id)
             del self._in_flight[job_id]
 
     def _claim(self) -> bool:
-        claimed = self._repository.claim_job(now_ns=time.time_ns())
+        claimed = self._repository.claim_job(now_ns=time.time_ns(), runner=self._id)
         if claimed is None:
             return False
         job = claimed.job
         motor = self._motors.get(claimed.motor)
         if motor is None:
             reason = f"motor {claimed.motor} is not in the plant: its parameters are unknown"
-            self._repository.reject_recording(job.id, reason, now_ns=time.time_ns())
+            self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
             return True
         try:
             entry = self._store.entry(claimed.digest)
             baseline = tuple(self._store.entry(digest) for digest in claimed.baseline)
         except RecordingStoreError as error:
-            self._repository.reject_recording(job.id, str(error), now_ns=time.time_ns())
+            self._repository.reject_recording(job.id, str(error), now_ns=time.time_ns(), runner=self._id)
             return True
         task = DiagnosisTask(entry, motor, job.method, job.model, baseline)
         try:
             future = self._pool.schedule(self._task, task, self._limits.job_timeout_s)
         except NoWorkersError:
-            self._repository.release_job(job.id)
+            self._repository.release_job(job.id, runner=self._id)
             return False
         self._in_flight[job.id] = future
         future.add_done_callback(partial(self._done, claimed))
@@ -146,7 +192,7 @@ class JobRunner:
             return
         error = None if future.cancelled() else future.exception()
         if future.cancelled() or isinstance(error, BrokenExecutor):  # the pool's end, not the job's fault
-            self._repository.release_job(job_id)
+            self._repository.release_job(job_id, runner=self._id)
         elif error is None:
             self._keep(claimed, future.result())
         elif isinstance(error, TimeoutError):
@@ -161,15 +207,22 @@ class JobRunner:
         job = claimed.job
         match outcome:
             case Rejected(reason):
-                self._repository.reject_recording(job.id, reason, now_ns=time.time_ns())
+                self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=reason)
             case Diagnosed(diagnosis, recorded_ns):
                 try:
-                    self._repository.finish_job(
-                        job.id, diagnosis, recorded_ns=recorded_ns, now_ns=time.time_ns()
+                    kept = self._repository.finish_job(
+                        job.id,
+                        diagnosis,
+                        recorded_ns=recorded_ns,
+                        now_ns=time.time_ns(),
+                        runner=self._id,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")
+                    return
+                if not kept:
+                    log.warning("a diagnosis came after the lease was lost", recording=job.recording_id)
                     return
                 log.info(
                     "recording diagnosed",
@@ -184,7 +237,8 @@ class JobRunner:
             error,
             now_ns=time.time_ns(),
             max_attempts=self._limits.attempts,
-            retry_delay_ns=round(self._limits.retry_delay_s * NANOSECONDS_PER_SECOND),
+            backoff=self._limits.backoff,
+            runner=self._id,
         )
         log.warning("diagnosis failed", recording=claimed.job.recording_id, error=error, job=str(state))
 
@@ -194,6 +248,7 @@ class JobRunner:
             while self._results:
                 self._settle(*self._results.popleft())
             for job_id in self._in_flight:
-                self._repository.release_job(job_id)
+                self._repository.release_job(job_id, runner=self._id)
+            self._repository.end_runner(self._id, now_ns=time.time_ns(), max_attempts=self._limits.attempts)
         except SQLAlchemyError:
             log.exception("jobs were not put back; the next start queues them again")

@@ -37,6 +37,13 @@ class UnstorableDiagnosisError(StorageError):
     """A diagnosis with a figure that is no number: no JSON document can hold it."""
 
 
+class RunnerEndedError(StorageError):
+    """A job runner was declared dead: others do its jobs."""
+
+    def __init__(self, runner: str) -> None:
+        super().__init__(f"job runner {runner} has not renewed its lease in time; others do its jobs")
+
+
 class LeaseLostError(StorageError):
     """A gateway does not hold the lease, of all its relays or of one, that it needs for what it wants."""
 

@@ -28,7 +28,12 @@ def migrated_sqlite(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def database_url(tmp_path: Path, migrated_sqlite: Path) -> str:
+def database_url(request: pytest.FixtureRequest, tmp_path: Path, migrated_sqlite: Path) -> str:
+    """A migrated database; tests may ask for "postgresql" as this fixture's parameter."""
+    if getattr(request, "param", "sqlite") == "postgresql":
+        url = request.getfixturevalue("postgresql_url")
+        assert isinstance(url, str)
+        return url
     url = sqlite_url(tmp_path)
     shutil.copy(migrated_sqlite, url.removeprefix("sqlite:///"))
     return url

@@ -2,7 +2,7 @@
 
 from service.storage.models.base import Base
 from service.storage.models.counts import StateCountRow
-from service.storage.models.diagnoses import DiagnosisRow, JobRow
+from service.storage.models.diagnoses import DiagnosisRow, JobRow, JobRunnerRow
 from service.storage.models.measurements import MeasurementRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
 from service.storage.models.recordings import (
@@ -30,6 +30,7 @@ __all__ = [
     "GatewayRow",
     "IedRow",
     "JobRow",
+    "JobRunnerRow",
     "LeaseRow",
     "LinkChangeRow",
     "LinkFiguresRow",

@@ -10,7 +10,20 @@ from service.storage.models.base import Base
 from service.storage.states import JobState
 
 
+class JobRunnerRow(Base):
+    """A job runner of some service. `renewals` goes on as long as it lives."""
+
+    __tablename__ = "job_runners"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    installation: Mapped[str]
+    renewals: Mapped[int]
+    started_ns: Mapped[int]
+
+
 class JobRow(Base):
+    """A diagnosis to be made. `runner`: the job runner that makes or made it."""
+
     __tablename__ = "jobs"
 
     id: Mapped[str] = mapped_column(String(36), primary_key=True)
@@ -24,6 +37,7 @@ class JobRow(Base):
     started_ns: Mapped[int | None]
     finished_ns: Mapped[int | None]
     error: Mapped[str | None]
+    runner: Mapped[str | None] = mapped_column(String(36))
     result: Mapped["DiagnosisRow | None"] = relationship(viewonly=True)
 
     __table_args__ = (

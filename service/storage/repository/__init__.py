@@ -3,6 +3,7 @@
 from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
 from service.storage.repository.findings import FindingsRows
+from service.storage.repository.job_runners import JobRunnerRows
 from service.storage.repository.jobs import JobRows
 from service.storage.repository.leases import LeaseRows
 from service.storage.repository.links import LinkRows
@@ -25,6 +26,7 @@ class Repository(
     RecordingRequestRows,
     RecordingRows,
     JobRows,
+    JobRunnerRows,
     MotorHealthRows,
     StateCounts,
     MeasurementRows,

@@ -9,8 +9,14 @@ from sqlalchemy.orm import Session, joinedload
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis
-from service.storage.errors import NotFoundError, StateConflictError, UnstorableDiagnosisError
-from service.storage.models import DiagnosisRow, JobRow, RecordingRow
+from core.units import NANOSECONDS_PER_SECOND
+from service.storage.errors import (
+    NotFoundError,
+    RunnerEndedError,
+    StateConflictError,
+    UnstorableDiagnosisError,
+)
+from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, RecordingRow
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
@@ -18,9 +24,7 @@ from service.storage.repository.recording_requests import diagnose_rows, fail_ro
 from service.storage.repository.recordings import new_job
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobState, RecordingState
-
-MAX_ATTEMPTS = 3
-RETRY_DELAY_NS = 2_000_000_000
+from service.timing.backoff import Backoff
 
 
 class JobRows(Sessions):
@@ -39,10 +43,12 @@ class JobRows(Sessions):
             session.flush()
             return job(row)
 
-    def claim_job(self, *, now_ns: int) -> ClaimedJob | None:
-        """Takes the next job that is due: it is running from now on, one attempt more.
+    def claim_job(self, *, now_ns: int, runner: str | None = None) -> ClaimedJob | None:
+        """Take the next job that is due: it is running from now on, one attempt more.
 
         One that was queued later than now is of a time before the clock was set back: it is due.
+        runner: a registered runner, whose job it is from now on. Without one the job stays with whoever
+        claimed it until any runner registers. Raises RunnerEndedError.
         """
         queued_ns = func.coalesce(JobRow.finished_ns, JobRow.created_ns)
         is_due = or_(JobRow.not_before_ns <= now_ns, queued_ns > now_ns)
@@ -53,10 +59,13 @@ class JobRows(Sessions):
             .with_for_update(skip_locked=True)
         )
         with self._write() as session:
+            if runner is not None and session.get(JobRunnerRow, runner, with_for_update=True) is None:
+                raise RunnerEndedError(runner)
             row = only(session, query)
             if row is None:
                 return None
             row.state = JobState.RUNNING
+            row.runner = runner
             row.attempts += 1
             row.started_ns, row.finished_ns = now_ns, None
             recording = found(session, RecordingRow, row.recording_id, "recording")
@@ -68,24 +77,36 @@ class JobRows(Sessions):
             digests = tuple(one.digest for one in healthy if one.digest is not None)
             return ClaimedJob(job(row), recording.motor, recording.digest, digests)
 
-    def release_job(self, job_id: str) -> None:
-        """Puts a running job back as if it had not been claimed: for a clean stop. Raises NotFoundError."""
+    def release_job(self, job_id: str, *, runner: str | None = None) -> None:
+        """Put a running job of the runner back as if it had not been claimed. Raises NotFoundError."""
         with self._write() as session:
-            row = found(session, JobRow, job_id, "job")
-            if row.state is JobState.RUNNING:
+            row = found(session, JobRow, job_id, "job", lock=True)
+            if _is_held(row, runner):
                 row.state = JobState.QUEUED
+                row.runner = None
                 row.attempts -= 1
 
-    def finish_job(self, job_id: str, diagnosis: Diagnosis, *, recorded_ns: int, now_ns: int) -> None:
+    def finish_job(
+        self,
+        job_id: str,
+        diagnosis: Diagnosis,
+        *,
+        recorded_ns: int,
+        now_ns: int,
+        runner: str | None = None,
+    ) -> bool:
         """Keep the result: diagnosis, job, recording and requests in one transaction; again changes nothing.
 
-        recorded_ns: trigger time written in the record. Raises NotFoundError, UnstorableDiagnosisError.
+        recorded_ns: trigger time written in the record. Returns False, and keeps nothing, where the job is
+        not the runner's any more. Raises NotFoundError, UnstorableDiagnosisError.
         """
         with self._write() as session:
-            row = found(session, JobRow, job_id, "job")
+            row = found(session, JobRow, job_id, "job", lock=True)
             if row.state is JobState.DONE:
-                return
-            recording = found(session, RecordingRow, row.recording_id, "recording")
+                return row.runner == runner
+            if not _is_held(row, runner):
+                return False
+            recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
             session.execute(
                 update(DiagnosisRow).where(DiagnosisRow.recording_id == recording.id).values(current=False)
             )
@@ -97,11 +118,17 @@ class JobRows(Sessions):
             withdraw_clock(recording)
             session.flush()
             diagnose_rows(session, recording.id, now_ns)
+            return True
 
-    def reject_recording(self, job_id: str, reason: str, *, now_ns: int) -> None:
-        """The record cannot be read as it is; trying again would not help. Raises NotFoundError."""
+    def reject_recording(self, job_id: str, reason: str, *, now_ns: int, runner: str | None = None) -> None:
+        """End a job whose record cannot be read: trying again would not help. Raises NotFoundError.
+
+        No change where the job is not the runner's any more.
+        """
         with self._write() as session:
-            _give_up(session, found(session, JobRow, job_id, "job"), RecordingState.REJECTED, reason, now_ns)
+            row = found(session, JobRow, job_id, "job", lock=True)
+            if _is_held(row, runner):
+                _give_up(session, row, RecordingState.REJECTED, reason, now_ns)
 
     def retry_or_fail_job(
         self,
@@ -109,29 +136,22 @@ class JobRows(Sessions):
         error: str,
         *,
         now_ns: int,
-        max_attempts: int = MAX_ATTEMPTS,
-        retry_delay_ns: int = RETRY_DELAY_NS,
+        max_attempts: int,
+        backoff: Backoff,
+        runner: str | None = None,
     ) -> JobState:
-        """Queues a job again, each time after twice the delay, or gives it up after `max_attempts`.
+        """Queue a job again after a pause, or give it up after `max_attempts`; no change without the lease.
 
         Returns the state the job is in now. Raises NotFoundError.
         """
         with self._write() as session:
-            row = found(session, JobRow, job_id, "job")
-            _retry_or_give_up(session, row, error, now_ns, max_attempts, retry_delay_ns)
+            row = found(session, JobRow, job_id, "job", lock=True)
+            if _is_held(row, runner):
+                pause_s = backoff.pause_s(row.attempts)
+                retry_or_give_up(
+                    session, row, error, now_ns=now_ns, max_attempts=max_attempts, pause_s=pause_s
+                )
             return row.state
-
-    def requeue_interrupted_jobs(self, *, now_ns: int, max_attempts: int = MAX_ATTEMPTS) -> int:
-        """Jobs a killed service left running are queued again; for the start, before any is claimed.
-
-        Their attempt counts: a recording that takes the service down with it every time is given up at last.
-        """
-        with self._write() as session:
-            rows = session.scalars(select(JobRow).where(JobRow.state == JobState.RUNNING)).all()
-            for row in rows:
-                error = "the service ended during the diagnosis"
-                _retry_or_give_up(session, row, error, now_ns, max_attempts, retry_delay_ns=0)
-            return len(rows)
 
     def job(self, recording_id: str, job_id: str) -> JobResult:
         """Return a job of this recording. Raises NotFoundError."""
@@ -166,30 +186,32 @@ def _end(row: JobRow, state: JobState, error: str | None, now_ns: int) -> None:
 
 
 def _give_up(session: Session, row: JobRow, state: RecordingState, reason: str, now_ns: int) -> None:
-    """Ends a job without a result. A recording that has an earlier diagnosis keeps it."""
-    if row.state in (JobState.DONE, JobState.FAILED):
-        return
+    """End a job without a result. A recording that has an earlier diagnosis keeps it."""
     _end(row, JobState.FAILED, reason, now_ns)
-    recording = found(session, RecordingRow, row.recording_id, "recording")
+    recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
     if recording.state is not RecordingState.DIAGNOSED:
         recording.state = state
         recording.reason = reason
     fail_rows(session, recording.id, reason, now_ns)
 
 
-def _retry_or_give_up(
-    session: Session, row: JobRow, error: str, now_ns: int, max_attempts: int, retry_delay_ns: int
+def _is_held(row: JobRow, runner: str | None) -> bool:
+    return row.state is JobState.RUNNING and row.runner == runner
+
+
+def retry_or_give_up(
+    session: Session, row: JobRow, error: str, *, now_ns: int, max_attempts: int, pause_s: float
 ) -> None:
-    if row.state is not JobState.RUNNING:
-        return
+    """Queue a running job again, or give it up after so many attempts."""
     if row.attempts >= max_attempts:
         reason = f"gave up after {row.attempts} attempts: {error}"
         _give_up(session, row, RecordingState.FAILED, reason, now_ns)
         return
     row.state = JobState.QUEUED
+    row.runner = None
     row.error = error
     row.finished_ns = now_ns
-    row.not_before_ns = now_ns + retry_delay_ns * 2 ** (row.attempts - 1)
+    row.not_before_ns = now_ns + round(pause_s * NANOSECONDS_PER_SECOND)
 
 
 def _diagnosis_row(

@@ -7,6 +7,8 @@ import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from threading import Event
 
@@ -19,11 +21,13 @@ from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.states import JobState, RecordingRequestState, RecordingState
+from service.timing.backoff import Backoff
 from testing.service.plants import motor
 from testing.waiting import wait_until
 from tests.service.jobs.stand_ins import GO, act_as_told, fail_to_start, prepare_when_told
 
-LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, retry_delay_s=0.01)
+LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, backoff=Backoff(0.01, 0.1), lease_s=30.0)
+LEASE_S = 1.5
 MOTORS = {"PUMP-A1": motor("PUMP-A1")}
 
 
@@ -33,6 +37,7 @@ def running(
     store: RecordingStore,
     limits: JobLimits = LIMITS,
     prepare_worker: Callable[[], None] = follow_service,
+    installation: str = "ours",
 ) -> Iterator[JobRunner]:
     runner = JobRunner(
         repository,
@@ -40,6 +45,7 @@ def running(
         MOTORS,
         act_as_told,
         limits=limits,
+        installation=installation,
         prepare_worker=prepare_worker,
         poll_period_s=0.05,
     )
@@ -98,7 +104,7 @@ def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: Re
     report = repository.request_recording("PUMP-A1", now_ns=time.time_ns())
     stored = store.store({"E.CFF": b"hang"})
     repository.add_recording(stored, motor="PUMP-A1", recording_request_id=report.id, now_ns=time.time_ns())
-    limits = JobLimits(workers=1, job_timeout_s=0.3, attempts=1)
+    limits = replace(LIMITS, workers=1, job_timeout_s=0.3, attempts=1)
     with running(repository, store, limits):
         wait_until(lambda: repository.recording_request(report.id).state is RecordingRequestState.FAILED)
     assert (
@@ -117,9 +123,11 @@ def test_a_clean_stop_gives_running_jobs_back(repository: Repository, store: Rec
         wait_until(lambda: ended(repository, recording_id))
 
 
-def serve_and_hang(url: str, root: Path) -> None:
+def serve_and_hang(url: str, root: Path, installation: str = "ours") -> None:
     store = RecordingStore(root)
-    with running(Repository(connect(url)), store):
+    with running(
+        Repository(connect(url)), store, replace(LIMITS, lease_s=LEASE_S), installation=installation
+    ):
         time.sleep(600)
 
 
@@ -161,6 +169,30 @@ def test_a_killed_service_loses_no_job_and_leaves_no_worker(
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
     assert len(repository.trend("PUMP-A1", "mu_f", limit=5).items) == 1
     wait_until(lambda: not alive(worker))
+
+
+@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
+def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
+    repository: Repository, store: RecordingStore, database_url: str
+) -> None:
+    recording_id = add(repository, store, "hang once")
+    context = multiprocessing.get_context("spawn")
+    service = context.Process(target=serve_and_hang, args=(database_url, store.root, "elsewhere"))
+    service.start()
+    wait_until(lambda: worker_of(store))
+    with running(repository, store, replace(LIMITS, lease_s=LEASE_S)):
+        began_s = time.monotonic()
+        while time.monotonic() - began_s < 2 * LEASE_S:
+            (found,) = repository.jobs(recording_id, limit=5).items
+            assert (found.job.state, found.job.attempts) == (JobState.RUNNING, 1), "it is the other's job"
+            other = add(repository, store, f"fine {time.monotonic()}")
+            wait_until(partial(ended, repository, other))
+        assert service.pid is not None
+        os.kill(service.pid, signal.SIGKILL)
+        service.join()
+        wait_until(lambda: ended(repository, recording_id))
+    (found,) = repository.jobs(recording_id, limit=5).items
+    assert (found.job.state, found.job.attempts) == (JobState.DONE, 2)
 
 
 def test_a_database_that_does_not_answer_is_a_problem_not_the_end(

@@ -14,6 +14,7 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.timing.backoff import Backoff
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import recording as waveforms
 from testing.machines.phase_circuits import running
@@ -77,7 +78,10 @@ def test_worker_processes_diagnose(repository: Repository, store: RecordingStore
         store,
         motors,
         diagnose_recording,
-        limits=JobLimits(workers=1, job_timeout_s=120.0),
+        limits=JobLimits(
+            workers=1, job_timeout_s=120.0, attempts=3, backoff=Backoff(2.0, 60.0), lease_s=30.0
+        ),
+        installation="ours",
         prepare_worker=prepare_worker,
     )
     runner.start()

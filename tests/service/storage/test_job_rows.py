@@ -1,13 +1,24 @@
 from dataclasses import replace
+from functools import partial
+from typing import TypedDict
 
 import pytest
 
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository, StateConflictError
-from service.storage.errors import UnstorableDiagnosisError
+from service.storage.errors import RunnerEndedError, UnstorableDiagnosisError
 from service.storage.records import ClaimedJob, RemoteRecord
 from service.storage.states import JobState, RecordingRequestState, RecordingState
+from service.timing.backoff import Backoff
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+
+
+class Again(TypedDict):
+    max_attempts: int
+    backoff: Backoff
+
+
+AGAIN = Again(max_attempts=3, backoff=Backoff(first_s=2.0, longest_s=60.0))
 
 
 @pytest.fixture
@@ -45,7 +56,7 @@ def test_a_job_is_claimed_once(repository: Repository, recording_id: str) -> Non
 def test_a_clock_that_is_set_back_holds_up_no_job(repository: Repository, recording_id: str) -> None:
     an_hour_ago_ns = NOW_NS - 3600 * SECOND_NS
     first = claim(repository, now_ns=an_hour_ago_ns)
-    repository.retry_or_fail_job(first.job.id, "broken", now_ns=NOW_NS)
+    repository.retry_or_fail_job(first.job.id, "broken", now_ns=NOW_NS, **AGAIN)
     assert repository.claim_job(now_ns=NOW_NS + SECOND_NS) is None, "it is tried again later"
     second = claim(repository, now_ns=an_hour_ago_ns + SECOND_NS)
     assert (second.job.id, second.job.finished_ns) == (first.job.id, None)
@@ -78,26 +89,74 @@ def test_an_error_is_retried_later_and_given_up_at_last(repository: Repository, 
     now_ns = NOW_NS
     for delay_s in (2, 4):
         job_id = claim(repository, now_ns).job.id
-        assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns) is JobState.QUEUED
+        assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns, **AGAIN) is JobState.QUEUED
         assert repository.claim_job(now_ns=now_ns + delay_s * SECOND_NS - 1) is None
         now_ns += delay_s * SECOND_NS
     job_id = claim(repository, now_ns).job.id
-    assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns) is JobState.FAILED
+    assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns, **AGAIN) is JobState.FAILED
     reason = "gave up after 3 attempts: killed"
     assert repository.recording(recording_id).state is RecordingState.FAILED
     assert request_state(repository) == (RecordingRequestState.FAILED, reason)
-    assert repository.retry_or_fail_job(job_id, "again", now_ns=now_ns) is JobState.FAILED
+    assert repository.retry_or_fail_job(job_id, "again", now_ns=now_ns, **AGAIN) is JobState.FAILED
+
+
+def register(repository: Repository, runner: str, installation: str = "ours") -> int:
+    return repository.register_runner(runner, installation=installation, now_ns=NOW_NS, max_attempts=3)
 
 
 def test_interrupted_jobs_are_queued_again_but_not_for_ever(
     repository: Repository, recording_id: str
 ) -> None:
-    for _ in range(3):
-        claim(repository)
-        assert repository.requeue_interrupted_jobs(now_ns=NOW_NS) == 1
-    assert repository.claim_job(now_ns=NOW_NS) is None
+    assert register(repository, "start 0") == 0
+    for start in range(3):
+        assert repository.claim_job(now_ns=NOW_NS, runner=f"start {start}") is not None
+        assert register(repository, f"start {start + 1}") == 1
+    assert repository.claim_job(now_ns=NOW_NS, runner="start 3") is None
     assert repository.recording(recording_id).state is RecordingState.FAILED
-    assert repository.requeue_interrupted_jobs(now_ns=NOW_NS) == 0
+    assert register(repository, "start 4") == 0
+
+
+def test_a_start_leaves_the_jobs_of_other_installations_alone(
+    repository: Repository, recording_id: str
+) -> None:
+    register(repository, "theirs", "elsewhere")
+    claimed = repository.claim_job(now_ns=NOW_NS, runner="theirs")
+    assert claimed is not None
+    assert register(repository, "ours") == 0
+    assert repository.claim_job(now_ns=NOW_NS, runner="ours") is None
+    assert repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="theirs")
+
+
+def test_what_a_runner_without_its_lease_brings_is_not_kept(
+    repository: Repository, recording_id: str
+) -> None:
+    register(repository, "theirs", "elsewhere")
+    register(repository, "ours")
+    claimed = repository.claim_job(now_ns=NOW_NS, runner="theirs")
+    assert claimed is not None
+    seen = repository.renew_runner("ours")["theirs"]
+    repository.renew_runner("theirs")
+    end = partial(repository.end_runner, "theirs", now_ns=NOW_NS, max_attempts=3)
+    assert not end(renewals=seen), "it has renewed its lease since"
+    assert end(renewals=seen + 1)
+    with pytest.raises(RunnerEndedError):
+        repository.renew_runner("theirs")
+    with pytest.raises(RunnerEndedError):
+        repository.claim_job(now_ns=NOW_NS, runner="theirs")
+    for taken_over in (False, True):
+        if taken_over:
+            assert repository.claim_job(now_ns=NOW_NS, runner="ours") is not None
+        job_id = claimed.job.id
+        before = repository.job(recording_id, job_id)
+        late = partial(repository.finish_job, job_id, fault(0.9), recorded_ns=NOW_NS, now_ns=NOW_NS)
+        assert not late(runner="theirs")
+        repository.reject_recording(job_id, "late", now_ns=NOW_NS, runner="theirs")
+        repository.retry_or_fail_job(job_id, "late", now_ns=NOW_NS, runner="theirs", **AGAIN)
+        repository.release_job(job_id, runner="theirs")
+        assert repository.job(recording_id, job_id) == before
+    assert repository.finish_job(job_id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="ours")
+    (point,) = repository.trend("PUMP-A1", "mu_f", limit=10).items
+    assert point.value == 0.05
 
 
 def test_a_released_job_has_lost_no_attempt(repository: Repository, recording_id: str) -> None:
