@@ -9,7 +9,7 @@ from enum import Enum
 import pytest
 from numpydoc.validate import validate
 
-PACKAGES = ("mms", "scl")
+PACKAGES = ("core", "mms", "scl")
 
 NOT_REQUIRED = {
     "ES01",  # an extended summary

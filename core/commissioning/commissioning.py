@@ -47,13 +47,31 @@ def commission(
 ) -> Commissioning:
     """Estimate a motor's parameters from recordings of its starts, all fitted together.
 
-    plate: what is known beforehand. The search is centred on its parameters, and what the records do not tell
-    is taken from them; where it has none, values typical of the rating stand in.
-    load_law: how the load torque grows with speed; None chooses the one that fits.
-    span_s: part of each record that is compared, in seconds after the motor is switched on.
-    progress: called with the share that is done and what is being done.
-    Raises RecordingError where a recording lacks channels, CommissioningError where it is no start, or none
-    that a motor of this nameplate can make.
+    Parameters
+    ----------
+    recordings : sequence of Recording
+        Recordings of starts.
+    plate : Plate
+        What is known beforehand. The search is centred on its parameters, and what the records do not tell is
+        taken from them; where it has none, values typical of the rating stand in.
+    load_law : LoadLaw or None, optional
+        How the load torque grows with speed; None chooses the one that fits.
+    span_s : (float, float or None), optional
+        Part of each record that is compared, after the motor is switched on [s].
+    progress : callable or None, optional
+        Called with the share that is done and with what is being done.
+
+    Returns
+    -------
+    Commissioning
+        Parameters with intervals, and what was found of each start.
+
+    Raises
+    ------
+    RecordingError
+        If a recording lacks channels.
+    CommissioningError
+        If a recording is no start, or none that a motor of this nameplate can make.
     """
     begun = perf_counter()
     report = progress or _silent
@@ -109,7 +127,7 @@ def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) ->
 def _with_law(
     coarse: list[Start], prior: Prior, vector: Array, wanted: LoadLaw | None
 ) -> tuple[LoadLaw, Array, int, bool]:
-    """The load's law, the vector under it, what choosing took, and whether the records told it."""
+    """Return the load's law, the vector under it, what choosing took, and whether the records told it."""
     laws = list(LoadLaw) if wanted is None else [wanted]
     records = {law: Records(coarse, prior, law) for law in laws}
     fits = {law: records[law].fit(vector, _all(vector), converged=COARSELY) for law in laws}
@@ -120,7 +138,7 @@ def _with_law(
 
 
 def _switched_on_again(records: Records, vector: Array) -> tuple[Records, Array]:
-    """The same starts, each from the instant that its fitted switching flux says, and the vector there."""
+    """Return the same starts from the instants that their fitted fluxes tell, and the vector there."""
     point = records.coordinates.point(vector)
     starts, own = [], point.starts.copy()
     for k, start in enumerate(records.starts):
@@ -133,7 +151,7 @@ def _switched_on_again(records: Records, vector: Array) -> tuple[Records, Array]
 
 
 def _what_is_told(records: Records, whole: Fit) -> tuple[Fit, list[Untold]]:
-    """The fit of what the records tell, and what they do not, held at what is expected of it."""
+    """Fit what the records tell; hold what they do not at what is expected of it."""
     fixed: list[Untold] = []
     fit = whole
     names, prior = records.coordinates.names, records.coordinates.prior

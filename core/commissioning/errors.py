@@ -2,7 +2,19 @@
 
 
 class CommissioningError(ValueError):
-    """A recording is no start from which parameters can be told: which one, what of it, what was expected."""
+    """The error of a recording that is no start from which parameters can be told.
+
+    Parameters
+    ----------
+    source : str
+        Name of the recording.
+    field : str
+        What of it is at fault.
+    expected : str
+        What was expected, in words.
+    found : str
+        What was found, in words.
+    """
 
     def __init__(self, source: str, field: str, *, expected: str, found: str) -> None:
         self.source = source

@@ -31,9 +31,19 @@ Mask = NDArray[np.bool_]
 class Fit:
     """Coordinates at their best.
 
-    free: which were fitted, (entries,).  residuals: measured minus modelled winding current of each record,
-    (2, compared) [A].  jacobians: derivatives of the modelled current after all coordinates, of each record,
-    (entries, 2, compared); zero where a record does not depend on one.
+    Parameters
+    ----------
+    vector : ndarray, shape (entries,)
+        Coordinates.
+    free : ndarray of bool, shape (entries,)
+        Which coordinates are fitted.
+    residuals : tuple of ndarray
+        Measured minus modelled winding current of each record, shape (2, compared) [A].
+    jacobians : tuple of ndarray
+        Derivatives of the modelled current after all coordinates, of each record, shape (entries, 2,
+        compared); zero where a record does not depend on one.
+    evaluations : int
+        Number of simulated candidates or evaluated points.
     """
 
     vector: Array
@@ -49,7 +59,17 @@ class Fit:
 
 
 class Records:
-    """Starts of one motor under one load law: what a point in the coordinates makes of their currents."""
+    """Starts of one motor under one load law: what a point in the coordinates makes of their currents.
+
+    Parameters
+    ----------
+    starts : sequence of Start
+        The starts.
+    prior : Prior
+        What is expected of the motor before a record is seen.
+    load_law : LoadLaw
+        How the load torque grows with speed.
+    """
 
     def __init__(self, starts: Sequence[Start], prior: Prior, load_law: LoadLaw) -> None:
         self.starts = tuple(starts)
@@ -59,7 +79,18 @@ class Records:
         self.evaluations = 0
 
     def squared_errors(self, vectors: Array) -> Array:
-        """Squared residuals of a batch (candidates, entries) over all records, (candidates,) [A^2]."""
+        """Sum the squared residuals of a batch over all records.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (candidates, entries)
+            Coordinates of each candidate.
+
+        Returns
+        -------
+        ndarray, shape (candidates,)
+            Sums [A^2].
+        """
         self.evaluations += len(vectors) * len(self.starts)
         total = np.zeros(len(vectors))
         for k, (start, playback) in enumerate(zip(self.starts, self._playbacks, strict=True)):
@@ -67,8 +98,24 @@ class Records:
         return total
 
     def linearise(self, vector: Array, free: Mask) -> tuple[list[Array], list[Array]]:
-        """Measured minus modelled current of each record, (2, compared) [A], and the modelled current's
-        derivatives after the coordinates, (entries, 2, compared), zero where they are not free."""
+        """Return the residuals of each record and the derivatives of its modelled current.
+
+        Derivatives are zero after coordinates that are not free.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (entries,)
+            Coordinates.
+        free : ndarray of bool, shape (entries,)
+            Which coordinates are fitted.
+
+        Returns
+        -------
+        residuals : list of ndarray
+            Measured minus modelled current, shape (2, compared) [A].
+        jacobians : list of ndarray
+            Derivatives, shape (entries, 2, compared).
+        """
         lower, upper = self.coordinates.bounds()
         residuals, jacobians = [], []
         for k, start in enumerate(self.starts):
@@ -93,6 +140,20 @@ class Records:
         simulating it, and the damping keeps what the record does not tell from growing.
         scipy.optimize.least_squares ends at the same residuals and takes about three times as long
         (`python -m benchmarks.refinement`).
+
+        Parameters
+        ----------
+        start : ndarray, shape (entries,)
+            Vector to begin at.
+        free : ndarray of bool, shape (entries,)
+            Which coordinates are fitted.
+        converged : float, optional
+            Relative gain of a step at which the iteration ends.
+
+        Returns
+        -------
+        Fit
+            The fit.
         """
         lower, upper = self.coordinates.bounds()
         begun = self.evaluations
@@ -112,7 +173,7 @@ class Records:
                 damped = curvature + np.diag(one * np.diag(curvature) + 1e-300)
                 trial[moving] += np.linalg.lstsq(damped, gradient[moving])[0]
             trials = np.clip(trials, lower, upper)
-            errors = np.nan_to_num(self.squared_errors(trials), nan=np.inf)
+            errors = self.squared_errors(trials)
             best = int(np.argmin(errors))
             if not errors[best] < error:
                 if damping >= LAST_DAMPING:

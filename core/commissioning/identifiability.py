@@ -33,8 +33,19 @@ INRUSH = ("stator_resistance_ohm", "rotor_resistance_ohm", "stator_leakage_H")
 
 @dataclass(frozen=True, slots=True)
 class Untold:
-    """An unknown to be fixed: by how much it would be uncertain (half a 95 % interval: relative, of LL
-    absolute, of T_d in cycles), and the unknown it moves with, with their correlation."""
+    """An unknown that has to be fixed, because the records do not tell it.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    half_interval : float
+        Half the 95 % interval it would have: relative, of LL absolute, of T_d in cycles.
+    partner : str or None
+        Unknown that it moves with.
+    correlation : float
+        Their correlation.
+    """
 
     name: str
     half_interval: float
@@ -43,7 +54,20 @@ class Untold:
 
 
 def untold(records: Records, fit: Fit) -> list[Untold]:
-    """Free unknowns that have to be fixed, in that order."""
+    """Return the free unknowns that have to be fixed, in that order.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    list of Untold
+        The unknowns.
+    """
     names = records.coordinates.names
     found: list[Untold] = []
     free = fit.free.copy()
@@ -73,9 +97,24 @@ def untold(records: Records, fit: Fit) -> list[Untold]:
 
 
 def making_up(records: Records, fit: Fit) -> list[Untold]:
-    """Free parameters that, beside held ones, do not estimate themselves but make up for those: driven out of
-    the range that was searched; the last one left, all that a single phasor tells; or magnetising and
-    inertia where nothing of what limits the inrush is told, so that no torque is known."""
+    """Return free parameters that only make up for held ones instead of being estimated.
+
+    They are driven out of the range that was searched; or they are the last one left, all that a single
+    phasor tells; or they are magnetising and inertia where nothing of what limits the inrush is told, so that
+    no torque is known.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    list of Untold
+        The unknowns.
+    """
     names, prior = records.coordinates.names, records.coordinates.prior
     of_inrush = [PARAMETERS.index(name) for name in INRUSH]
     free = [entry for entry in range(len(PARAMETERS)) if fit.free[entry]]
@@ -88,7 +127,20 @@ def making_up(records: Records, fit: Fit) -> list[Untold]:
 
 
 def condition_number(fit: Fit) -> float:
-    """Greatest over least singular value of the Jacobian of the free unknowns, each of order one."""
+    """Return the greatest over the least singular value of the Jacobian of the free unknowns.
+
+    Each unknown is of order one.
+
+    Parameters
+    ----------
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    float
+        The condition number.
+    """
     spread = np.linalg.eigvalsh(information_inverse(fit))
     return float(np.sqrt(spread[-1] / spread[0])) if spread[0] > 0.0 else float("inf")
 

@@ -19,10 +19,22 @@ FEWEST_QUIET_CYCLES = 0.25
 
 
 def current_onset(current_ab: Array, samples_per_cycle: float) -> float | None:
-    """Instant at which the current begins to rise [samples, fractional]; None where the record has none.
+    """Find the instant at which the current begins to rise.
 
-    current_ab: (2, n) [A]. The space vector of a motor at rest rises as |1 - exp(j w t)|: nearly a straight
-    line for a quarter of a cycle, continued here back to zero.
+    The space vector of a motor at rest rises as |1 - exp(j w t)|: nearly a straight line for a quarter of a
+    cycle, continued here back to zero.
+
+    Parameters
+    ----------
+    current_ab : ndarray, shape (2, n)
+        Currents on power-invariant Clarke axes [A].
+    samples_per_cycle : float
+        Samples in one cycle of the supply.
+
+    Returns
+    -------
+    float or None
+        Instant in samples, fractional; None where the record has none.
     """
     smooth = uniform_filter1d(current_ab, max(1, round(SMOOTHED_CYCLES * samples_per_cycle)), axis=1)
     length = np.hypot(smooth[0], smooth[1])
@@ -47,14 +59,40 @@ def current_onset(current_ab: Array, samples_per_cycle: float) -> float | None:
 
 
 def voltage_onset(voltage_ab: Array) -> int:
-    """First sample at which the terminals are live; 0 where they were from the beginning."""
+    """Find the first sample at which the terminals are live.
+
+    Parameters
+    ----------
+    voltage_ab : ndarray, shape (2, n)
+        Voltages on power-invariant Clarke axes [V].
+
+    Returns
+    -------
+    int
+        The sample; 0 where they were live from the beginning.
+    """
     length = np.hypot(voltage_ab[0], voltage_ab[1])
     usual = float(np.quantile(length, 0.9))
     return int(np.argmax(length >= ENERGISED * usual)) if usual > 0.0 else 0
 
 
 def quiet_offset(current_abc: Array, onset: float, samples_per_cycle: float) -> Array:
-    """What the current channels show while no current flows, (3, 1) [A]; nothing where that is too short."""
+    """Return what the current channels show while no current flows.
+
+    Parameters
+    ----------
+    current_abc : ndarray, shape (3, n)
+        Line currents of terminals a, b, c [A].
+    onset : float
+        Sample at which the current begins.
+    samples_per_cycle : float
+        Samples in one cycle of the supply.
+
+    Returns
+    -------
+    ndarray, shape (3, 1)
+        Offsets [A]; zero where that time is too short.
+    """
     quiet = int(onset - 0.05 * samples_per_cycle)
     if quiet < FEWEST_QUIET_CYCLES * samples_per_cycle:
         return np.zeros((current_abc.shape[0], 1))

@@ -46,9 +46,28 @@ Range = tuple[float, float]
 def contradictions(
     motor: Motor, estimates: dict[str, Estimate], starts: Sequence[StartFound], prior: Prior
 ) -> list[str]:
-    """What is unusual about the motor found, in words, with what to check.
+    """Say what is unusual about the motor found, with what to check.
 
-    Raises CommissioningError where no motor of this nameplate can be so.
+    Parameters
+    ----------
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    estimates : dict of str to Estimate
+        Parameters by name.
+    starts : sequence of StartFound
+        What was found of each start.
+    prior : Prior
+        What is expected of the motor before a record is seen.
+
+    Returns
+    -------
+    list of str
+        Sentences.
+
+    Raises
+    ------
+    CommissioningError
+        If no motor of this nameplate can be so.
     """
     told = [name for name in PARAMETERS if estimates[name].fixed is None]
     if not told:
@@ -57,7 +76,20 @@ def contradictions(
 
 
 def delay_warning(start: Start, time_offset_s: float) -> str | None:
-    """What a delay that no relay's channels have may be in truth; None where it is an ordinary one."""
+    """Say what a delay that no relay's channels have may be in truth.
+
+    Parameters
+    ----------
+    start : Start
+        The start.
+    time_offset_s : float
+        The delay found [s].
+
+    Returns
+    -------
+    str or None
+        A sentence; None where the delay is an ordinary one.
+    """
     cycles = time_offset_s / start.cycle_s
     if abs(cycles) <= UNUSUAL_DELAY_CYCLES:
         return None
@@ -126,7 +158,7 @@ def _torque_and_inrush(motor: Motor, starts: Sequence[StartFound]) -> list[str]:
 
 
 def _beside_the_file(estimates: dict[str, Estimate], told: Sequence[str], prior: Prior) -> list[str]:
-    """The estimates over the motor file's own parameters: one common factor is a ratio's."""
+    """Compare the estimates with the motor file's own parameters: one common factor is a ratio's."""
     if not prior.from_file:
         return []
     off = {name: log(estimates[name].value / getattr(prior.expected, name)) for name in told}

@@ -18,9 +18,16 @@ PARAMETERS = (
 class Prior:
     """What is expected before a record is seen.
 
-    expected: parameters of the file, or typical of the rating.  spread: factor either way that is searched,
-    doubt: standard deviation (relative) of a parameter that is taken from it, both by parameter.
-    from_file: whether the motor's file gave them.
+    Parameters
+    ----------
+    expected : MachineParameters
+        Parameters of the file, or typical of the rating.
+    spread : dict of str to float
+        Factor either way that is searched, by parameter.
+    doubt : dict of str to float
+        Relative standard deviation of a parameter that is taken from it, by parameter.
+    from_file : bool
+        Whether the motor's file gave the parameters.
     """
 
     expected: MachineParameters
@@ -35,10 +42,22 @@ class Prior:
 
 
 def prior_of(nameplate: Nameplate, parameters: MachineParameters | None) -> Prior:
-    """The prior of a motor file, with parameters or without.
+    """Return what is expected of a motor, with known parameters or without.
 
-    Without: per-unit values over rated power, the trend through motors of 0.8, 7.5 and 37 kW. They are only
-    the middle of a wide search, and what stands in for a parameter that no record tells.
+    Without them the per-unit values follow rated power, the trend through motors of 0.8, 7.5 and 37 kW. They
+    are only the middle of a wide search, and what stands in for a parameter that no record tells.
+
+    Parameters
+    ----------
+    nameplate : Nameplate
+        Rated values of the motor.
+    parameters : MachineParameters or None
+        Parameters of the motor file, None where it has none.
+
+    Returns
+    -------
+    Prior
+        What is expected.
     """
     if parameters is not None:
         known = dict.fromkeys(PARAMETERS, 2.5) | {"inertia_kgm2": 5.0}

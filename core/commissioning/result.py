@@ -9,7 +9,17 @@ Interval = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """A parameter: its value, its 95 % interval, and, where it was fixed, why."""
+    """An estimated or fixed parameter.
+
+    Parameters
+    ----------
+    value : float
+        Its value.
+    ci95 : tuple of float or None
+        Its 95 % interval, None where it was fixed.
+    fixed : str or None, optional
+        Why it was fixed, None where it was not.
+    """
 
     value: float
     ci95: Interval | None
@@ -18,8 +28,25 @@ class Estimate:
 
 @dataclass(frozen=True, slots=True)
 class StartFound:
-    """One record's own: when the motor was switched on [s from its first sample], how it was loaded, how late
-    the currents are, what the model leaves of them (line current, rms; share of the measured rms)."""
+    """What was found of one start.
+
+    Parameters
+    ----------
+    record : str
+        Name of the recording.
+    onset_s : float
+        When the motor was switched on, from the record's first sample [s].
+    compared_s : tuple of float
+        Part of the record that was compared [s].
+    load_level : Estimate
+        Load torque over rated torque.
+    time_offset_s : Estimate
+        Delay of the currents against the voltages [s].
+    residual_rms_A : float
+        Line current that the model leaves, rms [A].
+    residual_share : float
+        Its share of the measured rms.
+    """
 
     record: str
     onset_s: float
@@ -34,10 +61,26 @@ class StartFound:
 class Commissioning:
     """Result of `commission`.
 
-    motor: nameplate and parameters, ready to be written.  parameters: estimates by the names of
-    MachineParameters.  condition_number: of the Jacobian of all unknowns, each of order one.
-    reasons: in words, what was fixed and what to mind.  warnings: why the recording may not be what it is
-    taken for, with what to check.
+    Parameters
+    ----------
+    motor : Motor
+        Nameplate and parameters, ready to be written.
+    parameters : dict of str to Estimate
+        Estimates by the names of MachineParameters.
+    starts : tuple of StartFound
+        What was found of each start.
+    load_law : str
+        How the load torque grows with speed.
+    condition_number : float
+        Condition number of the Jacobian of all unknowns, each of order one.
+    reasons : tuple of str
+        In words, what was fixed and what to mind.
+    warnings : tuple of str
+        Why the recording may not be what it is taken for, with what to check.
+    evaluations : int
+        Number of simulated candidates or evaluated points.
+    compute_seconds : float
+        Time of the estimation [s].
     """
 
     motor: Motor
@@ -66,7 +109,13 @@ class Commissioning:
         return self.motor.parameters
 
     def as_dict(self) -> dict[str, object]:
-        """The result as JSON takes it."""
+        """Return the result as JSON takes it.
+
+        Returns
+        -------
+        dict of str to object
+            The document.
+        """
         finite = self.condition_number < float("inf")
         return {
             "identifiable": self.identifiable,

@@ -30,14 +30,35 @@ Callback = Callable[[Array, Array], bool | None]
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Vectors of the best separated points, best first (points, entries), and all that was evaluated."""
+    """What the global search found.
+
+    Parameters
+    ----------
+    vectors : ndarray, shape (points, entries)
+        Vectors of the best separated points, best first.
+    result : OptimizeResult
+        All that was evaluated.
+    """
 
     vectors: Array
     result: OptimizeResult
 
 
 def box(records: Records) -> tuple[tuple[float, float], ...]:
-    """What is searched: logarithms of the parameters over the expected ones, LL, T_d in cycles."""
+    """Return the box that is searched.
+
+    Its coordinates are the logarithms of the parameters over the expected ones, LL, and T_d in cycles.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+
+    Returns
+    -------
+    tuple of tuple of float
+        Lower and upper bound of each coordinate.
+    """
     (start,) = records.starts
     spread = records.coordinates.prior.spread
     earliest, latest = (offset / start.cycle_s for offset in start.offset_range_s)
@@ -46,13 +67,41 @@ def box(records: Records) -> tuple[tuple[float, float], ...]:
 
 
 def with_switching_flux(points: Array, start: Start) -> Array:
-    """Vectors (m, 9) of search points (m, 7)."""
+    """Add the switching flux to search points.
+
+    Parameters
+    ----------
+    points : ndarray, shape (m, 7)
+        Search points.
+    start : Start
+        The start.
+
+    Returns
+    -------
+    ndarray, shape (m, 9)
+        Vectors.
+    """
     flux = start.switching_flux(points[:, 6] * start.cycle_s) / start.rated_flux_Vs
     return np.concatenate([points, flux], axis=1)
 
 
 def search(records: Records, *, most_points: int, callback: Callback | None = None) -> Found:
-    """Search one (thinned) start; hand on its best points that lie apart from each other."""
+    """Search one (thinned) start; return its best points that lie apart from each other.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    most_points : int
+        Most points that are returned.
+    callback : callable or None, optional
+        Called with new points (m, d) and their values (m,); a true answer stops the search.
+
+    Returns
+    -------
+    Found
+        The points.
+    """
     (start,) = records.starts
     bounds = box(records)
     energy = float((start.measured_ab**2).sum())
@@ -77,7 +126,7 @@ def search(records: Records, *, most_points: int, callback: Callback | None = No
 
 
 def _separated(result: OptimizeResult, bounds: Array, sectors: int, most: int) -> Array:
-    """The best points that lie apart, as many from each sector of T_d."""
+    """Choose the best points that lie apart, as many from each sector of T_d."""
     lower, width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
     unit = (result.points - lower) / width
     sector = np.minimum((unit[:, 6] * sectors).astype(np.int64), sectors - 1)

@@ -47,11 +47,32 @@ _CONTINUED_CYCLES = 2.0
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Winding quantities in a positive-sequence world, with a stretch of voltage put before the record.
+    """Winding quantities of a start, with a stretch of voltage put before the record.
 
-    voltage_ab, current_ab: on one time base, (2, n) [V, A], that begins `front_s` before the record.
-    switched_on_s: when, on that time base.  compared: samples whose currents are compared, [first, last).
-    offset_hint_s: T_d between the onsets of voltage and current, None where only its phase tells it.
+    Parameters
+    ----------
+    source : str
+        Name of the recording, for messages.
+    nameplate : Nameplate
+        Rated values of the motor.
+    supply : Supply
+        Stator voltage on the models' time base.
+    voltage_ab, current_ab : ndarray, shape (2, n)
+        Winding quantities on one time base that begins `front_s` before the record [V, A].
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    frequency_hz : float
+        Supply frequency [Hz].
+    sequence : PhaseSequence
+        Order in which the supply's phases reach their maxima.
+    front_s : float
+        Time put before the record [s].
+    switched_on_s : float
+        When the motor is switched on, on that time base [s].
+    compared : tuple of int
+        Samples [first, last) whose currents are compared.
+    offset_hint_s : float or None
+        T_d between the onsets of voltage and current [s], None where only the current's phase tells it.
     """
 
     source: str
@@ -79,7 +100,7 @@ class Start:
 
     @property
     def first_column(self) -> int:
-        """Column of the supply nearest to the switching: where the models begin."""
+        """Column of the supply nearest to the switching, where the models begin."""
         return min(round(self.switched_on_s / self.supply.step_s), self.compared[0] * self.supply.substeps)
 
     @property
@@ -98,7 +119,7 @@ class Start:
 
     @property
     def offset_range_s(self) -> tuple[float, float]:
-        """Where T_d is searched [s]."""
+        """Range in which T_d is searched [s]."""
         if self.offset_hint_s is None:
             reach = FULL_OFFSET_CYCLES * self.cycle_s
             return -reach, reach
@@ -107,12 +128,12 @@ class Start:
 
     @property
     def measured_ab(self) -> Array:
-        """Current at the compared samples, (2, compared) [A]."""
+        """Current at the compared samples, shape (2, compared) [A]."""
         return self.current_ab[:, slice(*self.compared)]
 
     @property
     def line_per_winding_current(self) -> float:
-        """Line over winding current: sqrt 3 in delta."""
+        """Line over winding current: sqrt 3 in delta, 1 in star."""
         return sqrt(3.0) if self.nameplate.connection is Connection.DELTA else 1.0
 
     @property
@@ -123,17 +144,51 @@ class Start:
         return volts / self.nameplate.rated_angular_frequency
 
     def playback(self, load_law: LoadLaw) -> StartPlayback:
-        """The start's voltages, for any machine."""
+        """Return the start's voltages, for any machine.
+
+        Parameters
+        ----------
+        load_law : LoadLaw
+            How the load torque grows with speed.
+
+        Returns
+        -------
+        StartPlayback
+            The voltages to be played through machines.
+        """
         return StartPlayback(self.nameplate, self.supply, self.first_column, self.compared, load_law)
 
     def switching_flux(self, time_offset_s: Array) -> Array:
-        """Flux that the voltage left between the switching and the models' first column, (candidates, 2)
-        [V s]."""
+        """Return the flux that the voltage left between the switching and the models' first column.
+
+        Parameters
+        ----------
+        time_offset_s : ndarray, shape (candidates,)
+            Delay of the currents against the voltages, T_d [s].
+
+        Returns
+        -------
+        ndarray, shape (candidates, 2)
+            Flux on Clarke axes [V s].
+        """
         late = self.first_column * self.supply.step_s - self.switched_on_s
         return late * self._voltage_at(self.switched_on_s - time_offset_s).T
 
     def switched_on_again(self, flux: Array, time_offset_s: float) -> "Start":
-        """The same start, its instant put right by the switching flux that was fitted, (2,) [V s]."""
+        """Return the same start, its instant put right by the switching flux that was fitted.
+
+        Parameters
+        ----------
+        flux : ndarray, shape (2,)
+            The fitted flux [V s].
+        time_offset_s : float
+            Delay of the currents against the voltages [s].
+
+        Returns
+        -------
+        Start
+            The start from its better instant.
+        """
         voltage = self._voltage_at(np.array([self.switched_on_s - time_offset_s]))[:, 0]
         late = float(flux @ voltage) / float(voltage @ voltage)
         instant = self.first_column * self.supply.step_s - late
@@ -156,9 +211,28 @@ def start_of(
 ) -> Start:
     """Find the start in a recording and check that it is one.
 
-    span_s: part of the record whose currents are compared, in seconds after the switching instant.
-    Raises RecordingError where the recording lacks channels, CommissioningError where it holds no start from
-    rest that can be used.
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    nameplate : Nameplate
+        Rated values of the motor.
+    channels : ChannelNames
+        Names of the channels.
+    span_s : (float, float or None), optional
+        Part of the record whose currents are compared, after the switching instant [s].
+
+    Returns
+    -------
+    Start
+        The start.
+
+    Raises
+    ------
+    RecordingError
+        If the recording lacks channels.
+    CommissioningError
+        If it holds no start from rest that can be used.
     """
     measured = terminals(
         recording,
@@ -192,9 +266,19 @@ def start_of(
 
 
 def thinned(start: Start) -> Start:
-    """The same start at a lower sample rate, for a search that only has to come near.
+    """Return the same start at a lower sample rate, for a search that only has to come near.
 
     The voltage, smooth by now, passes a filter; of the current every so many-th sample is compared.
+
+    Parameters
+    ----------
+    start : Start
+        The start.
+
+    Returns
+    -------
+    Start
+        The thinned start.
     """
     factor = int(start.sample_rate_hz / start.frequency_hz / SEARCH_SAMPLES_A_CYCLE)
     if factor < 2:
@@ -213,7 +297,7 @@ def thinned(start: Start) -> Start:
 
 
 def _check_samples(measured: Terminals, nameplate: Nameplate, source: str) -> None:
-    """The quality gate's own checks, less those a motor at rest could not pass."""
+    """Run the quality gate's own checks, less those a motor at rest could not pass."""
     for finding in sampled_well(measured, nameplate):
         if not finding.passed and not finding.name.startswith(("held samples", "duration")):
             raise CommissioningError(
@@ -311,7 +395,7 @@ def _framed(
     hint: float | None,
     span_s: tuple[float, float | None],
 ) -> Start:
-    """The dead stretch of voltage replaced, one put in front that any delay can reach back into."""
+    """Replace the dead stretch of voltage; put one in front that any delay can reach back into."""
     cycle = rate / frequency
     seen = None if hint is None else hint * rate
     back = FULL_OFFSET_CYCLES * cycle if seen is None else max(0.0, seen) + KNOWN_OFFSET_CYCLES * cycle
@@ -354,7 +438,7 @@ def _framed(
 
 
 def _before(live_ab: Array, frequency: float, rate: float, samples: int) -> Array:
-    """The sinusoid of the first live cycles over the samples before them, (2, samples) [V]."""
+    """Return the sinusoid of the first live cycles over the samples before them, (2, samples) [V]."""
     known = live_ab[:, : round(_CONTINUED_CYCLES * rate / frequency)]
     phasors = sqrt(2.0) * fundamental_phasors(known, frequency, rate)
     turn = 2j * pi * frequency / rate * np.arange(-samples, 0)

@@ -27,7 +27,18 @@ COHERENT_ERROR = 0.005
 
 
 def information_inverse(fit: Fit) -> Array:
-    """inv(J'J) of the free entries; finite even where the record does not tell them apart."""
+    """Return inv(J'J) of the free entries; finite even where the record does not tell them apart.
+
+    Parameters
+    ----------
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    ndarray, shape (free, free)
+        The inverse.
+    """
     free = int(fit.free.sum())
     flat = [one[fit.free].reshape(free, one[0].size) for one in fit.jacobians]
     information = sum((one @ one.T for one in flat), np.zeros((free, free)))
@@ -37,7 +48,20 @@ def information_inverse(fit: Fit) -> Array:
 
 
 def noise_covariance(records: Records, fit: Fit) -> Array:
-    """Covariance of the free entries by the residuals' own spectrum, (free, free)."""
+    """Return the covariance of the free entries by the residuals' own spectrum.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    ndarray, shape (free, free)
+        The covariance.
+    """
     bread = information_inverse(fit)
     filling = np.zeros_like(bread)
     for start, residual, whole in zip(records.starts, fit.residuals, fit.jacobians, strict=True):
@@ -51,8 +75,26 @@ def noise_covariance(records: Records, fit: Fit) -> Array:
 
 
 def preference(records: Records, first: Fit, second: Fit) -> float:
-    """By how many standard deviations the first fit's residuals are less than the second's, the noise as
-    coloured as theirs: Vuong's test of models that do not contain each other (Econometrica 57(2), 1989)."""
+    """Return by how many standard deviations one fit's residuals are less than another's [1]_.
+
+    The noise is taken to be as coloured as the first fit's residuals.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    first, second : Fit
+        The fits.
+
+    Returns
+    -------
+    float
+        Standard deviations.
+
+    References
+    ----------
+    .. [1] Vuong's test of models that do not contain each other, Econometrica 57(2), 1989.
+    """
     gain, variance = 0.0, 0.0
     for start, ours, theirs in zip(records.starts, first.residuals, second.residuals, strict=True):
         n = ours.shape[1]
@@ -86,7 +128,22 @@ def _bins(n: int, sample_rate_hz: float) -> int:
 
 
 def inherited_covariance(records: Records, fit: Fit) -> Array:
-    """Covariance of the free entries from doubt about those that are held (Schmidt's consider analysis)."""
+    """Return the covariance of the free entries from doubt about those that are held.
+
+    This is Schmidt's consider analysis.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    ndarray, shape (free, free)
+        The covariance.
+    """
     doubt = records.coordinates.doubts()
     bread = information_inverse(fit)
     held = ~fit.free
@@ -98,8 +155,23 @@ def inherited_covariance(records: Records, fit: Fit) -> Array:
 
 
 def coherent_covariance(records: Records, fit: Fit) -> Array:
-    """Covariance of the free entries if the model were off by COHERENT_ERROR of the current, alike through
-    a cycle: what decides whether a record tells a parameter, however little noise it has."""
+    """Return the covariance of the free entries if the model were off alike through every cycle.
+
+    The model is taken to be off by COHERENT_ERROR of the current. This decides whether a record tells a
+    parameter, however little noise it has.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    ndarray, shape (free, free)
+        The covariance.
+    """
     bread = information_inverse(fit)
     filling = np.zeros_like(bread)
     for start, whole in zip(records.starts, fit.jacobians, strict=True):
@@ -110,7 +182,20 @@ def coherent_covariance(records: Records, fit: Fit) -> Array:
 
 
 def quantile(records: Records, fit: Fit) -> float:
-    """Half width of a 95 % interval in standard errors."""
+    """Return the half width of a 95 % interval in standard errors.
+
+    Parameters
+    ----------
+    records : Records
+        Starts of one motor and how a point in the coordinates explains them.
+    fit : Fit
+        Coordinates at their best.
+
+    Returns
+    -------
+    float
+        Standard errors.
+    """
     bins = min(
         _bins(residual.shape[1], start.sample_rate_hz)
         for start, residual in zip(records.starts, fit.residuals, strict=True)

@@ -32,14 +32,32 @@ DOUBT_OF_OFFSET = 0.02
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One machine and its starts: the shared parameters and, for each record, LL, T_d [s] and the flux
-    [V s], shape (records, 4)."""
+    """One machine and its starts.
+
+    Parameters
+    ----------
+    machine : MachineParameters
+        The shared parameters.
+    starts : ndarray, shape (records, 4)
+        LL, T_d [s] and the flux [V s] of each record.
+    """
 
     machine: MachineParameters
     starts: Array
 
     def candidates(self, record: int) -> StartCandidates:
-        """A batch of one for a record."""
+        """Return a batch of one for a record.
+
+        Parameters
+        ----------
+        record : int
+            Number of the record, from 0.
+
+        Returns
+        -------
+        StartCandidates
+            The batch.
+        """
         load, offset, *flux = self.starts[record].tolist()
         machine = self.machine
         return StartCandidates(
@@ -57,24 +75,54 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Coordinates:
-    """The map between points and vectors of order one: five parameters, then four for each record."""
+    """The map between points and vectors of order one: five parameters, then four for each record.
+
+    Parameters
+    ----------
+    prior : Prior
+        What is expected of the motor before a record is seen.
+    starts : tuple of Start
+        The starts.
+    """
 
     prior: Prior
     starts: tuple[Start, ...]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the vector's entries; those of a record carry its number, from 0."""
+        """Names of the vector's entries; those of a record carry its number, from 0."""
         own = (f"{name}[{k}]" for k in range(len(self.starts)) for name in OF_A_START)
         return (*PARAMETERS, *own)
 
     def of_record(self, record: int) -> list[int]:
-        """Entries that one record's currents depend on."""
+        """Return the entries that one record's currents depend on.
+
+        Parameters
+        ----------
+        record : int
+            Number of the record, from 0.
+
+        Returns
+        -------
+        list of int
+            Indices of the entries.
+        """
         first = len(PARAMETERS) + record * len(OF_A_START)
         return [*range(len(PARAMETERS)), *range(first, first + len(OF_A_START))]
 
     def vector(self, point: Point) -> Array:
-        """Coordinates of a point."""
+        """Return the coordinates of a point.
+
+        Parameters
+        ----------
+        point : Point
+            The point.
+
+        Returns
+        -------
+        ndarray, shape (entries,)
+            Coordinates.
+        """
         shared = [
             log(getattr(point.machine, name) / getattr(self.prior.expected, name)) for name in PARAMETERS
         ]
@@ -82,7 +130,18 @@ class Coordinates:
         return np.concatenate([shared, own.reshape(-1)])
 
     def point(self, vector: Array) -> Point:
-        """The point at coordinates."""
+        """Return the point at coordinates.
+
+        Parameters
+        ----------
+        vector : ndarray, shape (entries,)
+            Coordinates.
+
+        Returns
+        -------
+        Point
+            The point.
+        """
         count = len(PARAMETERS)
         own = vector[count:].reshape(len(self.starts), len(OF_A_START))
         units = np.array([self._units(start) for start in self.starts])
@@ -96,7 +155,20 @@ class Coordinates:
         return Point(machine, own * units)
 
     def candidates(self, vectors: Array, record: int) -> StartCandidates:
-        """A batch for one record from vectors (candidates, entries)."""
+        """Return a batch for one record.
+
+        Parameters
+        ----------
+        vectors : ndarray, shape (candidates, entries)
+            Coordinates of each candidate.
+        record : int
+            Number of the record, from 0.
+
+        Returns
+        -------
+        StartCandidates
+            The batch.
+        """
         expected, count = self.prior.expected, len(PARAMETERS)
         shared = {name: getattr(expected, name) * np.exp(vectors[:, k]) for k, name in enumerate(PARAMETERS)}
         first = count + record * len(OF_A_START)
@@ -110,7 +182,15 @@ class Coordinates:
         )
 
     def bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bounds of the vector."""
+        """Return the bounds of the vector.
+
+        Returns
+        -------
+        lower : ndarray
+            Lower bounds, shape (entries,).
+        upper : ndarray
+            Upper bounds, shape (entries,).
+        """
         lower, upper = [-FARTHEST] * len(PARAMETERS), [FARTHEST] * len(PARAMETERS)
         for start in self.starts:
             earliest, latest = (offset / start.cycle_s for offset in start.offset_range_s)
@@ -119,7 +199,13 @@ class Coordinates:
         return np.array(lower), np.array(upper)
 
     def doubts(self) -> Array:
-        """Standard deviation of each entry where it is held instead of fitted."""
+        """Return the standard deviation of each entry where it is held instead of fitted.
+
+        Returns
+        -------
+        ndarray, shape (entries,)
+            Standard deviations.
+        """
         shared = [self.prior.doubt[name] for name in PARAMETERS]
         return np.array(shared + [DOUBT_OF_LOAD, DOUBT_OF_OFFSET, 0.0, 0.0] * len(self.starts))
 

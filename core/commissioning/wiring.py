@@ -25,10 +25,27 @@ wiring; what is beyond it is a channel's ratio."""
 def check_wiring(
     measured: Terminals, nameplate: Nameplate, source: str, *, onset: float, live: int, hint_s: float | None
 ) -> None:
-    """Raise CommissioningError where the channels are connected as no motor's can be.
+    """Check that the channels are connected as a motor's can be.
 
-    onset, live: samples at which current and voltage begin.  hint_s: T_d between the two, None where the
-    voltage was there before.
+    Parameters
+    ----------
+    measured : Terminals
+        Quantities at the terminals.
+    nameplate : Nameplate
+        Rated values of the motor.
+    source : str
+        Name of the recording, for messages.
+    onset : float
+        Sample at which the current begins.
+    live : int
+        Sample at which the voltage begins.
+    hint_s : float or None
+        T_d between the two [s], None where the voltage was there before.
+
+    Raises
+    ------
+    CommissioningError
+        If they are connected as no motor's can be.
     """
     if measured.voltage_ab is None:
         raise ValueError("wiring can only be checked of a record with voltages")

@@ -17,16 +17,25 @@ from core.diagnosis.tolerance import backward_voltage
 
 FEWEST_RECORDINGS = 3
 REMAINING = 0.3
-"""Share of what sensors feign that changes with load and temperature all the same."""
+"""Share of the asymmetry that sensors make up which changes with load and temperature all the same."""
 
 
 @dataclass(frozen=True, slots=True)
 class Baseline:
-    """What healthy recordings show standing.
+    """The motor's own standing asymmetry, as its healthy recordings show it.
 
-    current, scatter: mean of the standing currents, their standard deviation [A, peak].
-    unbalance_V: mean of the backward-turning voltages they were recorded at [V, peak].
-    remaining: share of what sensors feign that is left.
+    Parameters
+    ----------
+    current : complex
+        Mean of the standing currents [A, peak].
+    scatter : float
+        Standard deviation of the standing currents [A, peak].
+    unbalance_V : complex
+        Mean of the backward-turning voltages they were recorded at [V, peak].
+    recordings : int
+        Number of recordings.
+    remaining : float, optional
+        Share of the sensors' apparent asymmetry that is left after subtraction.
     """
 
     current: complex
@@ -37,11 +46,22 @@ class Baseline:
 
     @property
     def error_A(self) -> float:
-        """Standard deviation of the mean."""
+        """Standard deviation of the mean current [A, peak]."""
         return self.scatter / sqrt(self.recordings)
 
     def taken_off(self, case: Case) -> Case:
-        """The case with the standing asymmetry subtracted from its currents."""
+        """Subtract the standing asymmetry from the currents of a record.
+
+        Parameters
+        ----------
+        case : Case
+            The record in the winding frame.
+
+        Returns
+        -------
+        Case
+            The record without it.
+        """
         w = case.supply.angular_frequency
         t = np.arange(case.current_ab.shape[1]) / case.sample_rate_hz
         backward = self.current * _voltage_direction(case).conjugate() * np.exp(-1j * w * t)
@@ -49,15 +69,45 @@ class Baseline:
 
 
 def standing(explanation: Explanation) -> tuple[complex, complex]:
-    """Backward-turning winding current the healthy machine leaves [A, peak] and the backward-turning voltage
-    [V, peak], both seen from the forward voltage."""
+    """Return the standing current and the backward-turning voltage of a healthy record.
+
+    Both are seen from the forward-turning voltage.
+
+    Parameters
+    ----------
+    explanation : Explanation
+        The hypothesis that explains the currents best.
+
+    Returns
+    -------
+    current : complex
+        Backward-turning winding current that the healthy machine leaves [A, peak].
+    voltage : complex
+        Backward-turning voltage [V, peak].
+    """
     voltage = explanation.record.voltage
     direction = voltage.forward / abs(voltage.forward)
     return explanation.healthy.left * direction, backward_voltage(voltage.forward, voltage.backward)
 
 
 def baseline_of(seen: Iterable[tuple[complex, complex]]) -> Baseline:
-    """Baseline from what `standing` tells of healthy recordings; fewer than three tell nothing of scatter."""
+    """Average what `standing` tells of healthy recordings.
+
+    Parameters
+    ----------
+    seen : iterable of tuple of complex
+        Current and voltage of each recording.
+
+    Returns
+    -------
+    Baseline
+        The baseline.
+
+    Raises
+    ------
+    DiagnosisError
+        If there are fewer than three, which tell nothing of scatter.
+    """
     currents, voltages = np.array(list(seen)).reshape(-1, 2).T
     if currents.size < FEWEST_RECORDINGS:
         raise DiagnosisError(

@@ -28,11 +28,26 @@ FEWEST_SAMPLES_A_CYCLE = 40
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What the search and the refinement work on.
+    """One record in the winding frame: what the search and the refinement work on.
 
-    current_ab, voltage_ab: of the windings on the Clarke axes, shape (2, n) [A, V]; line_per_winding_current
-    turns the current's magnitude into that of the lines (sqrt 3 in delta).
-    sequence: that of the supply, before mirroring.  voltages_assumed: none were recorded.
+    Parameters
+    ----------
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    supply : Supply
+        Stator voltage on the models' time base.
+    current_ab, voltage_ab : ndarray, shape (2, n)
+        Winding quantities on Clarke axes [A, V].
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    frequency_hz : float
+        Supply frequency [Hz].
+    sequence : PhaseSequence
+        Order of the supply's phases before mirroring.
+    window : Window
+        Part of the record that is simulated.
+    voltages_assumed : bool, default False
+        Whether no voltages were recorded.
     """
 
     motor: Motor
@@ -47,6 +62,7 @@ class Case:
 
     @property
     def line_per_winding_current(self) -> float:
+        """Line current over winding current: sqrt 3 in delta, 1 in star."""
         return sqrt(3.0) if self.motor.nameplate.connection is Connection.DELTA else 1.0
 
     @property
@@ -55,11 +71,33 @@ class Case:
         return self.window.last - self.window.compare_from
 
     def terminal_winding(self, winding: int) -> Winding:
-        """The winding as the terminals label it."""
+        """Return the number under which the terminals know a winding.
+
+        Parameters
+        ----------
+        winding : int
+            0, 1 or 2 in the winding frame.
+
+        Returns
+        -------
+        Winding
+            0, 1 or 2 for the winding on terminal a, b or c.
+        """
         return terminal_winding(winding, self.sequence, self.motor.nameplate.connection)
 
     def space_vector(self, x_ab: Array) -> NDArray[np.complex128]:
-        """x_alpha + j x_beta over the compared samples, from values over the window, shape (2, window)."""
+        """Return x_alpha + j x_beta over the compared samples.
+
+        Parameters
+        ----------
+        x_ab : ndarray, shape (2, window)
+            Values over the window.
+
+        Returns
+        -------
+        ndarray of complex, shape (compared,)
+            Space vectors, in the same unit.
+        """
         compared = x_ab[:, self.window.compare_from - self.window.first :]
         return np.asarray(compared[0] + 1j * compared[1], dtype=np.complex128)
 
@@ -72,7 +110,28 @@ def case_of(
     frequency_hz: float,
     sequence: PhaseSequence,
 ) -> Case:
-    """Winding quantities in a positive-sequence world; inputs as measured at the terminals."""
+    """Bring one record into the winding frame.
+
+    Parameters
+    ----------
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    current_abc : ndarray, shape (3, n)
+        Line currents of terminals a, b, c [A].
+    voltage_ab : ndarray, shape (2, n)
+        Voltages on power-invariant Clarke axes [V].
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    frequency_hz : float
+        Supply frequency [Hz].
+    sequence : PhaseSequence
+        Order in which the supply's phases reach their maxima.
+
+    Returns
+    -------
+    Case
+        The record in the winding frame.
+    """
     current_ab, voltage_ab = to_winding_frame(
         clarke(current_abc), voltage_ab, sequence, motor.nameplate.connection
     )
@@ -90,10 +149,20 @@ def case_of(
 
 
 def thinned(case: Case) -> Case:
-    """The same case at a lower sample rate, for a search that only has to come near.
+    """Return the same record at a lower sample rate, for a search that only has to come near.
 
     Voltages and currents pass the same zero-phase filter, and the models are linear at constant speed: what
     is true of the record is true of its filtered copy.
+
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+
+    Returns
+    -------
+    Case
+        The thinned record.
     """
     factor = int(case.sample_rate_hz / case.frequency_hz / FEWEST_SAMPLES_A_CYCLE)
     if factor < 2:

@@ -2,5 +2,7 @@
 
 
 class DiagnosisError(ValueError):
-    """The diagnosis was asked for something it does not know (a method, a model), or to learn a baseline
-    from recordings that cannot give one."""
+    """The error of a diagnosis asked for a method or model that does not exist.
+
+    It is also raised where recordings cannot give the baseline that is to be learnt from them.
+    """

@@ -32,10 +32,16 @@ EQUAL_CYCLES = 5.0
 
 @dataclass(frozen=True, slots=True)
 class Phasors:
-    """Of one quantity's space vector, at the first sample compared.
+    """Phasors of one quantity's space vector, at the first sample compared.
 
-    components: peak, forwards re, im, backwards re, im, shape (4,).  scatter: covariance (4, 4) of their
-    noise if cycles were independent.  growth: of each one's standard deviation because they are not, (4,).
+    Parameters
+    ----------
+    components : ndarray, shape (4,)
+        Forwards re, im, backwards re, im, peak.
+    scatter : ndarray, shape (4, 4)
+        Covariance of their noise if cycles were independent.
+    growth : ndarray, shape (4,)
+        Growth of each one's standard deviation because cycles are not independent.
     """
 
     components: Array
@@ -44,20 +50,34 @@ class Phasors:
 
     @property
     def forward(self) -> complex:
+        """Forward-turning phasor, peak."""
         return complex(self.components[0], self.components[1])
 
     @property
     def backward(self) -> complex:
+        """Backward-turning phasor, peak."""
         return complex(self.components[2], self.components[3])
 
     @property
     def covariance(self) -> Array:
-        """Of the components' noise, whatever its colour, shape (4, 4)."""
+        """Covariance of the components' noise, whatever its colour, shape (4, 4)."""
         return np.asarray(self.scatter * np.outer(self.growth, self.growth))
 
     def shrunk(self, cycles: int) -> Array:
-        """Scatter drawn towards equal, independent components as far as few cycles leave it uncertain: steady
-        enough from record to record to weigh with."""
+        """Draw the scatter towards equal, independent components as far as few cycles leave it uncertain.
+
+        The result is steady enough from record to record to weigh with.
+
+        Parameters
+        ----------
+        cycles : int
+            Number of cycles it is taken from.
+
+        Returns
+        -------
+        ndarray, shape (4, 4)
+            Covariance.
+        """
         equal = np.trace(self.scatter) / 4.0 * np.eye(4)
         return np.asarray((cycles * self.scatter + EQUAL_CYCLES * equal) / (cycles + EQUAL_CYCLES))
 
@@ -66,7 +86,14 @@ class Phasors:
 class Fundamental:
     """One record's winding quantities at supply frequency.
 
-    angular_frequency: w_s [rad/s].  cycles: how many the phasors are taken from.
+    Parameters
+    ----------
+    current, voltage : Phasors
+        Phasors, peak [A, V].
+    angular_frequency : float
+        Angular frequency w_s [rad/s].
+    cycles : int
+        Number of cycles that the phasors are taken from.
     """
 
     current: Phasors
@@ -76,7 +103,18 @@ class Fundamental:
 
 
 def fundamental_of(case: Case) -> Fundamental:
-    """Phasors over the last whole cycles of a record, a second at most."""
+    """Find the phasors over the last whole cycles of a record, a second at most.
+
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+
+    Returns
+    -------
+    Fundamental
+        Phasors of currents and voltages.
+    """
     per_cycle = case.sample_rate_hz / case.frequency_hz
     longest = min(case.current_ab.shape[1], round(LONGEST_WINDOW_S * case.sample_rate_hz))
     cycles = int(longest / per_cycle + CYCLE_SHORT)
@@ -99,13 +137,35 @@ def fundamental_of(case: Case) -> Fundamental:
 
 
 def components(phasor: ComplexArray) -> Array:
-    """Components (..., 4) from peak phasors on the Clarke axes, shape (2, ...)."""
+    """Split phasors of the Clarke axes into components.
+
+    Parameters
+    ----------
+    phasor : ndarray of complex, shape (2, ...)
+        Phasors of both axes, peak.
+
+    Returns
+    -------
+    ndarray, shape (..., 4)
+        Forwards re, im, backwards re, im.
+    """
     alpha, beta = phasor
     return _components((alpha + 1j * beta) / 2.0, (alpha - 1j * beta).conj() / 2.0)
 
 
 def axis_phasors(values: Array) -> ComplexArray:
-    """Peak phasors on the Clarke axes (2,) from components (4,)."""
+    """Join components to phasors of the Clarke axes.
+
+    Parameters
+    ----------
+    values : ndarray, shape (4,)
+        Forwards re, im, backwards re, im.
+
+    Returns
+    -------
+    ndarray of complex, shape (2,)
+        Phasors of both axes, peak.
+    """
     forward, backward = values[0] + 1j * values[1], values[2] - 1j * values[3]
     return np.array([forward + backward, -1j * (forward - backward)])
 
@@ -146,8 +206,10 @@ def _sums(powers: ComplexArray, values: ComplexArray | Array) -> ComplexArray:
 
 
 def _cycles(beside: ComplexArray, turning: ComplexArray, edges: NDArray[np.int64]) -> ComplexArray:
-    """Forward and backward phasors of single cycles, (2, cycles): what they scatter is noise of any spectrum
-    (batch means; Law and Kelton, Simulation Modeling and Analysis)."""
+    """Return forward and backward phasors of single cycles, (2, cycles).
+
+    Their scatter is noise of any spectrum (batch means; Law and Kelton, Simulation Modeling and Analysis).
+    """
     lengths = np.diff(edges, append=turning.size)
     turned = np.stack([beside * turning, beside * turning.conj()])
     cycles = np.empty((2, edges.size), dtype=np.complex128)
@@ -156,8 +218,10 @@ def _cycles(beside: ComplexArray, turning: ComplexArray, edges: NDArray[np.int64
 
 
 def _growth(cycles: ComplexArray) -> float:
-    """Of a mean's variance because neighbouring cycles are correlated: (1 + r) / (1 - r) for a first-order
-    autoregression, the bias of r for few cycles taken off."""
+    """Return the growth of a mean's variance because neighbouring cycles are correlated.
+
+    It is (1 + r) / (1 - r) for a first-order autoregression, the bias of r for few cycles taken off.
+    """
     beside = cycles - cycles.mean()
     energy = float(np.vdot(beside, beside).real)
     if energy == 0.0:

@@ -46,9 +46,22 @@ LEVEL_START = 0.005
 class Explanation:
     """The best winding's fit and what it leaves.
 
-    record: the phasors explained.  winding: in the case's own labels.  asymmetry, unexplained:
-    backward-turning current without and with the fault, noise: its standard deviation, as fractions of the
-    forward-turning one.
+    Parameters
+    ----------
+    record : Fundamental
+        Phasors that are explained.
+    winding : int
+        0, 1 or 2 in the winding frame.
+    fit : Fit
+        Fit of the best winding.
+    healthy : Fit
+        Fit of the healthy machine.
+    asymmetry, unexplained : float
+        Backward-turning current without and with the fault, fractions of the forward-turning one.
+    noise : float
+        Standard deviation of the backward-turning current, the same fraction.
+    evaluations : int
+        Number of simulated candidates or evaluated points.
     """
 
     record: Fundamental
@@ -62,11 +75,25 @@ class Explanation:
 
 
 def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
-    """Refine every winding's best point and the healthy machine; choose the winding with the least residual.
+    """Refine every winding's best point and the healthy machine; choose the winding that leaves least.
 
     All windings have equally many unknowns, so the least residual is also the greatest likelihood. Turns
     bridged by a resistance draw a current nearer to the voltage's direction: where dead-shorted turns leave
     much unexplained, the path's resistance is fitted too, and taken where it is seen.
+
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+    model : StatorModel
+        Machine model of the fault.
+    starts : Starts
+        Best point of each winding.
+
+    Returns
+    -------
+    Explanation
+        The chosen winding's fit and what it leaves.
     """
     unknowns = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
     refinement = Refinement(case, model, starts.best)
@@ -109,21 +136,52 @@ def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
     )
 
 
-def feigned(explanation: Explanation, tolerance: Systematic) -> float:
-    """Backward-turning current, of the forward one, that noise, sensors and parameters reach once in a
-    hundred records."""
+def limit_of_chance(explanation: Explanation, tolerance: Systematic) -> float:
+    """Return the asymmetry that noise, sensors and parameters reach once in a hundred records.
+
+    It is a backward-turning current.
+
+    Parameters
+    ----------
+    explanation : Explanation
+        The hypothesis that explains the currents best.
+    tolerance : Systematic
+        Errors that no averaging reduces.
+
+    Returns
+    -------
+    float
+        Fraction of the forward-turning current.
+    """
     return UNLIKELY * hypot(tolerance.backward, explanation.noise)
 
 
 def is_explained(explanation: Explanation, tolerance: Systematic) -> bool:
-    """Whether shorted turns account for the asymmetry: what they leave is feigned, or a small share of it."""
-    allowed = max(feigned(explanation, tolerance), SHARE_UNEXPLAINED * explanation.asymmetry)
+    """Return whether shorted turns account for the asymmetry.
+
+    They do where what they leave is within the limit of chance, or a small share of the asymmetry.
+
+    Parameters
+    ----------
+    explanation : Explanation
+        The hypothesis that explains the currents best.
+    tolerance : Systematic
+        Errors that no averaging reduces.
+
+    Returns
+    -------
+    bool
+        Whether they do.
+    """
+    allowed = max(limit_of_chance(explanation, tolerance), SHARE_UNEXPLAINED * explanation.asymmetry)
     return explanation.fit.value(FAULT_LEVEL) > 0.0 and explanation.unexplained <= allowed
 
 
 def _likeliest(fits: list[Fit]) -> int:
-    """The winding that explains the record best, among those with a level above zero: no winding has fewer
-    turns shorted than none, so a level below zero only stands where there is no other."""
+    """Return the winding that explains the record best, among those with a level above zero.
+
+    No winding has fewer turns shorted than none, so a level below zero only stands where there is no other.
+    """
     misfit = np.array([fit.misfit for fit in fits])
     possible = np.array([fit.value(FAULT_LEVEL) > 0.0 for fit in fits])
     return int(np.argmin(np.where(possible, misfit, np.inf) if possible.any() else misfit))

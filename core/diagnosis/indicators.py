@@ -12,7 +12,22 @@ from core.signals.sequence import PhaseSequence, sequence_phasors
 
 
 def indicators(case: Case) -> Indicators:
-    """Indicators over the whole record (Cardoso, Cruz, Fonseca, IEEE Trans. Energy Convers. 14(3), 1999)."""
+    """Compute the model-free indicators over the whole record [1]_.
+
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+
+    Returns
+    -------
+    Indicators
+        The indicators.
+
+    References
+    ----------
+    .. [1] Cardoso, Cruz, Fonseca, IEEE Trans. Energy Convers. 14(3), 1999.
+    """
     rate, frequency = case.sample_rate_hz, case.frequency_hz
     current = sequence_phasors(fundamental_phasors(case.current_ab, frequency, rate))
     V_alpha, V_beta = case.supply.phasor / np.sqrt(2.0)

@@ -1,7 +1,7 @@
-"""The verdict: what the fits say, against what noise, sensors and parameters could feign, in words."""
+"""The verdict: what the fits say, against what noise, sensors and parameters could make up, in words."""
 
 from core.diagnosis.case import Case
-from core.diagnosis.hypotheses import Explanation, feigned, is_explained
+from core.diagnosis.hypotheses import Explanation, is_explained, limit_of_chance
 from core.diagnosis.refinement import (
     CHANNEL_RATIO,
     FAULT_LEVEL,
@@ -23,7 +23,24 @@ twice the true currents need 900 us and more, severe faults with parameters 10 %
 
 
 def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[Verdict, list[str]]:
-    """Verdict and its reasons in words."""
+    """Decide on a verdict, with its reasons in words.
+
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+    explanation : Explanation
+        The hypothesis that explains the currents best.
+    tolerance : Systematic
+        Errors that no averaging reduces.
+
+    Returns
+    -------
+    verdict : Verdict
+        The verdict.
+    reasons : list of str
+        Its reasons.
+    """
     limit = case.motor.limits.fault_level
     fit = explanation.fit
     low, high = fit.interval(FAULT_LEVEL)
@@ -68,7 +85,7 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
             f"shorted turns in phase {phase}: {level}, above the limit of {limit:.2%}{bridged}",
             *figures,
         ]
-    if not explained and explanation.unexplained > feigned(explanation, tolerance):
+    if not explained and explanation.unexplained > limit_of_chance(explanation, tolerance):
         return Verdict.WATCH, ["an asymmetry that shorted turns in no phase explain", *figures]
     if high > limit:
         return Verdict.WATCH, [
@@ -82,7 +99,20 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
 
 
 def identified(explanation: Explanation) -> QualityFinding:
-    """Whether the fits ended somewhere: a machine that can run so, and unknowns the record tells apart."""
+    """Check that the fits ended somewhere.
+
+    That is a machine that can run so, with unknowns that the record tells apart.
+
+    Parameters
+    ----------
+    explanation : Explanation
+        The hypothesis that explains the currents best.
+
+    Returns
+    -------
+    QualityFinding
+        The finding.
+    """
     unsound = sum(not fit.is_sound for fit in (explanation.fit, explanation.healthy))
     return finding(
         "identifiability", unsound, 0, "fits", passed=unsound == 0,
@@ -92,7 +122,7 @@ def identified(explanation: Explanation) -> QualityFinding:
 
 
 def _unknowns(case: Case, fit: Fit) -> str:
-    """What else the fit could turn at, and what it could not."""
+    """Say what else the fit estimated, and what it held."""
     path = ", resistance of the path" if PATH_RATIO in fit.standard_error else ""
     return (
         f"estimated beside the level: frequency ({case.frequency_hz:.2f} Hz), load, offset of the currents "

@@ -11,9 +11,23 @@ FAULT_LEVEL = 0.02
 
 
 def from_phasors(record: Fundamental, motor: Motor, winding: int) -> Candidates:
-    """A candidate with the load whose torque crosses the air gap, no offset between currents and voltages.
+    """Make a candidate with the load whose torque crosses the air gap, without offset.
 
     T_e = p (Re(v i*) - R_s |i|^2) / w_s, of the forward-turning phasors (power-invariant space vectors).
+
+    Parameters
+    ----------
+    record : Fundamental
+        Phasors of currents and voltages.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    winding : int
+        0, 1 or 2 in the winding frame.
+
+    Returns
+    -------
+    Candidates
+        The candidate.
     """
     current, voltage = record.current.forward, record.voltage.forward
     nameplate = motor.nameplate

@@ -47,7 +47,17 @@ COMPONENTS_OF_A_RATIO = 6
 
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """A quantity that is fitted: its name in Candidates, the step of its difference quotient, its range."""
+    """A quantity that is fitted.
+
+    Parameters
+    ----------
+    name : str
+        Its name in Candidates.
+    step : float
+        Step of its difference quotient.
+    lower, upper : float
+        Its range.
+    """
 
     name: str
     step: float
@@ -62,10 +72,24 @@ PATH_RATIO = "path_ratio"
 
 
 def unknown(name: str, case: Case, model: StatorModel) -> Unknown:
-    """Range and step of an unknown.
+    """Return range and step of an unknown.
 
     T_d is known modulo one cycle and kept within half a one either way; the quality gate lets none pass that
     is near either end.
+
+    Parameters
+    ----------
+    name : str
+        Name of the quantity.
+    case : Case
+        The record in the winding frame.
+    model : StatorModel
+        Machine model of the fault.
+
+    Returns
+    -------
+    Unknown
+        The unknown.
     """
     cycle = 1.0 / case.frequency_hz
     return {
@@ -80,12 +104,25 @@ def unknown(name: str, case: Case, model: StatorModel) -> Unknown:
 class Fit:
     """A hypothesis at its best.
 
-    candidate: a batch of one.  misfit: squared distance of the compared components, weighted by what noise
-    and the sensors' class make of them, prior included: minus twice the log likelihood, but for a constant.
-    left: backward-turning component of the residual, peak phasor at the record's fundamental [A, winding].
-    is_sound: the search ended at a minimum, in periodic running, which tells its unknowns apart.
-    standard_error: by name of the unknowns; `degrees_of_freedom` of the noise behind it.
-    at_bound: names of unknowns that ended on their bound and have no standard error.
+    Parameters
+    ----------
+    candidate : Candidates
+        A batch of one hypothesis.
+    misfit : float
+        Squared distance of the compared components, weighted by what noise and the sensors' class make of
+        them, prior included: minus twice the log likelihood, but for a constant.
+    left : complex
+        Backward-turning component of the residual, peak phasor at the record's fundamental [A, winding].
+    is_sound : bool
+        Whether the search ended at a minimum, in periodic running, which tells its unknowns apart.
+    standard_error : dict of str to float
+        Standard error of each unknown, by name.
+    degrees_of_freedom : int
+        Degrees of freedom of the noise behind the standard errors.
+    at_bound : tuple of str
+        Names of unknowns that ended on their bound and have no standard error.
+    evaluations : int
+        Number of simulated candidates or evaluated points.
     """
 
     candidate: Candidates
@@ -98,11 +135,33 @@ class Fit:
     evaluations: int
 
     def value(self, name: str) -> float:
-        """Fitted value of an unknown."""
+        """Return the fitted value of an unknown.
+
+        Parameters
+        ----------
+        name : str
+            Name of the quantity.
+
+        Returns
+        -------
+        float
+            Its value.
+        """
         return float(getattr(self.candidate, name)[0])
 
     def interval(self, name: str) -> tuple[float, float]:
-        """95 % confidence interval of an unknown; its bound alone where it ended on one."""
+        """Return the 95 % confidence interval of an unknown; its bound alone where it ended on one.
+
+        Parameters
+        ----------
+        name : str
+            Name of the quantity.
+
+        Returns
+        -------
+        tuple of float
+            Lower and upper end.
+        """
         if name in self.at_bound:
             return self.value(name), self.value(name)
         reach = (
@@ -112,12 +171,20 @@ class Fit:
 
 
 class Refinement:
-    """Gauss-Newton on one record, for any hypothesis.
+    """A local fit on one record, for any hypothesis.
 
     Components are weighted by what noise and the sensors' class make of each: noise on the voltages, say,
     falls mostly on the backward-turning current, which meets the machine's least impedance.
-    near: a candidate near the truth, which tells how voltages become currents.
-    backward_noise_A: standard deviation of the backward-turning phasor, peak.
+    `backward_noise_A` is the standard deviation of the backward-turning phasor, peak.
+
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+    model : StatorModel
+        Machine model of the fault.
+    near : Candidates
+        A candidate near the truth, which tells how voltages become currents.
     """
 
     def __init__(self, case: Case, model: StatorModel, near: Candidates) -> None:
@@ -136,7 +203,20 @@ class Refinement:
         self._whitening = np.linalg.inv(np.linalg.cholesky(weighed))
 
     def fit(self, start: Candidates, names: tuple[str, ...]) -> Fit:
-        """Minimise the misfit from one candidate over the named unknowns, the others held."""
+        """Minimise the misfit from one candidate over the named unknowns, the others held.
+
+        Parameters
+        ----------
+        start : Candidates
+            Candidate to begin at.
+        names : tuple of str
+            Names of the unknowns.
+
+        Returns
+        -------
+        Fit
+            The fit.
+        """
         unknowns = tuple(unknown(name, self._case, self._running.model) for name in names)
         inside = _moved(start, unknowns, np.zeros(len(unknowns)))
         point, rounds, damping = self._linearise(inside, unknowns), 1, 0.0

@@ -47,7 +47,19 @@ SEED = 0
 
 @dataclass(frozen=True, slots=True)
 class Starts:
-    """Best point found for each winding, as a batch of one each, and what finding them took."""
+    """Best point found for each winding, and what finding them took.
+
+    Parameters
+    ----------
+    by_winding : tuple of Candidates
+        Best point of each winding, a batch of one each.
+    best : Candidates
+        The best of all.
+    evaluations : int
+        Number of simulated candidates or evaluated points.
+    message : str
+        Why the search ended.
+    """
 
     by_winding: tuple[Candidates, Candidates, Candidates]
     best: Candidates
@@ -56,7 +68,18 @@ class Starts:
 
 
 def candidates_at(points: Array) -> Candidates:
-    """Candidates from search points (m, 4): mu_f, theta_f, T_d, LL."""
+    """Make candidates of search points.
+
+    Parameters
+    ----------
+    points : ndarray, shape (m, 4)
+        Search points mu_f, theta_f, T_d, LL.
+
+    Returns
+    -------
+    Candidates
+        The candidates.
+    """
     return Candidates(
         fault_level=np.ascontiguousarray(points[:, 0]),
         winding=np.round(points[:, 1]).astype(np.int64),
@@ -67,9 +90,26 @@ def candidates_at(points: Array) -> Candidates:
 
 
 def search(case: Case, model: StatorModel, method: str) -> Starts:
-    """Run the optimiser called `method` on the thinned record; hand on its best point for each winding.
+    """Run a search method on the thinned record; return its best point for each winding.
 
-    Raises DiagnosisError for a method that does not exist.
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+    model : StatorModel
+        Machine model of the fault.
+    method : str
+        One of METHODS.
+
+    Returns
+    -------
+    Starts
+        Best point of each winding.
+
+    Raises
+    ------
+    DiagnosisError
+        If the method does not exist.
     """
     if method not in METHODS:
         raise DiagnosisError(f"method {method!r} is unknown; known: {', '.join(METHODS)}")
@@ -93,12 +133,32 @@ def search(case: Case, model: StatorModel, method: str) -> Starts:
 
 @dataclass(frozen=True, slots=True)
 class Objective:
-    """What a method minimises over points (m, 4), as in `candidates_at`; T_d is known up to a cycle [s]."""
+    """What a method minimises over points (m, 4), as in `candidates_at`.
+
+    Parameters
+    ----------
+    cost : callable
+        Squared errors (m,) of points (m, 4) [A^2].
+    cycle_s : float
+        Period of the supply, up to which T_d is known [s].
+    """
 
     cost: Callable[[Array], Array]
     cycle_s: float
 
     def bounds(self, lowest_winding: float, highest_winding: float) -> tuple[tuple[float, float], ...]:
+        """Return the box that is searched.
+
+        Parameters
+        ----------
+        lowest_winding, highest_winding : float
+            Bounds of theta_f.
+
+        Returns
+        -------
+        tuple of tuple of float
+            Lower and upper bound of each coordinate.
+        """
         return (
             (0.0, HIGHEST_FAULT_LEVEL),
             (lowest_winding, highest_winding),
@@ -168,7 +228,7 @@ METHODS: dict[str, Callable[[Objective], "SearchResult | OptimizeResult"]] = {
 
 
 def _best(result: "SearchResult | OptimizeResult", winding: int, cycle: float) -> Candidates:
-    """The best point of one winding; without any, the best of all moved to it."""
+    """Return the best point of one winding; without any, the best of all moved to it."""
     of_winding = np.round(result.points[:, 1]) == winding
     values = np.where(of_winding, result.costs, np.inf)
     point = np.array(result.points[int(np.argmin(values))] if of_winding.any() else result.x)

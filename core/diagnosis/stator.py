@@ -42,12 +42,34 @@ def diagnose(
 ) -> Diagnosis:
     """Diagnose the stator winding from one recording in steady running.
 
-    method: global search, one of search.METHODS.  model: one of MODELS; mu_f is its equivalent level.
-    baseline: the motor's standing asymmetry (learn_baseline), taken off the currents first.
-    currents_only: use no voltages, recorded or not; a balanced supply is assumed, and a fault is called
-    "watch" at most.
-    Raises RecordingError where the recording lacks channels the motor needs, DiagnosisError for an unknown
-    method or model. Everything else a recording can be guilty of makes it undiagnosable, with the reason.
+    Whatever else a recording can be guilty of makes it undiagnosable, with the reason.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    method : str, optional
+        Global search, one of `core.diagnosis.methods.Method`.
+    model : str, optional
+        Fault model, one of `core.diagnosis.methods.Model`; mu_f is its equivalent level.
+    baseline : Baseline or None, optional
+        The motor's standing asymmetry (`learn_baseline`), taken off the currents first.
+    currents_only : bool, default False
+        Use no voltages, recorded or not; a balanced supply is assumed, and a fault is called "watch" at most.
+
+    Returns
+    -------
+    Diagnosis
+        Verdict, figures and reasons.
+
+    Raises
+    ------
+    RecordingError
+        If the recording lacks channels that the motor needs.
+    DiagnosisError
+        If the method or the model is unknown.
     """
     begun = perf_counter()
     _check_known(method, model)
@@ -68,7 +90,7 @@ def diagnose(
         explanation.fit,
         known_share=0.0 if baseline is None else 1.0 - baseline.remaining,
         known_unbalance_V=0.0 if baseline is None else baseline.unbalance_V,
-        standing_error_A=0.0 if baseline is None else baseline.error_A,
+        systematic_error_A=0.0 if baseline is None else baseline.error_A,
         supply_unbalance=SUPPLY_UNBALANCE if assumed else 0.0,
     )
     verdict, reasons = judge(case, explanation, tolerance)
@@ -106,9 +128,28 @@ def diagnose(
 
 
 def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_only: bool = False) -> Baseline:
-    """The motor's standing asymmetry from recordings known to be healthy, at least three of them.
+    """Learn the motor's standing asymmetry from recordings known to be healthy.
 
-    Raises RecordingError like `diagnose`, DiagnosisError where one is undiagnosable or there are too few.
+    Parameters
+    ----------
+    recordings : iterable of Recording
+        At least three recordings.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    currents_only : bool, default False
+        Use no voltages, recorded or not.
+
+    Returns
+    -------
+    Baseline
+        The baseline.
+
+    Raises
+    ------
+    RecordingError
+        If a recording lacks channels that the motor needs.
+    DiagnosisError
+        If one is undiagnosable, or there are too few.
     """
     seen: list[tuple[complex, complex]] = []
     for recording in recordings:
@@ -131,8 +172,11 @@ def _check_known(method: str, model: str) -> None:
 def _accept(
     recording: Recording, motor: Motor, *, currents_only: bool
 ) -> tuple[Case | None, list[QualityFinding], bool]:
-    """The case the stages work on, or None where a check fails; every check's finding; whether the voltages
-    are assumed."""
+    """Check a recording and bring it into the winding frame.
+
+    Returned are the record in that frame, or None where a check fails; every check's finding; and whether the
+    voltages are assumed.
+    """
     measured = terminals(
         _currents_of(recording) if currents_only else recording,
         currents=motor.channels.currents,
@@ -157,7 +201,7 @@ def _accept(
 
 
 def _currents_of(recording: Recording) -> Recording:
-    """The recording as if its voltages had not been recorded."""
+    """Return the recording as if its voltages had not been recorded."""
     kept = [k for k, channel in enumerate(recording.channels) if channel.quantity is Quantity.CURRENT]
     return replace(
         recording, samples=recording.samples[kept], channels=tuple(recording.channels[k] for k in kept)

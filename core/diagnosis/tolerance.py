@@ -1,4 +1,4 @@
-"""What sensors within their class and parameters within their tolerance can feign.
+"""What sensors within their class and parameters within their tolerance can make up.
 
 Noise averages out over a record; a ratio error of a sensor or a wrong parameter does not. Each leaves
 a backward-turning current that a fault would explain as well, so its size, not the noise, decides how small a
@@ -32,20 +32,50 @@ PROBE_LEVEL = 0.005
 class Systematic:
     """Standard deviations that no averaging reduces.
 
-    backward: of the backward-turning current, as a fraction of the forward-turning one (complex magnitude).
-    level: of the fault level, fraction of the phase turns.
+    Parameters
+    ----------
+    backward : float
+        Of the backward-turning current, as a fraction of the forward-turning one (complex magnitude).
+    level : float
+        Of the fault level, a fraction of the phase turns.
     """
 
     backward: float
     level: float
 
     def least_fault(self, fit: Fit, limit: float) -> float:
-        """Least level called a fault: believed to be above the motor's limit, and no false alarm."""
+        """Return the least level called a fault: above the motor's limit, and no false alarm.
+
+        Parameters
+        ----------
+        fit : Fit
+            The fit of the fault.
+        limit : float
+            Fault level above which the motor counts as faulty.
+
+        Returns
+        -------
+        float
+            Level, a fraction of the phase turns.
+        """
         total = self._total(fit)
         return max(limit + BELIEF * total, ALARM * total)
 
     def detection_limit(self, fit: Fit, limit: float) -> float:
-        """Level that nine of ten such records would have shown to lie above the motor's limit."""
+        """Return the level that nine of ten such records would have shown to lie above the motor's limit.
+
+        Parameters
+        ----------
+        fit : Fit
+            The fit of the fault.
+        limit : float
+            Fault level above which the motor counts as faulty.
+
+        Returns
+        -------
+        float
+            Level, a fraction of the phase turns.
+        """
         return self.least_fault(fit, limit) + SEEN * self._total(fit)
 
     def _total(self, fit: Fit) -> float:
@@ -59,15 +89,33 @@ def systematic(
     *,
     known_share: float = 0.0,
     known_unbalance_V: complex = 0.0,
-    standing_error_A: float = 0.0,
+    systematic_error_A: float = 0.0,
     supply_unbalance: float = 0.0,
 ) -> Systematic:
-    """Tolerances of one record, from its voltages, its currents and the fitted operating point.
+    """Compute the tolerances of one record from its voltages, its currents and the fitted operating point.
 
-    known_share: share of the sensors' that a baseline has taken off; of the parameters' it took what they
-    make of known_unbalance_V (see backward_voltage), since it is proportional to that.
-    standing_error_A: standard deviation of what was taken off.
-    supply_unbalance: standard deviation of V2 / V1 where the voltages are assumed.
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+    playback : Playback
+        The record's voltages, for any candidate.
+    fit : Fit
+        The fit of the fault.
+    known_share : float, default 0.0
+        Share of the sensors' errors that a baseline has taken off. Of the parameters' errors it took what
+        they make of `known_unbalance_V`, since those are proportional to that.
+    known_unbalance_V : complex, default 0.0
+        Backward-turning voltage of the baseline, seen as in `backward_voltage` [V, peak].
+    systematic_error_A : float, default 0.0
+        Standard deviation of what a baseline has taken off [A, peak].
+    supply_unbalance : float, default 0.0
+        Standard deviation of V2 / V1 where the voltages are assumed.
+
+    Returns
+    -------
+    Systematic
+        The tolerances.
     """
     candidate = fit.candidate
     probes = Candidates(
@@ -93,14 +141,25 @@ def systematic(
         (1.0 - known_share) * sensors,
         PARAMETERS * abs(V_unknown) * per_volt,
         supply_unbalance * V_forward * per_volt,
-        standing_error_A / forward,
+        systematic_error_A / forward,
     )
     # Only the part of a complex error that lies along the fault's own current looks like a fault.
     return Systematic(backward=backward, level=backward / sqrt(2.0) / per_level)
 
 
 def backward_voltage(forward: complex, backward: complex) -> complex:
-    """Backward-turning voltage seen from the forward-turning one, wherever a record begins."""
+    """Return the backward-turning voltage seen from the forward-turning one, wherever a record begins.
+
+    Parameters
+    ----------
+    forward, backward : complex
+        Phasors of the voltage [V].
+
+    Returns
+    -------
+    complex
+        The phasor so seen [V].
+    """
     return backward * forward / abs(forward)
 
 

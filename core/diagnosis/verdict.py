@@ -8,6 +8,8 @@ from core.quality.finding import QualityFinding
 
 
 class Verdict(StrEnum):
+    """What the diagnosis makes of one recording."""
+
     HEALTHY = "healthy"
     WATCH = "watch"
     FAULT = "fault"
@@ -16,12 +18,22 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Indicators:
-    """Of the line quantities, in the supply's own sequence.
+    """Model-free figures of the line quantities, in the supply's own sequence.
 
-    current_unbalance, voltage_unbalance: |I2| / |I1|, |V2| / |V1|.
-    negative_sequence_current_A: |I2|, rms.  negative_sequence_impedance_ohm: |V2| / |I2|.
-    park_axis_ratio: minor over major axis of the current's ellipse on the Clarke axes; 1 is a circle.
-    park_axis_angle_deg: of the major axis against phase a, -90 to 90.
+    Parameters
+    ----------
+    current_unbalance : float
+        |I2| / |I1|.
+    voltage_unbalance : float
+        |V2| / |V1|.
+    negative_sequence_current_A : float
+        |I2|, rms [A].
+    negative_sequence_impedance_ohm : float
+        |V2| / |I2| [ohm].
+    park_axis_ratio : float
+        Minor over major axis of the current's ellipse on the Clarke axes; 1 is a circle.
+    park_axis_angle_deg : float
+        Angle of the major axis against phase a, -90 to 90 [deg].
     """
 
     current_unbalance: float
@@ -32,19 +44,58 @@ class Indicators:
     park_axis_angle_deg: float
 
     def as_dict(self) -> dict[str, float]:
+        """Return the figures as JSON takes them.
+
+        Returns
+        -------
+        dict of str to float
+            The figures by name.
+        """
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """The result for one recording. Figures are None where the quality gate refused the recording.
+    """The result for one recording; figures are None where the quality gate refused it.
 
-    mu_f: equivalent fault level, fraction of the phase turns, with its 95 % interval.
-    theta_f: 0, 1, 2 = winding on terminals a, b, c; None unless shorted turns are found; `phase` likewise.
-    load_level: load torque over rated torque.  time_offset_s: delay of the currents against the voltages.
-    residual_rms_A: rms of measured minus modelled current over both Clarke axes.
-    speed_rpm: of the shaft, from the fit.  detection_limit: least mu_f this recording would have shown.
-    indicators: model-free figures beside the fit.  currents_only: the voltages are assumed, none were used.
+    Parameters
+    ----------
+    verdict : Verdict
+        The verdict.
+    mu_f : float or None
+        Equivalent fault level, a fraction of the phase turns.
+    mu_f_ci95 : tuple of float or None
+        Its 95 % interval.
+    theta_f : {0, 1, 2} or None
+        Winding with the fault: 0, 1, 2 for the one on terminals a, b, c; None unless shorted turns are found.
+    load_level : float or None
+        Load torque over rated torque.
+    time_offset_s : float or None
+        Delay of the currents against the voltages [s].
+    residual_rms_A : float or None
+        Measured minus modelled current, rms over both Clarke axes [A].
+    evaluations : int
+        Number of simulated candidates or evaluated points.
+    compute_seconds : float
+        Time of the diagnosis [s].
+    quality : tuple of QualityFinding
+        Findings of the quality gate.
+    reasons : tuple of str
+        Reasons of the verdict in words.
+    model : str
+        Fault model that was used.
+    method : str
+        Search method that was used.
+    load_level_ci95 : tuple of float or None, optional
+        95 % interval of the load level.
+    speed_rpm : float or None, optional
+        Speed of the shaft, from the fit [rpm].
+    detection_limit : float or None, optional
+        Least mu_f that this recording would have shown.
+    indicators : Indicators or None, optional
+        Model-free figures beside the fit.
+    currents_only : bool, default False
+        Whether the voltages are assumed and none were used.
     """
 
     verdict: Verdict
@@ -68,11 +119,18 @@ class Diagnosis:
 
     @property
     def phase(self) -> Literal["a", "b", "c"] | None:
+        """Phase with the fault: "a", "b", "c"; None unless shorted turns are found."""
         phases: tuple[Literal["a", "b", "c"], ...] = ("a", "b", "c")
         return None if self.theta_f is None else phases[self.theta_f]
 
     def as_dict(self) -> dict[str, object]:
-        """The document `mcc diagnose --json` prints; its keys are a contract."""
+        """Return the document that `mcc diagnose --json` prints; its keys are a contract.
+
+        Returns
+        -------
+        dict of str to object
+            The document.
+        """
         return {
             "verdict": str(self.verdict),
             "mu_f": self.mu_f,

@@ -26,7 +26,7 @@ CLARKE_PHASE = float(np.sqrt(2.0 / 3.0))
 class RotorAsymmetry(NamedTuple):
     """Turning part of the rotor's resistance.
 
-    Attributes
+    Parameters
     ----------
     resistance : ndarray, shape (candidates,)
         Half the difference between the resistances of the two axes [ohm].
@@ -40,9 +40,19 @@ class RotorAsymmetry(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Circuits:
-    """Inductances L [H] and resistances R [ohm] of a batch, each of shape (candidates, 5, 5).
+    """Inductances and resistances of a batch.
 
-    Where a rotor is not the same all around, R has its mean and `rotor_asymmetry` what turns with it.
+    Where a rotor is not the same all around, `resistance` has its mean and `rotor_asymmetry` the part that
+    turns with it.
+
+    Parameters
+    ----------
+    inductance : ndarray, shape (candidates, 5, 5)
+        L [H].
+    resistance : ndarray, shape (candidates, 5, 5)
+        R [ohm].
+    rotor_asymmetry : RotorAsymmetry or None, optional
+        Part of the rotor's resistance that turns with it.
     """
 
     inductance: Array
@@ -51,16 +61,19 @@ class Circuits:
 
 
 class StatorModel(Protocol):
-    """A machine with a fault of a level, in a stator model's case in one phase; replaceable (thesis 6.5)."""
+    """A machine with a fault of some level, in a stator model's case in one phase.
+
+    Models can be exchanged for one another (thesis 6.5).
+    """
 
     @property
     def name(self) -> str:
-        """As written on the command line: "split-winding"."""
+        """Name as written on the command line, such as "split-winding"."""
         ...
 
     @property
     def lowest_level(self) -> float:
-        """Least fault level the equations can be continued to: below zero an estimate is free of bias."""
+        """Least fault level to which the equations hold; below zero an estimate is free of bias."""
         ...
 
     @property
@@ -71,12 +84,24 @@ class StatorModel(Protocol):
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
     ) -> Circuits:
-        """Matrices for a batch of candidates, every argument of shape (candidates,).
+        """Return the matrices of a batch of candidates.
 
-        fault_level: equivalent level mu_eq, fraction of the phase turns; 0 is the healthy machine exactly.
-        winding: theta_f, 0, 1 or 2 for the winding on terminals a, b, c.
-        path_ratio: resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s);
-        models that know no path ignore it.
+        Parameters
+        ----------
+        motor : Motor
+            Nameplate, parameters, channel names and limits of the motor.
+        fault_level : ndarray, shape (candidates,)
+            Fault level, a fraction of the phase turns; 0 is the healthy machine.
+        winding : ndarray of int, shape (candidates,)
+            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
+        path_ratio : ndarray, shape (candidates,)
+            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s). Models that
+            know no path ignore it.
+
+        Returns
+        -------
+        Circuits
+            Inductances and resistances.
         """
         ...
 
@@ -86,5 +111,16 @@ _AXES = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=1)
 
 
 def winding_axis(winding: NDArray[np.int64]) -> Array:
-    """n = (cos th, sin th), th = theta_f 2 pi / 3, shape (candidates, 2) (6.9)."""
+    """Return the axis of each winding, n = (cos th, sin th) with th = theta_f 2 pi / 3 (6.9).
+
+    Parameters
+    ----------
+    winding : ndarray of int, shape (candidates,)
+        Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
+
+    Returns
+    -------
+    ndarray, shape (candidates, 2)
+        Unit vectors.
+    """
     return _AXES[winding]

@@ -16,9 +16,18 @@ from core.machines.stepping import Comparison, InitialState, MachineRates, Stepp
 
 @compiled
 def find_rates(inductance: Array, resistance: Array, decay: Array, current_from_flux: Array) -> None:
-    """Fill the matrices a batch is stepped with, from its circuits (n, 5, 5).
+    """Fill the matrices that a batch is stepped with.
 
-    Filled: decay = -R inv(L), current_from_flux = inv(L), both (n, 5, 5).
+    Parameters
+    ----------
+    inductance : ndarray, shape (candidates, 5, 5)
+        L [H].
+    resistance : ndarray, shape (candidates, 5, 5)
+        R [ohm].
+    decay : ndarray, shape (candidates, 5, 5)
+        Filled with -R inv(L) [1/s].
+    current_from_flux : ndarray, shape (candidates, 5, 5)
+        Filled with inv(L) [1/H].
     """
     inverse = np.empty((5, 5))
     for c in range(inductance.shape[0]):
@@ -36,7 +45,19 @@ def find_rates(inductance: Array, resistance: Array, decay: Array, current_from_
 def find_steady_states(
     machines: MachineRates, delay_s: Array, supply: SinusoidalSupply, state: SteadyState
 ) -> None:
-    """Fill the periodic steady state of every candidate (see steady_state.py); delay_s has shape (n,)."""
+    """Fill the periodic steady state of every candidate (see steady_state.py).
+
+    Parameters
+    ----------
+    machines : MachineRates
+        Coefficients of the batch.
+    delay_s : ndarray, shape (candidates,)
+        Delay of each candidate's voltages [s].
+    supply : SinusoidalSupply
+        The supply, and where the machine pulls out on it.
+    state : SteadyState
+        The steady states, which are filled.
+    """
     drive, rotor = np.zeros(4, np.complex128), np.empty(2, np.complex128)
     flux, third = np.empty(5, np.complex128), np.empty(5, np.complex128)
     w_s = supply.angular_frequency
@@ -63,9 +84,24 @@ def play(
     feed: SteppedVoltage, delay_s: Array, machines: MachineRates, beginning: InitialState,
     comparison: Comparison, track: Track,
 ) -> None:  # fmt: skip
-    """Step every candidate, each with its delay (n,), from its initial state through the feed.
+    """Step every candidate from its initial state through the feed.
 
     The squared error of a candidate is infinite where its currents are not finite.
+
+    Parameters
+    ----------
+    feed : SteppedVoltage
+        Stator voltage and the columns of it that are stepped through.
+    delay_s : ndarray, shape (candidates,)
+        Delay of each candidate's voltages [s].
+    machines : MachineRates
+        Coefficients of the batch.
+    beginning : InitialState
+        State of the candidates at the first column.
+    comparison : Comparison
+        Measured current, and the squared errors that are filled.
+    track : Track
+        Currents and speeds that are filled.
     """
     columns, substeps = feed.last - feed.first, feed.substeps
     recorded = columns if track.current.shape[2] > 0 else 0

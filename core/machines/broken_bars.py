@@ -26,10 +26,14 @@ from core.machines.parameters import Motor
 
 @dataclass(frozen=True, slots=True)
 class BrokenBars:
-    """Level n_bb / N_b, share of the cage's bars that are broken, all in one place.
+    """A cage with broken bars; its level is n_bb / N_b, the share that is broken, all in one place.
 
-    axis_angle: electrical angle of their axis on the stator's alpha axis at the window's first sample [rad].
     The steady state is that of the mean rotor resistance; the sidebands need about a slip period to settle.
+
+    Parameters
+    ----------
+    axis_angle : float, default 0.0
+        Electrical angle of the bars' axis on the stator's alpha axis at the window's first sample [rad].
     """
 
     axis_angle: float = 0.0
@@ -40,6 +44,24 @@ class BrokenBars:
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
     ) -> Circuits:
+        """Return the matrices of a batch of candidates.
+
+        Parameters
+        ----------
+        motor : Motor
+            Nameplate, parameters, channel names and limits of the motor.
+        fault_level : ndarray, shape (candidates,)
+            Fault level, a fraction of the phase turns; 0 is the healthy machine.
+        winding : ndarray of int, shape (candidates,)
+            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
+        path_ratio : ndarray, shape (candidates,)
+            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
+
+        Returns
+        -------
+        Circuits
+            Inductances, mean resistances and the rotor's turning part.
+        """
         del winding, path_ratio
         circuits = symmetrical(motor, fault_level.size)
         half = 0.5 * motor.parameters.rotor_resistance_ohm * resistance_growth(fault_level)
@@ -50,6 +72,19 @@ class BrokenBars:
 
 
 def resistance_growth(broken_share: Array) -> Array:
-    """g = alpha / (1 - alpha) of n_bb / N_b: growth of the rotor resistance along the broken bars' axis."""
+    """Return the growth of the rotor resistance along the broken bars' axis.
+
+    It is g = alpha / (1 - alpha) with alpha = 2 n_bb / N_b.
+
+    Parameters
+    ----------
+    broken_share : ndarray, shape (candidates,)
+        Share of the bars that are broken, n_bb / N_b.
+
+    Returns
+    -------
+    ndarray, shape (candidates,)
+        Growth g, relative.
+    """
     alpha = 2.0 * broken_share
     return np.asarray(alpha / (1.0 - alpha), dtype=np.float64)

@@ -19,10 +19,20 @@ class LoadLaw(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """A batch of hypotheses on one motor, each field of shape (candidates,).
+    """A batch of hypotheses on one motor.
 
-    fault_level: mu_f; winding: theta_f, 0, 1, 2; load_level: LL; time_offset_s: T_d, delay of the currents;
-    path_ratio: r_f / (mu R_s) of the path bridging the turns.
+    Parameters
+    ----------
+    fault_level : ndarray, shape (candidates,)
+        Fault level, a fraction of the phase turns; 0 is the healthy machine.
+    winding : ndarray of int, shape (candidates,)
+        Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
+    load_level : ndarray, shape (candidates,)
+        Load torque over rated torque.
+    time_offset_s : ndarray, shape (candidates,)
+        Delay of the currents against the voltages, T_d [s].
+    path_ratio : ndarray, shape (candidates,)
+        Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
     """
 
     fault_level: Array
@@ -35,7 +45,18 @@ class Candidates:
         return self.fault_level.size
 
     def part(self, rows: slice) -> "Candidates":
-        """The candidates of some rows."""
+        """Return some of the candidates.
+
+        Parameters
+        ----------
+        rows : slice
+            Which of them.
+
+        Returns
+        -------
+        Candidates
+            The candidates of these rows.
+        """
         return Candidates(
             self.fault_level[rows],
             self.winding[rows],

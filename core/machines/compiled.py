@@ -21,6 +21,16 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
 
     The cache notices a change in the file of a function, not in those of the functions it calls: after
     editing one, remove __pycache__.
+
+    Parameters
+    ----------
+    function : callable
+        The function, in the part of Python that numba knows.
+
+    Returns
+    -------
+    callable
+        The compiled function.
     """
     return cast(
         Callable[P, R],

@@ -8,7 +8,21 @@ from core.machines.compiled import compiled
 
 @compiled
 def delay_voltage(voltage: Array, delay_columns: float, first: int, out: Array) -> None:
-    """out[k] = voltage[first + k - delay] through four columns (Lagrange's cubic); both (columns, 2)."""
+    """Fill `out` with the voltage as it was a delay ago, through four columns (Lagrange's cubic).
+
+    out[k] = voltage[first + k - delay_columns].
+
+    Parameters
+    ----------
+    voltage : ndarray, shape (columns, 2)
+        Clarke voltages [V].
+    delay_columns : float
+        Delay [columns].
+    first : int
+        First column wanted.
+    out : ndarray, shape (wanted, 2)
+        Filled with the delayed voltages [V].
+    """
     whole = int(np.ceil(delay_columns))
     x = whole - delay_columns
     before = -x * (x - 1.0) * (x - 2.0) / 6.0

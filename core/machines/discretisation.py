@@ -26,10 +26,14 @@ SERIES_NORM = 0.25
 class Hold(NamedTuple):
     """Matrices of one step, x_k+1 = E x_k + G0 u_k + G1 u_k+1 + H e; in the kernel with an axis of lanes.
 
-    Attributes
+    Parameters
     ----------
     E : ndarray, shape (5, 5)
-    G0, G1, H : ndarray, shape (5, 2)
+        Propagation of the state.
+    G0, G1 : ndarray, shape (5, 2)
+        Effect of the voltage at the step's beginning and end.
+    H : ndarray, shape (5, 2)
+        Effect of the rotor's voltage.
     """
 
     E: Array
@@ -40,7 +44,17 @@ class Hold(NamedTuple):
 
 @compiled
 def multiply(a: Array, b: Array, out: Array) -> None:
-    """out = a b for small matrices, without the call into a linear algebra library."""
+    """Multiply small matrices, out = a b, without the call into a linear algebra library.
+
+    Parameters
+    ----------
+    a : ndarray, shape (m, k)
+        First factor.
+    b : ndarray, shape (k, n)
+        Second factor.
+    out : ndarray, shape (m, n)
+        Filled with the product.
+    """
     for i in range(a.shape[0]):
         for j in range(b.shape[1]):
             total = 0.0
@@ -51,7 +65,15 @@ def multiply(a: Array, b: Array, out: Array) -> None:
 
 @compiled
 def invert(matrix: Array, inverse: Array) -> None:
-    """Inverse of a 5 x 5 matrix whose diagonal dominates, by Gauss and Jordan without pivoting."""
+    """Invert a 5 x 5 matrix whose diagonal dominates, by Gauss and Jordan without pivoting.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (5, 5)
+        The matrix.
+    inverse : ndarray, shape (5, 5)
+        Filled with its inverse.
+    """
     work = np.empty((5, 5))
     for i in range(5):
         for j in range(5):
@@ -72,7 +94,18 @@ def invert(matrix: Array, inverse: Array) -> None:
 
 @compiled
 def row_norm(A: Array) -> float:
-    """Greatest sum of the sizes in a row of A."""
+    """Return the greatest sum of the sizes in a row.
+
+    Parameters
+    ----------
+    A : ndarray, shape (m, n)
+        The matrix.
+
+    Returns
+    -------
+    float
+        Its row norm.
+    """
     norm = 0.0
     for i in range(A.shape[0]):
         total = 0.0
@@ -84,7 +117,21 @@ def row_norm(A: Array) -> float:
 
 @compiled
 def sum_series(X: Array, step: float, E: Array, level: Array, ramp: Array) -> None:
-    """Fill E = sum X^k / k!, level = h sum X^k / (k+1)! B and ramp = h sum X^k / (k+2)! B, h the step."""
+    """Sum the series of the exponential and of its integrals over a short step h.
+
+    E = sum X^k / k!, level = h sum X^k / (k+1)! B and ramp = h sum X^k / (k+2)! B.
+
+    Parameters
+    ----------
+    X : ndarray, shape (5, 5)
+        A h.
+    step : float
+        h [s].
+    E : ndarray, shape (5, 5)
+        Filled.
+    level, ramp : ndarray, shape (5, 4)
+        Filled.
+    """
     term, product = np.eye(STATES), np.empty((STATES, STATES))
     E[:], level[:], ramp[:] = 0.0, 0.0, 0.0
     for k in range(SERIES_TERMS):
@@ -100,7 +147,17 @@ def sum_series(X: Array, step: float, E: Array, level: Array, ramp: Array) -> No
 
 @compiled
 def double_step(E: Array, level: Array, ramp: Array) -> None:
-    """Make them those of twice the step: the second half begins where the first ended, its ramp at a half."""
+    """Turn the matrices into those of twice the step.
+
+    The second half begins where the first ended, with its ramp at a half.
+
+    Parameters
+    ----------
+    E : ndarray, shape (5, 5)
+        Propagation of the state.
+    level, ramp : ndarray, shape (5, 4)
+        Effect of a constant input and of its ramp.
+    """
     E_ramp, E_level, E_E = np.empty((STATES, INPUTS)), np.empty((STATES, INPUTS)), np.empty((STATES, STATES))
     multiply(E, ramp, E_ramp)
     multiply(E, level, E_level)
@@ -115,7 +172,17 @@ def double_step(E: Array, level: Array, ramp: Array) -> None:
 
 @compiled
 def first_order_hold(A: Array, step: float, hold: Hold) -> None:
-    """Fill the hold of x' = A x + [u; e; 0] over `step` [s]; it is not finite where A is not."""
+    """Fill the hold of x' = A x + [u; e; 0] over a step; it is not finite where A is not.
+
+    Parameters
+    ----------
+    A : ndarray, shape (5, 5)
+        Matrix of the system [1/s].
+    step : float
+        Step [s].
+    hold : Hold
+        Matrices of a step, which are filled.
+    """
     norm, doublings = row_norm(A) * step, 0
     while norm > SERIES_NORM and np.isfinite(norm):
         norm *= 0.5
@@ -134,7 +201,19 @@ def first_order_hold(A: Array, step: float, hold: Hold) -> None:
 
 @compiled
 def discretise(decay: Array, w: float, step: float, hold: Hold) -> None:
-    """Fill the hold of a machine, A = decay + w Jr, at the electrical speed w [rad/s]."""
+    """Fill the hold of a machine, A = decay + w Jr, at an electrical speed.
+
+    Parameters
+    ----------
+    decay : ndarray, shape (5, 5)
+        Matrix of the flux's decay, -R inv(L) [1/s].
+    w : float
+        Electrical speed [rad/s].
+    step : float
+        Step [s].
+    hold : Hold
+        Matrices of a step, which are filled.
+    """
     A = decay.copy()
     A[2, 3] -= w
     A[3, 2] += w

@@ -12,13 +12,13 @@ ZERO_SEQUENCE = float(np.sqrt(1.0 / 3.0))
 
 
 class HighResistanceConnection:
-    """dR = mu R_s in series with the winding on axis n; the level is the resistance added, over R_s.
+    """A resistance in series with one winding; the level is the resistance added, over R_s.
 
-        v_s = R_s i_s + k n dR i_x + d(psi_s)/dt,        i_x = k n . i_s
+        dR = mu R_s,     v_s = R_s i_s + k n dR i_x + d(psi_s)/dt,        i_x = k n . i_s
 
     In delta the resistance is the winding's own (a joint inside the terminals). The three winding voltages
     add up to zero, their drops no longer do, so that a current i_0 runs around the delta which the lines
-    never see; it is the fifth circuit, through the leakage alone:
+    never see. It is the fifth circuit, through the leakage alone:
 
         i_x = k n . i_s + i_0 / sqrt(3)
         0   = R_s i_0 + dR i_x / sqrt(3) + L_ls d(i_0)/dt
@@ -33,6 +33,24 @@ class HighResistanceConnection:
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
     ) -> Circuits:
+        """Return the matrices of a batch of candidates.
+
+        Parameters
+        ----------
+        motor : Motor
+            Nameplate, parameters, channel names and limits of the motor.
+        fault_level : ndarray, shape (candidates,)
+            Fault level, a fraction of the phase turns; 0 is the healthy machine.
+        winding : ndarray of int, shape (candidates,)
+            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
+        path_ratio : ndarray, shape (candidates,)
+            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
+
+        Returns
+        -------
+        Circuits
+            Inductances and resistances.
+        """
         del path_ratio
         circuits = symmetrical(motor, fault_level.size)
         axis = np.zeros((fault_level.size, 5))

@@ -32,7 +32,7 @@ NO_REFERENCE = -1e300
 class LaneVoltage(NamedTuple):
     """Delayed voltages of one block, and which of them each lane sees.
 
-    Attributes
+    Parameters
     ----------
     voltage : ndarray, shape (sources, columns, 2)
         Clarke voltages from the block's first column on [V].
@@ -51,12 +51,12 @@ class LaneVoltage(NamedTuple):
 class LaneMachines(NamedTuple):
     """Candidates side by side, in the coordinates x = (i_s, psi_r, j).
 
-    Attributes
+    Parameters
     ----------
     hold : Hold
         Matrices of a step at the reference speeds, each with a last axis of LANES.
     torque : ndarray, shape (3, LANES)
-        i_r = t0 i_s + (t1, t2) j + a share of psi_r, which makes no torque.
+        Coefficients of i_r = t0 i_s + (t1, t2) j + a share of psi_r, which makes no torque.
     load : ndarray, shape (3, LANES)
         T_load / p = l0 + l1 w + l2 w^2.
     reference_speed : ndarray, shape (LANES,)
@@ -64,7 +64,7 @@ class LaneMachines(NamedTuple):
     acceleration : float
         Step times p^2 / J.
     turn : float
-        Angle that the supply turns in a step, w_s h [rad].
+        Angle that the supply turns in a step [rad].
     """
 
     hold: Hold
@@ -78,10 +78,10 @@ class LaneMachines(NamedTuple):
 class LaneState(NamedTuple):
     """State of the candidates side by side, which a block advances.
 
-    Attributes
+    Parameters
     ----------
     x : ndarray, shape (8, LANES)
-        i_s, psi_r, j, then the rotor's flux of one step before and the last gain in speed.
+        State i_s, psi_r, j, then the rotor's flux of one step before and the last gain in speed.
     speed : ndarray, shape (LANES,)
         Electrical speed, half a step ahead of x [rad/s].
     """
@@ -92,8 +92,20 @@ class LaneState(NamedTuple):
 
 @compiled
 def mean_over_next_step(turn: float) -> tuple[float, float]:
-    """Weights of a vector's values now and one step before that give its mean over the next step, exact for
-    vectors that turn by +-`turn` a step [rad]."""
+    """Return the weights of a vector's values now and one step before in its mean over the next step.
+
+    They are exact for vectors that turn by `turn` a step, either way.
+
+    Parameters
+    ----------
+    turn : float
+        Angle that the supply turns in a step [rad].
+
+    Returns
+    -------
+    tuple of float
+        Weight of the value now, weight of the one before.
+    """
     mean = np.sin(0.5 * turn) / (0.5 * turn * np.sin(turn))
     return mean * np.sin(1.5 * turn), -mean * np.sin(0.5 * turn)
 
@@ -103,10 +115,27 @@ def advance(
     feed: LaneVoltage, machines: LaneMachines, state: LaneState, comparison: Comparison, substeps: int,
     track: Track, lanes: int,
 ) -> None:  # fmt: skip
-    """Advance `lanes` candidates through the block of a feed.
+    """Advance some candidates through the block of a feed.
 
     The comparison, where its measured current is not empty, adds up the squared errors (LANES,). The track,
     where it is not empty, is filled for first < k <= last.
+
+    Parameters
+    ----------
+    feed : LaneVoltage
+        Delayed voltages of the block.
+    machines : LaneMachines
+        The candidates side by side.
+    state : LaneState
+        Their state, in and out.
+    comparison : Comparison
+        Measured current, and the squared errors that are filled.
+    substeps : int
+        Columns in one sample of the record.
+    track : Track
+        Currents and speeds that are filled.
+    lanes : int
+        Number of lanes in use.
     """
     # Arrays made here have strides the compiler knows: without that it will not use vector instructions.
     E, G0, G1 = np.empty((5, 5, LANES)), np.empty((5, 2, LANES)), np.empty((5, 2, LANES))
@@ -178,8 +207,19 @@ def advance(
 
 @compiled
 def change_state(current_from_flux: Array, to_state: Array, to_flux: Array, torque: Array) -> None:
-    """Fill to_state and to_flux (5, 5), between the flux of all circuits and x = (i_s, psi_r, j), and torque
-    (3,), what of i_r makes torque; the rotor's own inductance is the same in both axes."""
+    """Fill the changes between the flux of all circuits and x = (i_s, psi_r, j).
+
+    The rotor's own inductance is the same in both axes.
+
+    Parameters
+    ----------
+    current_from_flux : ndarray, shape (5, 5)
+        Inverse of the inductances, inv(L) [1/H].
+    to_state, to_flux : ndarray, shape (5, 5)
+        Filled.
+    torque : ndarray, shape (3,)
+        Filled with the coefficients of i_r that make torque.
+    """
     to_state[:] = current_from_flux
     to_state[2:4] = np.eye(5)[2:4]
     invert(to_state, to_flux)
@@ -193,7 +233,21 @@ def change_state(current_from_flux: Array, to_state: Array, to_flux: Array, torq
 def discretise_state(
     decay: Array, w: float, step: float, to_state: Array, to_flux: Array, hold: Hold
 ) -> None:
-    """Fill the hold at speed w of the state x: that of the flux between the two changes of state."""
+    """Fill the hold of the state x at speed w: that of the flux between the two changes of state.
+
+    Parameters
+    ----------
+    decay : ndarray, shape (5, 5)
+        Matrix of the flux's decay, -R inv(L) [1/s].
+    w : float
+        Electrical speed [rad/s].
+    step : float
+        Step [s].
+    to_state, to_flux : ndarray, shape (5, 5)
+        Changes between flux and state.
+    hold : Hold
+        Matrices of a step, which are filled.
+    """
     product = np.empty((5, 5))
     of_flux = Hold(np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2)))
     discretise(decay, w, step, of_flux)
@@ -206,7 +260,20 @@ def discretise_state(
 
 @compiled
 def next_block(block: int, change: float) -> int:
-    """Steps of the next block, after the speed changed by `change` in one of `block` [rad/s]."""
+    """Return the number of steps of the next block.
+
+    Parameters
+    ----------
+    block : int
+        Steps of the last block.
+    change : float
+        Change of the speed in it [rad/s].
+
+    Returns
+    -------
+    int
+        Steps.
+    """
     if change > 0.5 * REFERENCE_DRIFT:
         return max(SHORTEST_BLOCK, block // 2)
     return min(LONGEST_BLOCK, 2 * block) if change < 0.2 * REFERENCE_DRIFT else block
@@ -214,7 +281,20 @@ def next_block(block: int, change: float) -> int:
 
 @compiled
 def greatest_change(now: Array, before: Array, lanes: int) -> float:
-    """Greatest change of the first `lanes` speeds [rad/s]; speeds that are not numbers do not count."""
+    """Return the greatest change of the speeds; speeds that are not numbers do not count.
+
+    Parameters
+    ----------
+    now, before : ndarray, shape (LANES,)
+        Speeds [rad/s].
+    lanes : int
+        Number of lanes in use.
+
+    Returns
+    -------
+    float
+        Change [rad/s].
+    """
     greatest = 0.0
     for b in range(lanes):
         change = abs(now[b] - before[b])
@@ -230,8 +310,27 @@ def simulate(
 ) -> None:  # fmt: skip
     """Simulate up to LANES candidates over the columns of the feed.
 
-    source (LANES,): index among `delays` (sources,) [columns] of what a candidate sees. The machines' load
-    is (3, LANES), the flux (5, LANES), the speed (LANES,): the speed at the last column out.
+    The machines' load is (3, LANES), the flux (5, LANES), the speed (LANES,); the speed is that at the last
+    column afterwards.
+
+    Parameters
+    ----------
+    feed : SteppedVoltage
+        Stator voltage and the columns of it that are stepped through.
+    source : ndarray of uint64, shape (LANES,)
+        Index among `delays` of what a candidate sees.
+    delays : ndarray, shape (sources,)
+        Delays [columns].
+    machines : MachineRates
+        Coefficients of the batch.
+    beginning : InitialState
+        State of the candidates at the first column.
+    comparison : Comparison
+        Measured current, and the squared errors that are filled.
+    track : Track
+        Currents and speeds that are filled.
+    lanes : int
+        Number of lanes in use.
     """
     current, speed_out, load, speed = track.current, track.speed, machines.load, beginning.speed
     acceleration = machines.gain * feed.step_s

@@ -15,7 +15,21 @@ HIGHEST_FAULT_LIMIT = 0.2
 
 
 class MotorFileError(ValueError):
-    """A motor's table is not usable: which file, which field, what was expected, what was found."""
+    """The error of a motor's table that cannot be used.
+
+    It says which file, which field, what was expected and what was found.
+
+    Parameters
+    ----------
+    source : pathlib.Path or str
+        Name of the recording, for messages.
+    field : str
+        Field at fault.
+    expected : str
+        What was expected, in words.
+    found : str
+        What was found, in words.
+    """
 
     def __init__(self, source: Path | str, field: str, *, expected: str, found: str) -> None:
         self.source = str(source)
@@ -27,7 +41,21 @@ class MotorFileError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Plate:
-    """What is known of a motor before its start was recorded: `parameters` None where the file has none."""
+    """What is known of a motor before its start was recorded.
+
+    Parameters
+    ----------
+    name : str
+        Name of the motor.
+    nameplate : Nameplate
+        Rated values of the motor.
+    parameters : MachineParameters or None
+        Parameters of the machine, None where the file has none.
+    channels : ChannelNames
+        Names of the channels in the record.
+    limits : Limits
+        Limits of the motor's condition.
+    """
 
     name: str
     nameplate: Nameplate
@@ -39,20 +67,71 @@ class Plate:
 def read_motor(path: Path | str) -> Motor:
     """Read MOTOR.toml; the motor is named after the file.
 
-    Raises MotorFileError for a missing or unreadable file, a missing or impossible value, an unknown key.
+    Parameters
+    ----------
+    path : pathlib.Path or str
+        Path of the file.
+
+    Returns
+    -------
+    Motor
+        The motor.
+
+    Raises
+    ------
+    MotorFileError
+        If the file is missing or unreadable, a value is missing or impossible, or a key is unknown.
     """
     path = Path(path)
     return motor_from_table(_table_of(path), name=path.stem, source=path)
 
 
 def read_plate(path: Path | str) -> Plate:
-    """Read a MOTOR.toml that may do without [parameters]; raises MotorFileError like `read_motor`."""
+    """Read a MOTOR.toml that may do without [parameters].
+
+    Parameters
+    ----------
+    path : pathlib.Path or str
+        Path of the file.
+
+    Returns
+    -------
+    Plate
+        What the file says.
+
+    Raises
+    ------
+    MotorFileError
+        If the file is missing or unreadable, a value is missing or impossible, or a key is unknown.
+    """
     path = Path(path)
     return _plate_from_table(_table_of(path), name=path.stem, source=path)
 
 
 def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | str) -> Motor:
-    """A motor from the tables [nameplate], [parameters] and optionally [intervals], [channels], [limits]."""
+    """Make a motor from the tables [nameplate], [parameters], [intervals], [channels] and [limits].
+
+    The last three are optional.
+
+    Parameters
+    ----------
+    table : mapping of str to object
+        The tables, as tomllib reads them.
+    name : str
+        Name of the motor.
+    source : pathlib.Path or str
+        Where the tables come from, for messages.
+
+    Returns
+    -------
+    Motor
+        The motor.
+
+    Raises
+    ------
+    MotorFileError
+        If a value is missing or impossible, or a key is unknown.
+    """
     plate = _plate_from_table(table, name=name, source=source)
     if plate.parameters is None:
         raise MotorFileError(source, "[parameters]", expected="a table", found="nothing")

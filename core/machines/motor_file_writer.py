@@ -21,9 +21,28 @@ def write_motor(
 ) -> Path:
     """Write a motor's file; it appears complete.
 
-    intervals: [low, high] of parameters, by name, for the table [intervals].
-    remarks: comments behind parameters, by name.  heading: lines of comment at the top.
-    Raises MotorFileError where the file cannot be written.
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    intervals : mapping of str to tuple of float or None, optional
+        Lower and upper end of parameters, by name, for the table [intervals].
+    remarks : mapping of str to str or None, optional
+        Comments behind parameters, by name.
+    heading : str, default ''
+        Lines of comment at the top.
+
+    Returns
+    -------
+    pathlib.Path
+        The path written.
+
+    Raises
+    ------
+    MotorFileError
+        If the file cannot be written.
     """
     text = motor_text(motor, intervals=intervals or {}, remarks=remarks or {}, heading=heading)
     partial = path.with_name(path.name + ".part")
@@ -39,7 +58,24 @@ def write_motor(
 def motor_text(
     motor: Motor, *, intervals: Mapping[str, Interval], remarks: Mapping[str, str], heading: str
 ) -> str:
-    """The file's text."""
+    """Return the text of a motor's file.
+
+    Parameters
+    ----------
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    intervals : mapping of str to tuple of float
+        Lower and upper end of parameters, by name, for the table [intervals].
+    remarks : mapping of str to str
+        Comments behind parameters, by name.
+    heading : str
+        Lines of comment at the top.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     plate = motor.nameplate
     lines = [_comment(line) for line in heading.splitlines()]
     lines += [
@@ -84,7 +120,7 @@ def _number(value: float) -> str:
 
 
 def _text(text: str) -> str:
-    """A basic string: JSON's escapes are TOML's, but for the character JSON leaves as it is."""
+    """Return a basic string: JSON's escapes are TOML's, but for the character JSON leaves as it is."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 

@@ -6,13 +6,29 @@ from math import pi
 
 
 class Connection(StrEnum):
+    """How the windings are connected to the terminals."""
+
     STAR = "star"
     DELTA = "delta"
 
 
 @dataclass(frozen=True, slots=True)
 class Nameplate:
-    """Rated values. `rated_voltage_V` is line to line, rms."""
+    """Rated values.
+
+    Parameters
+    ----------
+    rated_power_W : float
+        Power at the shaft [W].
+    rated_voltage_V : float
+        Voltage line to line, rms [V].
+    rated_frequency_Hz : float
+        Frequency of the supply [Hz].
+    pole_pairs : int
+        Number of pole pairs.
+    connection : Connection, default Connection.STAR
+        Star or delta.
+    """
 
     rated_power_W: float
     rated_voltage_V: float
@@ -22,20 +38,33 @@ class Nameplate:
 
     @property
     def rated_angular_frequency(self) -> float:
-        """w_b, electrical [rad/s]."""
+        """Rated angular frequency w_b of the supply [rad/s]."""
         return 2 * pi * self.rated_frequency_Hz
 
     @property
     def rated_torque_Nm(self) -> float:
-        """P_B / (w_b / p): the torque that load level 1 stands for, at synchronous speed [N m]."""
+        """Torque that load level 1 stands for, P_B / (w_b / p), at synchronous speed [N m]."""
         return self.rated_power_W * self.pole_pairs / self.rated_angular_frequency
 
 
 @dataclass(frozen=True, slots=True)
 class MachineParameters:
-    """Per-phase (winding) parameters referred to the stator; in delta they are those of the winding.
+    """Parameters of a phase winding, referred to the stator; in delta they are those of the winding.
 
-    stator_self_inductance_H is the thesis's L_s: the magnetising inductance is L_m = 1.5 L_s.
+    Parameters
+    ----------
+    stator_resistance_ohm : float
+        R_s [ohm].
+    rotor_resistance_ohm : float
+        R_r', referred to the stator [ohm].
+    stator_leakage_H : float
+        L_ls [H].
+    rotor_leakage_H : float
+        L_lr', referred to the stator [H].
+    stator_self_inductance_H : float
+        L_s of the thesis; the magnetising inductance is 1.5 L_s [H].
+    inertia_kgm2 : float
+        J of motor and load [kg m^2].
     """
 
     stator_resistance_ohm: float
@@ -47,13 +76,23 @@ class MachineParameters:
 
     @property
     def magnetising_inductance_H(self) -> float:
-        """L_m = 1.5 L_s [H] (thesis 3.14)."""
+        """Magnetising inductance L_m = 1.5 L_s [H] (thesis 3.14)."""
         return 1.5 * self.stator_self_inductance_H
 
 
 @dataclass(frozen=True, slots=True)
 class ChannelNames:
-    """Names of the channels in the record; empty ones are found by phase and unit."""
+    """Names of the channels in the record; those not given are found by phase and unit.
+
+    Parameters
+    ----------
+    currents : tuple of str or None, optional
+        Channels of i_a, i_b, i_c.
+    phase_voltages : tuple of str or None, optional
+        Channels of v_a, v_b, v_c.
+    line_voltages : tuple of str or None, optional
+        Channels of v_ab, v_bc, v_ca.
+    """
 
     currents: tuple[str, str, str] | None = None
     phase_voltages: tuple[str, str, str] | None = None
@@ -62,7 +101,13 @@ class ChannelNames:
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Where a motor's condition becomes somebody's business."""
+    """Limits of a motor's condition.
+
+    Parameters
+    ----------
+    fault_level : float, default 0.005
+        Level of shorted turns above which the motor counts as faulty, a fraction of the phase turns.
+    """
 
     fault_level: float = 0.005
     """mu_f above which shorted turns are called a fault, fraction of the phase turns."""
@@ -70,7 +115,21 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class Motor:
-    """All the diagnosis needs to know of one motor."""
+    """All that the diagnosis needs to know of one motor.
+
+    Parameters
+    ----------
+    name : str
+        Name of the motor.
+    nameplate : Nameplate
+        Rated values of the motor.
+    parameters : MachineParameters
+        Parameters of the machine.
+    channels : ChannelNames, optional
+        Names of the channels in the record.
+    limits : Limits, optional
+        Limits of the motor's condition.
+    """
 
     name: str
     nameplate: Nameplate

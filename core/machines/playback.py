@@ -1,4 +1,4 @@
-"""Measured voltages played through a stator model: what currents would this candidate have drawn?"""
+"""Measured voltages played through a stator model: the currents that a candidate would have drawn."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -29,8 +29,15 @@ class Beginning(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Trajectories:
-    """Stator current on the Clarke axes (candidates, 2, samples) [A], speed (candidates, samples)
-    [electrical rad/s], both at the samples of the record's window."""
+    """What a batch does over the window, at the samples of the record.
+
+    Parameters
+    ----------
+    current : ndarray, shape (candidates, 2, samples)
+        Stator current on the Clarke axes [A].
+    speed : ndarray, shape (candidates, samples)
+        Electrical speed [rad/s].
+    """
 
     current: Array
     speed: Array
@@ -38,8 +45,15 @@ class Trajectories:
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """The part of a record that is simulated, in samples of the record: [first, last), with the comparison
-    of currents beginning at `compare_from` when the start's own transient is over."""
+    """The part of a record that is simulated, in samples of the record.
+
+    Parameters
+    ----------
+    first, last : int
+        Samples [first, last) are simulated.
+    compare_from : int
+        First sample whose current is compared, when the simulation's own transient is over.
+    """
 
     first: int
     last: int
@@ -47,7 +61,23 @@ class Window:
 
 
 class Playback:
-    """One motor, one model, one window of measured voltages; any number of candidates."""
+    """One motor, one model, one window of measured voltages; any number of candidates.
+
+    Parameters
+    ----------
+    model : StatorModel
+        Machine model.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    supply : Supply
+        Stator voltage on the model's time base.
+    window : Window
+        Part of the record that is simulated.
+    load_law : LoadLaw, default LoadLaw.CONSTANT
+        How the load torque grows with speed.
+    beginning : Beginning, default Beginning.STEADY_STATE
+        What the machine does at the window's first sample.
+    """
 
     def __init__(
         self,
@@ -76,13 +106,34 @@ class Playback:
         self._running = SteadyRunning(model, motor, w_s, at_first, load_law)
 
     def steady_state(self, candidates: Candidates) -> SteadyState:
-        """Periodic steady state of every candidate at the window's first sample."""
+        """Return the periodic steady state of every candidate at the window's first sample.
+
+        Parameters
+        ----------
+        candidates : Candidates
+            The batch of hypotheses.
+
+        Returns
+        -------
+        SteadyState
+            The steady states.
+        """
         return self._running.state(candidates)
 
     def squared_error(self, candidates: Candidates, measured_ab: Array) -> Array:
-        """Sum of squared distances of the model's to the measured current, (candidates,) [A^2] (6.25).
+        """Sum the squared distances of the model's current to the measured one (6.25).
 
-        measured_ab: Clarke currents of the whole record, shape (2, record samples) [A].
+        Parameters
+        ----------
+        candidates : Candidates
+            The batch of hypotheses.
+        measured_ab : ndarray, shape (2, n)
+            Measured currents on Clarke axes over the whole record [A].
+
+        Returns
+        -------
+        ndarray, shape (candidates,)
+            Sums [A^2]; infinite for a candidate whose currents are not finite.
         """
         window = self.window
         measured = np.ascontiguousarray(measured_ab[:, window.first : window.last].T)
@@ -91,7 +142,18 @@ class Playback:
         return comparison.squared_error
 
     def trajectories(self, candidates: Candidates) -> Trajectories:
-        """Currents and speed of every candidate over the window."""
+        """Return currents and speed of every candidate over the window.
+
+        Parameters
+        ----------
+        candidates : Candidates
+            The batch of hypotheses.
+
+        Returns
+        -------
+        Trajectories
+            Currents and speeds.
+        """
         n, samples = len(candidates), self.window.last - self.window.first
         track = Track(np.empty((n, 2, samples)), np.empty((n, samples)))
         self._play(candidates, Comparison(np.empty((0, 2)), self._compare_from, np.empty(n)), track)
@@ -119,8 +181,27 @@ class Playback:
 
 
 def window_of_record(samples: int, sample_rate_hz: float, frequency_hz: float, longest_s: float) -> Window:
-    """The last `longest_s` of a record, less the cycle in front that a delay of up to one cycle reaches back
-    to, the half cycle behind for a delay that is an advance, and one cycle for the model to settle."""
+    """Choose the window at the end of a record.
+
+    Left out are a cycle in front, to which a delay of up to one cycle reaches back, and half a cycle behind
+    for a delay that is an advance. One cycle more is left to the model to settle.
+
+    Parameters
+    ----------
+    samples : int
+        Length of the record.
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    frequency_hz : float
+        Supply frequency [Hz].
+    longest_s : float
+        Longest part that is compared [s].
+
+    Returns
+    -------
+    Window
+        The window.
+    """
     cycle = sample_rate_hz / frequency_hz
     first = int(np.ceil(cycle)) + DELAY_MARGIN_COLUMNS
     last = samples - int(np.ceil(cycle / 2)) - DELAY_MARGIN_COLUMNS
@@ -129,5 +210,18 @@ def window_of_record(samples: int, sample_rate_hz: float, frequency_hz: float, l
 
 
 def electrical_to_rpm(speed: Array, pole_pairs: int) -> Array:
-    """Shaft speed from electrical angular speed [rad/s] [rpm]."""
+    """Convert electrical angular speed into shaft speed.
+
+    Parameters
+    ----------
+    speed : ndarray
+        Electrical angular speed, of any shape [rad/s].
+    pole_pairs : int
+        Number of pole pairs.
+
+    Returns
+    -------
+    ndarray
+        Shaft speed [rpm].
+    """
     return speed / pole_pairs * 60.0 / (2.0 * pi)

@@ -16,7 +16,7 @@ from core.machines.stepping import MachineRates
 class Rates:
     """What a batch is stepped with.
 
-    Attributes
+    Parameters
     ----------
     machines : MachineRates
         Coefficients of the batch.
@@ -31,7 +31,18 @@ class Rates:
 class SteadyRunning:
     """One motor and one model on a sinusoidal supply; any number of candidates.
 
-    phasor: of the voltage on the Clarke axes at t = 0, peak, shape (2,) [V].
+    Parameters
+    ----------
+    model : StatorModel
+        Machine model.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    angular_frequency : float
+        Angular frequency w_s of the supply [rad/s].
+    phasor : ndarray of complex, shape (2,)
+        Voltage on the Clarke axes at t = 0, peak [V].
+    load_law : LoadLaw, default LoadLaw.CONSTANT
+        How the load torque grows with speed.
     """
 
     def __init__(
@@ -57,11 +68,33 @@ class SteadyRunning:
         self._pull_out_slip = min(1.0, machine.rotor_resistance_ohm / impedance)
 
     def on(self, phasor: ComplexArray) -> "SteadyRunning":
-        """The same motor on another voltage of the same frequency."""
+        """Return the same motor on another voltage of the same frequency.
+
+        Parameters
+        ----------
+        phasor : ndarray of complex, shape (2,)
+            Voltage on the Clarke axes at t = 0, peak [V].
+
+        Returns
+        -------
+        SteadyRunning
+            The motor on that voltage.
+        """
         return SteadyRunning(self.model, self.motor, self.angular_frequency, phasor, self.load_law)
 
     def rates(self, candidates: Candidates) -> Rates:
-        """What the candidates are stepped with."""
+        """Return what the candidates are stepped with.
+
+        Parameters
+        ----------
+        candidates : Candidates
+            The batch of hypotheses.
+
+        Returns
+        -------
+        Rates
+            Coefficients of the batch.
+        """
         n = len(candidates)
         circuits = self.model.circuits(
             self.motor, candidates.fault_level, candidates.winding, candidates.path_ratio
@@ -73,7 +106,20 @@ class SteadyRunning:
         return Rates(machines, circuits.rotor_asymmetry)
 
     def state(self, candidates: Candidates, rates: Rates | None = None) -> SteadyState:
-        """Periodic steady state of every candidate; `rates` where they are known already."""
+        """Return the periodic steady state of every candidate.
+
+        Parameters
+        ----------
+        candidates : Candidates
+            The batch of hypotheses.
+        rates : Rates or None, optional
+            What the candidates are stepped with, where it is known already.
+
+        Returns
+        -------
+        SteadyState
+            The steady states.
+        """
         known = self.rates(candidates) if rates is None else rates
         n = len(candidates)
         state = SteadyState(

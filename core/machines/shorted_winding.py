@@ -12,7 +12,7 @@ SMALLEST_LEVEL = 1e-9
 
 
 class ShortedWinding:
-    """A winding of mu times the phase turns, closed on itself, beside an intact stator.
+    """A winding of mu times the phase turns, closed on itself, beside an intact stator (thesis 6.10-6.15).
 
     With j = mu i_f and psi_j = psi_f / mu (the turns ratio N_s/N_r printed in 6.14 must not be there):
 
@@ -28,6 +28,24 @@ class ShortedWinding:
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
     ) -> Circuits:
+        """Return the matrices of a batch of candidates.
+
+        Parameters
+        ----------
+        motor : Motor
+            Nameplate, parameters, channel names and limits of the motor.
+        fault_level : ndarray, shape (candidates,)
+            Fault level, a fraction of the phase turns; 0 is the healthy machine.
+        winding : ndarray of int, shape (candidates,)
+            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
+        path_ratio : ndarray, shape (candidates,)
+            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
+
+        Returns
+        -------
+        Circuits
+            Inductances and resistances.
+        """
         del path_ratio
         circuits = symmetrical(motor, fault_level.size)
         L, R = circuits.inductance, circuits.resistance

@@ -39,6 +39,24 @@ class SplitWinding:
     def circuits(
         self, motor: Motor, fault_level: Array, winding: NDArray[np.int64], path_ratio: Array
     ) -> Circuits:
+        """Return the matrices of a batch of candidates.
+
+        Parameters
+        ----------
+        motor : Motor
+            Nameplate, parameters, channel names and limits of the motor.
+        fault_level : ndarray, shape (candidates,)
+            Fault level, a fraction of the phase turns; 0 is the healthy machine.
+        winding : ndarray of int, shape (candidates,)
+            Winding with the fault: 0, 1 or 2 for the one on terminals a, b, c.
+        path_ratio : ndarray, shape (candidates,)
+            Resistance of the path that bridges the turns over that of the turns, r_f / (mu R_s).
+
+        Returns
+        -------
+        Circuits
+            Inductances and resistances.
+        """
         circuits = symmetrical(motor, fault_level.size)
         L, R = circuits.inductance, circuits.resistance
         machine = motor.parameters

@@ -27,11 +27,29 @@ of real motors' keeps the matrices well scaled."""
 
 @dataclass(frozen=True, slots=True)
 class StartCandidates:
-    """A batch of machines and their starts; each field of shape (candidates,) but the last.
+    """A batch of machines and their starts; the parameters are those of MachineParameters.
 
-    Parameters are those of MachineParameters.  load_level: LL; time_offset_s: T_d, delay of the currents.
-    switching_flux_Vs: stator flux on the Clarke axes where the playback begins, (candidates, 2): what the
-    voltage up to there, or poles that close one after the other, left in the windings.
+    Parameters
+    ----------
+    stator_resistance_ohm : ndarray, shape (candidates,)
+        R_s [ohm].
+    rotor_resistance_ohm : ndarray, shape (candidates,)
+        R_r', referred to the stator [ohm].
+    stator_leakage_H : ndarray, shape (candidates,)
+        L_ls [H].
+    rotor_leakage_H : ndarray, shape (candidates,)
+        L_lr', referred to the stator [H].
+    stator_self_inductance_H : ndarray, shape (candidates,)
+        L_s [H].
+    inertia_kgm2 : ndarray, shape (candidates,)
+        J [kg m^2].
+    load_level : ndarray, shape (candidates,)
+        Load torque over rated torque.
+    time_offset_s : ndarray, shape (candidates,)
+        Delay of the currents against the voltages, T_d [s].
+    switching_flux_Vs : ndarray, shape (candidates, 2)
+        Stator flux on the Clarke axes where the playback begins [V s]: what the voltage up to there, or poles
+        that close one after the other, left in the windings.
     """
 
     stator_resistance_ohm: Array
@@ -51,7 +69,22 @@ class StartCandidates:
 def start_candidate(
     machine: MachineParameters, load_level: float, time_offset_s: float = 0.0
 ) -> StartCandidates:
-    """A batch of one, switched on where the playback begins."""
+    """Return a batch of one, switched on where the playback begins.
+
+    Parameters
+    ----------
+    machine : MachineParameters
+        Parameters of the machine.
+    load_level : float
+        Load torque over rated torque.
+    time_offset_s : float, default 0.0
+        Delay of the currents against the voltages, T_d [s].
+
+    Returns
+    -------
+    StartCandidates
+        The batch.
+    """
     return StartCandidates(
         np.array([machine.stator_resistance_ohm]),
         np.array([machine.rotor_resistance_ohm]),
@@ -68,9 +101,20 @@ def start_candidate(
 class StartPlayback:
     """Measured voltages from the instant of switching on; any number of machines at rest.
 
-    Unlike a stator's window this one begins between two samples of the record if need be: at
-    `switched_on`, a column of the supply's finer time base. compared: samples of the record, [first, last),
-    whose currents are wanted; none of them before the switching.
+    Unlike a stator's window it may begin between two samples of the record.
+
+    Parameters
+    ----------
+    nameplate : Nameplate
+        Rated values of the motor.
+    supply : Supply
+        Stator voltage on the model's time base.
+    switched_on : int
+        Column of the supply's time base at which the motor is switched on.
+    compared : tuple of int
+        Samples of the record [first, last) whose currents are wanted, none of them before the switching.
+    load_law : LoadLaw, default LoadLaw.CONSTANT
+        How the load torque grows with speed.
     """
 
     def __init__(
@@ -102,17 +146,41 @@ class StartPlayback:
         self._reference_inertia = 2.0 * REFERENCE_RUN_UP_S * nameplate.rated_power_W / (w_b / p) ** 2
 
     def squared_error(self, candidates: StartCandidates, measured_ab: Array) -> Array:
-        """Sum of squared distances of the model's to the measured current, (candidates,) [A^2] (5.1).
+        """Sum the squared distances of the model's current to the measured one (5.1).
 
-        measured_ab: Clarke currents at the compared samples, shape (2, compared) [A].
+        Parameters
+        ----------
+        candidates : StartCandidates
+            The batch of hypotheses.
+        measured_ab : ndarray, shape (2, compared)
+            Measured currents on Clarke axes at the compared samples [A].
+
+        Returns
+        -------
+        ndarray, shape (candidates,)
+            Sums [A^2]; infinite for a candidate whose currents are not numbers.
         """
         difference = self.trajectories(candidates).current - measured_ab
-        return np.asarray(np.einsum("cak,cak->c", difference, difference))
+        error = np.einsum("cak,cak->c", difference, difference)
+        return np.where(np.isfinite(error), error, np.inf)
 
     def trajectories(self, candidates: StartCandidates) -> Trajectories:
-        """Currents and speed of every candidate at the compared samples.
+        """Return currents and speed of every candidate at the compared samples.
 
-        Raises ValueError for a time offset beyond the voltages there are.
+        Parameters
+        ----------
+        candidates : StartCandidates
+            The batch of hypotheses.
+
+        Returns
+        -------
+        Trajectories
+            Currents and speeds.
+
+        Raises
+        ------
+        ValueError
+            If a time offset reaches beyond the voltages there are.
         """
         n, delays = len(candidates), candidates.time_offset_s
         if n and not (self.earliest_offset_s <= delays.min() and delays.max() <= self.latest_offset_s):
@@ -136,8 +204,10 @@ class StartPlayback:
 
 
 def _circuits(candidates: StartCandidates, share: Array) -> tuple[Array, Array]:
-    """Inductances and resistances (candidates, 5, 5) of symmetrical machines (3.14, 3.15), the rotor's rows
-    multiplied by J_ref / J; the fifth circuit is idle, as in `healthy`."""
+    """Return inductances and resistances (candidates, 5, 5) of symmetrical machines (3.14, 3.15).
+
+    The rotor's rows are multiplied by J_ref / J; the fifth circuit is idle, as in `healthy`.
+    """
     L_m = 1.5 * candidates.stator_self_inductance_H
     L, R = np.zeros((len(candidates), 5, 5)), np.zeros((len(candidates), 5, 5))
     for axis in (0, 1):

@@ -32,10 +32,10 @@ MOST_ITERATIONS = 60
 class SinusoidalSupply(NamedTuple):
     """A supply of one frequency, and where the machine pulls out on it.
 
-    Attributes
+    Parameters
     ----------
     angular_frequency : float
-        w_s [rad/s].
+        Angular frequency w_s [rad/s].
     phasor : ndarray of complex, shape (2,)
         Voltage on the Clarke axes at t = 0 without delay, peak [V].
     pull_out_slip : float
@@ -50,12 +50,12 @@ class SinusoidalSupply(NamedTuple):
 class SteadyState(NamedTuple):
     """Periodic steady state of a batch.
 
-    Attributes
+    Parameters
     ----------
     flux : ndarray, shape (5, candidates)
         Flux of every circuit at t = 0 [V s].
     speed, mean_speed : ndarray, shape (candidates,)
-        Electrical speed at t = 0 and its mean [rad/s].
+        Electrical speed at t = 0, and its mean [rad/s].
     current : ndarray of complex, shape (2, candidates)
         Phasors of the stator current at w_s on the Clarke axes, peak [A].
     balanced : ndarray of bool, shape (candidates,)
@@ -71,8 +71,23 @@ class SteadyState(NamedTuple):
 
 @compiled
 def solve_circuits(decay: Array, w: float, frequency: float, drive: ComplexArray, flux: ComplexArray) -> None:
-    """flux = inv(j frequency I - decay - w Jr) [drive; 0] by elimination; the diagonal dominates, so no
-    pivoting. drive (4,): voltage phasors of stator and rotor."""
+    """Solve flux = inv(j frequency I - decay - w Jr) [drive; 0] by elimination.
+
+    The diagonal dominates, so that no pivoting is needed.
+
+    Parameters
+    ----------
+    decay : ndarray, shape (5, 5)
+        Matrix of the flux's decay, -R inv(L) [1/s].
+    w : float
+        Electrical speed [rad/s].
+    frequency : float
+        Angular frequency of the phasors [rad/s].
+    drive : ndarray of complex, shape (4,)
+        Phasors of the stator's and the rotor's voltage, peak [V].
+    flux : ndarray of complex, shape (5,)
+        Filled with the phasors of the flux, peak [V s].
+    """
     M = np.empty((5, 6), np.complex128)
     for i in range(5):
         for j in range(5):
@@ -95,7 +110,17 @@ def solve_circuits(decay: Array, w: float, frequency: float, drive: ComplexArray
 
 @compiled
 def rotor_current(current_from_flux: Array, flux: ComplexArray, rotor: ComplexArray) -> None:
-    """i_r (2,) from the flux of all circuits."""
+    """Fill the rotor current from the flux of all circuits.
+
+    Parameters
+    ----------
+    current_from_flux : ndarray, shape (5, 5)
+        Inverse of the inductances, inv(L) [1/H].
+    flux : ndarray of complex, shape (5,)
+        Phasors of the flux of every circuit, peak [V s].
+    rotor : ndarray of complex, shape (2,)
+        Phasors of the rotor current, peak [A].
+    """
     for axis in range(2):
         rotor[axis] = 0.0
         for j in range(5):
@@ -106,7 +131,28 @@ def rotor_current(current_from_flux: Array, flux: ComplexArray, rotor: ComplexAr
 def mean_torque(
     machine: MachineRates, w: float, w_s: float, drive: ComplexArray, flux: ComplexArray, rotor: ComplexArray
 ) -> float:
-    """Mean of T_e / p at speed w; leaves the flux and the rotor currents of that speed behind."""
+    """Return the mean of T_e / p at a speed; leave the flux and the rotor current of that speed behind.
+
+    Parameters
+    ----------
+    machine : MachineRates
+        Coefficients of one machine.
+    w : float
+        Electrical speed [rad/s].
+    w_s : float
+        Angular frequency of the supply [rad/s].
+    drive : ndarray of complex, shape (4,)
+        Phasors of the stator's and the rotor's voltage, peak [V].
+    flux : ndarray of complex, shape (5,)
+        Phasors of the flux of every circuit, peak [V s].
+    rotor : ndarray of complex, shape (2,)
+        Phasors of the rotor current, peak [A].
+
+    Returns
+    -------
+    float
+        Torque over pole pairs [N m].
+    """
     solve_circuits(machine.decay, w, w_s, drive, flux)
     rotor_current(machine.current_from_flux, flux, rotor)
     crossed = flux[3] * np.conj(rotor[0]) - flux[2] * np.conj(rotor[1])
@@ -117,7 +163,28 @@ def mean_torque(
 def surplus_torque(
     machine: MachineRates, w: float, w_s: float, drive: ComplexArray, flux: ComplexArray, rotor: ComplexArray
 ) -> float:
-    """Mean of (T_e - T_load) / p at speed w; leaves flux and rotor currents behind like `mean_torque`."""
+    """Return the mean of (T_e - T_load) / p at a speed; leave flux and rotor current like `mean_torque`.
+
+    Parameters
+    ----------
+    machine : MachineRates
+        Coefficients of one machine.
+    w : float
+        Electrical speed [rad/s].
+    w_s : float
+        Angular frequency of the supply [rad/s].
+    drive : ndarray of complex, shape (4,)
+        Phasors of the stator's and the rotor's voltage, peak [V].
+    flux : ndarray of complex, shape (5,)
+        Phasors of the flux of every circuit, peak [V s].
+    rotor : ndarray of complex, shape (2,)
+        Phasors of the rotor current, peak [A].
+
+    Returns
+    -------
+    float
+        Torque over pole pairs [N m].
+    """
     load = machine.load
     return mean_torque(machine, w, w_s, drive, flux, rotor) - float(load[0] + w * (load[1] + w * load[2]))
 
@@ -127,8 +194,32 @@ def balance(
     machine: MachineRates, w_s: float, drive: ComplexArray, pull_out_slip: float, flux: ComplexArray,
     rotor: ComplexArray,
 ) -> tuple[float, bool]:  # fmt: skip
-    """Speed between pull-out and synchronism (a little above, for the drag of the negative sequence) at
-    which motor and load torque agree, by regula falsi (Illinois); False where the load is too heavy."""
+    """Find the speed at which motor and load torque agree, by regula falsi (Illinois).
+
+    It is sought between pull-out and synchronism, and a little above for the drag of the negative sequence.
+
+    Parameters
+    ----------
+    machine : MachineRates
+        Coefficients of one machine.
+    w_s : float
+        Angular frequency of the supply [rad/s].
+    drive : ndarray of complex, shape (4,)
+        Phasors of the stator's and the rotor's voltage, peak [V].
+    pull_out_slip : float
+        Slip of the healthy machine's greatest torque.
+    flux : ndarray of complex, shape (5,)
+        Phasors of the flux of every circuit, peak [V s].
+    rotor : ndarray of complex, shape (2,)
+        Phasors of the rotor current, peak [A].
+
+    Returns
+    -------
+    speed : float
+        Electrical speed [rad/s].
+    balanced : bool
+        False where the load is too heavy or the torque is no number.
+    """
     low, high = w_s * (1.0 - pull_out_slip), w_s * (1.0 + 0.1 * pull_out_slip)
     surplus_low = surplus_torque(machine, low, w_s, drive, flux, rotor)
     if not surplus_low > 0.0:  # nor is a machine balanced whose torque is no number
@@ -159,7 +250,25 @@ def answer_speed(
     machine: MachineRates, w: float, frequency: float, amplitude: complex, turned: ComplexArray,
     flux: ComplexArray, rotor: ComplexArray,
 ) -> None:  # fmt: skip
-    """Flux and rotor current at `frequency` in answer to the rotor's voltage amplitude Jr turned."""
+    """Fill flux and rotor current in answer to a voltage of the rotor, amplitude times Jr turned.
+
+    Parameters
+    ----------
+    machine : MachineRates
+        Coefficients of one machine.
+    w : float
+        Electrical speed [rad/s].
+    frequency : float
+        Angular frequency of the answer [rad/s].
+    amplitude : complex
+        Amplitude of the speed's ripple [rad/s].
+    turned : ndarray of complex, shape (5,)
+        Flux that the ripple turns [V s].
+    flux : ndarray of complex, shape (5,)
+        Phasors of the flux of every circuit, peak [V s].
+    rotor : ndarray of complex, shape (2,)
+        Phasors of the rotor current, peak [A].
+    """
     drive = np.zeros(4, np.complex128)
     drive[2], drive[3] = -amplitude * turned[3], amplitude * turned[2]
     solve_circuits(machine.decay, w, frequency, drive, flux)
@@ -168,7 +277,20 @@ def answer_speed(
 
 @compiled
 def cross(flux: ComplexArray, rotor: ComplexArray) -> complex:
-    """psi_r_beta i_r_alpha - psi_r_alpha i_r_beta: T_e / p of two real vectors."""
+    """Return psi_r_beta i_r_alpha - psi_r_alpha i_r_beta: T_e / p of two real vectors.
+
+    Parameters
+    ----------
+    flux : ndarray of complex, shape (5,)
+        Phasors of the flux of every circuit, peak [V s].
+    rotor : ndarray of complex, shape (2,)
+        Phasors of the rotor current, peak [A].
+
+    Returns
+    -------
+    complex
+        The product.
+    """
     return complex(flux[3] * rotor[0] - flux[2] * rotor[1])
 
 
@@ -176,10 +298,31 @@ def cross(flux: ComplexArray, rotor: ComplexArray) -> complex:
 def answer_ripple(
     machine: MachineRates, w: float, w_s: float, flux: ComplexArray, rotor: ComplexArray, third: ComplexArray
 ) -> tuple[float, complex]:
-    """Mean speed and amplitude W of its ripple; adds their answer to `flux`, fills `third`, that at 3 w_s.
+    """Find the mean speed and the amplitude W of its ripple, and add their answer to the flux.
 
-    flux, rotor: Psi and I_r of constant speed w. The mean torque changes with |W|^2, and the
-    mean speed makes up for it.
+    The mean torque changes with |W|^2, and the mean speed makes up for it.
+
+    Parameters
+    ----------
+    machine : MachineRates
+        Coefficients of one machine.
+    w : float
+        Electrical speed without ripple [rad/s].
+    w_s : float
+        Angular frequency of the supply [rad/s].
+    flux : ndarray of complex, shape (5,)
+        Phasors of the flux at constant speed, in and out [V s].
+    rotor : ndarray of complex, shape (2,)
+        Phasors of the rotor current at constant speed, in and out [A].
+    third : ndarray of complex, shape (5,)
+        Filled with the flux at 3 w_s [V s].
+
+    Returns
+    -------
+    speed : float
+        Mean electrical speed [rad/s].
+    ripple : complex
+        W [rad/s].
     """
     once, steady, again = np.empty(5, np.complex128), np.empty(5, np.complex128), np.empty(5, np.complex128)
     i_once, i_steady, i_again = (

@@ -11,16 +11,16 @@ from core.machines.base import Array
 class MachineRates(NamedTuple):
     """Coefficients that one machine, or a batch of machines, is stepped with.
 
-    Attributes
+    Parameters
     ----------
     decay : ndarray, shape (5, 5) or (candidates, 5, 5)
-        -R inv(L) [1/s].
+        Matrix of the flux's decay, -R inv(L) [1/s].
     current_from_flux : ndarray, shape (5, 5) or (candidates, 5, 5)
-        inv(L) [1/H].
+        Inverse of the inductances, inv(L) [1/H].
     load : ndarray, shape (3,) or (candidates, 3)
         Coefficients of T_load / p = l0 + l1 w + l2 w^2, w the electrical speed.
     gain : float
-        p^2 / J [1/(kg m^2)]: electrical acceleration over torque per pole pair.
+        Electrical acceleration over torque per pole pair, p^2 / J [1/(kg m^2)].
     """
 
     decay: Array
@@ -32,7 +32,7 @@ class MachineRates(NamedTuple):
 class SteppedVoltage(NamedTuple):
     """Stator voltage and the columns of it that are stepped through.
 
-    Attributes
+    Parameters
     ----------
     voltage : ndarray, shape (columns, 2)
         Clarke voltages without delay [V].
@@ -43,7 +43,7 @@ class SteppedVoltage(NamedTuple):
     substeps : int
         Columns in one sample of the record.
     angular_frequency : float
-        w_s of the supply [rad/s].
+        Angular frequency w_s of the supply [rad/s].
     """
 
     voltage: Array
@@ -57,7 +57,7 @@ class SteppedVoltage(NamedTuple):
 class InitialState(NamedTuple):
     """State at the first column that is stepped through.
 
-    Attributes
+    Parameters
     ----------
     flux : ndarray, shape (5, candidates)
         Flux of every circuit [V s].
@@ -72,7 +72,7 @@ class InitialState(NamedTuple):
 class Comparison(NamedTuple):
     """Measured current and the squared distance to it, which the stepping fills.
 
-    Attributes
+    Parameters
     ----------
     measured : ndarray, shape (samples, 2)
         Clarke currents at the samples of the record [A]; empty for no comparison.
@@ -90,7 +90,7 @@ class Comparison(NamedTuple):
 class Track(NamedTuple):
     """Currents and speeds that the stepping fills; both empty where they are not wanted.
 
-    Attributes
+    Parameters
     ----------
     current : ndarray
         Clarke currents [A], shape (candidates, 2, samples); in the kernel (2, columns, lanes).

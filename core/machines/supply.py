@@ -21,9 +21,18 @@ COARSEST_STEP_CYCLES = 1 / 80
 class Supply:
     """Stator voltage on the model's time base.
 
-    voltage: v_s on the Clarke axes, shape (columns, 2), pre-emphasised [V].
-    step_s: time between columns; `substeps` of them make one sample of the record.
-    angular_frequency: w_s of the fundamental [rad/s]; phasor: its peak phasors on both axes at column 0 [V].
+    Parameters
+    ----------
+    voltage : ndarray, shape (columns, 2)
+        Clarke voltages, pre-emphasised [V].
+    step_s : float
+        Time between columns [s].
+    substeps : int
+        Columns in one sample of the record.
+    angular_frequency : float
+        Angular frequency w_s of the fundamental [rad/s].
+    phasor : ndarray of complex, shape (2,)
+        Peak phasors of the fundamental on both axes at column 0 [V].
     """
 
     voltage: Array
@@ -36,7 +45,24 @@ class Supply:
 def supply(
     voltage_ab: Array, sample_rate_hz: float, frequency_hz: float, phasor: NDArray[np.complex128]
 ) -> Supply:
-    """Supply from measured Clarke voltages (2, n) [V] and their peak phasors (2,) at sample 0."""
+    """Make the models' supply from measured voltages.
+
+    Parameters
+    ----------
+    voltage_ab : ndarray, shape (2, n)
+        Voltages on power-invariant Clarke axes [V].
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    frequency_hz : float
+        Supply frequency [Hz].
+    phasor : ndarray of complex, shape (2,)
+        Peak phasors of the fundamental on both axes at sample 0 [V].
+
+    Returns
+    -------
+    Supply
+        The supply.
+    """
     substeps = ceil(frequency_hz / (sample_rate_hz * COARSEST_STEP_CYCLES))
     if substeps > 1:
         voltage_ab = refine(voltage_ab, substeps)

@@ -18,7 +18,19 @@ from core.machines.stepping import Comparison, InitialState, MachineRates, Stepp
 
 @compiled
 def turning_drop(asymmetry: float, angle: float, i: Array, drop: Array) -> None:
-    """Drop across the turning part of the rotor's resistance, (2,) [V]; i: i_s, i_r, j."""
+    """Fill the drop across the turning part of the rotor's resistance.
+
+    Parameters
+    ----------
+    asymmetry : float
+        Half the difference of the axes' resistances [ohm].
+    angle : float
+        Electrical angle of the axis of more resistance [rad].
+    i : ndarray, shape (5, 1)
+        Currents i_s, i_r, j [A].
+    drop : ndarray, shape (2,)
+        Filled [V].
+    """
     cosine, sine = asymmetry * np.cos(2.0 * angle), asymmetry * np.sin(2.0 * angle)
     drop[0] = cosine * i[2, 0] + sine * i[3, 0]
     drop[1] = sine * i[2, 0] - cosine * i[3, 0]
@@ -29,9 +41,28 @@ def simulate_turning(
     u: Array, step: float, turn: float, machine: MachineRates, flux: Array, w: float, asymmetry: float,
     angle: float, track: Track,
 ) -> None:  # fmt: skip
-    """Step one candidate through voltages u (columns, 2); fill current (columns, 2) and speed (columns,).
+    """Step one candidate through its voltages.
 
-    asymmetry [ohm] and angle [rad] are those of the header, the angle at column 0; flux (5,), w likewise.
+    Parameters
+    ----------
+    u : ndarray, shape (columns, 2)
+        Delayed Clarke voltages [V].
+    step : float
+        Step [s].
+    turn : float
+        Angle that the supply turns in a step [rad].
+    machine : MachineRates
+        Coefficients of one machine.
+    flux : ndarray, shape (5,)
+        Flux at the first column [V s].
+    w : float
+        Electrical speed at the first column [rad/s].
+    asymmetry : float
+        Half the difference of the rotor axes' resistances [ohm].
+    angle : float
+        Electrical angle of the axis of more resistance at the first column [rad].
+    track : Track
+        Currents and speeds that are filled.
     """
     current, speed, load, acceleration = track.current, track.speed, machine.load, machine.gain * step
     hold = Hold(np.empty((5, 5)), np.empty((5, 2)), np.empty((5, 2)), np.empty((5, 2)))
@@ -76,7 +107,25 @@ def play_turning(
     feed: SteppedVoltage, delay_s: Array, machines: MachineRates, asymmetry: RotorAsymmetry,
     beginning: InitialState, comparison: Comparison, track: Track,
 ) -> None:  # fmt: skip
-    """Step every candidate like `batch.play`, with the turning part of its rotor's resistance."""
+    """Step every candidate like `batch.play`, with the turning part of its rotor's resistance.
+
+    Parameters
+    ----------
+    feed : SteppedVoltage
+        Stator voltage and the columns of it that are stepped through.
+    delay_s : ndarray, shape (candidates,)
+        Delay of each candidate's voltages [s].
+    machines : MachineRates
+        Coefficients of the batch.
+    asymmetry : RotorAsymmetry
+        Turning part of the rotors' resistance.
+    beginning : InitialState
+        State of the candidates at the first column.
+    comparison : Comparison
+        Measured current, and the squared errors that are filled.
+    track : Track
+        Currents and speeds that are filled.
+    """
     columns, substeps, measured = feed.last - feed.first, feed.substeps, comparison.measured
     u, own = np.empty((columns, 2)), Track(np.empty((columns, 2)), np.empty(columns))
     for c in range(delay_s.size):

@@ -40,8 +40,10 @@ def to_winding_frame(
 
     Returns
     -------
-    current_ab, voltage_ab : ndarray, shape (2, n)
-        Currents [A] and voltages [V] of the windings on the same axes.
+    current_ab : ndarray, shape (2, n)
+        Currents of the windings on the same axes [A].
+    voltage_ab : ndarray, shape (2, n)
+        Voltages of the windings on the same axes [V].
     """
     if sequence is PhaseSequence.ACB:
         mirror = np.array([[1.0], [-1.0]])

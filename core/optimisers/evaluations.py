@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 class SearchResult:
     """What a search came to.
 
-    Attributes
+    Parameters
     ----------
-    x : (d,) array
+    x : ndarray, shape (d,)
         The best point.
     fun : float
         Its value.
@@ -27,9 +27,9 @@ class SearchResult:
         Whether the best value is finite.
     message : str
         Why the search ended.
-    points : (nfev, d) array
+    points : ndarray, shape (nfev, d)
         Every point, in the order of evaluation.
-    costs : (nfev,) array
+    costs : ndarray, shape (nfev,)
         Their values.
     """
 
@@ -43,7 +43,13 @@ class SearchResult:
     costs: Array
 
     def as_optimize_result(self) -> "OptimizeResult":
-        """Return the same as scipy's type, for callers who compare with scipy's optimisers."""
+        """Return the same as scipy's type, for callers who compare with scipy's optimisers.
+
+        Returns
+        -------
+        OptimizeResult
+            The result.
+        """
         from scipy.optimize import OptimizeResult  # its import takes as long as five diagnoses
 
         result = OptimizeResult()
@@ -52,11 +58,11 @@ class SearchResult:
 
 
 class Stopped(Exception):  # noqa: N818 (no error: the way out of a library's search)
-    """The callback asked for the end, or the budget is spent; the text is the stop reason."""
+    """The signal that the callback asked for the end, or that the budget is spent; its text is the reason."""
 
 
 class Halted(Exception):  # noqa: N818
-    """The same of a search made of several: passes through the one that happens to run."""
+    """The same signal for a search made of several: it passes through the one that happens to run."""
 
 
 class Evaluations:
@@ -65,6 +71,19 @@ class Evaluations:
     A point evaluated before costs nothing: its value is looked up. Calls raise Stopped (Halted where
     `staged`) once the callback answers true, or where more than `budget` evaluations are asked for (those
     within it are made first).
+
+    Parameters
+    ----------
+    fun : callable
+        The objective, a function of points (m, d) of the box.
+    box : Box
+        The box that is searched.
+    callback : callable or None, optional
+        Called with new points (m, d) and their values (m,); a true answer stops the search.
+    budget : int or None, optional
+        Most evaluations.
+    staged : bool, default False
+        Whether the search is one of several.
     """
 
     def __init__(
@@ -104,7 +123,15 @@ class Evaluations:
         return np.array([self._known[key] for key in keys])
 
     def record(self, unit: Array, values: Array) -> None:
-        """Take over points (m, d) of [0, 1]^d with values (m,) that were found elsewhere; they count."""
+        """Take over points with values that were found elsewhere; they count.
+
+        Parameters
+        ----------
+        unit : ndarray, shape (m, d)
+            Points of the unit box.
+        values : ndarray, shape (m,)
+            Their values.
+        """
         points = self.box.from_unit(unit) + 0.0
         self._keep(points, [point.tobytes() for point in points], values)
         if self._budget is not None and self.count >= self._budget:
@@ -115,31 +142,79 @@ class Evaluations:
         return f"evaluated the most points allowed, {self._budget}"
 
     def at(self, unit: Array) -> float:
-        """Value at a single point (d,) of [0, 1]^d."""
+        """Return the value at a single point.
+
+        Parameters
+        ----------
+        unit : ndarray, shape (d,)
+            Point of the unit box.
+
+        Returns
+        -------
+        float
+            Its value.
+        """
         return float(self(np.asarray(unit, dtype=np.float64)[np.newaxis])[0])
 
     @property
     def points(self) -> Array:
-        """Points of the box in order of evaluation, (nfev, d)."""
+        """Points of the box in the order of evaluation, shape (nfev, d)."""
         return np.concatenate(self._points) if self._points else np.empty((0, self.box.dimensions))
 
     @property
     def values(self) -> Array:
-        """Their values, (nfev,)."""
+        """Values of the points, shape (nfev,)."""
         return np.concatenate(self._values) if self._values else np.empty(0)
 
     def best(self) -> Array:
-        """The best point so far, in [0, 1]^d; the middle of the box before the first evaluation."""
+        """Return the best point so far; the middle of the box before the first evaluation.
+
+        Returns
+        -------
+        ndarray, shape (d,)
+            Point of the unit box.
+        """
         if not self._values:
             return np.full(self.box.dimensions, 0.5)
         return self.box.to_unit(self.points[int(np.argmin(self.values))])
 
     def result(self, message: str, steps: int) -> "OptimizeResult":
-        """Return the outcome as scipy's type."""
+        """Return the outcome as scipy's type.
+
+        Parameters
+        ----------
+        message : str
+            Why the search ended.
+        steps : int
+            Number of steps.
+
+        Returns
+        -------
+        OptimizeResult
+            The result.
+        """
         return self.outcome(message, steps).as_optimize_result()
 
     def outcome(self, message: str, steps: int) -> SearchResult:
-        """Return what the search has come to; raise OptimiserError before the first evaluation."""
+        """Return what the search has come to.
+
+        Parameters
+        ----------
+        message : str
+            Why the search ended.
+        steps : int
+            Number of steps.
+
+        Returns
+        -------
+        SearchResult
+            The result.
+
+        Raises
+        ------
+        OptimiserError
+            If nothing was evaluated.
+        """
         points, values = self.points, self.values
         if not values.size:
             raise OptimiserError("max_evaluations: expected at least one evaluation, found none left")

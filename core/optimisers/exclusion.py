@@ -13,6 +13,13 @@ class Exclusion:
 
     A step asks about points that differ from its centre in one coordinate each, so only the boxes that hold
     all other coordinates of the centre have to be looked at closely: one comparison with all boxes a step.
+
+    Parameters
+    ----------
+    dimensions : int
+        Number of coordinates.
+    reach : float
+        Half the side of a box.
     """
 
     def __init__(self, dimensions: int, reach: float) -> None:
@@ -21,7 +28,13 @@ class Exclusion:
         self._count = 0
 
     def add(self, point: Point) -> None:
-        """Exclude the box around a point, unless the point is excluded already."""
+        """Exclude the box around a point, unless the point is excluded already.
+
+        Parameters
+        ----------
+        point : Point
+            Its coordinates.
+        """
         place = np.array(point, dtype=np.float64)
         if self._inside(place).all(axis=1).any():
             return
@@ -31,7 +44,20 @@ class Exclusion:
         self._count += 1
 
     def outside(self, centre: Point, around: Sequence[Point]) -> list[Point]:
-        """Those of the points around a centre, each differing in at most one coordinate, in no box."""
+        """Return those of the points around a centre that lie in no box.
+
+        Parameters
+        ----------
+        centre : Point
+            The point in the middle.
+        around : sequence of Point
+            Points that differ from the centre in at most one coordinate each.
+
+        Returns
+        -------
+        list of Point
+            The points outside.
+        """
         inside = self._inside(np.array(centre, dtype=np.float64))
         near = self._centres[: self._count][inside.sum(axis=1) >= len(centre) - 1]
         if not near.size:

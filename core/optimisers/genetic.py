@@ -36,14 +36,38 @@ def minimise(
     batch: bool = False,
     callback: Callback | None = None,
 ) -> OptimizeResult:
-    """Minimise `fun` over a box.
+    """Minimise a function over a box with the thesis's genetic algorithm (section 6.3.2).
 
-    population: members of a generation.  elite: the best of them, which live on unchanged (and are not
-    evaluated again).  crossover: fraction of the others that have two parents; the rest are mutations.
-    generations: after the first.  batch: `fun` takes points (m, d), a generation at once.
+    Parameters
+    ----------
+    fun : callable
+        The objective, a function of one point (d,), or with `batch` of points (m, d).
+    bounds : sequence of (float, float)
+        Lower and upper bound of each coordinate.
+    population : int, default 20
+        Members of a generation.
+    elite : int, default 5
+        Best members, which live on unchanged and are not evaluated again.
+    crossover : float, default 0.4
+        Fraction of the others that have two parents; the rest are mutations.
+    generations : int, default 25
+        Number of generations after the first.
+    seed : int, default 0
+        Seed of the random numbers.
+    batch : bool, default False
+        Whether `fun` takes points (m, d) at once and returns their values (m,).
+    callback : callable or None, optional
+        Called with new points (m, d) and their values (m,); a true answer stops the search.
 
-    Returns x, fun, nfev, nit, success, message, points (nfev, d), costs (nfev,).
-    Raises OptimiserError for impossible arguments.
+    Returns
+    -------
+    OptimizeResult
+        Fields x, fun, nfev, nit, success, message, points (nfev, d) and costs (nfev,).
+
+    Raises
+    ------
+    OptimiserError
+        If an argument is impossible.
     """
     box = checked_bounds(bounds)
     checked_count("population", population, 2)
@@ -82,7 +106,7 @@ def minimise(
 def _drawn(
     random: np.random.Generator, population: int, count: int
 ) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    """Indices of parents among members in order of rank: equal steps along their shares (Baker 1987)."""
+    """Draw indices of parents among members in order of rank: equal steps along their shares (Baker 1987)."""
     shares = 1.0 / np.sqrt(np.arange(1, population + 1))
     edges = np.cumsum(shares) / shares.sum()
     marks = (random.random() + np.arange(count)) / count

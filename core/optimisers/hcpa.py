@@ -58,7 +58,20 @@ Point = tuple[int, ...]
 class HcpaSettings:
     """How a search goes about it; see `minimise` for what each setting means.
 
-    Raises OptimiserError for impossible values.
+    It raises OptimiserError for impossible values.
+
+    Parameters
+    ----------
+    adaptiveness : float
+        Preference for unexplored regions, 0 to 1.
+    fineness : int
+        Only points of a level below it are evaluated.
+    exclusion : float, default 0.0
+        Side of the region around a local minimum that is searched no more, a fraction of the box.
+    max_global, max_local : int, default 500
+        Evaluations with this adaptiveness, then with 0.
+    allowed : sequence of Sequence[float] | None or None, optional
+        For each coordinate the only values it may take, or None.
     """
 
     adaptiveness: float
@@ -80,11 +93,25 @@ class HcpaSettings:
 
 @dataclass(frozen=True, slots=True)
 class HcpaResult(SearchResult):
-    """What a search came to.
+    """What a search came to, with the level of each point.
 
-    Attributes
+    Parameters
     ----------
-    levels : (nfev,) array
+    x : ndarray, shape (d,)
+        The best point.
+    fun : float
+        Its value.
+    nfev, nit : int
+        Numbers of evaluations and of steps.
+    success : bool
+        Whether the best value is finite.
+    message : str
+        Why the search ended.
+    points : ndarray, shape (nfev, d)
+        Every point, in the order of evaluation.
+    costs : ndarray, shape (nfev,)
+        Their values.
+    levels : ndarray of int, shape (nfev,)
         Level of each point on the sparse grid.
     """
 
@@ -104,20 +131,43 @@ def minimise(
     batch: bool = False,
     callback: Callback | None = None,
 ) -> "OptimizeResult":
-    """Minimise `fun` over a box. There is no chance in it: the same arguments take the same path.
+    """Minimise a function over a box with the Hyperbolic Cross Point Algorithm (thesis chapter 4).
 
-    adaptiveness: alpha in [0, 1]; 0 prefers good values (local), 1 unexplored regions (global).
-    fineness: L0; only points of a level below it are evaluated.
-    exclusion: side (fraction of the box) of the region around a local minimum of the grid that is searched
-    no more; a point is one when it has no neighbours left and none of them has a lower value.
-    max_global, max_local: evaluations with the given alpha, then with alpha = 0 (Fig. 4.7).
-    allowed: for each coordinate the only values it may take, or None ("improved HCPA", section 6.4.3).
-    batch: `fun` takes points (m, d) and returns (m,) values; a step hands over all its neighbours at once.
-    callback: called with the points and values of each step; a true answer stops the search.
+    There is no chance in it: the same arguments take the same path. Arguments left None take Table 4.1's
+    value for the dimension.
 
-    Returns x, fun, nfev, nit, success, message, and every point in order of evaluation: points (nfev, d),
-    costs (nfev,), levels (nfev,). Arguments left None take Table 4.1's value for the dimension.
-    Raises OptimiserError for impossible arguments.
+    Parameters
+    ----------
+    fun : callable
+        The objective, a function of one point (d,), or with `batch` of points (m, d).
+    bounds : sequence of (float, float)
+        Lower and upper bound of each coordinate.
+    adaptiveness : float or None, optional
+        Alpha in [0, 1]; 0 prefers good values (local), 1 unexplored regions (global).
+    fineness : int or None, optional
+        L0; only points of a level below it are evaluated.
+    exclusion : float or None, optional
+        Side of the region around a local minimum of the grid that is searched no more, a fraction of the box.
+        A point is one when it has no neighbours left and none of them has a lower value.
+    max_global, max_local : int, default 500
+        Evaluations with the given alpha, then with alpha = 0 (Fig. 4.7).
+    allowed : sequence of Sequence[float] | None or None, optional
+        For each coordinate the only values it may take, or None ("improved HCPA", section 6.4.3).
+    batch : bool, default False
+        Whether `fun` takes points (m, d) at once and returns their values (m,).
+    callback : callable or None, optional
+        Called with new points (m, d) and their values (m,); a true answer stops the search.
+
+    Returns
+    -------
+    OptimizeResult
+        Fields x, fun, nfev, nit, success, message, and of every point in order of evaluation points (nfev,
+        d), costs (nfev,) and levels (nfev,).
+
+    Raises
+    ------
+    OptimiserError
+        If an argument is impossible.
     """
     box = checked_bounds(bounds)
     table = RECOMMENDED.get(box.dimensions, RECOMMENDED_BEYOND)
@@ -135,23 +185,28 @@ def minimise(
 def search(
     fun: BatchFunction, bounds: Bounds, settings: HcpaSettings, *, callback: Callback | None = None
 ) -> HcpaResult:
-    """Search as `minimise` does, for callers in a hurry: without scipy's result type, and its import.
+    """Run the same search on a batch function, with its result as a plain dataclass.
 
     Parameters
     ----------
     fun : callable
-        Takes points (m, d) and returns values (m,).
-    bounds : sequence of (low, high)
-        The box.
+        The objective, a function of one point (d,), or with `batch` of points (m, d).
+    bounds : sequence of (float, float)
+        Lower and upper bound of each coordinate.
     settings : HcpaSettings
-        How to search.
-    callback : callable, optional
-        Called with the points and values of each step; a true answer stops the search.
+        How the search goes about it.
+    callback : callable or None, optional
+        Called with new points (m, d) and their values (m,); a true answer stops the search.
 
     Returns
     -------
     HcpaResult
-        The best point, and every point in the order of evaluation.
+        What the search came to, with the level of each point.
+
+    Raises
+    ------
+    OptimiserError
+        If the bounds are impossible.
     """
     box = checked_bounds(bounds)
     evaluations = Evaluations(fun, box, callback=callback)
@@ -160,12 +215,34 @@ def search(
 
 
 def level(digits: int) -> int:
-    """Level of a coordinate given as an integer multiple of 2^-DIGITS (4.3); 0 for the coordinate 0."""
+    """Return the level of a coordinate (4.3); it is 0 for the coordinate 0.
+
+    Parameters
+    ----------
+    digits : int
+        Coordinate as an integer multiple of 2^-DIGITS.
+
+    Returns
+    -------
+    int
+        The level.
+    """
     return DIGITS - ((digits & -digits).bit_length() - 1) if digits else 0
 
 
 def deepest_levels(box: Box) -> list[int]:
-    """For each coordinate the level down to which neighbouring points are different doubles."""
+    """Return for each coordinate the level down to which neighbouring points are different doubles.
+
+    Parameters
+    ----------
+    box : Box
+        The box that is searched.
+
+    Returns
+    -------
+    list of int
+        Levels, one a coordinate.
+    """
     coarsest = np.spacing(np.maximum(np.abs(box.lower), np.abs(box.upper)))
     depths = np.floor(np.log2(box.upper - box.lower) - np.log2(coarsest)) - 1.0
     return [int(depth) for depth in np.clip(depths, 0, DIGITS)]
@@ -223,7 +300,7 @@ class _Search:
         self._heaps: list[list[tuple[float, int]]] = [[] for _ in range(self._fineness)]
 
     def run(self, adaptiveness: float, max_global: int, max_local: int) -> HcpaResult:
-        """The stop logic of Fig. 4.7."""
+        """Run the search with the stop logic of Fig. 4.7."""
         budget = max_global + max_local
         steps = 0
         try:
@@ -256,7 +333,7 @@ class _Search:
         return None if best is None else heappop(best)[1]
 
     def _expand(self, index: int) -> tuple[list[Point], int]:
-        """New neighbours of a point and their level, L + D (4.6); none are left where that reaches L0."""
+        """Return new neighbours of a point and their level, L + D (4.6); none where that reaches L0."""
         self._degrees[index] += 1
         degree, point = self._degrees[index], self._points[index]
         generation = self._levels[index] + degree

@@ -21,7 +21,22 @@ from core.optimisers.objective import (
 
 
 def unit_points(count: int, dimensions: int, seed: int) -> Array:
-    """`count` points of [0, 1]^d, one in each of `count` slices of every coordinate."""
+    """Draw points of the unit box, one in each slice of every coordinate.
+
+    Parameters
+    ----------
+    count : int
+        Number of points, and of slices of each coordinate.
+    dimensions : int
+        Number of coordinates.
+    seed : int
+        Seed of the random numbers.
+
+    Returns
+    -------
+    ndarray, shape (count, dimensions)
+        The points.
+    """
     return LatinHypercube(dimensions, rng=seed).random(count)
 
 
@@ -34,10 +49,32 @@ def minimise(
     batch: bool = False,
     callback: Callback | None = None,
 ) -> OptimizeResult:
-    """The best of `samples` Latin hypercube points.
+    """Return the best of some Latin hypercube points.
 
-    Returns x, fun, nfev, nit, success, message, points (nfev, d), costs (nfev,).
-    Raises OptimiserError for impossible arguments.
+    Parameters
+    ----------
+    fun : callable
+        The objective, a function of one point (d,), or with `batch` of points (m, d).
+    bounds : sequence of (float, float)
+        Lower and upper bound of each coordinate.
+    samples : int, default 60
+        Number of points.
+    seed : int, default 0
+        Seed of the random numbers.
+    batch : bool, default False
+        Whether `fun` takes points (m, d) at once and returns their values (m,).
+    callback : callable or None, optional
+        Called with new points (m, d) and their values (m,); a true answer stops the search.
+
+    Returns
+    -------
+    OptimizeResult
+        Fields x, fun, nfev, nit, success, message, points (nfev, d) and costs (nfev,).
+
+    Raises
+    ------
+    OptimiserError
+        If an argument is impossible.
     """
     box = checked_bounds(bounds)
     checked_count("samples", samples, 1)

@@ -15,34 +15,78 @@ Callback = Callable[[Array, Array], bool | None]
 
 
 class OptimiserError(ValueError):
-    """An optimiser was asked for something impossible; the message names the argument."""
+    """The error of an optimiser that is asked for something impossible; it names the argument."""
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """Lower and upper bounds, each of shape (dimensions,). Optimisers work on the unit box."""
+    """Lower and upper bounds; optimisers work on the unit box.
+
+    Parameters
+    ----------
+    lower, upper : ndarray, shape (dimensions,)
+        Bounds of each coordinate.
+    """
 
     lower: Array
     upper: Array
 
     @property
     def dimensions(self) -> int:
+        """Number of coordinates."""
         return self.lower.size
 
     def from_unit(self, unit: Array) -> Array:
-        """Points of the box from points of [0, 1]^d, never beyond its bounds."""
+        """Map points of the unit box to points of the box, never beyond its bounds.
+
+        Parameters
+        ----------
+        unit : ndarray, shape (m, d)
+            Points of the unit box.
+
+        Returns
+        -------
+        ndarray, shape (m, d)
+            Points of the box.
+        """
         points = self.lower + unit * (self.upper - self.lower)
         return np.asarray(np.clip(points, self.lower, self.upper), dtype=np.float64)
 
     def to_unit(self, points: Array) -> Array:
-        """Points of [0, 1]^d from points of the box; what lies outside is put on its face."""
+        """Map points of the box to points of the unit box; what lies outside is put on its face.
+
+        Parameters
+        ----------
+        points : ndarray, shape (m, d)
+            Points of the box.
+
+        Returns
+        -------
+        ndarray, shape (m, d)
+            Points of the unit box.
+        """
         unit = (points - self.lower) / (self.upper - self.lower)
         return np.asarray(np.clip(unit, 0.0, 1.0), dtype=np.float64)
 
     def start(self, point: Sequence[float] | Array | None, name: str = "start") -> Array:
-        """A starting point in [0, 1]^d; the middle for None.
+        """Check a starting point and map it to the unit box; the middle for None.
 
-        Raises OptimiserError unless the point is finite, of the box's dimension and inside it.
+        Parameters
+        ----------
+        point : sequence of float or ndarray or None
+            Point of the box.
+        name : str, default 'start'
+            Name of the argument, for the message.
+
+        Returns
+        -------
+        ndarray, shape (d,)
+            Point of the unit box.
+
+        Raises
+        ------
+        OptimiserError
+            If the point is not finite, of another dimension or outside the box.
         """
         if point is None:
             return np.full(self.dimensions, 0.5)
@@ -58,9 +102,22 @@ class Box:
 
 
 def checked_bounds(bounds: Bounds) -> Box:
-    """The box of (lower, upper) pairs.
+    """Check bounds and return the box they make.
 
-    Raises OptimiserError unless every pair is finite with lower < upper.
+    Parameters
+    ----------
+    bounds : sequence of (float, float)
+        Lower and upper bound of each coordinate.
+
+    Returns
+    -------
+    Box
+        The box.
+
+    Raises
+    ------
+    OptimiserError
+        If a pair is not finite with lower < upper.
     """
     pairs = np.asarray(bounds, dtype=np.float64)
     if pairs.ndim != 2 or pairs.shape[1:] != (2,) or pairs.shape[0] == 0:
@@ -76,14 +133,47 @@ def checked_bounds(bounds: Bounds) -> Box:
 
 
 def checked_count(name: str, value: int, least: int) -> int:
-    """A whole number of at least `least`; raises OptimiserError otherwise."""
+    """Check a whole number against its least value and return it.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument, for the message.
+    value : int
+        The number.
+    least : int
+        Least value.
+
+    Returns
+    -------
+    int
+        The number.
+
+    Raises
+    ------
+    OptimiserError
+        If it is less.
+    """
     if value < least:
         raise OptimiserError(f"{name}: expected at least {least}, found {value}")
     return value
 
 
 def as_batch(fun: PointFunction | BatchFunction, *, batch: bool) -> BatchFunction:
-    """The objective as a function of points (m, d) giving values (m,); NaN counts as infinitely bad."""
+    """Return the objective as a function of points (m, d); NaN counts as infinitely bad.
+
+    Parameters
+    ----------
+    fun : callable
+        The objective, a function of one point (d,), or with `batch` of points (m, d).
+    batch : bool
+        Whether `fun` takes points (m, d) at once and returns their values (m,).
+
+    Returns
+    -------
+    callable
+        The batch function.
+    """
 
     def evaluate(points: Array) -> Array:
         raw = fun(points) if batch else [fun(point) for point in points]

@@ -49,16 +49,48 @@ def minimise(
     batch: bool = False,
     callback: Callback | None = None,
 ) -> OptimizeResult:
-    """Minimise `fun` over a box from `start` (default: its middle).
+    """Minimise a function over a box by pattern search (thesis section 6.3.1).
 
-    samples: begin at the best of so many Latin hypercube points, seeded by `seed`, instead.
-    pattern: Pattern.TWO_D or D_PLUS_ONE.  mesh: first step length, a fraction of the box; multiplied by
-    mesh_factor after a success and divided by it after a failure, up to 1 and down to smallest_mesh.
-    function_tolerance: stop after a success that gained less; 0 leaves the end to the mesh.
     Points beyond the bounds are not tried.
 
-    Returns x, fun, nfev, nit, success, message, points (nfev, d), costs (nfev,), centres (nit + 1, d).
-    Raises OptimiserError for impossible arguments.
+    Parameters
+    ----------
+    fun : callable
+        The objective, a function of one point (d,), or with `batch` of points (m, d).
+    bounds : sequence of (float, float)
+        Lower and upper bound of each coordinate.
+    start : sequence of float or ndarray or None, optional
+        Point to begin at; the middle of the box by default.
+    samples : int, default 0
+        Number of Latin hypercube points at the best of which it begins instead.
+    pattern : Pattern or str, default Pattern.TWO_D
+        Directions tried.
+    mesh : float, default 0.25
+        First step length, a fraction of the box.
+    mesh_factor : float, default 2.0
+        Factor by which the mesh grows after a success, up to 1, and shrinks after a failure.
+    smallest_mesh : float, default 1e-06
+        Mesh at which the search ends.
+    function_tolerance : float, default 0.0
+        The search stops after a success that gained less; 0 leaves the end to the mesh.
+    max_evaluations : int, default 2000
+        Most evaluations.
+    seed : int, default 0
+        Seed of the random numbers.
+    batch : bool, default False
+        Whether `fun` takes points (m, d) at once and returns their values (m,).
+    callback : callable or None, optional
+        Called with new points (m, d) and their values (m,); a true answer stops the search.
+
+    Returns
+    -------
+    OptimizeResult
+        Fields x, fun, nfev, nit, success, message, points (nfev, d), costs (nfev,) and centres (nit + 1, d).
+
+    Raises
+    ------
+    OptimiserError
+        If an argument is impossible.
     """
     box = checked_bounds(bounds)
     checked_count("max_evaluations", max_evaluations, 1)

@@ -21,7 +21,27 @@ SUPPLY_UNBALANCE = 0.01
 
 
 def assumed_voltage(current_abc: Array, sample_rate_hz: float, nameplate: Nameplate) -> Array:
-    """Clarke voltages (2, n) [V] for line currents (3, n) [A]. Raises SignalError without a fundamental."""
+    """Make a balanced supply at rated voltage, in step with the currents.
+
+    Parameters
+    ----------
+    current_abc : ndarray, shape (3, n)
+        Line currents of terminals a, b, c [A].
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Returns
+    -------
+    ndarray, shape (2, n)
+        Voltages on Clarke axes [V].
+
+    Raises
+    ------
+    SignalError
+        If the currents have no fundamental.
+    """
     current_ab = clarke(current_abc)
     frequency = fundamental_frequency(current_ab, sample_rate_hz)
     phasors = sequence_phasors(fundamental_phasors(current_ab, frequency, sample_rate_hz))

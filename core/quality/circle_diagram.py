@@ -20,8 +20,14 @@ _SLIPS = np.concatenate([[1e-6], np.geomspace(1e-4, 1.0, 400)])
 class CircleDiagram:
     """Line current per volt of phase-to-neutral voltage over the slip: conductances of one sequence [S].
 
-    admittance: from no load to standstill, shape (slips,).  rated_current_A: at rated torque and voltage.
-    pull_out_torque_Nm: the greatest of all slips, at rated voltage.
+    Parameters
+    ----------
+    admittance : ndarray of complex, shape (slips,)
+        From no load to standstill [S].
+    rated_current_A : float
+        Line current at rated torque and voltage, rms [A].
+    pull_out_torque_Nm : float
+        Greatest torque of all slips at rated voltage [N m].
     """
 
     admittance: NDArray[np.complex128]
@@ -39,13 +45,39 @@ class CircleDiagram:
         return float(abs(self.admittance[-1]))
 
     def lag_deg(self, admittance: float) -> float:
-        """By how much the current lags the voltage where the machine draws as much, nearest point [deg]."""
+        """Return by how much the current lags the voltage where the machine draws as much.
+
+        Parameters
+        ----------
+        admittance : float
+            Size of the admittance [S].
+
+        Returns
+        -------
+        float
+            Angle at the nearest point of the diagram [deg].
+        """
         nearest = int(np.argmin(np.abs(np.abs(self.admittance) - admittance)))
         return -float(np.degrees(np.angle(self.admittance[nearest])))
 
 
 def circle_diagram(motor: Motor, frequency_hz: float) -> CircleDiagram:
-    """Of the healthy machine at a supply frequency, from the terminals (a delta as its equal star)."""
+    """Compute the circle diagram of the healthy machine, seen from its terminals.
+
+    A delta is seen as the star equal to it.
+
+    Parameters
+    ----------
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    frequency_hz : float
+        Supply frequency [Hz].
+
+    Returns
+    -------
+    CircleDiagram
+        The diagram.
+    """
     machine, nameplate = motor.parameters, motor.nameplate
     w = 2.0 * pi * frequency_hz
     rotor = machine.rotor_resistance_ohm / _SLIPS + 1j * w * machine.rotor_leakage_H

@@ -47,8 +47,16 @@ _SIGNS = ((-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, -1.0))
 class Currents:
     """Phasors of the line currents, rms [A].
 
-    by_order: fundamental, 2nd and 3rd harmonic, shape (3 phases, 3 orders).
-    phasors: the fundamental's sequences.  rms: of the greatest phase with everything in it, without its mean.
+    Parameters
+    ----------
+    by_order : ndarray of complex, shape (3, 3)
+        Of each phase the fundamental, the 2nd and the 3rd harmonic.
+    phasors : SequencePhasors
+        Symmetrical components of the fundamental.
+    names : tuple of str
+        Names of the channels.
+    rms : float
+        Greatest phase with everything in it, without its mean.
     """
 
     by_order: NDArray[np.complex128]
@@ -58,10 +66,12 @@ class Currents:
 
     @property
     def sizes(self) -> NDArray[np.float64]:
+        """Fundamental of each phase, rms [A]."""
         return np.abs(self.by_order[:, 0])
 
     @property
     def greatest(self) -> float:
+        """Greatest fundamental of the phases, rms [A]."""
         return float(self.sizes.max())
 
     @property
@@ -71,6 +81,20 @@ class Currents:
 
 
 def currents_of(terminals: Terminals, frequency_hz: float) -> Currents:
+    """Find the phasors of the line currents.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    frequency_hz : float
+        Supply frequency [Hz].
+
+    Returns
+    -------
+    Currents
+        The phasors.
+    """
     by_order = harmonic_phasors(terminals.current_abc, frequency_hz, terminals.sample_rate_hz, (1, 2, 3))
     return Currents(
         by_order=by_order,
@@ -81,7 +105,22 @@ def currents_of(terminals: Terminals, frequency_hz: float) -> Currents:
 
 
 def running(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[QualityFinding]:
-    """Is there current of the supply's frequency, and less than a locked rotor's?"""
+    """Check that there is current of the supply's frequency, and less than a locked rotor's.
+
+    Parameters
+    ----------
+    currents : Currents
+        Phasors of the line currents.
+    feed : Feed
+        Frequency and phasors of the voltages.
+    circle : CircleDiagram
+        Currents that the healthy machine can draw.
+
+    Yields
+    ------
+    QualityFinding
+        The finding.
+    """
     share = currents.strong / (circle.at_standstill * feed.strong)
     off = _is_small(currents, feed, circle) and currents.greatest < CLEAN * currents.rms
     stalled = MOST_OF_STANDSTILL < share <= IMPOSSIBLE_OF_STANDSTILL
@@ -97,7 +136,22 @@ def running(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Q
 
 
 def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[QualityFinding]:
-    """Is it scaled as the nameplate says?"""
+    """Check that the currents are scaled as the nameplate says.
+
+    Parameters
+    ----------
+    currents : Currents
+        Phasors of the line currents.
+    feed : Feed
+        Frequency and phasors of the voltages.
+    circle : CircleDiagram
+        Currents that the healthy machine can draw.
+
+    Yields
+    ------
+    QualityFinding
+        The finding.
+    """
     no_load, standstill = circle.at_no_load * feed.strong, circle.at_standstill * feed.strong
     small = _is_small(currents, feed, circle)
     limit = LEAST_OF_NO_LOAD * no_load if small else IMPOSSIBLE_OF_STANDSTILL * standstill
@@ -114,6 +168,20 @@ def _is_small(currents: Currents, feed: Feed, circle: CircleDiagram) -> bool:
 
 
 def phase_loss(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
+    """Check that every phase carries current.
+
+    Parameters
+    ----------
+    currents : Currents
+        Phasors of the line currents.
+    feed : Feed
+        Frequency and phasors of the voltages.
+
+    Yields
+    ------
+    QualityFinding
+        The finding.
+    """
     least = float(currents.sizes.min() / currents.greatest)
     name = currents.names[int(currents.sizes.argmin())]
     limit = OPEN_CHANNEL if _sum(currents) > _most_sum(feed) else OPEN_WIRE
@@ -124,6 +192,20 @@ def phase_loss(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
 
 
 def saturation(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
+    """Check that the current transformers do not saturate.
+
+    Parameters
+    ----------
+    currents : Currents
+        Phasors of the line currents.
+    feed : Feed
+        Frequency and phasors of the voltages.
+
+    Yields
+    ------
+    QualityFinding
+        The finding.
+    """
     harmonics = currents.by_order[:, 1:]
     if float(np.abs(currents.by_order[:, 0].sum())) < COMPUTED_SUM * currents.greatest:
         share = float((np.linalg.norm(harmonics, axis=1) / currents.sizes).max())
@@ -139,7 +221,20 @@ def saturation(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
 
 
 def adding_up(currents: Currents, feed: Feed) -> Iterator[QualityFinding]:
-    """The sum shows a single channel reversed, or of a wrong ratio."""
+    """Check that the currents add up to nothing; a sum shows a channel reversed or of a wrong ratio.
+
+    Parameters
+    ----------
+    currents : Currents
+        Phasors of the line currents.
+    feed : Feed
+        Frequency and phasors of the voltages.
+
+    Yields
+    ------
+    QualityFinding
+        A finding.
+    """
     phasors = currents.by_order[:, 0]
     limit, share = _most_sum(feed), _sum(currents)
     turned = [float(abs((phasors * np.array(signs)).sum())) / currents.greatest for signs in _SIGNS]
@@ -169,7 +264,22 @@ def _most_sum(feed: Feed) -> float:
 
 
 def rotation(currents: Currents, feed: Feed) -> QualityFinding:
-    """Do the currents turn as the voltages do? However late they are, and however fast the motor runs."""
+    """Check that the currents turn as the voltages do.
+
+    The check holds however late the currents are and however fast the motor runs.
+
+    Parameters
+    ----------
+    currents : Currents
+        Phasors of the line currents.
+    feed : Feed
+        Frequency and phasors of the voltages.
+
+    Returns
+    -------
+    QualityFinding
+        The finding.
+    """
     _, forward, backward = _in_the_sense_of(feed, currents)
     share = abs(backward) / max(abs(forward), 1e-12)
     return finding(
@@ -179,7 +289,24 @@ def rotation(currents: Currents, feed: Feed) -> QualityFinding:
 
 
 def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[QualityFinding]:
-    """Do the currents belong to these voltages: same order of phases, and behind them as a motor's are?"""
+    """Check that the currents belong to the voltages.
+
+    They have the same order of phases, and lag behind them as a motor's do.
+
+    Parameters
+    ----------
+    currents : Currents
+        Phasors of the line currents.
+    feed : Feed
+        Frequency and phasors of the voltages.
+    circle : CircleDiagram
+        Currents that the healthy machine can draw.
+
+    Yields
+    ------
+    QualityFinding
+        A finding.
+    """
     if feed.assumed:
         return
     turning = rotation(currents, feed)

@@ -8,7 +8,23 @@ HUGE = 1e30
 
 @dataclass(frozen=True, slots=True)
 class QualityFinding:
-    """One check of the quality gate: its name, the figure it measured, its limit and what that means."""
+    """One check of the quality gate.
+
+    Parameters
+    ----------
+    name : str
+        Name of the check.
+    value : float
+        Figure that it measured.
+    limit : float
+        Limit of the figure.
+    unit : str
+        Unit of both.
+    passed : bool
+        Whether the check passed.
+    message : str
+        What a failure means, and what to do.
+    """
 
     name: str
     value: float
@@ -18,6 +34,13 @@ class QualityFinding:
     message: str
 
     def as_dict(self) -> dict[str, str | float | bool]:
+        """Return the finding as JSON takes it.
+
+        Returns
+        -------
+        dict of str to str
+            The fields by name.
+        """
         return {
             "name": self.name,
             "value": self.value,
@@ -31,10 +54,43 @@ class QualityFinding:
 def finding(
     name: str, value: float, limit: float, unit: str, *, passed: bool, message: str
 ) -> QualityFinding:
-    """A check's result; the message is only said where it failed."""
+    """Make the result of a check; the message is only said where it failed.
+
+    Parameters
+    ----------
+    name : str
+        Name of the check.
+    value : float
+        Figure that it measured.
+    limit : float
+        Limit of the figure.
+    unit : str
+        Unit of both.
+    passed : bool
+        Whether the check passed.
+    message : str
+        What a failure means, and what to do.
+
+    Returns
+    -------
+    QualityFinding
+        The finding.
+    """
     shown = min(max(float(value), -HUGE), HUGE)
     return QualityFinding(name, shown, float(limit), unit, bool(passed), "" if passed else message)
 
 
 def all_passed(findings: list[QualityFinding]) -> bool:
+    """Return whether all checks passed.
+
+    Parameters
+    ----------
+    findings : list of QualityFinding
+        The findings.
+
+    Returns
+    -------
+    bool
+        Whether none failed.
+    """
     return all(one.passed for one in findings)

@@ -18,7 +18,14 @@ from core.signals.terminals import Terminals
 class Passed:
     """What the checks found out of a record that passed them.
 
-    voltage_ab: as measured or, where none were, assumed: (2, n) [V].  sequence: of the supply.
+    Parameters
+    ----------
+    voltage_ab : ndarray, shape (2, n)
+        Voltages on Clarke axes as measured or, where none were, assumed [V].
+    frequency_hz : float
+        Supply frequency [Hz].
+    sequence : PhaseSequence
+        Order in which the supply's phases reach their maxima.
     """
 
     voltage_ab: Array
@@ -27,7 +34,22 @@ class Passed:
 
 
 def examine(terminals: Terminals, motor: Motor) -> tuple[list[QualityFinding], Passed | None]:
-    """All findings up to the first group with a failure, and the record's supply where there is none."""
+    """Run all checks, up to the first group with a failure.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+
+    Returns
+    -------
+    findings : list of QualityFinding
+        Findings of all checks made.
+    passed : Passed or None
+        Supply of the record; None where a check failed.
+    """
     found = sampled_well(terminals, motor.nameplate)
     if not all_passed(found):
         return found, None
@@ -42,7 +64,20 @@ def examine(terminals: Terminals, motor: Motor) -> tuple[list[QualityFinding], P
 
 
 def sampled_well(terminals: Terminals, nameplate: Nameplate) -> list[QualityFinding]:
-    """Checks on the samples themselves; the rest is computed only where these pass."""
+    """Check the samples themselves; the rest is computed only where these checks pass.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Returns
+    -------
+    list of QualityFinding
+        Findings of all checks made.
+    """
     found = list(samples.extent(terminals, nameplate))
     if all_passed(found):
         found += magnitude(terminals, nameplate)
@@ -52,11 +87,25 @@ def sampled_well(terminals: Terminals, nameplate: Nameplate) -> list[QualityFind
 
 
 def wired_well(terminals: Terminals, motor: Motor, *, timed: bool) -> list[QualityFinding]:
-    """Checks on how the channels are connected, of a stretch of any operation; up to the first group that
-    fails, and none where the voltages have no one frequency.
+    """Check how the channels are connected, in a stretch of any operation.
 
-    timed: whether currents and voltages are known to be of the same instants. Where they are not, only what
-    no delay can look like is checked.
+    The checks go on up to the first group that fails; there are none where the voltages have no one
+    frequency.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    timed : bool
+        Whether currents and voltages are known to be of the same instants. Where they are not, only what no
+        delay can look like is checked.
+
+    Returns
+    -------
+    list of QualityFinding
+        Findings of all checks made.
     """
     feed = supply.feed_of(terminals, motor.nameplate)
     if isinstance(feed, QualityFinding):
@@ -72,7 +121,7 @@ def wired_well(terminals: Terminals, motor: Motor, *, timed: bool) -> list[Quali
 
 
 def _electrical(terminals: Terminals, feed: supply.Feed, motor: Motor) -> Iterator[Iterable[QualityFinding]]:
-    """Groups of findings, each computed only when asked for."""
+    """Yield groups of findings, each computed only when asked for."""
     nameplate, per_cycle = motor.nameplate, terminals.sample_rate_hz / feed.frequency_hz
     yield supply.frequency(feed, nameplate)
     yield supply.drive(feed, terminals)

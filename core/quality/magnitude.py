@@ -19,13 +19,39 @@ EFFICIENCY_TIMES_POWER_FACTOR = 0.6
 
 
 def rated_current_A(nameplate: Nameplate) -> float:
-    """Order of magnitude of the rated line current, rms, from power and voltage [A]."""
+    """Estimate the order of magnitude of the rated line current from power and voltage.
+
+    Parameters
+    ----------
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Returns
+    -------
+    float
+        Current, rms [A].
+    """
     apparent = nameplate.rated_power_W / EFFICIENCY_TIMES_POWER_FACTOR
     return float(apparent / (sqrt(3.0) * nameplate.rated_voltage_V))
 
 
 def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFinding]:
-    """Only what fails: is there any signal, and is it of this world? Samples are finite."""
+    """Check the order of magnitude of the samples; only failures are told.
+
+    The samples must be finite.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Yields
+    ------
+    QualityFinding
+        A failure.
+    """
     amps = _swing(terminals.current_abc) / (sqrt(2.0) * rated_current_A(nameplate))
     yield from _deafening("current", amps)
     if terminals.voltage_ab is None:

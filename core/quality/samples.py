@@ -1,4 +1,4 @@
-"""Checks on the samples of single channels: are they there, enough of them, and as the sensor saw them?"""
+"""Checks on the samples of single channels: they are there, enough of them, and as the sensor saw them."""
 
 from collections.abc import Iterator
 from math import pi
@@ -40,7 +40,20 @@ RUN = 3
 
 
 def extent(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFinding]:
-    """Length and rate of the record, and whether all of it is there."""
+    """Check length and rate of the record, and whether all of it is there.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Yields
+    ------
+    QualityFinding
+        A finding.
+    """
     per_cycle = terminals.sample_rate_hz / nameplate.rated_frequency_Hz
     cycles = terminals.current_abc.shape[1] / per_cycle
     yield finding(
@@ -63,7 +76,20 @@ def extent(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFindin
 
 
 def clipping(channels: tuple[Channel, ...], samples: Array) -> Iterator[QualityFinding]:
-    """Crests cut off by a converter or an amplifier, at the full scale the file states or at any other."""
+    """Check for crests cut off by a converter or an amplifier, at the full scale or at any other level.
+
+    Parameters
+    ----------
+    channels : tuple of Channel
+        The channels.
+    samples : ndarray, shape (channels, n)
+        Their samples.
+
+    Yields
+    ------
+    QualityFinding
+        A finding.
+    """
     for channel, x in _alive(channels, samples):
         share, limit, where = _flat_share(x), FLAT_SHARE + _crest_share(x), "its own extreme"
         if channel.full_scale is not None:
@@ -79,7 +105,24 @@ def clipping(channels: tuple[Channel, ...], samples: Array) -> Iterator[QualityF
 
 
 def holding(channels: tuple[Channel, ...], samples: Array, per_cycle: float) -> Iterator[QualityFinding]:
-    """Values that stand still where a waveform moves: one stretch, or every sample several times."""
+    """Check for values that stand still where a waveform moves.
+
+    They stand still for one stretch, or every sample several times.
+
+    Parameters
+    ----------
+    channels : tuple of Channel
+        The channels.
+    samples : ndarray, shape (channels, n)
+        Their samples.
+    per_cycle : float
+        Samples in one cycle.
+
+    Yields
+    ------
+    QualityFinding
+        A finding.
+    """
     for channel, x in _alive(channels, samples):
         stretch, repeated = _longest_stretch(x, per_cycle) / per_cycle, _repeated_share(x, per_cycle)
         stuck = stretch > HELD_CYCLES

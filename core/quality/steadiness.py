@@ -24,6 +24,24 @@ UNSTEADY_VOLTAGE = 0.1
 def steadiness(
     terminals: Terminals, feed: Feed, currents: Currents, circle: CircleDiagram
 ) -> Iterator[QualityFinding]:
+    """Check that supply and load are steady over the record.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    feed : Feed
+        Frequency and phasors of the voltages.
+    currents : Currents
+        Phasors of the line currents.
+    circle : CircleDiagram
+        Currents that the healthy machine can draw.
+
+    Yields
+    ------
+    QualityFinding
+        A finding.
+    """
     per_cycle = terminals.sample_rate_hz / feed.frequency_hz
     volts = _farthest(_course(feed.voltage_ab, feed.phasors, per_cycle))
     yield finding(
@@ -42,7 +60,7 @@ def steadiness(
 
 
 def _course(x_ab: Array, phasors: SequencePhasors, per_cycle: float) -> NDArray[np.complex128]:
-    """The stronger sequence over the record.
+    """Return the stronger sequence over the record.
 
     A mean over each cycle keeps the one sequence and takes out the other, harmonics and offsets.
     """

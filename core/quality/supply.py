@@ -48,7 +48,18 @@ _TURN = np.exp(2j * np.pi / 3.0)
 class Feed:
     """The voltages a record is judged against: as measured, or assumed from the currents.
 
-    channels: rms phasors of the voltage channels (channels,) [V], none where assumed.
+    Parameters
+    ----------
+    voltage_ab : ndarray, shape (2, n)
+        Voltages on power-invariant Clarke axes [V].
+    frequency_hz : float
+        Supply frequency [Hz].
+    phasors : SequencePhasors
+        Symmetrical components of the fundamental, phase to neutral, rms [V].
+    channels : ndarray of complex, shape (channels,)
+        Phasors of the voltage channels, rms [V]; none where the voltages are assumed.
+    assumed : bool
+        Whether the voltages are assumed.
     """
 
     voltage_ab: Array
@@ -64,7 +75,20 @@ class Feed:
 
 
 def feed_of(terminals: Terminals, nameplate: Nameplate) -> Feed | QualityFinding:
-    """Frequency and phasors of the voltages, or the finding that there is no one frequency."""
+    """Find frequency and phasors of the voltages.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Returns
+    -------
+    Feed or QualityFinding
+        The voltages, or the finding that there is no one frequency.
+    """
     rate = terminals.sample_rate_hz
     try:
         if terminals.voltage_ab is None:
@@ -83,6 +107,20 @@ def feed_of(terminals: Terminals, nameplate: Nameplate) -> Feed | QualityFinding
 
 
 def frequency(feed: Feed, nameplate: Nameplate) -> Iterator[QualityFinding]:
+    """Check that the supply has the rated frequency.
+
+    Parameters
+    ----------
+    feed : Feed
+        Frequency and phasors of the voltages.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Yields
+    ------
+    QualityFinding
+        The finding.
+    """
     rated = nameplate.rated_frequency_Hz
     yield finding(
         "frequency", feed.frequency_hz, rated, "Hz",
@@ -93,7 +131,22 @@ def frequency(feed: Feed, nameplate: Nameplate) -> Iterator[QualityFinding]:
 
 
 def drive(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
-    """Pulses of an inverter; the currents it feeds do not follow from voltages sampled among the pulses."""
+    """Check for the pulses of an inverter.
+
+    The currents it feeds do not follow from voltages sampled among the pulses.
+
+    Parameters
+    ----------
+    feed : Feed
+        Frequency and phasors of the voltages.
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+
+    Yields
+    ------
+    QualityFinding
+        The finding.
+    """
     cycles = feed.voltage_ab.shape[1] / terminals.sample_rate_hz * feed.frequency_hz
     if feed.assumed or cycles < 3 * LINE_WIDTH_BINS:
         # In a few cycles the harmonics' lines lie so close that nothing is beside them.
@@ -102,14 +155,40 @@ def drive(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
 
 
 def shape(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
-    """Clipped and held samples of the voltage channels."""
+    """Check the voltage channels for clipped and held samples.
+
+    Parameters
+    ----------
+    feed : Feed
+        Frequency and phasors of the voltages.
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+
+    Yields
+    ------
+    QualityFinding
+        A finding.
+    """
     per_cycle = terminals.sample_rate_hz / feed.frequency_hz
     yield from clipping(terminals.voltage_channels, terminals.voltages)
     yield from holding(terminals.voltage_channels, terminals.voltages, per_cycle)
 
 
 def channels(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
-    """Is each channel there, the right way round and of the others' ratio?"""
+    """Check that each channel is there, the right way round and of the others' ratio.
+
+    Parameters
+    ----------
+    feed : Feed
+        Frequency and phasors of the voltages.
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+
+    Yields
+    ------
+    QualityFinding
+        A finding.
+    """
     if feed.assumed:
         return
     names = [channel.name for channel in terminals.voltage_channels]
@@ -142,6 +221,20 @@ def channels(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
 
 
 def level(feed: Feed, nameplate: Nameplate) -> Iterator[QualityFinding]:
+    """Check that the voltage is near the rated one.
+
+    Parameters
+    ----------
+    feed : Feed
+        Frequency and phasors of the voltages.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Yields
+    ------
+    QualityFinding
+        The finding.
+    """
     if feed.assumed:
         return
     volts = feed.strong * np.sqrt(3.0) / nameplate.rated_voltage_V
@@ -154,8 +247,11 @@ def level(feed: Feed, nameplate: Nameplate) -> Iterator[QualityFinding]:
 
 
 def _ratio(feed: Feed, terminals: Terminals, names: list[str]) -> QualityFinding:
-    """Three line voltages add up to nothing; of three phase voltages, one channel's error makes as much zero
-    as negative sequence, at an angle that names the channel."""
+    """Check the ratios of three voltage channels.
+
+    Three line voltages add up to nothing. Of three phase voltages, one channel's error makes as much zero as
+    negative sequence, at an angle that names the channel.
+    """
     if _is_triangle(terminals):
         total = _open_triangle(feed.channels, terminals)
         return finding(

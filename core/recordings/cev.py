@@ -49,8 +49,16 @@ _NOMINAL = re.compile(r"\b(?:FNOM|NFREQ)\s*:?=\s*(50|60)\b")
 class EventReport:
     """All of one event report.
 
-    fid: firmware identification. summary: the event summary's fields as written, by label.
-    settings: text of the relay's settings, "" where the report holds none.
+    Parameters
+    ----------
+    recording : Recording
+        The samples.
+    fid : str
+        Firmware identification.
+    summary : mapping of str to str
+        Fields of the event summary as written, by label.
+    settings : str
+        Text of the relay's settings, "" where the report holds none.
     """
 
     recording: Recording
@@ -68,15 +76,51 @@ class _Field:
 
 
 def read_cev(path: Path, *, lenient: bool = False) -> Recording:
-    """The recording of an event report; errors as `read_event_report`."""
+    """Read the recording of an event report.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    lenient : bool, default False
+        Mend what can be mended without guessing at values, and say so in the recording's repairs.
+
+    Returns
+    -------
+    Recording
+        The recording.
+
+    Raises
+    ------
+    RecordingError
+        If the file contradicts itself; it names file, line and field.
+    OSError
+        If a file that exists cannot be read.
+    """
     return read_event_report(path, lenient=lenient).recording
 
 
 def read_event_report(path: Path, *, lenient: bool = False) -> EventReport:
     """Read an event report.
 
-    lenient: mend what can be mended without guessing at values, and say so in the recording's repairs.
-    Raises RecordingError with file, line and field at fault; OSError if a file that exists cannot be read.
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    lenient : bool, default False
+        Mend what can be mended without guessing at values, and say so in the recording's repairs.
+
+    Returns
+    -------
+    EventReport
+        The recording with what the report tells beside it.
+
+    Raises
+    ------
+    RecordingError
+        If the file contradicts itself; it names file, line and field.
+    OSError
+        If a file that exists cannot be read.
     """
     repairs = Repairs(lenient=lenient)
     content = _content(path)
@@ -204,7 +248,7 @@ _DATE = {"YEAR": 2200, "MONTH": 12, "DAY": 31, "HOUR": 23, "MIN": 59, "SEC": 59,
 
 
 def _trigger_time_ns(head: Mapping[str, _Field], labels: Row) -> int:
-    """The report's date, taken as UTC [ns]; years of two digits are from 1970 on."""
+    """Return the report's date, taken as UTC [ns]; years of two digits are from 1970 on."""
     parts: dict[str, int] = {}
     for name, most in _DATE.items():
         field = _field(head, labels, name)
@@ -229,7 +273,7 @@ def _trigger_time_ns(head: Mapping[str, _Field], labels: Row) -> int:
 
 
 def _settings(row: Row, content: bytes, repairs: Repairs) -> str:
-    """The quoted text behind "SETTINGS".
+    """Return the quoted text behind "SETTINGS".
 
     Its checksum may count the line ends or not, and a transfer may have changed them: each is accepted.
     """

@@ -22,9 +22,14 @@ _BLOCK_ROWS = 1 << 12
 
 
 class CevSamples:
-    """Collects the lines behind the channel labels, whose last are "TRIG" and the names of the relay word.
+    """The samples behind the channel labels, collected line by line.
 
-    channels: name and unit of each analogue column. The other attributes grow with every line.
+    The last labels are "TRIG" and the names of the relay word.
+
+    Parameters
+    ----------
+    labels : Row
+        The line of labels.
     """
 
     def __init__(self, labels: Row) -> None:
@@ -48,7 +53,18 @@ class CevSamples:
         self.count = 0
 
     def add(self, row: Row) -> None:
-        """Take one line. Raises RecordingError where it does not fit the labels, even of a lenient reader."""
+        """Take one line.
+
+        Parameters
+        ----------
+        row : Row
+            The line.
+
+        Raises
+        ------
+        RecordingError
+            If it does not fit the labels, also of a lenient reader.
+        """
         if len(row.fields) != len(self._labels.fields):
             raise row.refuse(
                 "", f"{len(self._labels.fields)} fields as the channel labels", f"{len(row.fields)} fields"
@@ -69,7 +85,7 @@ class CevSamples:
         self.count += 1
 
     def _word(self, row: Row) -> bytes:
-        """The relay word of a line, that of the line before where it has none."""
+        """Return the relay word of a line, that of the line before where it has none."""
         text = row.fields[self._trig + 1]
         if not _HEX.fullmatch(text) or (text and not self._digits <= len(text) <= self._digits + 1):
             raise row.refuse(
@@ -91,12 +107,24 @@ class CevSamples:
         return self._marks[">"] or self._marks["*"]
 
     def values(self) -> NDArray[np.float64]:
-        """Analogue values as written, shape (channels, samples), NaN where missing."""
+        """Return the analogue values as written, NaN where missing.
+
+        Returns
+        -------
+        ndarray, shape (channels, samples)
+            The values.
+        """
         table = np.frombuffer(self._values, dtype=np.float64).reshape(self.count, self._trig)
         return np.array(table.T, order="C")
 
     def digitals(self) -> Digitals | None:
-        """The states of the relay word; None where the report has none."""
+        """Return the states of the relay word.
+
+        Returns
+        -------
+        Digitals or None
+            The states; None where the report has none.
+        """
         used = [k for k, name in enumerate(self._names) if name != UNUSED]
         if not used:
             return None

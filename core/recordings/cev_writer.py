@@ -33,11 +33,20 @@ _TEXT = re.compile(r"[ -!#-~]*")
 class EventSummary:
     """What the report tells beside the samples.
 
-    samples_per_cycle: the recording's rate over this is written as the frequency.
-    digital_samples_per_cycle: lines a cycle with a relay word, the first of every so many; a divisor of the
-        former.
-    figures: further numbers of the summary by label, such as the currents at the trigger; None for no value.
-    settings: text of the relay's settings; None leaves that part out.
+    Parameters
+    ----------
+    samples_per_cycle : int
+        Samples a cycle; the recording's rate over it is written as the frequency.
+    digital_samples_per_cycle : int, default 4
+        Lines a cycle with a relay word, the first of every so many; a divisor of the former.
+    event : str, optional
+        Type of the event.
+    targets : str, default ''
+        Targets of the relay's front.
+    figures : mapping of str to float, optional
+        Further numbers of the summary by label, such as the currents at the trigger; None for no value.
+    settings : str or None, optional
+        Text of the relay's settings; None leaves that part out.
     """
 
     samples_per_cycle: int
@@ -49,9 +58,28 @@ class EventSummary:
 
 
 def write_cev(path: Path, recording: Recording, summary: EventSummary) -> Path:
-    """Write `path`, which appears complete, and return it.
+    """Write an event report, which appears complete.
 
-    Raises ValueError if the format cannot hold the recording; OSError from the file system.
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    recording : Recording
+        The recording.
+    summary : EventSummary
+        What the report tells beside the samples.
+
+    Returns
+    -------
+    pathlib.Path
+        The path written.
+
+    Raises
+    ------
+    ValueError
+        If the format cannot hold the recording.
+    OSError
+        If the file cannot be written.
     """
     content = cev_bytes(recording, summary)
     partial = path.with_name(path.name + ".part")
@@ -60,9 +88,24 @@ def write_cev(path: Path, recording: Recording, summary: EventSummary) -> Path:
 
 
 def cev_bytes(recording: Recording, summary: EventSummary) -> bytes:
-    """The report's contents; the recording's device is its firmware identification.
+    """Return the contents of an event report; the recording's device is its firmware identification.
 
-    Raises ValueError where samples are not evenly spaced or infinite, or a text breaks the format.
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    summary : EventSummary
+        What the report tells beside the samples.
+
+    Returns
+    -------
+    bytes
+        The contents.
+
+    Raises
+    ------
+    ValueError
+        If samples are not evenly spaced or infinite, or a text breaks the format.
     """
     per_cycle, per_word = summary.samples_per_cycle, summary.digital_samples_per_cycle
     channels, samples = recording.samples.shape
@@ -160,7 +203,7 @@ def _bit_names(names: tuple[str, ...]) -> str:
 
 
 def _text(text: str) -> str:
-    """A field in quotes."""
+    """Return a field in quotes."""
     if not _TEXT.fullmatch(text) or text != text.strip():
         raise ValueError(f"{text!r} cannot be a field of an event report: printable ASCII without quotes")
     return f'"{text}"'
@@ -173,7 +216,7 @@ def _date(time_ns: int) -> str:
 
 
 def _settings(text: str) -> bytes:
-    """The text in quotes, its lines ended by CR LF, which count for the checksum."""
+    """Return the text in quotes, its lines ended by CR LF, which count for the checksum."""
     lines = text.replace("\r\n", "\n").split("\n")
     if not all(_TEXT.fullmatch(line) for line in lines):
         raise ValueError("settings of an event report are printable ASCII without quotes")

@@ -41,7 +41,19 @@ _NAME = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class ChannelRole:
-    """quantity and phase as in `Channel`; `unit` and `scale` bring the file's unit to SI."""
+    """What a channel measures, and how its unit becomes SI.
+
+    Parameters
+    ----------
+    quantity : Quantity
+        What the channel measures.
+    phase : str or None
+        Phase as in `Channel`, None if unknown.
+    unit : str
+        SI unit.
+    scale : float
+        Factor from the file's unit to the SI unit.
+    """
 
     quantity: Quantity
     phase: str | None
@@ -50,9 +62,19 @@ class ChannelRole:
 
 
 def channel_roles(channels: Sequence[tuple[str, str, str]]) -> tuple[ChannelRole, ...]:
-    """Roles of the channels (name, phase field, unit) of one record.
+    """Return the roles of the channels of one record.
 
     They are judged together: I1, I2, I3 are phase currents; I1 and I2 beside an I0 are sequence components.
+
+    Parameters
+    ----------
+    channels : sequence of tuple of str
+        Name, phase field and unit of each channel.
+
+    Returns
+    -------
+    tuple of ChannelRole
+        One role a channel.
     """
     matches = [_NAME.search(name.translate(_CYRILLIC_PHASES)) for name, _, _ in channels]
     digits = {(m["kind"].upper(), m["phase"]) for m in matches if m and m["phase"] in _NUMBERED}

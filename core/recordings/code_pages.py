@@ -17,11 +17,22 @@ _SURE = 0.7
 
 
 def decode_text(content: bytes) -> str:
-    """The text, without a byte order mark. Every content has one: the last resort is Latin-1.
+    """Decode a text whose code page is not known; a byte order mark is taken off.
 
-    UTF-8 where it fits. Else Latin-1 where most letters above ASCII stand singly among ASCII letters, or in
-    twos between them ("Estação"). Else CP1251 or CP866 where runs of such letters are Cyrillic with capitals
-    first; else GBK where all are Chinese characters; else Latin-1.
+    Every content has a text: the last resort is Latin-1. UTF-8 is taken where it fits. Else Latin-1 is taken
+    where most letters above ASCII stand singly among ASCII letters, or in twos between them ("Estação"). Else
+    CP1251 or CP866 is taken where runs of such letters are Cyrillic with capitals first; else GBK where all
+    are Chinese characters; else Latin-1.
+
+    Parameters
+    ----------
+    content : bytes
+        The bytes.
+
+    Returns
+    -------
+    str
+        The text.
     """
     try:
         return content.decode("utf-8-sig")

@@ -26,9 +26,18 @@ _PROMPT = re.compile(rb"[=>\s\x02\x03]*")
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One line: its number in the file and its fields without quotes and checksum.
+    """One line of a Compressed ASCII file.
 
-    `end` is where the line ends in the file [bytes].
+    Parameters
+    ----------
+    path : pathlib.Path
+        File of the line.
+    number : int
+        Its number in the file, from 1.
+    fields : tuple of str
+        Its fields without quotes and checksum.
+    end : int
+        Where the line ends in the file [bytes].
     """
 
     path: Path
@@ -37,27 +46,84 @@ class Row:
     end: int
 
     def refuse(self, field: str, expected: str, found: str) -> RecordingError:
-        """The error for `field` of this line ("" for the whole), to be raised or mended."""
+        """Return the error for a field of this line, to be raised or mended.
+
+        Parameters
+        ----------
+        field : str
+            Field at fault, "" for the whole line.
+        expected : str
+            What was expected, in words.
+        found : str
+            What was found, in words.
+
+        Returns
+        -------
+        RecordingError
+            The error.
+        """
         where = f"line {self.number}" + (f", {field}" if field else "")
         return RecordingError(self.path, where, expected=expected, found=found)
 
 
 def checksum(content: bytes) -> str:
-    """Four hexadecimal digits for `content`, which ends with the comma before them."""
+    """Return the checksum of a line, four hexadecimal digits.
+
+    Parameters
+    ----------
+    content : bytes
+        The line up to and with the comma before its checksum.
+
+    Returns
+    -------
+    str
+        The digits.
+    """
     return f"{sum(content) & 0xFFFF:04X}"
 
 
 def closed(fields: str) -> bytes:
-    """A line of fields with its checksum and line end; `fields` are written as they are."""
+    """Return a line of fields with its checksum and line end.
+
+    Parameters
+    ----------
+    fields : str
+        The fields as they are to be written.
+
+    Returns
+    -------
+    bytes
+        The line.
+    """
     content = fields.encode("ascii") + b","
     return content + b'"' + checksum(content).encode("ascii") + b'"\r\n'
 
 
 def rows(path: Path, content: bytes, start: int, repairs: Repairs) -> Iterator[Row]:
-    """The lines from `start` on; prompts and blank lines are passed over.
+    """Read the lines of a file; prompts and blank lines are passed over.
 
     A lenient reader believes fields whose checksum is wrong and leaves out lines that have none.
-    Raises RecordingError with the line at fault.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    content : bytes
+        Contents of the file.
+    start : int
+        First byte that is read.
+    repairs : Repairs
+        Collects what was mended; of a strict reader nothing is.
+
+    Yields
+    ------
+    Row
+        A line.
+
+    Raises
+    ------
+    RecordingError
+        If a line is at fault.
     """
     number = 1 + _line_ends(content[:start])
     at, prompts = start, 0

@@ -47,10 +47,26 @@ MAX_STRETCHES = 1000
 
 
 def read_comtrade(path: Path, *, lenient: bool = False) -> Recording:
-    """Read the record whose configuration file is `path`; its data file lies beside it (.dat in any case).
+    """Read a COMTRADE record from its configuration file and the data file beside it.
 
-    lenient: mend what can be mended without guessing at values, and say so in the recording's repairs.
-    Raises RecordingError with the file and field at fault; OSError if a file that exists cannot be read.
+    Parameters
+    ----------
+    path : pathlib.Path
+        Configuration file; the data file has its name and the suffix .dat in any case.
+    lenient : bool, default False
+        Mend what can be mended without guessing at values, and say so in the recording's repairs.
+
+    Returns
+    -------
+    Recording
+        The recording.
+
+    Raises
+    ------
+    RecordingError
+        If a file is missing or contradicts itself; it names the file and the field.
+    OSError
+        If a file that exists cannot be read.
     """
     repairs = Repairs(lenient=lenient)
     _check_file(path, MAX_CONFIGURATION_BYTES)
@@ -61,7 +77,27 @@ def read_comtrade(path: Path, *, lenient: bool = False) -> Recording:
 
 
 def read_combined_comtrade(path: Path, *, lenient: bool = False) -> Recording:
-    """Read a 2013 combined file (.cff), which holds configuration and data; else as `read_comtrade`."""
+    """Read a COMTRADE 2013 combined file (.cff), which holds configuration and data.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    lenient : bool, default False
+        Mend what can be mended without guessing at values, and say so in the recording's repairs.
+
+    Returns
+    -------
+    Recording
+        The recording.
+
+    Raises
+    ------
+    RecordingError
+        If the file is missing or contradicts itself; it names the file and the field.
+    OSError
+        If a file that exists cannot be read.
+    """
     repairs = Repairs(lenient=lenient)
     _check_file(path, MAX_DATA_BYTES)
     cfg, data, data_format = split_combined(path, repairs)
@@ -91,7 +127,7 @@ def _check_file(path: Path, limit: int) -> int:
 
 
 def _data_file(path: Path) -> Path:
-    """The .dat of a .cfg: spelt in the same case, or the only one that differs in case."""
+    """Return the .dat of a .cfg: spelt in the same case, or the only one that differs in case."""
     suffix = "DAT" if path.suffix.isupper() else "dat"
     beside = path.with_suffix(f".{suffix}")
     if beside.is_file():
@@ -150,7 +186,7 @@ def _check_counts(path: Path, table: SampleTable) -> None:
 def _scaled(
     path: Path, configuration: Configuration, roles: tuple[ChannelRole, ...], table: SampleTable
 ) -> NDArray[np.float64]:
-    """The counts turned into primary SI values, in place: a long record is not held twice."""
+    """Turn the counts into primary SI values, in place: a long record is not held twice."""
     for channel, role, values in zip(configuration.analog, roles, table.counts, strict=True):
         scale = role.scale * channel.to_primary
         with np.errstate(over="ignore", invalid="ignore"):
@@ -213,7 +249,7 @@ def _remove_skew(
 def _trigger_index(
     path: Path, configuration: Configuration, base: TimeBase, samples: int, repairs: Repairs
 ) -> int | None:
-    """The sample next to the trigger."""
+    """Return the sample next to the trigger."""
     elapsed_s = (configuration.trigger_time_ns - configuration.start_time_ns) / NANOSECONDS_PER_SECOND
     if base.instants_s is None:
         index, duration_s = round(elapsed_s * base.rate_hz), samples / base.rate_hz

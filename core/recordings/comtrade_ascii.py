@@ -25,10 +25,30 @@ _BLOCK_BYTES = 1 << 16
 
 
 def decode_ascii(section: DataSection, configuration: Configuration, repairs: Repairs) -> SampleTable:
-    """Samples of an ASCII file.
+    """Read the samples of an ASCII file.
 
     A lenient reader takes the lines there are, up to the number announced.
-    Raises RecordingError where lines, fields or sample numbers do not fit the configuration; OSError.
+
+    Parameters
+    ----------
+    section : DataSection
+        Place of the data in the file.
+    configuration : Configuration
+        The checked configuration file.
+    repairs : Repairs
+        Collects what was mended; of a strict reader nothing is.
+
+    Returns
+    -------
+    SampleTable
+        The samples as written.
+
+    Raises
+    ------
+    RecordingError
+        If lines, fields or sample numbers do not fit the configuration.
+    OSError
+        If the file cannot be read.
     """
     content = section.content().rstrip(b"\x1a\r\n\t ")
     content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")

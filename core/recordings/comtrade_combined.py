@@ -18,10 +18,32 @@ _MOST_SECTIONS = 16
 
 
 def split_combined(path: Path, repairs: Repairs) -> tuple[bytes, DataSection, str]:
-    """Configuration section, place of the data, and the data format its heading names, upper case.
+    """Find the sections of a combined file.
 
     A lenient reader takes the data there are where the heading names another size.
-    Raises RecordingError if a section is missing, given twice, or of another size than it says; OSError.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    repairs : Repairs
+        Collects what was mended; of a strict reader nothing is.
+
+    Returns
+    -------
+    configuration : bytes
+        The configuration section.
+    data : DataSection
+        Place of the data.
+    data_format : str
+        Data format that the heading names, upper case.
+
+    Raises
+    ------
+    RecordingError
+        If a section is missing, given twice, or of another size than it says.
+    OSError
+        If the file cannot be read.
     """
     size = path.stat().st_size
     configuration: bytes | None = None
@@ -54,7 +76,7 @@ def _format(section: re.Match[bytes]) -> str:
 
 
 def _of_size(data: DataSection, section: re.Match[bytes], repairs: Repairs) -> DataSection:
-    """The data after its heading, the last section; binary data are as long as the heading says."""
+    """Return the data after its heading, the last section; binary data are as long as the heading says."""
     if section[3] is None:
         return data
     size = int(section[3])

@@ -35,10 +35,27 @@ _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 @dataclass(frozen=True, slots=True)
 class AnalogChannel:
-    """One analogue channel line (5.3.3): value = (gain * count + offset), in `unit`, primary or secondary.
+    """One analogue channel line (5.3.3): value = gain * count + offset, in `unit`.
 
-    `to_primary` is the transformer ratio if the values are secondary ("S"), 1 if they are primary ("P").
-    1991 has neither: its values are taken in the unit as written.
+    Parameters
+    ----------
+    name : str
+        Name of the channel.
+    phase : str
+        Phase as written.
+    unit : str
+        Unit as written.
+    gain : float
+        Factor of the counts.
+    offset : float
+        Value of the count 0.
+    skew_us : float
+        Delay of the channel's samples within the sampling period [us].
+    minimum, maximum : float
+        Range of the counts.
+    to_primary : float
+        Transformer ratio if the values are secondary ("S"), 1 if they are primary ("P"). The 1991 edition has
+        neither: its values are taken in the unit as written.
     """
 
     name: str
@@ -56,10 +73,31 @@ class AnalogChannel:
 class Configuration:
     """A checked configuration file.
 
-    rates: sampling rates [Hz], each with the number of the last sample taken at it, in ascending order;
-        empty where the samples' own time stamps are the only time base (0 rates in the file).
-    start_time_ns, trigger_time_ns: UTC. 1991 and 1999 know no time zone: their times are taken as UTC.
-    time_stamp_unit_s: seconds one step of the data file's time stamps stands for.
+    Parameters
+    ----------
+    revision : int
+        Year of the edition.
+    station : str
+        Name of the station.
+    device : str
+        Name of the recorder.
+    analog : tuple of AnalogChannel
+        The analogue channels.
+    status_names : tuple of str
+        Names of the status channels.
+    nominal_frequency_hz : float or None
+        Line frequency as written [Hz], None if there is none.
+    rates : tuple of (float, int)
+        Sampling rates [Hz], each with the number of the last sample taken at it, in ascending order; empty
+        where the samples' own time stamps are the only time base.
+    sample_count : int
+        Number of samples.
+    start_time_ns, trigger_time_ns : int
+        UTC [ns since 1970]. The editions of 1991 and 1999 know no time zone: their times are taken as UTC.
+    data_format : str
+        Format of the data file.
+    time_stamp_unit_s : float
+        Time that one step of the data file's time stamps stands for [s].
     """
 
     revision: int
@@ -80,7 +118,26 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
     """Check and read the text of a configuration file.
 
     A lenient reader takes any revision year for the edition of its time and does not mind how channels are
-    numbered. Raises RecordingError with the line and field at fault; `path` only names the file in it.
+    numbered.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Name of the file, for messages.
+    text : str
+        Its text.
+    repairs : Repairs
+        Collects what was mended; of a strict reader nothing is.
+
+    Returns
+    -------
+    Configuration
+        The checked configuration.
+
+    Raises
+    ------
+    RecordingError
+        If the text is at fault; it names line and field.
     """
     text = text.rstrip("\x1a\r\n\t ")
     if control := _CONTROL.search(text):
@@ -195,7 +252,7 @@ def _analog_channel(line: Line, number: int, revision: int, repairs: Repairs) ->
 
 
 def _ratio(line: Line) -> float:
-    """What turns the channel's values into primary ones (5.3.3.11 to 5.3.3.13)."""
+    """Return the factor that makes the channel's values primary ones (5.3.3.11 to 5.3.3.13)."""
     primary, secondary = line.real(10, "primary ratio"), line.real(11, "secondary ratio")
     scaling = line.fields[12].upper()
     if scaling not in ("P", "S"):
@@ -290,7 +347,7 @@ def _data_format(line: Line) -> str:
 
 
 def _utc_offset(line: Line) -> int:
-    """What the file's times are ahead of UTC [ns]; "-5h30" is five and a half hours behind (2013, 7.4.11)."""
+    """Return how far the times are ahead of UTC [ns]; "-5h30" is 5.5 hours behind (2013, 7.4.11)."""
     line.has_fields(2)
     offset = _UTC_OFFSET.fullmatch(line.fields[0])
     if offset is None or int(offset[2]) > 14 or int(offset[3] or 0) > 59:

@@ -25,9 +25,14 @@ _BLOCK_SAMPLES = 1 << 14
 class SampleTable:
     """The samples of one record as written, NaN where missing.
 
-    counts: analogue values before scaling, shape (channels, samples).
-    status: states, uint8, shape (samples, ceil(states / 8)), the first state in the lowest bit.
-    stamps: time stamps in the file's unit, shape (samples,).
+    Parameters
+    ----------
+    counts : ndarray, shape (channels, samples)
+        Analogue values before scaling.
+    status : ndarray of uint8, shape (samples, ceil(states / 8))
+        States, the first in the lowest bit.
+    stamps : ndarray, shape (samples,)
+        Time stamps in the file's unit.
     """
 
     counts: NDArray[np.float64]
@@ -36,6 +41,20 @@ class SampleTable:
 
     @classmethod
     def empty(cls, configuration: Configuration, samples: int) -> "SampleTable":
+        """Return a table that waits to be filled.
+
+        Parameters
+        ----------
+        configuration : Configuration
+            The checked configuration file.
+        samples : int
+            Number of samples.
+
+        Returns
+        -------
+        SampleTable
+            The table.
+        """
         states = -(-len(configuration.status_names) // 8)
         return cls(
             counts=np.empty((len(configuration.analog), samples)),
@@ -45,7 +64,17 @@ class SampleTable:
 
 
 class SampleNumbers:
-    """Samples are numbered from 1 without a gap (6.4); recorders that count from 0 lose nothing."""
+    """A check of sample numbers, which count from 1 without a gap (6.4).
+
+    Recorders that count from 0 lose nothing.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    repairs : Repairs
+        Collects what was mended; of a strict reader nothing is.
+    """
 
     def __init__(self, path: Path, repairs: Repairs) -> None:
         self._path = path
@@ -56,7 +85,17 @@ class SampleNumbers:
     def check(self, numbers: NDArray[np.float64] | NDArray[np.uint32]) -> None:
         """Check the numbers that follow those checked so far.
 
-        A lenient reader takes the samples in the order of the file. Raises RecordingError.
+        A lenient reader takes the samples in the order of the file.
+
+        Parameters
+        ----------
+        numbers : ndarray or ndarray of uint32, shape (samples,)
+            Sample numbers.
+
+        Raises
+        ------
+        RecordingError
+            If they have a gap or do not ascend.
         """
         first = float(numbers[0])
         fault = None
@@ -80,10 +119,30 @@ class SampleNumbers:
 
 
 def decode_binary(section: DataSection, configuration: Configuration, repairs: Repairs) -> SampleTable:
-    """Samples of a BINARY, BINARY32 or FLOAT32 file.
+    """Read the samples of a BINARY, BINARY32 or FLOAT32 file.
 
-    A lenient reader takes the whole samples a file of another size has, up to the number announced.
-    Raises RecordingError where size or sample numbers do not fit the configuration; OSError.
+    A lenient reader takes the whole samples that a file of another size has, up to the number announced.
+
+    Parameters
+    ----------
+    section : DataSection
+        Place of the data in the file.
+    configuration : Configuration
+        The checked configuration file.
+    repairs : Repairs
+        Collects what was mended; of a strict reader nothing is.
+
+    Returns
+    -------
+    SampleTable
+        The samples as written.
+
+    Raises
+    ------
+    RecordingError
+        If size or sample numbers do not fit the configuration.
+    OSError
+        If the file cannot be read.
     """
     row = _row(configuration)
     samples = _sample_count(section, configuration, row, repairs)
@@ -126,7 +185,7 @@ def _row(configuration: Configuration) -> np.dtype[np.void]:
 
 
 def _missing(configuration: Configuration) -> float:
-    """The value that stands for a missing one."""
+    """Return the value that stands for a missing one."""
     if configuration.data_format == "BINARY":
         return -1 if configuration.revision == 1991 else -0x8000
     return -0x80000000 if configuration.data_format == "BINARY32" else float(np.finfo(np.float32).min)

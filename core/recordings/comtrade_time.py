@@ -29,7 +29,15 @@ _BLOCK_SAMPLES = 1 << 14
 
 @dataclass(frozen=True, slots=True)
 class TimeBase:
-    """rate_hz: the first or the typical rate; instants_s: after the first sample [s], None if even."""
+    """Times of the samples.
+
+    Parameters
+    ----------
+    rate_hz : float
+        The first or the typical rate [Hz].
+    instants_s : ndarray or None, shape (samples,)
+        Time of every sample after the first [s], None if they are evenly spaced.
+    """
 
     rate_hz: float
     instants_s: NDArray[np.float64] | None
@@ -38,10 +46,30 @@ class TimeBase:
 def time_base(
     path: Path, stamps: NDArray[np.float64], configuration: Configuration, repairs: Repairs
 ) -> TimeBase:
-    """Times of the samples from their stamps, in the file's unit, and the configuration's rates.
+    """Find the times of the samples from their stamps and the configuration's rates.
 
     A lenient reader goes by the rates where the stamps contradict them.
-    Raises RecordingError where stamps and rates contradict each other, or neither tells the time.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        File of the stamps, for messages.
+    stamps : ndarray, shape (samples,)
+        Time stamps in the file's unit.
+    configuration : Configuration
+        The checked configuration file.
+    repairs : Repairs
+        Collects what was mended; of a strict reader nothing is.
+
+    Returns
+    -------
+    TimeBase
+        The times.
+
+    Raises
+    ------
+    RecordingError
+        If stamps and rates contradict each other, or neither tells the time.
     """
     absurd = (stamps > MAX_STAMP) | (stamps < -MAX_STAMP)
     if absurd.any():
@@ -92,7 +120,7 @@ class _Nominal:
 def _with_gaps(
     path: Path, stamps: NDArray[np.float64], nominal: _Nominal, unit_s: float
 ) -> NDArray[np.float64] | None:
-    """The nominal times, later by each gap the stamps show; None where they show none.
+    """Return the nominal times, later by each gap the stamps show; None where they show none.
 
     Piece by piece: stamps of a long record need not be held in memory several times over.
     """

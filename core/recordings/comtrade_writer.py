@@ -48,13 +48,37 @@ def write(
     data_format: DataFormat = "BINARY",
     utc_offset_min: int = 0,
 ) -> Path:
-    """Write `path`.CFG and .DAT, and .HDR if a header text is given; or all in one `path`.CFF (2013).
+    """Write a recording as COMTRADE, in separate files or in one combined file (2013).
 
-    path: with suffix .cfg or .cff, whose case the other suffixes follow, or without (then .CFG).
-    utc_offset_min: of the clock that the recording's times are of [min]; only the 2013 edition can say so.
     Every channel needs a full scale, which sets the quantisation (not in FLOAT32). Files appear complete and
-    the configuration last: who sees it can read the record. Returns the path to read from.
-    Raises ValueError if the format cannot hold the recording; OSError from the file system.
+    the configuration last: who sees it can read the record.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path with suffix .cfg or .cff, whose case the other suffixes follow, or without suffix (then .CFG).
+    recording : Recording
+        The recording.
+    header_text : str or None, optional
+        Text of the header file; None for no header file.
+    revision : Revision, default 1999
+        Edition of the standard.
+    data_format : DataFormat, optional
+        Format of the data file.
+    utc_offset_min : int, default 0
+        Offset of the clock that the recording's times are of [min]; only the 2013 edition can say so.
+
+    Returns
+    -------
+    pathlib.Path
+        The path to read from.
+
+    Raises
+    ------
+    ValueError
+        If the format cannot hold the recording.
+    OSError
+        If a file cannot be written.
     """
     combined = path.suffix.casefold() == ".cff"
     if combined and revision != 2013:
@@ -83,7 +107,27 @@ def _appear(file: Path, content: bytes) -> None:
 
 
 def combined_bytes(recording: Recording, *, data_format: DataFormat, header_text: str = "") -> bytes:
-    """Contents of a 2013 combined file. Raises ValueError as `write`."""
+    """Return the contents of a 2013 combined file.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    data_format : DataFormat
+        Format of the data file.
+    header_text : str, default ''
+        Text of the header section.
+
+    Returns
+    -------
+    bytes
+        The contents.
+
+    Raises
+    ------
+    ValueError
+        If the format cannot hold the recording.
+    """
     configuration = configuration_text(recording, revision=2013, data_format=data_format)
     return _combined(configuration, recording, data_format, header_text)
 
@@ -105,10 +149,30 @@ def configuration_text(
     data_format: DataFormat = "BINARY",
     utc_offset_min: int = 0,
 ) -> str:
-    """Text of the configuration file.
+    """Return the text of the configuration file.
 
     Times are cut to microseconds before 2013; without a trigger the first sample is named.
-    Raises ValueError if the edition cannot hold the recording, or a channel has no full scale.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    revision : Revision, default 1999
+        Edition of the standard.
+    data_format : DataFormat, optional
+        Format of the data file.
+    utc_offset_min : int, default 0
+        Offset of the clock that the recording's times are of [min]; only the 2013 edition can say so.
+
+    Returns
+    -------
+    str
+        The text.
+
+    Raises
+    ------
+    ValueError
+        If the edition cannot hold the recording, or a channel has no full scale.
     """
     if revision not in _FORMATS:
         raise ValueError(f"there is no edition {revision} of COMTRADE, only {', '.join(map(str, _FORMATS))}")
@@ -161,9 +225,26 @@ def _time_code(utc_offset_min: int) -> str:
 def data_bytes(
     recording: Recording, *, revision: Revision = 1999, data_format: DataFormat = "BINARY"
 ) -> bytes:
-    """Contents of the data file: number, time stamp [us], values and states of each sample.
+    """Return the contents of the data file: number, time stamp [us], values and states of each sample.
 
-    Raises ValueError where it would be empty or longer than the time stamps reach, or as `write`.
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    revision : Revision, default 1999
+        Edition of the standard.
+    data_format : DataFormat, optional
+        Format of the data file.
+
+    Returns
+    -------
+    bytes
+        The contents.
+
+    Raises
+    ------
+    ValueError
+        If it would be empty or longer than the time stamps reach, or the format cannot hold the recording.
     """
     channels, samples = recording.samples.shape
     stamps = np.rint(recording.time_s * 1e6)
@@ -207,7 +288,7 @@ def _ascii_lines(
 
 
 def _counts(recording: Recording, revision: Revision, data_format: DataFormat) -> NDArray[np.float64]:
-    """Counts, shape (channels, samples), NaN where missing; whole numbers except in FLOAT32."""
+    """Return counts, shape (channels, samples), NaN where missing; whole numbers except in FLOAT32."""
     if data_format == "FLOAT32":
         with np.errstate(over="ignore"):
             values = recording.samples.astype(np.float32).astype(np.float64)

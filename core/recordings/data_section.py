@@ -11,7 +11,17 @@ _PIECE = 1 << 16
 
 @dataclass(frozen=True, slots=True)
 class DataSection:
-    """`size` bytes of the file `path` from `offset` on."""
+    """A part of a file.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    offset : int
+        First byte of the part.
+    size : int
+        Number of bytes.
+    """
 
     path: Path
     offset: int
@@ -19,18 +29,58 @@ class DataSection:
 
     @contextmanager
     def opened(self) -> Iterator[BinaryIO]:
-        """The file at the first byte of the section. Raises OSError."""
+        """Open the file at the first byte of the section.
+
+        Yields
+        ------
+        BinaryIO
+            The open file.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        """
         with self.path.open("rb") as file:
             file.seek(self.offset)
             yield file
 
     def content(self) -> bytes:
-        """All of it. Raises OSError."""
+        """Read all of the section.
+
+        Returns
+        -------
+        bytes
+            The bytes.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        """
         with self.opened() as file:
             return file.read(self.size)
 
     def is_padding_after(self, start: int, padding: bytes) -> bool:
-        """Whether the section holds nothing but bytes of `padding` from `start` on. Raises OSError."""
+        """Return whether the section holds nothing but padding from some byte on.
+
+        Parameters
+        ----------
+        start : int
+            First byte that is looked at.
+        padding : bytes
+            Bytes that count as padding.
+
+        Returns
+        -------
+        bool
+            Whether there is nothing else.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be read.
+        """
         with self.opened() as file:
             file.seek(start, 1)
             left = self.size - start

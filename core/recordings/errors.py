@@ -4,10 +4,20 @@ from pathlib import Path
 
 
 class RecordingError(ValueError):
-    """A recording cannot be read as it is; nothing of it was repaired or guessed.
+    """The error of a recording that cannot be read as it is; nothing of it was repaired or guessed.
 
-    `path` is the file at fault, `field` the place in it ("line 2, channel counts"), `expected` and `found`
-    say why in words a person can act on.
+    `expected` and `found` say why in words that a person can act on.
+
+    Parameters
+    ----------
+    path : pathlib.Path or str
+        File at fault.
+    field : str
+        Place in it, such as "line 2, channel counts".
+    expected : str
+        What was expected, in words.
+    found : str
+        What was found, in words.
     """
 
     def __init__(self, path: Path | str, field: str, *, expected: str, found: str) -> None:

@@ -11,9 +11,11 @@ from core.recordings.waveform import Recording
 
 
 class Reader(Protocol):
-    """Reads the file at a path, strictly or leniently."""
+    """A function that reads the file at a path, strictly or leniently."""
 
-    def __call__(self, path: Path, *, lenient: bool = False) -> Recording: ...
+    def __call__(self, path: Path, *, lenient: bool = False) -> Recording:
+        """Read one recording."""
+        ...
 
 
 READERS: Mapping[str, Reader] = {
@@ -27,12 +29,27 @@ READERS: Mapping[str, Reader] = {
 def read(path: Path, *, lenient: bool = False) -> Recording:
     """Read one recording; the suffix of its file tells the format.
 
-    .cfg: COMTRADE configuration, with its .dat beside it; .cff: COMTRADE combined file; .cev: SEL Compressed
-    ASCII event report.
-    lenient: mend what can be mended without guessing at values; the recording's repairs say what was.
+    .cfg is a COMTRADE configuration, with its .dat beside it; .cff a COMTRADE combined file; .cev an SEL
+    Compressed ASCII event report.
 
-    Raises RecordingError if the file is missing, of another kind, or contradicts itself; OSError if it cannot
-    be read.
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file.
+    lenient : bool, default False
+        Mend what can be mended without guessing at values, and say so in the recording's repairs.
+
+    Returns
+    -------
+    Recording
+        The recording.
+
+    Raises
+    ------
+    RecordingError
+        If the file is missing, of another kind, or contradicts itself.
+    OSError
+        If a file that exists cannot be read.
     """
     reader = READERS.get(path.suffix.casefold())
     if reader is None:

@@ -8,7 +8,13 @@ MOST_REPAIRS = 10_000
 
 
 class Repairs:
-    """Collects what was mended in one file; of a strict reader (`lenient` false) nothing ever is."""
+    """What was mended in one file; of a strict reader nothing ever is.
+
+    Parameters
+    ----------
+    lenient : bool
+        Whether anything may be mended.
+    """
 
     def __init__(self, *, lenient: bool) -> None:
         self._lenient = lenient
@@ -17,7 +23,20 @@ class Repairs:
         self._count = 0
 
     def mend(self, fault: RecordingError, mended: str) -> None:
-        """Note the fault and what is done about it. Raises the fault of a strict reader, or of too many."""
+        """Note a fault and what is done about it.
+
+        Parameters
+        ----------
+        fault : RecordingError
+            The error a strict reader raises.
+        mended : str
+            What is done about it, in words.
+
+        Raises
+        ------
+        RecordingError
+            If the reader is strict, or there are too many faults.
+        """
         self._count += 1
         if not self._lenient or self._count > MOST_REPAIRS:
             raise fault
@@ -28,7 +47,7 @@ class Repairs:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """One sentence a kind of repair, in the order of the file; further ones alike are counted."""
+        """One sentence for each kind of repair, in the order of the file; further ones alike are counted."""
         return tuple(
             note + (f" (so are {self._alike[mended]} more)" if mended in self._alike else "")
             for mended, note in self._first.items()

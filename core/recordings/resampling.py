@@ -14,10 +14,25 @@ WIDEST_SPREAD = 0.1
 
 
 def evenly_spaced(recording: Recording) -> Recording:
-    """The recording itself where it is even; else interpolated at as many instants of one mean rate.
+    """Return the recording with evenly spaced samples.
 
-    Lagrange interpolation through the six nearest samples; states are those of the nearest sample.
-    Raises RecordingError where there is a gap or the rate changes: nothing is interpolated across these.
+    An even recording is returned as it is. Else Lagrange interpolation through the six nearest samples gives
+    as many instants of one mean rate; states are those of the nearest sample.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+
+    Returns
+    -------
+    Recording
+        The even recording.
+
+    Raises
+    ------
+    RecordingError
+        If there is a gap or the rate changes, across which nothing is interpolated.
     """
     instants = recording.instants_s
     if instants is None:
@@ -48,8 +63,10 @@ def evenly_spaced(recording: Recording) -> Recording:
 
 
 def _interpolated(samples: NDArray[np.float64], position: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Values at fractional sample numbers, shape (channels, positions); the time between samples is even
-    enough over six of them for the number to stand for it."""
+    """Return values at fractional sample numbers, shape (channels, positions).
+
+    The time between samples is even enough over six of them for the number to stand for it.
+    """
     count = samples.shape[1]
     points = min(POINTS, count)
     first = np.clip(np.floor(position).astype(np.intp) - (points - 1) // 2, 0, count - points)

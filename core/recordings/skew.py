@@ -13,10 +13,22 @@ _UNEVEN = 1.25
 
 
 def without_skew(x: NDArray[np.float64], skew: float) -> NDArray[np.float64]:
-    """Values at the instants n of a waveform sampled at n + skew, shape (n,), unit of x.
+    """Interpolate a waveform sampled at n + skew at the instants n.
 
-    skew: in sample periods, magnitude below 1. Lagrange interpolation through the nearest samples, those
-    at the ends from one side; a missing sample (NaN) makes its neighbours missing, too.
+    Lagrange interpolation goes through the nearest samples, those at the ends from one side. A missing sample
+    (NaN) makes its neighbours missing, too.
+
+    Parameters
+    ----------
+    x : ndarray, shape (n,)
+        Samples.
+    skew : float
+        Delay in sample periods, magnitude below 1.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Values in the unit of x.
     """
     points = min(POINTS, x.size)
     before = (points - 1) // 2
@@ -30,9 +42,17 @@ def without_skew(x: NDArray[np.float64], skew: float) -> NDArray[np.float64]:
 
 
 def even_stretches(instants_s: NDArray[np.float64]) -> Iterator[tuple[slice, float]]:
-    """Stretches of evenly spaced samples with their periods [s], in order; single samples are left out.
+    """Find stretches of evenly spaced samples, in order; single samples are left out.
 
-    instants_s: increasing times of the samples, shape (n,) [s].
+    Parameters
+    ----------
+    instants_s : ndarray, shape (n,)
+        Increasing times of the samples [s].
+
+    Yields
+    ------
+    (slice, float)
+        The stretch, and the period of its samples [s].
     """
     steps = np.diff(instants_s)
     around = np.concatenate([[np.inf], steps, [np.inf]])

@@ -10,7 +10,7 @@ from core.units import NANOSECONDS_PER_SECOND
 
 
 class Quantity(StrEnum):
-    """What a channel measures. Voltages are told apart by their reference, because Clarke needs to know."""
+    """What a channel measures; voltages are told apart by their reference, which Clarke's axes depend on."""
 
     CURRENT = "current"
     PHASE_VOLTAGE = "phase_voltage"
@@ -22,9 +22,18 @@ class Quantity(StrEnum):
 class Channel:
     """One analogue channel.
 
-    `phase` is "a", "b", "c", "n" for phase quantities, "ab", "bc", "ca" for line voltages, None if unknown.
-    `unit` is the SI unit of the samples after scaling ("A", "V"; otherwise as written in the file).
-    `full_scale` is the largest magnitude the recorder can represent [unit], None if the file does not tell.
+    Parameters
+    ----------
+    name : str
+        Name as written in the file.
+    quantity : Quantity
+        What it measures.
+    phase : str or None
+        "a", "b", "c", "n" for phase quantities, "ab", "bc", "ca" for line voltages, None if unknown.
+    unit : str
+        SI unit of the samples after scaling ("A", "V"; otherwise as written in the file).
+    full_scale : float or None, optional
+        Largest magnitude the recorder can represent [unit], None if the file does not tell.
     """
 
     name: str
@@ -38,8 +47,12 @@ class Channel:
 class Digitals:
     """States recorded beside the samples: contacts, relay word bits.
 
-    names: one a state, in the file's order.
-    packed: uint8, shape (samples, ceil(len(names) / 8)); state k is bit k % 8 of column k // 8.
+    Parameters
+    ----------
+    names : tuple of str
+        Names of the states, in the file's order.
+    packed : ndarray of uint8, shape (samples, ceil(len(names) / 8))
+        State k is bit k % 8 of column k // 8.
     """
 
     names: tuple[str, ...]
@@ -51,16 +64,51 @@ class Digitals:
 
     @classmethod
     def of(cls, names: tuple[str, ...], states: NDArray[np.bool_]) -> "Digitals":
-        """From states of shape (samples, len(names))."""
+        """Pack states.
+
+        Parameters
+        ----------
+        names : tuple of str
+            Names of the states.
+        states : ndarray of bool, shape (samples, len(names))
+            The states.
+
+        Returns
+        -------
+        Digitals
+            The packed states.
+        """
         return cls(names, np.packbits(states, axis=1, bitorder="little"))
 
     def unpacked(self) -> NDArray[np.bool_]:
-        """All states, shape (samples, len(names))."""
+        """Return all states.
+
+        Returns
+        -------
+        ndarray of bool, shape (samples, len(names))
+            The states.
+        """
         bits = np.unpackbits(self.packed, axis=1, count=len(self.names), bitorder="little")
         return bits.astype(np.bool_)
 
     def state(self, name: str) -> NDArray[np.bool_]:
-        """One state, shape (samples,). Raises KeyError where none or several have this name."""
+        """Return one state.
+
+        Parameters
+        ----------
+        name : str
+            Its name.
+
+        Returns
+        -------
+        ndarray of bool, shape (samples,)
+            The state at every sample.
+
+        Raises
+        ------
+        KeyError
+            If none or several have this name.
+        """
         if self.names.count(name) != 1:
             raise KeyError(name)
         k = self.names.index(name)
@@ -71,16 +119,35 @@ class Digitals:
 class Recording:
     """Samples of one event, as the relay measured them.
 
-    samples: float64, shape (channels, samples), each row in its channel's SI unit; NaN where missing.
-    sample_rate_hz: the rate; where `instants_s` is given, the first of the rates, or the typical one.
-    start_time_ns: UTC of the first sample, integer nanoseconds since 1970.
-    trigger_index: sample at which the recorder was triggered, None if the file does not tell.
-    nominal_frequency_hz: line frequency written in the file, None if it is not.
-    digitals: the states recorded beside the samples, None if there are none.
-    instants_s: time of every sample after the first, shape (samples,) [s], where they are not evenly spaced
-        (several rates, a gap); None where they are.
-    repairs: what a lenient reader mended, in words; empty for a file that was sound.
-    source: the file it was read from, for messages; recordings that differ only here are the same.
+    Recordings that differ only in `source` are the same.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (channels, samples)
+        Each row in its channel's SI unit; NaN where missing.
+    sample_rate_hz : float
+        Sampling rate [Hz]; where `instants_s` is given, the first of the rates, or the typical one.
+    start_time_ns : int
+        UTC of the first sample [ns since 1970].
+    channels : tuple of Channel
+        The channels, one a row.
+    trigger_index : int or None, optional
+        Sample at which the recorder was triggered, None if the file does not tell.
+    nominal_frequency_hz : float or None, optional
+        Line frequency written in the file [Hz], None if it is not.
+    station : str, default ''
+        Name of the station.
+    device : str, default ''
+        Name of the recorder.
+    digitals : Digitals or None, optional
+        States recorded beside the samples, None if there are none.
+    instants_s : ndarray or None, shape (samples,), optional
+        Time of every sample after the first [s], where they are not evenly spaced (several rates, a gap);
+        None where they are.
+    repairs : tuple of str, optional
+        What a lenient reader mended, in words; empty for a file that was sound.
+    source : str, optional
+        File it was read from, for messages.
     """
 
     samples: NDArray[np.float64]
@@ -125,7 +192,7 @@ class Recording:
 
     @property
     def trigger_time_ns(self) -> int:
-        """UTC of the trigger; of the first sample where the file names no trigger [ns]."""
+        """UTC of the trigger, or of the first sample where the file names no trigger [ns since 1970]."""
         index = self.trigger_index or 0
         if self.instants_s is not None:
             return self.start_time_ns + round(float(self.instants_s[index]) * NANOSECONDS_PER_SECOND)

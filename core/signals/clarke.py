@@ -18,19 +18,51 @@ CLARKE_FROM_LINE = np.array([[sqrt(2 / 3) / 2, 0.0, -sqrt(2 / 3) / 2], [0.0, sqr
 
 
 def clarke(x_abc: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Phase quantities (3, n) to alpha, beta (2, n), same unit; thesis (3.11)."""
+    """Transform phase quantities to power-invariant Clarke axes (3.11).
+
+    Parameters
+    ----------
+    x_abc : ndarray, shape (3, n)
+        Quantities of phases a, b, c.
+
+    Returns
+    -------
+    ndarray, shape (2, n)
+        Alpha and beta, in the same unit.
+    """
     return CLARKE @ x_abc
 
 
 def inverse_clarke(x_ab: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Alpha, beta (2, n) to phase quantities (3, n) without zero sequence, same unit; thesis (3.21)."""
+    """Transform Clarke axes to phase quantities without zero sequence (3.21).
+
+    Parameters
+    ----------
+    x_ab : ndarray, shape (2, n)
+        Alpha and beta.
+
+    Returns
+    -------
+    ndarray, shape (3, n)
+        Quantities of phases a, b, c, in the same unit.
+    """
     return CLARKE.T @ x_ab
 
 
 def clarke_from_line_voltages(v_line: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Line voltages v_ab, v_bc, v_ca (3, n) [V] to alpha, beta (2, n) [V].
+    """Transform line voltages to power-invariant Clarke axes.
 
-    v_alpha = sqrt(2/3) (v_ab - v_ca)/2, v_beta = sqrt(1/2) v_bc: what `clarke` gives of the phase
-    voltages against any star point, whose potential cancels.
+    v_alpha = sqrt(2/3) (v_ab - v_ca)/2, v_beta = sqrt(1/2) v_bc: what `clarke` gives of the phase voltages
+    against any star point, whose potential cancels.
+
+    Parameters
+    ----------
+    v_line : ndarray, shape (3, n)
+        Voltages v_ab, v_bc, v_ca [V].
+
+    Returns
+    -------
+    ndarray, shape (2, n)
+        Alpha and beta [V].
     """
     return CLARKE_FROM_LINE @ v_line

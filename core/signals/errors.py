@@ -2,4 +2,4 @@
 
 
 class SignalError(ValueError):
-    """Samples from which the quantity cannot be estimated; the message names the figure and its limit."""
+    """The error of samples from which a quantity cannot be estimated; it names the figure and its limit."""

@@ -41,12 +41,32 @@ _CONVERGED_CYCLES = 1e-8
 def harmonic_phasors(
     x: NDArray[np.float64], frequency_hz: float, sample_rate_hz: float, orders: Sequence[int] = (1,)
 ) -> NDArray[np.complex128]:
-    """Least-squares phasors of the given harmonic orders, with a constant offset fitted beside them.
+    """Fit phasors of the given harmonic orders, with a constant offset beside them, by least squares.
 
-    x: samples, shape (..., n), finite. Returns rms phasors of shape (..., len(orders)), unit of x.
-    Name every order the waveform contains: over a part of a cycle an order left out leaks into the others.
-    Raises SignalError for fewer samples than unknowns, values that are not finite, and a frequency that is
-    not between 0 and the sampling rate.
+    Name every order that the waveform contains: over a part of a cycle an order left out leaks into the
+    others.
+
+    Parameters
+    ----------
+    x : ndarray, shape (..., n)
+        Samples, all finite.
+    frequency_hz : float
+        Frequency of the fundamental [Hz].
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    orders : sequence of int, optional
+        Harmonic orders.
+
+    Returns
+    -------
+    ndarray of complex, shape (..., len(orders))
+        Phasors, rms, in the unit of x.
+
+    Raises
+    ------
+    SignalError
+        If there are fewer samples than unknowns, values that are not finite, or a frequency that is not
+        between 0 and the sampling rate.
     """
     n = x.shape[-1]
     if n < 1 + 2 * len(orders):
@@ -79,23 +99,59 @@ def harmonic_phasors(
 def fundamental_phasors(
     x: NDArray[np.float64], frequency_hz: float, sample_rate_hz: float
 ) -> NDArray[np.complex128]:
-    """Least-squares fundamental phasors, rms: samples (..., n) give (...); see `harmonic_phasors`."""
+    """Fit the phasors of the fundamental by least squares; see `harmonic_phasors`.
+
+    Parameters
+    ----------
+    x : ndarray, shape (..., n)
+        Samples, all finite.
+    frequency_hz : float
+        Frequency of the fundamental [Hz].
+    sample_rate_hz : float
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    ndarray of complex, shape (...)
+        Phasors, rms, in the unit of x.
+    """
     return harmonic_phasors(x, frequency_hz, sample_rate_hz)[..., 0]
 
 
 def fundamental_frequency(
     v_ab: NDArray[np.float64], sample_rate_hz: float, *, search_hz: tuple[float, float] = (20.0, 120.0)
 ) -> float:
-    """Fundamental frequency of a three-phase supply from its voltages in Clarke axes (2, n) [Hz].
+    """Estimate the fundamental frequency of a three-phase supply.
 
-    The four-parameter sine fit of IEEE Std 1057, carried over to the space vector
-    v_alpha + j v_beta = sum over k of C_k exp(j k w t): both sequences of every order share one frequency,
-    so neither phase order, unbalance nor harmonics bias it. A Hann-windowed spectrum gives the start value;
-    Gauss-Newton steps on w with the C_k projected out (variable projection) refine it. Under white noise
-    it is the maximum-likelihood estimate.
+    This is the four-parameter sine fit of IEEE Std 1057 [1]_, carried over to the space vector v_alpha + j
+    v_beta = sum over k of C_k exp(j k w t). Both sequences of every order share one frequency, so that
+    neither phase order, unbalance nor harmonics bias it. A Hann-windowed spectrum gives the start value;
+    Gauss-Newton steps on w with the C_k projected out (variable projection) refine it. Under white noise it
+    is the maximum-likelihood estimate.
 
-    Raises SignalError if the record is shorter than MIN_CYCLES of the found frequency, has no
-    dominant line within `search_hz`, or has missing values.
+    Parameters
+    ----------
+    v_ab : ndarray, shape (2, n)
+        Voltages on power-invariant Clarke axes [V].
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    search_hz : tuple of float, optional
+        Lowest and highest frequency that is looked for [Hz].
+
+    Returns
+    -------
+    float
+        Frequency [Hz].
+
+    Raises
+    ------
+    SignalError
+        If the record is shorter than MIN_CYCLES of the frequency found, has no dominant line within
+        `search_hz`, or has missing values.
+
+    References
+    ----------
+    .. [1] IEEE Std 1057, Standard for Digitizing Waveform Recorders.
     """
     if not np.isfinite(v_ab).all():
         raise SignalError("a frequency needs finite samples; the voltages have missing values")

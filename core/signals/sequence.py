@@ -17,9 +17,14 @@ class PhaseSequence(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SequencePhasors:
-    """Phasors of phase a, rms, in its unit.
+    """Symmetrical components of phase a, rms, in the unit of the quantity.
 
-    `positive` turns a, b, c as the terminals are labelled, `negative` a, c, b, whatever the supply does.
+    Parameters
+    ----------
+    positive : complex
+        Component that turns a, b, c as the terminals are labelled, whatever the supply does.
+    negative : complex
+        Component that turns a, c, b.
     """
 
     positive: complex
@@ -32,19 +37,29 @@ class SequencePhasors:
 
     @property
     def unbalance_factor(self) -> float:
-        """|X2| / |X1|, fraction; 1 is the supply's own sequence (thesis 6.26, inverted in print).
+        """Weaker over stronger component, |X2| / |X1| (thesis 6.26, inverted in print).
 
-        NaN where there is neither: an unexcited supply has no unbalance.
+        It is NaN where there is neither: an unexcited supply has no unbalance.
         """
         stronger, weaker = sorted((abs(self.positive), abs(self.negative)), reverse=True)
         return weaker / stronger if stronger > 0 else float("nan")
 
 
 def sequence_phasors(x_ab: NDArray[np.complex128]) -> SequencePhasors:
-    """Symmetrical components of phase a from the rms phasors of the Clarke axes, shape (2,).
+    """Split the phasors of the Clarke axes into symmetrical components of phase a.
 
-    X1 = (X_alpha + j X_beta)/sqrt(6) and X2 = (X_alpha - j X_beta)/sqrt(6): Fortescue's
-    (X_a + a X_b + a^2 X_c)/3 and (X_a + a^2 X_b + a X_c)/3, written for the power-invariant axes.
+    X1 = (X_alpha + j X_beta)/sqrt(6) and X2 = (X_alpha - j X_beta)/sqrt(6): Fortescue's (X_a + a X_b + a^2
+    X_c)/3 and (X_a + a^2 X_b + a X_c)/3, written for the power-invariant axes.
+
+    Parameters
+    ----------
+    x_ab : ndarray of complex, shape (2,)
+        Phasors of both axes, rms.
+
+    Returns
+    -------
+    SequencePhasors
+        The components.
     """
     alpha, beta = complex(x_ab[0]), complex(x_ab[1])
     return SequencePhasors(positive=(alpha + 1j * beta) / sqrt(6), negative=(alpha - 1j * beta) / sqrt(6))

@@ -24,15 +24,25 @@ _WORDS = {
 
 @dataclass(frozen=True, slots=True)
 class Terminals:
-    """Quantities at the motor's terminals, on the time base of the recording.
+    """Quantities at the motor's terminals, on the time base of the recording; missing samples stay NaN.
 
-    current_abc: line currents of a, b, c, shape (3, n) [A].
-    voltage_ab: voltages in power-invariant Clarke axes, shape (2, n) [V]; None if the recording has none.
-    current_channels, voltage_channels: the channels taken (three currents; three voltages, two where
-    the third line voltage follows from Kirchhoff's law, none without voltages).
-    voltages: samples of the voltage channels, shape (channels, n) [V]; voltage_axes, shape (2, channels),
-    makes voltage_ab of them.
-    Missing samples stay NaN.
+    Parameters
+    ----------
+    current_abc : ndarray, shape (3, n)
+        Line currents of terminals a, b, c [A].
+    voltage_ab : ndarray or None, shape (2, n)
+        Voltages on power-invariant Clarke axes [V]; None if the recording has none.
+    sample_rate_hz : float
+        Sampling rate [Hz].
+    current_channels : tuple of Channel
+        The three current channels taken.
+    voltage_channels : tuple of Channel
+        The voltage channels taken: three, two where the third line voltage follows from Kirchhoff's law, none
+        without voltages.
+    voltages : ndarray, shape (channels, n)
+        Samples of the voltage channels [V].
+    voltage_axes : ndarray, shape (2, channels)
+        Matrix that makes voltage_ab of the voltages.
     """
 
     current_abc: NDArray[np.float64]
@@ -54,14 +64,32 @@ def terminals(
 ) -> Terminals:
     """Pick the terminal quantities by channel name, or by quantity and phase where no names are given.
 
-    Of a record longer than `longest_s` only its end.
+    Voltages are phase voltages if named, else line voltages if named, else a complete set of phase voltages,
+    else of line voltages (two suffice, for they sum to zero), else None.
 
-    currents: names of the channels of i_a, i_b, i_c; phase_voltages: v_a, v_b, v_c; line_voltages: v_ab,
-    v_bc, v_ca. Voltages: phase voltages if named, else line voltages if named, else a complete set of
-    phase voltages, else of line voltages (two suffice: they sum to zero), else None.
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    currents : tuple of str or None, optional
+        Names of the channels of i_a, i_b, i_c.
+    phase_voltages : tuple of str or None, optional
+        Names of the channels of v_a, v_b, v_c.
+    line_voltages : tuple of str or None, optional
+        Names of the channels of v_ab, v_bc, v_ca.
+    longest_s : float, default inf
+        Of a longer record only the end is taken [s].
 
-    Raises RecordingError naming the channel that is missing, ambiguous or of the wrong unit, and for a sample
-    rate or samples that are no real numbers or have a gap.
+    Returns
+    -------
+    Terminals
+        The terminal quantities.
+
+    Raises
+    ------
+    RecordingError
+        If a channel is missing, ambiguous or of the wrong unit, or the sample rate or the samples are no real
+        numbers or have a gap.
     """
     if not (isfinite(recording.sample_rate_hz) and recording.sample_rate_hz > 0.0):
         raise RecordingError(

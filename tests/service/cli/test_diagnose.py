@@ -57,7 +57,7 @@ def pump(tmp_path: Path) -> Callable[..., Path]:
     return write
 
 
-def test_healthy_recordings_take_off_what_the_relay_feigns(
+def test_healthy_recordings_take_off_what_the_relay_makes_up(
     pump: Callable[..., Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
     healthy = [pump(f"OK{k}", load_level) for k, load_level in enumerate((0.3, 0.5, 0.7, 0.9))]

@@ -113,10 +113,10 @@ def test_what_the_baseline_shows_is_taken_off(tmp_path: Path) -> None:
     healthy = tuple(record(f"OK{k}", load_level) for k, load_level in enumerate((0.3, 0.6, 0.9)))
     alone = DiagnosisTask(record("NEW", 0.5), REFERENCE, "hybrid", "split-winding")
     outcomes = [diagnose_recording(one) for one in (alone, replace(alone, baseline=healthy))]
-    feigned, relative = (one.diagnosis for one in outcomes if isinstance(one, Diagnosed))
-    assert feigned.mu_f is not None
+    apparent, relative = (one.diagnosis for one in outcomes if isinstance(one, Diagnosed))
+    assert apparent.mu_f is not None
     assert relative.mu_f is not None
-    assert relative.mu_f < 0.3 * feigned.mu_f
+    assert relative.mu_f < 0.3 * apparent.mu_f
     assert "relative to a baseline of 3 healthy recordings" in relative.reasons
 
 
