@@ -16,7 +16,7 @@ from core.machines.base import Array
 from core.machines.candidates import LoadLaw
 
 STEP = 1e-3
-"""Of the difference quotients; every coordinate is of order one. The stepping's reference speed, which
+"""Step of the difference quotients; every coordinate is of order one. The stepping's reference speed, which
 changes in jumps, moves a current by 1e-6."""
 CONVERGED = 1e-9
 """Relative gain of a step at which the iteration ends."""

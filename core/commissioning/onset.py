@@ -15,7 +15,7 @@ SMOOTHED_CYCLES, SUSTAINED_CYCLES = 0.04, 0.12
 ENERGISED = 0.5
 """Share of the usual voltage above which a terminal is live."""
 FEWEST_QUIET_CYCLES = 0.25
-"""Of the record before the start, for an offset of the current channels to be seen."""
+"""Cycles of the record before the start that an offset of the current channels is seen in."""
 
 
 def current_onset(current_ab: Array, samples_per_cycle: float) -> float | None:

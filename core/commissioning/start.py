@@ -34,15 +34,15 @@ HIGHEST_VOLTAGE = 1.3
 LOWEST_INRUSH = 1.5
 """Greatest current over the rated one (an order of magnitude, both as space vectors): less is no start."""
 HIGHEST_INRUSH = 25.0
-"""The same: the most that motors draw, 10 times, nearly doubled by the direct part."""
+"""The same limit: the most that motors draw, 10 times, nearly doubled by the direct part."""
 FEWEST_CYCLES = 4.0
-"""Of the start: below it nothing but the leakages and the resistances' sum could be told."""
+"""Length of the start: below it nothing but the leakages and the resistances' sum could be told."""
 LONGEST_S = 10.0
 FULL_OFFSET_CYCLES, KNOWN_OFFSET_CYCLES = 0.5, 0.1
 """How far T_d is searched either way: modulo a cycle, or about the delay seen between the two onsets."""
 SEARCH_SAMPLES_A_CYCLE = 80
 _CONTINUED_CYCLES = 2.0
-"""Of the live voltage, to which the sinusoid before it is fitted."""
+"""Cycles of the live voltage to which the sinusoid before it is fitted."""
 
 
 @dataclass(frozen=True, slots=True)

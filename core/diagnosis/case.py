@@ -23,7 +23,7 @@ from core.signals.sequence import PhaseSequence
 LONGEST_WINDOW_S, LONGEST_RECORD_S = 1.0, 1.2
 """What is compared, and what is looked at: with it the cycles before and behind that delays reach to."""
 FEWEST_SAMPLES_A_CYCLE = 40
-"""Of a thinned record: up to the 13th harmonic its shape is kept."""
+"""Samples a cycle that a thinned record keeps: enough for its shape up to the 13th harmonic."""
 
 
 @dataclass(frozen=True, slots=True)

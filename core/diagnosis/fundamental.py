@@ -23,7 +23,8 @@ TAPERED = 0.25
 """Share of the record over which it fades in and out: where a load swings, the current at one end of a record
 differs from that at the other, and the step between them would pass for backward-turning current."""
 CYCLE_SHORT = 0.05
-"""Of a cycle, what a record may lack and still count as whole: no frequency is known to the last digit."""
+"""Share of a cycle that a record may lack and still count as whole: no frequency is known to the last
+digit."""
 MOST_CORRELATED = 0.8
 """Correlation from cycle to cycle beyond which a record is too short to tell it."""
 EQUAL_CYCLES = 5.0
@@ -201,7 +202,7 @@ def _periodic(
 
 # einsum, not @: see core/signals/phasors.py.
 def _sums(powers: ComplexArray, values: ComplexArray | Array) -> ComplexArray:
-    """Of values (..., n) times each power (orders, n), shape (..., orders)."""
+    """Sum the values (..., n) times each power (orders, n), shape (..., orders)."""
     return np.asarray(np.einsum("...n,kn->...k", values, powers))
 
 

@@ -28,7 +28,7 @@ from core.machines.base import StatorModel
 from core.machines.candidates import Candidates
 
 SHARE_UNEXPLAINED = 0.15
-"""Of the asymmetry a winding's fit removes, what it may leave: the path and the leakages of the shorted turns
+"""Share of the asymmetry that a winding's fit may leave: the path and the leakages of the shorted turns
 are never known exactly."""
 PATH_WORTH, PATH_WORTH_SHARE = 0.007, 0.02
 """Unexplained current, of the forward one (what current sensors within their class can leave) and of the

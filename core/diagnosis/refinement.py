@@ -27,13 +27,14 @@ MOST_ROUNDS = 40
 HIGHEST_PATH_RATIO = 4.0
 """Beyond it a path draws a current in the voltage's own direction, as many an asymmetry does that is none."""
 OFFSET_SCALE_S = 100e-6
-"""Of the offset between a relay's channels: half width at half maximum of its Cauchy distribution."""
+"""Half width at half maximum of the Cauchy distribution of the offset between a relay's channels."""
 ADMITTANCE_STEP = 1e-4
-"""Of the difference quotient of currents by voltages, in forward voltage."""
+"""Step of the difference quotient of currents by voltages, a share of the forward voltage."""
 CONVERGED = 0.01
 """Share of the misfit that a fit may still be able to lose."""
 POOR, GOOD = 0.25, 0.75
-"""Of the fall that a step promised, what it kept: less, and steps are braked; more, and they are let go."""
+"""Shares of the promised fall of the misfit: a step that keeps less is followed by shorter ones, one that
+keeps more by longer ones."""
 FIRST_DAMPING, MOST_DAMPING = 0.1, 1e6
 SMALLEST_FALL = 1e-30
 NEGLIGIBLE = 3e-3

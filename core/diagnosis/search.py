@@ -42,7 +42,7 @@ SAMPLES = 60
 PATTERN_EVALUATIONS = 500
 FINEST_MESH = 1e-3
 SEED = 0
-"""Of the methods that draw random points: a record is diagnosed alike every time."""
+"""Seed of the methods that draw random points: a record is diagnosed alike every time."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,8 +17,8 @@ from core.machines.candidates import Candidates
 from core.machines.playback import Playback
 
 PARAMETERS = 0.06
-"""Of the machine's negative-sequence impedance: within 10 %, uniformly; windings warm up, data sheets round
-off."""
+"""Standard deviation of the machine's negative-sequence impedance: within 10 %, uniformly. Windings warm up,
+data sheets round off."""
 
 BELIEF = NormalDist().inv_cdf(0.975)
 ALARM = NormalDist().inv_cdf(1.0 - 0.001 / 3.0)

@@ -21,8 +21,8 @@ from core.machines.stepping import Comparison, InitialState, MachineRates, Stepp
 from core.machines.supply import Supply
 
 REFERENCE_RUN_UP_S = 0.3
-"""Of the inertia the kernel is told: its energy at synchronous speed over rated power; any value of the order
-of real motors' keeps the matrices well scaled."""
+"""Energy of the inertia that the kernel is told, at synchronous speed, over rated power. Any value of the
+order of real motors' keeps the matrices well scaled."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from core.signals.phasors import fundamental_frequency, fundamental_phasors
 from core.signals.sequence import PhaseSequence, sequence_phasors
 
 USUAL_LAG_DEG = 50.0
-"""Of a motor's current behind its voltage: only where the search for the true lag begins."""
+"""Lag of a motor's current behind its voltage: only where the search for the true lag begins."""
 SUPPLY_UNBALANCE = 0.01
 """Standard deviation of a plant's voltage unbalance, not to be told from a fault here (EN 50160: 2 %)."""
 

@@ -21,7 +21,8 @@ SATURATED, SATURATED_UNPAIRED = 0.05, 0.15
 """2nd and 3rd harmonic of the currents' sum over a phase current. Three wires carry no such sum whatever the
 supply and the winding do; transformers that saturate make 10 % and more."""
 SATURATED_PHASE = 0.15
-"""The same of one phase, where the sum is zero because the recorder computed the third current."""
+"""The same harmonics of one phase, used where the sum is zero because the recorder computed the third
+current."""
 COMPUTED_SUM = 1e-6
 CURRENT_SUM, CURRENT_SUM_UNPAIRED = 0.045, 0.3
 """Fundamental of the currents' sum over the greatest: 1 % and 50 us between channels leave 2.6 % at worst.
@@ -29,16 +30,17 @@ Unpaired: currents recorded without voltages often come from sensors scaled one 
 LEAST_OF_NO_LOAD = 0.5
 """Positive-sequence current over the no-load current: parameters within 10 % and sensors leave 0.85."""
 MOST_OF_STANDSTILL, IMPOSSIBLE_OF_STANDSTILL = 0.6, 1.4
-"""Of the locked rotor's current: severe shorts at full load reach 0.35; only a wrong ratio exceeds 1."""
+"""Shares of the locked rotor's current: severe shorts at full load reach 0.35; only a wrong ratio exceeds
+1."""
 CLEAN = 0.8
 """Fundamental over rms: a small but clean current is scaled wrongly, a small and noisy one is none."""
 BACKWARD = 1.3
 """Backward over forward current, in the supply's own sense: exchanged phases make 2 and more; a motor without
 load on a supply unbalanced by 5 %, with severe shorts, comes near 1."""
 STRONGLY_UNBALANCED = 0.05
-"""Of a supply: more of it, and a motor that runs light looks as if two of its phases were exchanged."""
+"""Unbalance of a supply beyond which a motor that runs light looks as if two of its phases were exchanged."""
 LEAST_LAG_DEG, MOST_LAG_DEG = -20.0, 110.0
-"""Of the current behind the voltage: a motor's 0 to 90, and delays between the channels."""
+"""Lag of the current behind the voltage: a motor's 0 to 90 degrees, and delays between the channels."""
 
 _SIGNS = ((-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, -1.0))
 

@@ -11,9 +11,10 @@ from core.quality.finding import QualityFinding, finding
 from core.signals.terminals import Terminals
 
 SILENT, DEAFENING = 0.005, 1e4
-"""Of rated amplitude: offsets and noise of a motor switched off; more than any ratio's mistake makes."""
+"""Shares of the rated amplitude: offsets and noise of a motor switched off; more than any ratio's mistake
+makes."""
 NO_CURRENT = 1e-6
-"""Of rated: below the mistake of any ratio or unit."""
+"""Share of the rated current: below the mistake of any ratio or unit."""
 EFFICIENCY_TIMES_POWER_FACTOR = 0.6
 """Typical of small motors; only for the order of magnitude of the rated current."""
 

@@ -18,23 +18,24 @@ FEWEST_SAMPLES_A_CYCLE, MOST_SAMPLES_A_CYCLE = 10.0, 2_000.0
 """600 Hz for 60 Hz, the slowest relays; above, the samples cost time and tell nothing about a winding."""
 AT_FULL_SCALE, CLIPPED_SHARE = 0.999, 0.001
 FLAT_SHARE = 0.02
-"""Of samples in runs of three and more equal to a channel's extreme: a crest cut off at 0.998 of its height.
-What the converter's own step makes flat at a crest comes on top."""
+"""Share of samples in runs of three and more that equal a channel's extreme: a crest cut off at 0.998 of its
+height. What the converter's own step makes flat at a crest comes on top."""
 HELD_CYCLES = 0.15
 """Longest stretch of one value away from the extremes: the converter's step explains no such stretch."""
 REPEATED_SHARE = 0.02
-"""Of samples on the flanks that equal the one before, beyond what chance does: a recorder that writes every
-sample twice has a half."""
+"""Share of samples on the flanks that equal the one before, beyond what chance does. A recorder that writes
+every sample twice has a half."""
 FEWEST_REPEATS = 3
 """Equal neighbours that a short record may have by chance."""
 FLAT, FLANK = 0.05, 0.7
-"""Of the greatest magnitude: between them a sine always moves, and a saturated transformer does not rest."""
+"""Shares of the greatest magnitude: between them a sine always moves, and a saturated transformer does not
+rest."""
 DIPS_A_CYCLE = 0.8
 """Stretches at zero as frequent as this are a saturated transformer's, not a converter's."""
 COARSEST_LAG_CYCLES = 1 / 12
 """A waveform of so few converter steps that it stands still longer cannot be judged by its repeats."""
 DEAD = 0.03
-"""Of the greatest channel's swing: less is no signal, and for the check on missing phases to name."""
+"""Share of the greatest channel's swing: less is no signal, and for the check on missing phases to name."""
 RUN = 3
 """Samples: two equal ones stand on both sides of a crest by chance."""
 

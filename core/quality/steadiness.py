@@ -18,7 +18,7 @@ UNSTEADY_CURRENT = 0.18
 """Farthest that the forward current goes from its mean, of rated: a load that swings by 10 % of the rated
 torque moves it by 0.13 at most, a third of the rated load switched by as much as the limit."""
 UNSTEADY_VOLTAGE = 0.1
-"""The same of the voltage, of its mean: dips, switching, and cycles lost from the record."""
+"""The same limit of the voltage, as a share of its mean: dips, switching, and cycles lost from the record."""
 
 
 def steadiness(

@@ -313,7 +313,7 @@ def _pulses(share: float) -> QualityFinding:
 
 
 def _frequency(voltage_ab: Array, rate: float, nameplate: Nameplate) -> float:
-    """Of the voltages; where a drive's pulses hide the fundamental, of their average."""
+    """Find the frequency of the voltages; where a drive's pulses hide the fundamental, of their average."""
     try:
         return fundamental_frequency(voltage_ab, rate)
     except SignalError:

@@ -43,7 +43,7 @@ __all__ = ["configuration_text", "data_bytes", "read_combined_comtrade", "read_c
 MAX_CONFIGURATION_BYTES = 4 << 20
 MAX_DATA_BYTES = 1 << 30
 MAX_STRETCHES = 1000
-"""Of a record sampled unevenly, beyond which skew is not removed piece by piece."""
+"""Stretches of a record sampled unevenly beyond which skew is not removed piece by piece."""
 
 
 def read_comtrade(path: Path, *, lenient: bool = False) -> Recording:

@@ -10,7 +10,8 @@ from core.recordings.skew import POINTS, even_stretches
 from core.recordings.waveform import Digitals, Recording
 
 WIDEST_SPREAD = 0.1
-"""Of the steps between samples over their mean: more is a change of rate, no relay that follows the line."""
+"""Deviation of the steps between samples from their mean: more is a change of rate, no relay that follows the
+line."""
 
 
 def evenly_spaced(recording: Recording) -> Recording:

@@ -14,7 +14,7 @@ CLARKE = sqrt(2 / 3) * np.array([[1.0, -0.5, -0.5], [0.0, sqrt(3) / 2, -sqrt(3) 
 """T of thesis (3.11), shape (2, 3); its transpose is the way back (3.21)."""
 
 CLARKE_FROM_LINE = np.array([[sqrt(2 / 3) / 2, 0.0, -sqrt(2 / 3) / 2], [0.0, sqrt(1 / 2), 0.0]])
-"""The same axes from line voltages ab, bc, ca, shape (2, 3)."""
+"""Matrix of the same axes from line voltages ab, bc, ca, shape (2, 3)."""
 
 
 def clarke(x_abc: NDArray[np.float64]) -> NDArray[np.float64]:

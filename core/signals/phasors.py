@@ -31,7 +31,7 @@ FEWEST_SAMPLES = 8
 LARGEST_PHASOR = 1e307
 """Close to what a double holds."""
 SMALLEST_SIZE = 1e-300
-"""Of samples; below it they are nothing."""
+"""Least amplitude of samples; below it they are nothing."""
 
 _MAX_ITERATIONS = 12
 _CONVERGED_CYCLES = 1e-8
