@@ -5,10 +5,11 @@
 
 from pathlib import Path
 
-from scl.configuration import Address, MotorFeeder, Scl
+from scl.configuration import Address, Scl
 from scl.errors import Finding, SclError
 from scl.instantiation import instantiate, with_addresses
 from scl.reader import read
+from scl.substation_model import MotorFeeder
 
 SEL710_ICD = Path(__file__).with_name("sel710.icd")
 DEMO_PLANT_SCD = Path(__file__).with_name("demo_plant.scd")

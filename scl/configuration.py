@@ -1,13 +1,14 @@
-"""A whole configuration file: its IEDs, where they are reached and which motor each one protects."""
+"""A whole configuration file: its header, its IEDs and the addresses at which they are reached."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from ipaddress import ip_address
 from pathlib import Path
 
 from scl.errors import Finding, SclError
 from scl.ied_model import Ied
+from scl.substation_model import MotorFeeder, Substation, motor_feeders
 
 MMS_PORT = 102
 
@@ -101,100 +102,6 @@ class SubNetwork:
     name: str
     type: str
     connected_access_points: tuple[ConnectedAccessPoint, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Equipment:
-    """Primary equipment of a bay.
-
-    Parameters
-    ----------
-    name : str
-        Name of the equipment.
-    type : str
-        Type; "MOT" is a motor.
-    description : str
-        Description for people.
-    ieds : tuple of str
-        IEDs whose logical nodes are attached to the equipment.
-    """
-
-    name: str
-    type: str
-    description: str
-    ieds: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Bay:
-    """A bay of a substation.
-
-    Parameters
-    ----------
-    name : str
-        Name of the bay.
-    description : str
-        Description for people.
-    voltage_level : str
-        Name of its voltage level.
-    equipment : tuple of Equipment
-        Its conducting equipment.
-    ieds : tuple of str
-        IEDs attached to the bay itself.
-    """
-
-    name: str
-    description: str
-    voltage_level: str
-    equipment: tuple[Equipment, ...]
-    ieds: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Substation:
-    """A substation, which stands for a site.
-
-    Parameters
-    ----------
-    name : str
-        Name of the substation.
-    description : str
-        Description for people.
-    bays : tuple of Bay
-        Bays of all its voltage levels.
-    """
-
-    name: str
-    description: str
-    bays: tuple[Bay, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class MotorFeeder:
-    """A motor, the relay that protects it, and the site and bay they stand in.
-
-    Parameters
-    ----------
-    site : str
-        Name of the substation.
-    site_description : str
-        Its description.
-    bay : str
-        Name of the bay.
-    motor : str
-        Name of the motor.
-    motor_description : str
-        Its description.
-    ied : str
-        Name of the relay's IED.
-    """
-
-    site: str
-    site_description: str
-    bay: str
-    motor: str
-    motor_description: str
-    ied: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -379,22 +286,7 @@ class Scl:
         tuple of MotorFeeder
             The motors in file order.
         """
-        return tuple(self._feeders())
-
-    def _feeders(self) -> Iterator[MotorFeeder]:
-        for substation in self.substations:
-            for bay in substation.bays:
-                for motor in bay.equipment:
-                    ieds = motor.ieds or bay.ieds
-                    if motor.type == "MOT" and motor.name and ieds:
-                        yield MotorFeeder(
-                            site=substation.name,
-                            site_description=substation.description,
-                            bay=bay.name,
-                            motor=motor.name,
-                            motor_description=motor.description,
-                            ied=ieds[0],
-                        )
+        return motor_feeders(self.substations)
 
     def _host(self, connected: ConnectedAccessPoint) -> str:
         host = connected.parameters.get("IP")

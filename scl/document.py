@@ -1,8 +1,4 @@
-"""One XML file of the Substation Configuration Language: safe parsing, and places in it for messages.
-
-The file may be hostile, so the parser allows no document type, no entities and no network, and bounds size
-and depth.
-"""
+"""One SCL file being read: access to its elements and attributes, and findings with their lines."""
 
 import re
 from collections import defaultdict
@@ -13,83 +9,15 @@ from pathlib import Path
 from lxml import etree
 
 from scl.errors import Finding, SclError
+from scl.xml_file import LARGEST_FILE_BYTES, parse
 
 NAMESPACE = "http://www.iec.ch/61850/2003/SCL"
-LARGEST_FILE_BYTES = 256 * 1024 * 1024
 NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 IED_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 IDENTITY = ("name", "id", "inst", "iedName", "apName", "prefix", "lnClass", "lnType", "type", "doName")
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 EXCERPT = 60
 MOST_FINDINGS = 1000
-
-
-def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> etree._ElementTree:
-    """Parse an XML file without its comments.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The file.
-    largest_bytes : int
-        Size above which the file is refused [byte].
-
-    Returns
-    -------
-    lxml.etree._ElementTree
-        The XML tree.
-
-    Raises
-    ------
-    SclError
-        The file cannot be read, is too large, or is no well-formed and safe XML.
-    """
-    try:
-        with path.open("rb") as file:
-            data = file.read(largest_bytes + 1)
-    except OSError as error:
-        raise SclError(path, expected="a readable file", found=error.strerror or str(error)) from error
-    except ValueError as error:  # a NUL in the path
-        raise SclError(path, expected="a file name", found=str(error)) from error
-    if len(data) > largest_bytes:
-        raise SclError(path, expected=f"at most {largest_bytes} bytes", found="a larger file")
-    parser = etree.XMLParser(
-        resolve_entities=False,
-        load_dtd=False,
-        no_network=True,
-        huge_tree=False,
-        remove_comments=True,
-        remove_pis=True,
-    )
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as error:
-        raise SclError(path, line=error.lineno, expected="well-formed XML", found=str(error.msg)) from error
-    tree = root.getroottree()
-    if tree.docinfo.doctype:
-        raise SclError(
-            path, expected="no document type declaration (it can define entities)", found=tree.docinfo.doctype
-        )
-    return tree
-
-
-def excerpt(element: etree._Element) -> str:
-    """Shorten a start tag for a message: its name and the attributes that identify it.
-
-    Parameters
-    ----------
-    element : lxml.etree._Element
-        The element.
-
-    Returns
-    -------
-    str
-        The start tag, about 60 characters at most.
-    """
-    name = etree.QName(element).localname
-    identity = [f'{key}="{element.get(key)}"' for key in IDENTITY if element.get(key) is not None]
-    text = " ".join([name, *identity])
-    return f"<{text if len(text) <= EXCERPT else text[:EXCERPT] + '...'}>"
 
 
 class Document:
@@ -141,7 +69,7 @@ class Document:
         return SclError(
             self.path,
             line=_line(element),
-            element=excerpt(element),
+            element=_excerpt(element),
             expected=expected,
             found=found if len(found) <= 2 * EXCERPT else found[: 2 * EXCERPT] + "...",
         )
@@ -157,9 +85,9 @@ class Document:
             What is odd.
         """
         if len(self.findings) < MOST_FINDINGS:
-            self.findings.append(Finding(_line(element), excerpt(element), message))
+            self.findings.append(Finding(_line(element), _excerpt(element), message))
         elif len(self.findings) == MOST_FINDINGS:
-            self.findings.append(Finding(_line(element), excerpt(element), "more is odd: not listed"))
+            self.findings.append(Finding(_line(element), _excerpt(element), "more is odd: not listed"))
 
     def is_own(self, element: etree._Element) -> bool:
         """Tell whether an element is of the SCL namespace, not a vendor's.
@@ -435,35 +363,6 @@ class Document:
         return value
 
 
-def node_name(document: Document, element: etree._Element, inst: str) -> tuple[str, str, str]:
-    """Read the parts of a logical node's name from an LN, LN0, LNode or FCDA.
-
-    Parameters
-    ----------
-    document : Document
-        The document.
-    element : lxml.etree._Element
-        The element.
-    inst : str
-        Name of the attribute with the instance number.
-
-    Returns
-    -------
-    prefix : str
-        Prefix of the name.
-    ln_class : str
-        Class of the node.
-    number : str
-        Instance number.
-    """
-    is_node_zero = etree.QName(element).localname == "LN0"
-    return (
-        document.name(element, "prefix", default=""),
-        document.name(element, "lnClass", default="LLN0" if is_node_zero else None),
-        document.name(element, inst, default=""),
-    )
-
-
 @lru_cache(maxsize=8192)
 def decimal(text: str) -> int | None:
     """Read a decimal number of at most 19 digits.
@@ -482,21 +381,13 @@ def decimal(text: str) -> int | None:
     return int(stripped) if re.fullmatch(r"[0-9]{1,19}", stripped) else None
 
 
-def content(element: etree._Element) -> str:
-    """Read the text of an element, without surrounding blanks.
-
-    Parameters
-    ----------
-    element : lxml.etree._Element
-        The element.
-
-    Returns
-    -------
-    str
-        The text.
-    """
-    return (element.text or "").strip()
-
-
 def _line(element: etree._Element) -> int:
     return element.sourceline or 0
+
+
+def _excerpt(element: etree._Element) -> str:
+    """Shorten a start tag for a message: its name and the attributes that identify it."""
+    name = etree.QName(element).localname
+    identity = [f'{key}="{element.get(key)}"' for key in IDENTITY if element.get(key) is not None]
+    text = " ".join([name, *identity])
+    return f"<{text if len(text) <= EXCERPT else text[:EXCERPT] + '...'}>"

@@ -4,7 +4,7 @@ from lxml import etree
 
 from scl.control_blocks import ControlBlockReader
 from scl.data_sets import DataSetReader
-from scl.document import Document, node_name
+from scl.document import Document
 from scl.ied_model import AccessPoint, Ied, LogicalDevice, LogicalNode
 from scl.instance_values import InstanceValues
 from scl.multicast_addresses import MulticastAddresses
@@ -130,7 +130,7 @@ class IedSection:
 
     def _logical_node(self, element: etree._Element, device: str) -> LogicalNode:
         document = self._document
-        prefix, ln_class, inst = node_name(document, element, "inst")
+        prefix, ln_class, inst = _node_name(document, element)
         reference = f"{self._domains[device]}/{prefix}{ln_class}{inst}"
         if len(prefix + ln_class + inst) > LONGEST_NAME:
             raise document.error(element, f"a name of at most {LONGEST_NAME} characters", reference)
@@ -156,3 +156,13 @@ class IedSection:
             sampled_value_controls=blocks.sampled_values(parts["SampledValueControl"]),
             setting_groups=blocks.setting_groups(parts["SettingControl"]),
         )
+
+
+def _node_name(document: Document, element: etree._Element) -> tuple[str, str, str]:
+    """Return prefix, class and instance number of an LN or LN0."""
+    is_node_zero = etree.QName(element).localname == "LN0"
+    return (
+        document.name(element, "prefix", default=""),
+        document.name(element, "lnClass", default="LLN0" if is_node_zero else None),
+        document.name(element, "inst", default=""),
+    )

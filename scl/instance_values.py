@@ -3,7 +3,8 @@
 from lxml import etree
 
 from scl.data_model import DataAttribute, DataObject
-from scl.document import Document, content
+from scl.document import Document
+from scl.xml_file import content
 
 
 class InstanceValues:

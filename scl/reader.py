@@ -9,22 +9,16 @@ from pathlib import Path
 
 from lxml import etree
 
-from scl.configuration import (
-    Bay,
-    ConnectedAccessPoint,
-    Equipment,
-    Header,
-    Scl,
-    SubNetwork,
-    Substation,
-)
+from scl.configuration import ConnectedAccessPoint, Header, Scl, SubNetwork
 from scl.conformance import check_conformance
-from scl.document import LARGEST_FILE_BYTES, Document, content
+from scl.document import Document
 from scl.ied_model import Ied
 from scl.ied_section import IedSection
 from scl.instance_values import InstanceValues
 from scl.multicast_addresses import multicast_addresses
+from scl.substation_model import Bay, Equipment, Substation
 from scl.templates import Templates
+from scl.xml_file import LARGEST_FILE_BYTES, content
 
 
 def read(path: Path | str, *, largest_bytes: int = LARGEST_FILE_BYTES) -> Scl:

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from lxml import etree
 
 from scl.data_model import DataAttribute, DataObject, Enumeration, FunctionalConstraint, TriggerOptions
-from scl.document import Document, content, decimal
+from scl.document import Document, decimal
+from scl.xml_file import content
 
 DEEPEST_NESTING = 16
 MOST_ATTRIBUTES = 2_000
