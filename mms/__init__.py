@@ -40,9 +40,10 @@ from mms.references import FunctionalConstraint
 from mms.security.credential_files import read_secret
 from mms.security.passwords import PASSWORD_RULE, is_password
 from mms.security.tls import TlsConfiguration, TlsVersion
+from mms.server.controls import ControlAction
 from mms.server.file_access import FileAnswer, FileOperation, FileRequest
 from mms.server.pump import ServerPump
-from mms.server.server import MOST_CONNECTIONS, ControlAction, Server
+from mms.server.server import MOST_CONNECTIONS, Server
 from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Validity, Value
 
 __all__ = [

@@ -1,12 +1,14 @@
 """What a server's clients may do with its files (ISO 9506-2 file services, IEC 61850-7-2 clause 23)."""
 
+import ctypes
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
 from typing import Final
 
-from mms.binding.callbacks import log
+from mms.binding.callbacks import guarded, log
+from mms.binding.prototypes import FileAccessHandler
 
 
 class FileOperation(IntEnum):
@@ -112,3 +114,35 @@ class FileGuard:
         if operation == FileOperation.OPEN and not real.is_file():
             return FileAnswer.ABSENT
         return FileAnswer.SERVE
+
+
+def install_file_guard(lib: ctypes.CDLL, server: int, guard: FileGuard) -> object:
+    """Let a guard decide each file request to a server.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    server : int
+        Pointer to the IedServer.
+    guard : FileGuard
+        Decides the requests.
+
+    Returns
+    -------
+    object
+        The ctypes callback, to be held for as long as the server lives.
+    """
+
+    def answer(
+        _parameter: int | None,
+        _connection: int | None,
+        service: int,
+        name: bytes | None,
+        _other: bytes | None,
+    ) -> int:
+        return int(guard.answer(service, name))
+
+    handler = FileAccessHandler(guarded(answer, int(FileAnswer.DENIED)))
+    lib.MmsServer_installFileAccessHandler(lib.IedServer_getMmsServer(server), handler, None)
+    return handler

@@ -3,34 +3,30 @@
 The library serves without threads of its own; a ServerPump drives any number of servers from one thread.
 """
 
-import ctypes
 import math
 import threading
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
-from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from types import TracebackType
 from typing import Final, Self
 
-from mms.binding.callbacks import guarded
 from mms.binding.connection_deadline import connections_between, end_connections_after
 from mms.binding.library import library
-from mms.binding.prototypes import ControlHandler, FileAccessHandler, WaitForExecutionHandler
 from mms.binding.value_conversion import decode
 from mms.control_model import AddCause, ControlModel
 from mms.errors import ModelError, ServerStartFailed
 from mms.references import FunctionalConstraint
 from mms.security.passwords import make_authenticator
 from mms.security.tls import TlsConfiguration, TlsContext
-from mms.server.file_access import FileAnswer, FileGuard, FileHook
+from mms.server.controls import ControlAction, OperateHandler, install_operate_handler
+from mms.server.file_access import FileGuard, FileHook, install_file_guard
 from mms.server.model import Model, Node
 from mms.server.pump import ServerPump
 from mms.values import Quality, Value
 
 _DENY: Final = 1  # AccessPolicy
-_FAILED, _OK = 0, 1  # ControlHandlerResult
 _TURN_DELAY_AFTER_REQUEST_S: Final = 0.01
 """A request makes reports only if it enables a block or asks for a general interrogation."""
 MOST_CONNECTIONS: Final = 5
@@ -41,37 +37,6 @@ class _State(Enum):
     CREATED = "created"
     RUNNING = "running"
     STOPPED = "stopped"
-
-
-@dataclass(frozen=True, slots=True)
-class ControlAction:
-    """A client's Operate (IEC 61850-7-2 clause 20).
-
-    Parameters
-    ----------
-    reference : str
-        Reference of the controllable object.
-    value : Value
-        The value to bring the object to.
-    test : bool
-        Whether the client only tests the control.
-    originator : str
-        Identification of the originator.
-    originator_category : int
-        Category of the originator, orCat.
-    control_number : int
-        Number of the control, ctlNum.
-    """
-
-    reference: str
-    value: Value
-    test: bool
-    originator: str
-    originator_category: int
-    control_number: int
-
-
-OperateHandler = Callable[[ControlAction], "bool | AddCause"]
 
 
 class Server:
@@ -153,7 +118,8 @@ class Server:
             self._lib.IedServer_setAuthenticator(self._server, authenticate, None)
         self._refuse_writes()
         if file_root is not None:
-            self._guard_files(FileGuard(file_root, on_file_request))
+            guard = FileGuard(file_root, on_file_request)
+            self._handlers.append(install_file_guard(self._lib, self._server, guard))
 
     def _build_server(self, file_root: Path | None, max_connections: int, report_buffer_bytes: int) -> int:
         lib = self._lib
@@ -180,21 +146,6 @@ class Server:
     def _refuse_writes(self) -> None:
         for constraint in (FunctionalConstraint.SP, FunctionalConstraint.SV, FunctionalConstraint.SE):
             self._lib.IedServer_setWriteAccessPolicy(self._server, int(constraint), _DENY)
-
-    def _guard_files(self, guard: FileGuard) -> None:
-        def answer(
-            _parameter: int | None,
-            _connection: int | None,
-            service: int,
-            name: bytes | None,
-            _other: bytes | None,
-        ) -> int:
-            return int(guard.answer(service, name))
-
-        handler = FileAccessHandler(guarded(answer, int(FileAnswer.DENIED)))
-        self._handlers.append(handler)
-        mms_server = self._lib.IedServer_getMmsServer(self._server)
-        self._lib.MmsServer_installFileAccessHandler(mms_server, handler, None)
 
     # Lifetime
 
@@ -340,51 +291,21 @@ class Server:
         IEC 61850-7-2 clause 20, control.
         """
 
-        def operated(action: int, _parameter: int | None, value: int, test: bool) -> int:
-            return self._operated(reference, handler, action, value, test=test)
-
-        def checked_dynamically(
-            action: int, _parameter: int | None, value: int, test: bool, _synchro_check: bool
-        ) -> int:  # fmt: skip
-            return self._operated(reference, handler, action, value, test=test)
+        def operated(action: ControlAction) -> bool | AddCause:
+            self._library_holds_model = True
+            try:
+                return handler(action)
+            finally:
+                self._library_holds_model = False
 
         with self._lock:
             self._require_alive("on_operate")
             node = self._model.node(reference, Node.DATA_OBJECT)
             model = self.read(f"{reference}.ctlModel")
-            if model in (ControlModel.DIRECT_ENHANCED, ControlModel.SBO_ENHANCED):
-                execute = ControlHandler(guarded(operated, _FAILED))
-                self._handlers.append(execute)
-                self._lib.IedServer_setControlHandler(self._server, node, execute, None)
-            else:
-                check = WaitForExecutionHandler(guarded(checked_dynamically, _FAILED))
-                self._handlers.append(check)
-                self._lib.IedServer_setWaitForExecutionHandler(self._server, node, check, None)
-
-    def _operated(
-        self, reference: str, handler: OperateHandler, action: int, value: int, *, test: bool
-    ) -> int:
-        lib = self._lib
-        lib.ControlAction_setAddCause(action, int(AddCause.BLOCKED_BY_PROCESS))
-        size = ctypes.c_int(0)
-        identity = lib.ControlAction_getOrIdent(action, ctypes.byref(size))
-        originator = (
-            ctypes.string_at(identity, size.value).decode("latin-1") if identity and size.value > 0 else ""
-        )
-        request = ControlAction(
-            reference, decode(lib, value), test, originator, int(lib.ControlAction_getOrCat(action)),
-            int(lib.ControlAction_getCtlNum(action)),
-        )  # fmt: skip
-        self._library_holds_model = True
-        try:
-            verdict = handler(request)
-        finally:
-            self._library_holds_model = False
-        if verdict is True:
-            return _OK
-        if isinstance(verdict, AddCause):
-            lib.ControlAction_setAddCause(action, int(verdict))
-        return _FAILED
+            enhanced = model in (ControlModel.DIRECT_ENHANCED, ControlModel.SBO_ENHANCED)
+            self._handlers.append(
+                install_operate_handler(self._lib, self._server, node, reference, operated, enhanced=enhanced)
+            )
 
     # Called by the pump
 
