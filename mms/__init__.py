@@ -6,7 +6,8 @@ ServerPump  one thread that drives many servers
 """
 
 from mms.binding.stderr_filter import filter_tls_log_from_stderr
-from mms.client.client import Client, DataSetMember
+from mms.client.client import Client
+from mms.client.data_values import DataSetMember
 from mms.client.files import FileEntry
 from mms.client.limits import ClientLimits
 from mms.client.reports import Reason, Report, ReportMember

@@ -2,51 +2,22 @@
 
 import queue
 from collections.abc import Callable
-from dataclasses import dataclass
 from types import TracebackType
-from typing import Final, Self
+from typing import Self
 
-from mms import errors
-from mms.binding.value_conversion import decode
 from mms.client import controls
 from mms.client.connection import Connection
-from mms.client.data_sets import data_set_members
+from mms.client.data_values import DataSetMember, read_data_set, read_value
 from mms.client.files import FileEntry, Sink, download, list_files
 from mms.client.limits import DEFAULT_LIMITS, ClientLimits
+from mms.client.model_browser import ModelBrowser
 from mms.client.reports import Report, Subscriptions
-from mms.references import FunctionalConstraint, logical_device, object_reference
+from mms.references import FunctionalConstraint
 from mms.security.tls import TlsConfiguration
-from mms.values import DataAccessError, Value
-
-_DATA_OBJECT, _DATA_SET, _BUFFERED, _UNBUFFERED = range(4)  # the library's ACSIClass
-
-_ACCESS_ERRORS: Final[dict[DataAccessError, type[errors.MmsError]]] = {
-    DataAccessError.ACCESS_DENIED: errors.AccessDenied,
-    DataAccessError.ACCESS_UNSUPPORTED: errors.AccessDenied,
-    DataAccessError.TEMPORARILY_UNAVAILABLE: errors.TemporarilyUnavailable,
-    DataAccessError.OBJECT_INVALIDATED: errors.NotFound,
-    DataAccessError.UNDEFINED: errors.NotFound,
-    DataAccessError.NON_EXISTENT: errors.NotFound,
-}
+from mms.values import Value
 
 
-@dataclass(frozen=True, slots=True)
-class DataSetMember:
-    """One member of a data set and its value.
-
-    Parameters
-    ----------
-    reference : str
-        Reference of the member, "LD/LN.DO.DA[FC]".
-    value : Value
-        The member's value; a DataAccessError where the relay gave none.
-    """
-
-    reference: str
-    value: Value
-
-
-class Client:
+class Client(ModelBrowser):
     """Association with one relay.
 
     A client is a context manager that closes its association. It may be used from several threads; one
@@ -66,7 +37,7 @@ class Client:
     """
 
     def __init__(self, connection: Connection) -> None:
-        self._connection = connection
+        super().__init__(connection)
         self._subscriptions = Subscriptions(connection)
         self._directories: dict[str, tuple[str, ...]] = {}
 
@@ -179,150 +150,6 @@ class Client:
     ) -> None:
         self.close()
 
-    # GetServerDirectory, GetLogicalDeviceDirectory, GetLogicalNodeDirectory
-
-    def logical_devices(self) -> list[str]:
-        """List the logical devices of the relay (MMS domains).
-
-        Returns
-        -------
-        list of str
-            Names such as "A1_SEL710CON".
-
-        Raises
-        ------
-        MmsError
-            The relay gave no list.
-
-        References
-        ----------
-        IEC 61850-7-2, GetServerDirectory.
-        """
-        lib = self._connection.lib
-        return self._connection.strings(
-            self._connection.request("list logical devices", lib.IedConnection_getLogicalDeviceList)
-        )
-
-    def logical_nodes(self, device: str) -> list[str]:
-        """List the logical nodes of one logical device.
-
-        Parameters
-        ----------
-        device : str
-            Name of the logical device.
-
-        Returns
-        -------
-        list of str
-            Names such as "RBGGIO1".
-
-        Raises
-        ------
-        NotFound
-            There is no such logical device.
-
-        References
-        ----------
-        IEC 61850-7-2, GetLogicalDeviceDirectory.
-        """
-        name = logical_device(device)
-        lib = self._connection.lib
-        return self._connection.strings(
-            self._connection.request(
-                f"list logical nodes of {device}", lib.IedConnection_getLogicalDeviceDirectory, name
-            )
-        )
-
-    def data_objects(self, node: str) -> list[str]:
-        """List the data objects of a logical node.
-
-        Parameters
-        ----------
-        node : str
-            Reference "LD/LN".
-
-        Returns
-        -------
-        list of str
-            Names of the data objects.
-
-        References
-        ----------
-        IEC 61850-7-2, GetLogicalNodeDirectory.
-        """
-        return self._node_directory(node, _DATA_OBJECT)
-
-    def data_sets(self, node: str) -> list[str]:
-        """List the data sets of a logical node.
-
-        Parameters
-        ----------
-        node : str
-            Reference "LD/LN".
-
-        Returns
-        -------
-        list of str
-            Names of the data sets.
-
-        References
-        ----------
-        IEC 61850-7-2, GetLogicalNodeDirectory.
-        """
-        return self._node_directory(node, _DATA_SET)
-
-    def buffered_reports(self, node: str) -> list[str]:
-        """List the buffered report control blocks of a logical node.
-
-        Parameters
-        ----------
-        node : str
-            Reference "LD/LN".
-
-        Returns
-        -------
-        list of str
-            Names of the blocks.
-
-        References
-        ----------
-        IEC 61850-7-2, GetLogicalNodeDirectory.
-        """
-        return self._node_directory(node, _BUFFERED)
-
-    def unbuffered_reports(self, node: str) -> list[str]:
-        """List the unbuffered report control blocks of a logical node.
-
-        Parameters
-        ----------
-        node : str
-            Reference "LD/LN".
-
-        Returns
-        -------
-        list of str
-            Names of the blocks.
-
-        References
-        ----------
-        IEC 61850-7-2, GetLogicalNodeDirectory.
-        """
-        return self._node_directory(node, _UNBUFFERED)
-
-    def _node_directory(self, node: str, kind: int) -> list[str]:
-        lib = self._connection.lib
-        return self._connection.strings(
-            self._connection.request(
-                f"directory of {node}",
-                lib.IedConnection_getLogicalNodeDirectory,
-                object_reference(node),
-                kind,
-                longest_s=self._connection.limits.directory_s,
-            )
-        )
-
-    # GetDataValues, GetDataSetValues, GetDataSetDirectory
-
     def read(self, reference: str, constraint: FunctionalConstraint) -> Value:
         """Read a data object or attribute.
 
@@ -349,45 +176,7 @@ class Client:
         ----------
         IEC 61850-7-2, GetDataValues.
         """
-        operation = f"read {reference}[{constraint.name}]"
-        lib = self._connection.lib
-        pointer = self._connection.request(
-            operation, lib.IedConnection_readObject, object_reference(reference), int(constraint)
-        )
-        try:
-            value = self._decode(operation, pointer)
-        finally:
-            lib.MmsValue_delete(pointer)
-        if isinstance(value, DataAccessError):
-            kind = _ACCESS_ERRORS.get(value, errors.ValueRefused)
-            raise kind(self.host, operation, value.value, value.name.lower().replace("_", " "))
-        return value
-
-    def data_set_directory(self, reference: str) -> tuple[str, ...]:
-        """List the members of a data set.
-
-        Parameters
-        ----------
-        reference : str
-            Reference "LD/LN.name".
-
-        Returns
-        -------
-        tuple of str
-            References of the members, "LD/LN.DO.DA[FC]".
-
-        Raises
-        ------
-        NotFound
-            There is no such data set.
-        ProtocolError
-            The relay names a member that is none.
-
-        References
-        ----------
-        IEC 61850-7-2, GetDataSetDirectory.
-        """
-        return data_set_members(self._connection, reference)
+        return read_value(self._connection, reference, constraint)
 
     def read_data_set(self, reference: str) -> tuple[DataSetMember, ...]:
         """Read the values of all members of a data set in one request.
@@ -415,31 +204,7 @@ class Client:
         """
         if reference not in self._directories:
             self._directories[reference] = self.data_set_directory(reference)
-        names = self._directories[reference]
-        operation = f"read data set {reference}"
-        lib = self._connection.lib
-        data_set = self._connection.request(
-            operation, lib.IedConnection_readDataSetValues, object_reference(reference, names=2), None
-        )
-        if data_set is None:
-            raise errors.ProtocolError(self.host, operation, 0, "no values came")
-        try:
-            values = self._decode(operation, lib.ClientDataSet_getValues(data_set))
-        finally:
-            lib.ClientDataSet_destroy(data_set)
-        if not isinstance(values, tuple) or len(values) != len(names):
-            raise errors.ProtocolError(
-                self.host, operation, 0, f"expected {len(names)} values, found {values!r:.80}"
-            )
-        return tuple(DataSetMember(name, value) for name, value in zip(names, values, strict=True))
-
-    def _decode(self, operation: str, pointer: int | None) -> Value:
-        try:
-            return decode(self._connection.lib, pointer)
-        except ValueError as error:
-            raise errors.ProtocolError(self.host, operation, 0, str(error)) from error
-
-    # Operate, reports, files
+        return read_data_set(self._connection, reference, self._directories[reference])
 
     def operate(self, reference: str, value: bool, *, originator: str = "mcc") -> None:
         """Operate a controllable object by the control model that it declares.

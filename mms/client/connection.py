@@ -21,6 +21,7 @@ from mms.binding.callbacks import guarded, inside_callback
 from mms.binding.connection_deadline import connections_between, end_connections_after, open_sockets
 from mms.binding.library import library
 from mms.binding.prototypes import ConnectionClosedHandler
+from mms.client.closed_notice import ClosedNotice
 from mms.client.connect_failure import explain_failure
 from mms.client.credentials import Credentials
 from mms.client.limits import DEFAULT_LIMITS, ClientLimits
@@ -48,31 +49,6 @@ class ServiceFunction(Protocol):
 
     def __call__(self, connection: int, error: object, *arguments: object) -> object:
         """Call the function."""
-
-
-class _ClosedNotice:
-    """Notice that an association has ended: an event for threads that wait, then the callback, once."""
-
-    def __init__(self, callback: Callable[[], None] | None) -> None:
-        self.event = threading.Event()
-        self._callback = callback
-        self._lock = threading.Lock()
-        self._armed = False
-
-    def arm(self) -> bool:
-        """Call the callback from now on; return False if the association has ended already."""
-        with self._lock:
-            self._armed = not self.event.is_set()
-            return self._armed
-
-    def notify(self) -> None:
-        """Set the event, and call the callback the first time."""
-        with self._lock:
-            first = self._armed
-            self._armed = False
-            self.event.set()
-        if first and self._callback is not None:
-            guarded(self._callback, None)()
 
 
 class Connection:
@@ -191,7 +167,7 @@ class Connection:
             remaining_s = deadline - time.monotonic()
             if remaining_s <= 0 and attempt > 1:
                 break
-            self._notice = _ClosedNotice(on_closed)
+            self._notice = ClosedNotice(on_closed)
             code = self._attempt(address, port, max(remaining_s, 0.001))
             if code == 0 and self._notice.arm():
                 return 0
@@ -414,43 +390,6 @@ class Connection:
         if pointer:
             self.lib.IedConnection_destroy(pointer)
         self._handlers.clear()
-
-    def strings(self, linked_list: int | None) -> list[str]:
-        """Read a list of names and free it.
-
-        Parameters
-        ----------
-        linked_list : int or None
-            Pointer to a LinkedList of C strings.
-
-        Returns
-        -------
-        list of str
-            The names, their octets read as Latin-1; empty for None.
-        """
-        if linked_list is None:
-            return []
-        names = [(ctypes.string_at(data)).decode("latin-1") for data in self.items(linked_list)]
-        self.lib.LinkedList_destroy(linked_list)
-        return names
-
-    def items(self, linked_list: int) -> Iterator[int]:
-        """Iterate over a list of the library.
-
-        Parameters
-        ----------
-        linked_list : int
-            Pointer to a LinkedList.
-
-        Yields
-        ------
-        int
-            Pointer to the data of each element.
-        """
-        element = self.lib.LinkedList_getNext(linked_list)
-        while element:
-            yield self.lib.LinkedList_getData(element)
-            element = self.lib.LinkedList_getNext(element)
 
 
 _open_connections: Final[set[Connection]] = set()

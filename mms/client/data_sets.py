@@ -9,6 +9,7 @@ import re
 from typing import Final
 
 from mms import errors
+from mms.binding.linked_lists import elements
 from mms.binding.prototypes import VariableAccessSpecification
 from mms.client.connection import Connection
 from mms.references import object_reference
@@ -59,9 +60,9 @@ def data_set_members(connection: Connection, reference: str) -> tuple[str, ...]:
     if found is None:
         raise errors.ProtocolError(connection.host, operation, 0, "no members came")
     try:
-        members = tuple(_reference(data) for data in connection.items(found))
+        members = tuple(_reference(data) for data in elements(lib, found))
     finally:
-        for data in connection.items(found):
+        for data in elements(lib, found):
             lib.MmsVariableAccessSpecification_destroy(data)
         lib.LinkedList_destroyStatic(found)
     for member, told in members:

@@ -10,6 +10,7 @@ from typing import Final, Protocol
 
 from mms import errors
 from mms.binding.callbacks import guarded
+from mms.binding.linked_lists import elements
 from mms.binding.prototypes import FileReadHandler
 from mms.client.connection import Connection
 from mms.client.throughput import ThroughputLimit
@@ -121,7 +122,7 @@ def _listing(
     if found is None:
         raise errors.ProtocolError(connection.host, operation, 0, "no listing came")
     entries = []
-    for item in connection.items(found):
+    for item in elements(connection.lib, found):
         name = lib.FileDirectoryEntry_getFileName(item).decode("latin-1")
         changed_ns = int(lib.FileDirectoryEntry_getLastModified(item)) * NANOSECONDS_PER_MILLISECOND
         entries.append(FileEntry(name, int(lib.FileDirectoryEntry_getFileSize(item)), changed_ns))

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import mms
+from mms.binding.linked_lists import take_names
 from mms.client.connection import Connection
 
 NAMESPACE = "{http://www.iec.ch/61850/2003/SCL}"
@@ -152,7 +153,7 @@ def _variables(connection: Connection, domain: str) -> list[str]:
     function = connection.lib.IedConnection_getLogicalDeviceVariables
     function.restype = ctypes.c_void_p
     function.argtypes = [ctypes.c_void_p, ctypes.POINTER(ctypes.c_int), ctypes.c_char_p]
-    return connection.strings(connection.request(f"variables of {domain}", function, domain.encode()))
+    return take_names(connection.lib, connection.request(f"variables of {domain}", function, domain.encode()))
 
 
 def _to_block(name: str) -> str:
