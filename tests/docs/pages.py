@@ -7,7 +7,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 TEXT = {".cfg", ".ini", ".md", ".mako", ".py", ".toml", ".yaml", ".yml", ""}
 """Suffixes of files that may name a page. The Makefile, the Dockerfile and scripts have none."""
-GENERATED = {"__pycache__", "build", "dist", "fuzz-findings", "node_modules"}
+GENERATED = {".coverage", "__pycache__", "build", "dist", "fuzz-findings", "node_modules"}
 
 
 def text_files() -> Iterator[Path]:
@@ -18,7 +18,7 @@ def text_files() -> Iterator[Path]:
             hidden = path.name.startswith(".") and path.name not in {".ci", ".github"}
             if path.is_dir() and not path.is_symlink() and not hidden and path.name not in GENERATED:
                 folders.append(path)
-            elif path.is_file() and path.suffix in TEXT and not path.name.endswith(".egg-info"):
+            elif path.is_file() and path.suffix in TEXT and path.name not in GENERATED:
                 yield path
 
 
