@@ -31,6 +31,9 @@ OPTIONS = {
 }
 TEMPLATE = "migrated"
 
+MEMORY = Path("/dev/shm")  # noqa: S108 - a folder of its own is made in it
+"""Files in memory, where the system has such: a database is 300 files, and each test has one of its own."""
+
 
 def binaries() -> Path | None:
     """The folder of the latest server installed; None without one."""
@@ -85,7 +88,8 @@ class PostgresServer:
 def serving_postgresql(folder: Path) -> Iterator[PostgresServer]:
     """A server of the programs in `folder` that ends with the block, and with this process at the latest."""
     # Not in pytest's folder: the server's user may not enter that, and a socket's path is short.
-    with tempfile.TemporaryDirectory(prefix="pg-", ignore_cleanup_errors=True) as name:
+    where = MEMORY if os.access(MEMORY, os.W_OK) else None
+    with tempfile.TemporaryDirectory(prefix="pg-", dir=where, ignore_cleanup_errors=True) as name:
         directory = Path(name)
         as_owner: list[str] = ["setpriv", "--pdeathsig=QUIT"]
         if os.getuid() == 0:
