@@ -17,14 +17,11 @@ import structlog
 from pebble import ProcessPool
 
 from service.jobs.task import DiagnosisTask, Outcome, Task
-from service.timing.backoff import Backoff
+from service.timing.backoff import RestartDelay
 
 log = structlog.get_logger(__name__)
 
 STOP_TIMEOUT_S = 10.0
-BACKOFF = Backoff(first_s=0.2, longest_s=30.0)
-STABLE_AFTER_S = 60.0
-"""Workers that lived so long were no failure: the next ones are started after the shortest pause."""
 
 
 class NoWorkersError(RuntimeError):
@@ -32,7 +29,10 @@ class NoWorkersError(RuntimeError):
 
 
 class WorkerPool:
-    """Used by one thread. prepare_worker: runs first in every worker."""
+    """The worker processes, for use by one thread.
+
+    prepare_worker: runs first in every worker.
+    """
 
     def __init__(self, workers: int, prepare_worker: Callable[[], None]) -> None:
         self._workers = workers
@@ -42,14 +42,14 @@ class WorkerPool:
         self._prepared: Semaphore | None = None
         self._unprepared = workers
         self._started_s = 0.0
-        self._failures = 0
+        self._delay = RestartDelay()
         self._problem: str | None = None
         self._retry_at_s = time.monotonic()
         self._ending: list[Thread] = []
 
     @property
     def problem(self) -> str | None:
-        """Why there are no workers at present; None while there are."""
+        """Return why there are no workers at present; None while there are."""
         return self._problem if self._pool is None else None
 
     def has_ended(self) -> bool:
@@ -59,12 +59,15 @@ class WorkerPool:
         return self._pool is None
 
     def renew(self) -> None:
-        """Start workers where there are none, once that is due: later each time it was in vain."""
+        """Start workers where there are none, after a pause that grows with each failure to do so."""
         if self._pool is None and time.monotonic() >= self._retry_at_s:
             self._start()
 
     def schedule(self, function: Task, task: DiagnosisTask, timeout_s: float) -> "Future[Outcome]":
-        """Raises NoWorkersError; a task that was accepted may end with BrokenExecutor instead."""
+        """Give a task to a worker. Raises NoWorkersError.
+
+        A task that was accepted ends with BrokenExecutor where the workers end.
+        """
         if self._pool is None:
             raise NoWorkersError(self._problem)
         try:
@@ -99,41 +102,44 @@ class WorkerPool:
                 context=self._context,
             )
             pool.schedule(os.getpid)
-        except (
-            OSError,
-            RuntimeError,
-        ) as error:  # RuntimeError: pebble's, whose cause is an OSError; no thread
+        # RuntimeError: pebble's, whose cause is an OSError; or there is no thread left.
+        except (OSError, RuntimeError) as error:
             if pool is not None:
                 _end(pool)  # some of its workers may have started
-            self._retry_later(f"the worker processes cannot be started: {error.__cause__ or error}")
+            problem = f"the worker processes cannot be started: {error.__cause__ or error}"
+            self._retry_later(problem, lasted_s=0.0)
         else:
             self._pool = pool
             self._started_s = time.monotonic()
 
     def _lose(self, pool: ProcessPool) -> None:
-        # Aside, because it waits for its threads, one of which may wait for a process that is gone.
+        """Let go of workers that have ended.
+
+        The pool is stopped in a thread of its own, because that waits for the pool's threads, one of which
+        may wait for a process that is gone.
+        """
         ending = Thread(target=_end, args=(pool,), name="workers-end", daemon=True)
         ending.start()
         self._ending = [*(earlier for earlier in self._ending if earlier.is_alive()), ending]
         self._pool = None
-        if time.monotonic() - self._started_s > STABLE_AFTER_S:
-            self._failures = 0
-        self._retry_later("the worker processes ended and are started again")
+        lasted_s = time.monotonic() - self._started_s
+        self._retry_later("the worker processes ended and are started again", lasted_s)
 
-    def _retry_later(self, problem: str) -> None:
+    def _retry_later(self, problem: str, lasted_s: float) -> None:
+        """Have workers started after a pause; the last ones lasted so long."""
         self._problem = problem
-        self._failures += 1
-        pause_s = BACKOFF.pause_s(self._failures)
+        pause_s = self._delay.after_run_s(lasted_s)
         self._retry_at_s = time.monotonic() + pause_s
         log.error(problem, pause_s=pause_s)
 
 
 def _end(pool: ProcessPool) -> None:
+    """End all workers of a pool, and wait for that."""
     pool.stop()  # type: ignore[no-untyped-call]  # pebble annotates the rest of its pool
     pool.join(timeout=STOP_TIMEOUT_S)
 
 
 def _prepare(prepare_worker: Callable[[], None], prepared: Semaphore) -> None:
-    """Runs first in every worker, and tells the pool when it is done."""
+    """Prepare a worker, in that worker; tell the pool when it is done."""
     prepare_worker()
     prepared.release()

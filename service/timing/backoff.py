@@ -21,13 +21,20 @@ class Backoff:
         return min(self.first_s * 2.0**doublings, self.longest_s)
 
 
+PROCESS_BACKOFF = Backoff(first_s=0.2, longest_s=30.0)
+"""Before processes of the service that ended are started again."""
+
+STABLE_AFTER_S = 60.0
+"""A process that lived for longer than this ran well."""
+
+
 class RestartDelay:
     """The pause before something that is meant to run for long is started again.
 
     A run that lasted longer than `stable_after_s` was a good one: the failures are counted anew after it.
     """
 
-    def __init__(self, backoff: Backoff, *, stable_after_s: float) -> None:
+    def __init__(self, backoff: Backoff = PROCESS_BACKOFF, *, stable_after_s: float = STABLE_AFTER_S) -> None:
         self._backoff = backoff
         self._stable_after_s = stable_after_s
         self._failures = 0

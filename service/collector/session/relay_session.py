@@ -114,7 +114,7 @@ class RelaySession:
             else Metering(relay, motor, period_s=settings.metering_period_s, on_sample=on_sample)
         )
         self._protocol_faults = ProtocolFaultCounter(
-            relay.name, repository, QuarantinePolicy(settings.quarantine_s), policy=policy
+            relay.name, repository, QuarantinePolicy.starting_with(settings.quarantine_s), policy=policy
         )
         self._visit_marks = visit_marks
         self._mark: VisitMark | None = None

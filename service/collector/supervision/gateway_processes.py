@@ -66,7 +66,7 @@ class GatewayProcesses:
                 VisitMarks.of_gateway(self._settings.data_directory, number),
                 exit_code,
                 self._repository,
-                QuarantinePolicy(self._settings.quarantine_s),
+                QuarantinePolicy.starting_with(self._settings.quarantine_s),
             )
         except (SQLAlchemyError, StorageError, OSError) as error:
             log.warning("no relay is set aside for the gateway's end", error=str(error))

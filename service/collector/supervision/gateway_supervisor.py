@@ -11,11 +11,10 @@ from threading import Event, Lock, Thread
 import structlog
 
 from service.configuration.settings import Settings
-from service.timing.backoff import Backoff, RestartDelay
+from service.timing.backoff import PROCESS_BACKOFF, STABLE_AFTER_S, Backoff, RestartDelay
 
 log = structlog.get_logger(__name__)
 
-BACKOFF = Backoff(first_s=0.2, longest_s=30.0)
 COMMAND = (sys.executable, "-m", "service.collector")
 
 PIPE_BYTES = 1024**2
@@ -31,8 +30,8 @@ class RestartPolicy:
     killed.
     """
 
-    backoff: Backoff = BACKOFF
-    stable_after_s: float = 60.0
+    backoff: Backoff = PROCESS_BACKOFF
+    stable_after_s: float = STABLE_AFTER_S
     stop_timeout_s: float = 5.0
 
 

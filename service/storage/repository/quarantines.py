@@ -13,36 +13,33 @@ from service.storage.repository.alarms import clear_standing, raised
 from service.storage.repository.links import change_link
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmKind, LinkState
+from service.timing.backoff import Backoff
 
 RELEASED = "released from quarantine"
 
 
 class QuarantineRows(Sessions):
-    def set_aside(
-        self, ied: str, reason: str, *, first_pause_s: float, longest_pause_s: float, now_ns: int
-    ) -> Quarantine:
-        """Sets a relay aside, for twice as long as the last time; its link and an alarm tell so.
+    def set_aside(self, ied: str, reason: str, *, backoff: Backoff, now_ns: int) -> Quarantine:
+        """Set a relay aside, for longer each time; its link and an alarm say so.
 
-        Raises NotFoundError.
+        backoff: the pause after so many quarantines in a row. Raises NotFoundError.
         """
         with self._write() as session:
             found(session, IedRow, ied, "IED", lock=True)
             times = _times(session, ied) + 1
-            # The exponent is bounded: floats are.
-            pause_s = min(first_pause_s * 2.0 ** min(times - 1, 64), longest_pause_s)
-            row = _put(session, ied, reason, times, now_ns, pause_s)
+            row = _put(session, ied, reason, times, now_ns, backoff.pause_s(times))
             raised(session, ied, AlarmKind.QUARANTINED, "", reason, now_ns)
             return record_of(Quarantine, row)
 
     def suspect(self, ieds: Collection[str], reason: str, *, pause_s: float, now_ns: int) -> None:
-        """Notes relays of which one did harm. Raises NotFoundError."""
+        """Note relays of which one did harm. Raises NotFoundError."""
         with self._write() as session:
             for ied in sorted(ieds):  # in one order, for two who lock them
                 found(session, IedRow, ied, "IED", lock=True)
                 _put(session, ied, reason, _times(session, ied), now_ns, pause_s)
 
     def release(self, ied: str, *, now_ns: int) -> None:
-        """Forgets whatever was held against a relay; harmless where nothing was. Raises NotFoundError."""
+        """Forget whatever was held against a relay; harmless where nothing was. Raises NotFoundError."""
         with self._write() as session:
             relay = found(session, IedRow, ied, "IED", lock=True)
             row = session.get(QuarantineRow, ied)
@@ -53,13 +50,13 @@ class QuarantineRows(Sessions):
             clear_standing(session, ied, AlarmKind.QUARANTINED, now_ns)
 
     def quarantine(self, ied: str) -> Quarantine | None:
-        """What is held against a relay, over or not; None where nothing is."""
+        """Return what is held against a relay, over or not; None where nothing is."""
         with self._read() as session:
             row = session.get(QuarantineRow, ied)
             return None if row is None else record_of(Quarantine, row)
 
     def quarantines(self) -> tuple[Quarantine, ...]:
-        """All there are, by relay."""
+        """Return all quarantines, ordered by relay."""
         with self._read() as session:
             rows = session.scalars(select(QuarantineRow).order_by(QuarantineRow.ied))
             return tuple(record_of(Quarantine, row) for row in rows)

@@ -3,6 +3,7 @@ import httpx
 from service.storage import Repository
 from service.storage.records import LinkTraffic, RelayFindings
 from service.storage.states import AlarmKind, LinkState
+from service.timing.backoff import Backoff
 from testing.service.plants import NOW_NS, SECOND_NS
 
 FIRST = "2025-10-09T08:53:20.000000000Z"
@@ -118,7 +119,7 @@ def test_alarms(client: httpx.Client, repository: Repository) -> None:
 
 def test_a_relay_set_aside_tells_why_and_is_released(client: httpx.Client, repository: Repository) -> None:
     assert client.get(URL).json()["quarantine"] is None
-    repository.set_aside(NAME, "it lied", first_pause_s=60.0, longest_pause_s=86_400.0, now_ns=NOW_NS)
+    repository.set_aside(NAME, "it lied", backoff=Backoff(60.0, 86_400.0), now_ns=NOW_NS)
     ied = client.get(URL).json()
     assert ied["quarantine"] == {
         "reason": "it lied",

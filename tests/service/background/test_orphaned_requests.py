@@ -13,6 +13,7 @@ from service.plant import Plant
 from service.storage import Repository
 from service.storage.records import RecordingRequest
 from service.storage.states import RecordingRequestState
+from service.timing.backoff import Backoff
 from testing.service.plants import NOW_NS, two_motor_plant
 from tests.service.fixtures import database_url, engine, repository
 
@@ -98,7 +99,7 @@ def test_a_relay_no_gateway_has_room_for_is_told(watch: Watch) -> None:
 
 
 def test_a_relay_that_was_set_aside_is_told(watch: Watch) -> None:
-    watch.repository.set_aside(RELAY, "it bites", first_pause_s=9.0, longest_pause_s=9.0, now_ns=NOW_NS)
+    watch.repository.set_aside(RELAY, "it bites", backoff=Backoff(9.0, 9.0), now_ns=NOW_NS)
     report = watch.ask()
     watch.passes(LIMIT_S + 2 * STEP_S)
     assert f"it was set aside, it bites; see GET /api/v1/ieds/{RELAY}" in (watch.report(report).reason or "")

@@ -14,6 +14,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import LinkState
+from service.timing.backoff import Backoff
 from testing.service.plants import NOW_NS
 from tests.service.api.serving import serving
 from tests.service.api.test_relays import ACQUISITION
@@ -99,7 +100,7 @@ def test_a_key_triggers_once(
 def test_a_relay_is_released(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    repository.set_aside("A1_SEL710", "it lied", first_pause_s=60.0, longest_pause_s=60.0, now_ns=NOW_NS)
+    repository.set_aside("A1_SEL710", "it lied", backoff=Backoff(60.0, 60.0), now_ns=NOW_NS)
     app = create_app(
         ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
     )

@@ -7,6 +7,7 @@ import pytest
 from service.storage import Repository
 from service.storage.records import Quarantine
 from service.storage.states import LinkState
+from service.timing.backoff import Backoff
 from testing.service.plants import NOW_NS, SECOND_NS
 
 A, B = "A1_SEL710", "A2_SEL710"
@@ -20,8 +21,7 @@ def pause_s(quarantine: Quarantine | None) -> float:
 
 def test_pauses_grow_up_to_a_day(repository: Repository) -> None:
     found = [
-        repository.set_aside(A, "why", first_pause_s=PAUSE_S, longest_pause_s=86_400.0, now_ns=NOW_NS)
-        for _ in range(200)
+        repository.set_aside(A, "why", backoff=Backoff(PAUSE_S, 86_400.0), now_ns=NOW_NS) for _ in range(200)
     ]
     assert [pause_s(each) for each in found[:3]] == [60.0, 120.0, 240.0]
     assert pause_s(found[-1]) == 86_400.0
@@ -42,7 +42,7 @@ def test_pauses_grow_up_to_a_day(repository: Repository) -> None:
 def test_a_quarantine_holds_no_longer_than_its_length_whatever_the_clock_says(
     repository: Repository, now_s: float, *, holds: bool
 ) -> None:
-    found = repository.set_aside(A, "why", first_pause_s=PAUSE_S, longest_pause_s=86_400.0, now_ns=NOW_NS)
+    found = repository.set_aside(A, "why", backoff=Backoff(PAUSE_S, 86_400.0), now_ns=NOW_NS)
     assert found.holds(NOW_NS + round(now_s * SECOND_NS)) is holds
 
 
@@ -54,7 +54,7 @@ def test_a_suspect_that_comes_back_at_once_is_not_held(repository: Repository) -
 def test_the_end_of_a_gateway_leaves_a_quarantine(repository: Repository) -> None:
     repository.register_gateway("g", host="h", process_id=os.getpid(), now_ns=NOW_NS)
     repository.share_relays("g", {A, B}, most=2)
-    repository.set_aside(A, "why", first_pause_s=PAUSE_S, longest_pause_s=86_400.0, now_ns=NOW_NS)
+    repository.set_aside(A, "why", backoff=Backoff(PAUSE_S, 86_400.0), now_ns=NOW_NS)
     repository.end_gateway("g", now_ns=NOW_NS)
     repository.reset_links(now_ns=NOW_NS)
     assert repository.ied(A).link_state is LinkState.QUARANTINED

@@ -30,6 +30,7 @@ from service.plant import Plant, read_plant
 from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository, connect
 from service.storage.states import LinkState
+from service.timing.backoff import Backoff
 from testing.service.database import make_database
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.waiting import eventually
@@ -300,7 +301,7 @@ def test_relays_set_aside_by_a_clock_that_was_ahead_are_visited(hall: Hall) -> N
     aside, ahead = sorted(hall.servers)[:2]
     for ied, ahead_s in ((aside, 0), (ahead, 86_400)):
         now_ns = time.time_ns() + ahead_s * SECOND_NS
-        hall.repository.set_aside(ied, "why", first_pause_s=60.0, longest_pause_s=86_400.0, now_ns=now_ns)
+        hall.repository.set_aside(ied, "why", backoff=Backoff(60.0, 86_400.0), now_ns=now_ns)
     with gateway(hall, "a"):
         assert eventually(lambda: sum(map(visitors, hall.servers.values())) == 5)
         assert visitors(hall.servers[ahead]) == 1

@@ -20,7 +20,7 @@ __all__ = ["database_url", "engine", "repository"]
 
 A = "A1_SEL710"
 PAUSE_S = 60.0
-POLICY = QuarantinePolicy(PAUSE_S)
+POLICY = QuarantinePolicy.starting_with(PAUSE_S)
 
 
 def test_who_breaks_the_protocol_again_and_again_is_set_aside(repository: Repository) -> None:
@@ -52,7 +52,7 @@ def test_good_visits_between_count(repository: Repository) -> None:
 
 
 def test_a_relay_that_works_as_long_as_it_was_set_aside_is_trusted(repository: Repository) -> None:
-    repository.set_aside(A, "why", first_pause_s=PAUSE_S, longest_pause_s=86_400.0, now_ns=NOW_NS)
+    repository.set_aside(A, "why", backoff=Backoff(PAUSE_S, 86_400.0), now_ns=NOW_NS)
     now_s = 0.0
     counter = ProtocolFaultCounter(A, repository, POLICY, clock=lambda: now_s)
     counter.visit_begins()

@@ -20,7 +20,7 @@ __all__ = ["database_url", "engine", "repository"]
 A, B = "A1_SEL710", "A2_SEL710"
 CRASH = -signal.SIGSEGV
 PAUSE_S = 60.0
-POLICY = QuarantinePolicy(PAUSE_S)
+POLICY = QuarantinePolicy.starting_with(PAUSE_S)
 
 
 def pause_s(quarantine: Quarantine | None) -> float:
