@@ -9,7 +9,7 @@ from threading import Timer
 import pytest
 
 from mms import Client, ClientLimits, ConnectFailed, ConnectionLost, MmsError, Timeout
-from service.collector.records.failures import VISIT_ENDS, failure_of
+from service.collector.records.policy import VISIT_ENDS, failure_of
 from service.collector.session.session_policy import SessionPolicy
 from service.storage.states import LinkState, RecordingState
 from testing.ports import LOOPBACK

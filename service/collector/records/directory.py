@@ -6,24 +6,30 @@ file's name already says that it cannot be trusted.
 """
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import structlog
 
 from mms import Client
-from service.collector.records.alarms import RecordAlarms
-from service.collector.records.allowance import DailyAllowance, beyond_its_end
 from service.collector.records.event_folder import Contents, EventFolder
-from service.collector.records.failures import PULL_FAILURES, VISIT_ENDS, alarm_text, failure_of, reason_of
 from service.collector.records.formats import Chosen, one_format_an_event
-from service.collector.records.ledger import RecordLedger
+from service.collector.records.ledger import RecordLedger, WrongListings
 from service.collector.records.life import WHOLE, Life, RecordState, SettlingTimes, in_turn
-from service.collector.records.listing import MOST_IGNORED, Listing, understand
-from service.collector.records.policy import RECORD_POLICY, Attempts, Failure, RecordPolicy
-from service.collector.records.pull import pull
-from service.collector.records.scan import Scan
-from service.collector.records.wrong_listings import WrongListings
+from service.collector.records.listing import MOST_IGNORED, Listing, RefusedFile, understand
+from service.collector.records.policy import (
+    PULL_FAILURES,
+    RECORD_POLICY,
+    VISIT_ENDS,
+    Attempts,
+    Failure,
+    RecordPolicy,
+    alarm_text,
+    failure_of,
+    reason_of,
+)
+from service.collector.records.pull import DailyAllowance, beyond_its_end, pull
 from service.configuration.settings import Settings
 from service.plant import Relay
 from service.recording_store.store import RecordingStore, StoredRecording
@@ -34,6 +40,42 @@ log = structlog.get_logger(__name__)
 
 ClaimRequest = Callable[[str], str | None]
 """Returns the recording request, if any, that a new record of this name belongs to."""
+
+
+class RecordAlarms(Protocol):
+    """The alarms of one relay, each raised once however often its cause is seen."""
+
+    def standing(self, kind: AlarmKind) -> frozenset[str]:
+        """Return the subjects of the alarms of this kind."""
+
+    def raise_alarm(self, kind: AlarmKind, subject: str, reason: str) -> None:
+        """Raise an alarm unless it stands already."""
+
+    def keep(self, kind: AlarmKind, subjects: Collection[str]) -> None:
+        """Clear the alarms of this kind whose subject is not among these."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """Names of records, by what became of them.
+
+    listed: all there are.  taken: newly stored or refused for good.  waiting: new ones that are not ready, or
+    are to be tried again soon, or are refused while their event is still to be had in another format.
+    failing: why a pull of them failed, by names, of those that are tried again, soon or late.  held_back:
+    ready ones that wait for another day.  ignored: files that are not taken, with the reason;
+    `ignored_in_all` may be more.  unreachable: why no record could be had at all.  no_folder: why there is
+    none at present; a relay may make it with its first record.
+    """
+
+    listed: frozenset[str] = frozenset()
+    taken: tuple[str, ...] = ()
+    waiting: tuple[str, ...] = ()
+    held_back: tuple[str, ...] = ()
+    failing: Mapping[str, str] = field(default_factory=dict)
+    ignored: tuple[RefusedFile, ...] = ()
+    ignored_in_all: int = 0
+    unreachable: str | None = None
+    no_folder: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

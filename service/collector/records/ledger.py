@@ -2,13 +2,16 @@
 
 The database knows every record the relay has ever listed. This module holds only those the relay lists at
 present, so that memory does not grow with the years. A record that comes back into the listing is looked up.
+Beside the records stand the listings that proved wrong today, counted by names.
 """
 
 import time
+from collections import Counter
 from collections.abc import Collection, Iterable
 
 import structlog
 
+from core.units import NANOSECONDS_PER_DAY
 from service.collector.records.life import Life, RecordState, remote_of
 from service.collector.records.listing import ListedRecord
 from service.recording_store.store import StoredRecording
@@ -17,6 +20,9 @@ from service.storage.records import RecordingEntry, RemoteRecord
 from service.storage.states import RecordingState
 
 log = structlog.get_logger(__name__)
+
+MOST_NAMES = 1000
+"""Where wrong listings of more names are counted, only names that are still listed are remembered."""
 
 
 class RecordLedger:
@@ -158,3 +164,36 @@ class RecordLedger:
             if state.life is Life.STORED and not state.record.modified_ns:
                 state.begin_anew(Life.SETTLING)
                 self.revision += 1
+
+
+class WrongListings:
+    """Counts by names how often a record was not as listed, for one day of UTC.
+
+    A relay may list a file with another size and time at each look. It is then another record each time, so
+    that no count of one record's attempts ever ends.
+    """
+
+    def __init__(self) -> None:
+        self._day = 0
+        self._numbers: Counter[str] = Counter()
+
+    def note(self, name: str, now_ns: int) -> None:
+        """Count one more."""
+        self._begin_day(now_ns)
+        self._numbers[name] += 1
+
+    def number(self, name: str, now_ns: int) -> int:
+        """Return how many there were today."""
+        self._begin_day(now_ns)
+        return self._numbers[name]
+
+    def prune(self, listed: Iterable[str]) -> None:
+        """Forget names that are gone, once there are many."""
+        if len(self._numbers) > MOST_NAMES:
+            self._numbers = Counter({name: self._numbers[name] for name in listed if name in self._numbers})
+
+    def _begin_day(self, now_ns: int) -> None:
+        day = now_ns // NANOSECONDS_PER_DAY
+        if day != self._day:
+            self._day = day
+            self._numbers.clear()

@@ -7,7 +7,7 @@ from dataclasses import replace
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from service.collector.records.allowance import DailyAllowance
+from service.collector.records.pull import DailyAllowance
 from service.collector.session.session_policy import SESSION_POLICY
 from service.storage import Repository
 from service.storage.records import LinkNote, LinkTraffic

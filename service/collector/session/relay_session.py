@@ -13,10 +13,9 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from mms import Client, CredentialFileError, MmsError, ProtocolError
-from service.collector.records.allowance import DailyAllowance
-from service.collector.records.directory import RecordDirectory
+from service.collector.records.directory import RecordDirectory, Scan
 from service.collector.records.event_folder import EventFolder
-from service.collector.records.scan import Scan
+from service.collector.records.pull import DailyAllowance
 from service.collector.session.clock_monitor import ClockMonitor
 from service.collector.session.discovery import Discovery
 from service.collector.session.link import Link

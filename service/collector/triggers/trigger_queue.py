@@ -26,7 +26,7 @@ from mms import (
     Timestamp,
     ValueRefused,
 )
-from service.collector.records.scan import Scan
+from service.collector.records.directory import Scan
 from service.collector.triggers.deadlines import RequestDeadlines
 from service.collector.triggers.unanswered import UnansweredRequests
 from service.plant import Acquisition, Relay, TriggerAction, acquisition_from_scl

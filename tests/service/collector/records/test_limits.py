@@ -6,8 +6,8 @@ from pathlib import Path
 
 from core.units import NANOSECONDS_PER_DAY
 from mms.binding.prototypes import PROTOTYPES
-from service.collector.records.allowance import BLOCK_BYTES, DailyAllowance
 from service.collector.records.policy import RECORD_POLICY
+from service.collector.records.pull import BLOCK_BYTES, DailyAllowance
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench

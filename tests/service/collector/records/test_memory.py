@@ -10,13 +10,13 @@ from sqlalchemy import insert
 
 from core.units import NANOSECONDS_PER_DAY
 from mms import Client
-from service.collector.records.allowance import DailyAllowance
 from service.collector.records.directory import RecordDirectory
 from service.collector.records.event_folder import EventFolder
+from service.collector.records.ledger import MOST_NAMES, WrongListings
 from service.collector.records.life import remote_of
 from service.collector.records.listing import ListedRecord, understand
 from service.collector.records.policy import RECORD_POLICY
-from service.collector.records.wrong_listings import MOST_NAMES, WrongListings
+from service.collector.records.pull import DailyAllowance
 from service.collector.session.relay_alarms import RelayAlarms
 from service.storage import connect
 from service.storage.models import RecordingRow, RemoteRecordRow

@@ -7,9 +7,15 @@ from pathlib import Path
 import pytest
 
 from mms import AccessDenied, ConnectionLost, FileServiceFailed, ProtocolError, Timeout, ValueRefused
-from service.collector.records.failures import PULL_FAILURES, failure_of
 from service.collector.records.life import Life
-from service.collector.records.policy import DEFAULT_RULES, RECORD_POLICY, Attempts, Failure
+from service.collector.records.policy import (
+    DEFAULT_RULES,
+    PULL_FAILURES,
+    RECORD_POLICY,
+    Attempts,
+    Failure,
+    failure_of,
+)
 
 PAGE = Path(__file__).parents[4] / "docs" / "reference" / "record-life.md"
 

@@ -11,7 +11,7 @@ from structlog.testing import capture_logs
 
 import scl
 from mms import Client, Report
-from service.collector.records.allowance import DailyAllowance
+from service.collector.records.pull import DailyAllowance
 from service.collector.session.link import Link
 from service.collector.session.report_subscription import ReportQueue, ReportSubscription
 from service.collector.session.session_policy import SessionPolicy
