@@ -6,9 +6,8 @@ from uuid import UUID
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model
 
+from core.diagnosis import methods
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
-from core.diagnosis.search import METHODS
-from core.diagnosis.stator import MODELS
 from core.diagnosis.verdict import Verdict
 from core.recordings import Quantity
 from service.api.document import Document
@@ -37,8 +36,8 @@ def _one_of(known: Iterable[str]) -> AfterValidator:
     return AfterValidator(check)
 
 
-Method = Annotated[str, _one_of(METHODS), Field(json_schema_extra={"enum": [*METHODS]})]
-Model = Annotated[str, _one_of(MODELS), Field(json_schema_extra={"enum": [*MODELS]})]
+Method = Annotated[str, _one_of(methods.Method), Field(json_schema_extra={"enum": [*methods.Method]})]
+Model = Annotated[str, _one_of(methods.Model), Field(json_schema_extra={"enum": [*methods.Model]})]
 
 
 class Site(Document):

@@ -1,26 +1,35 @@
-"""What runs in a worker process."""
+"""What runs in a worker process.
+
+The service's own process imports this module to name what its workers do. The numbers, and the compiler
+behind them, are imported where the work is done: without them the service starts sooner and stays smaller.
+"""
 
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from core.diagnosis.baseline import Baseline
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.stator import diagnose, learn_baseline
 from core.machines.parameters import Motor
 from core.recordings import RecordingError, read
-from core.warm_up import warm_up
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
+
+if TYPE_CHECKING:
+    from core.diagnosis.baseline import Baseline
 
 
 def prepare_worker() -> None:
     """Runs once in every worker before its first job, which then need not wait for the compiler."""
+    from core.warm_up import warm_up
+
     follow_service()
     warm_up()
 
 
 def diagnose_recording(task: DiagnosisTask) -> Outcome:
     """Reads and diagnoses one recording; what would fail again is an outcome, not an error."""
+    from core.diagnosis.stator import diagnose
+
     try:
         recording = read(task.entry)
         diagnosis = diagnose(
@@ -36,8 +45,10 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
 
 
 @lru_cache(maxsize=64)
-def _learnt(healthy: tuple[Path, ...], motor: Motor) -> Baseline:
+def _learnt(healthy: tuple[Path, ...], motor: Motor) -> "Baseline":
     """Stored files never change, so what was learnt from them once holds as long as this worker lives."""
+    from core.diagnosis.stator import learn_baseline
+
     try:
         return learn_baseline((read(one) for one in healthy), motor)
     except (RecordingError, DiagnosisError) as error:

@@ -1,5 +1,7 @@
 """The task of the worker processes, with real files and the real diagnosis."""
 
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -125,3 +127,8 @@ def test_a_baseline_that_cannot_be_learnt_rejects_with_its_reason(tmp_path: Path
     outcome = diagnose_recording(replace(task(entry), baseline=(entry, tmp_path / "GONE.CFG", entry)))
     assert isinstance(outcome, Rejected)
     assert "the motor's baseline cannot be learnt" in outcome.reason
+
+
+def test_the_services_own_process_goes_without_the_compiler() -> None:
+    program = "import sys, service.application.serve; sys.exit('numba' in sys.modules)"
+    subprocess.run([sys.executable, "-c", program], check=True)
