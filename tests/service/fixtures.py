@@ -13,6 +13,7 @@ from service.configuration.settings import sqlite_url
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.models import JobRow, RecordingRequestRow, RecordingRow, StateCountRow
+from testing.service.job_runner import register_runner
 from testing.service.plants import two_motor_plant
 from testing.service.postgresql import INSTALLED, PostgresServer, binaries, serving_postgresql
 
@@ -68,8 +69,10 @@ def engine(database_url: str) -> Iterator[Engine]:
 
 @pytest.fixture
 def repository(engine: Engine) -> Repository:
+    """A repository that knows the small plant and a job runner, `RUNNER`."""
     repository = Repository(engine)
     repository.sync_plant(two_motor_plant())
+    register_runner(repository)
     return repository
 
 

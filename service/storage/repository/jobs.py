@@ -31,7 +31,7 @@ class JobRows(Sessions):
     def request_diagnosis(
         self, recording_id: str, *, now_ns: int, method: str = DEFAULT_METHOD, model: str = DEFAULT_MODEL
     ) -> Job:
-        """Queues a new diagnosis of a recording. Raises NotFoundError, StateConflictError (not stored)."""
+        """Queue a new diagnosis of a recording. Raises NotFoundError, StateConflictError (not stored)."""
         with self._write() as session:
             recording = found(session, RecordingRow, recording_id, "recording")
             if recording.digest is None:
@@ -43,12 +43,11 @@ class JobRows(Sessions):
             session.flush()
             return job(row)
 
-    def claim_job(self, *, now_ns: int, runner: str | None = None) -> ClaimedJob | None:
+    def claim_job(self, *, now_ns: int, runner: str) -> ClaimedJob | None:
         """Take the next job that is due: it is running from now on, one attempt more.
 
         One that was queued later than now is of a time before the clock was set back: it is due.
-        runner: a registered runner, whose job it is from now on. Without one the job stays with whoever
-        claimed it until any runner registers. Raises RunnerEndedError.
+        runner: a registered runner, whose job it is from now on. Raises RunnerEndedError.
         """
         queued_ns = func.coalesce(JobRow.finished_ns, JobRow.created_ns)
         is_due = or_(JobRow.not_before_ns <= now_ns, queued_ns > now_ns)
@@ -59,7 +58,7 @@ class JobRows(Sessions):
             .with_for_update(skip_locked=True)
         )
         with self._write() as session:
-            if runner is not None and session.get(JobRunnerRow, runner, with_for_update=True) is None:
+            if session.get(JobRunnerRow, runner, with_for_update=True) is None:
                 raise RunnerEndedError(runner)
             row = only(session, query)
             if row is None:
@@ -77,7 +76,7 @@ class JobRows(Sessions):
             digests = tuple(one.digest for one in healthy if one.digest is not None)
             return ClaimedJob(job(row), recording.motor, recording.digest, digests)
 
-    def release_job(self, job_id: str, *, runner: str | None = None) -> None:
+    def release_job(self, job_id: str, *, runner: str) -> None:
         """Put a running job of the runner back as if it had not been claimed. Raises NotFoundError."""
         with self._write() as session:
             row = found(session, JobRow, job_id, "job", lock=True)
@@ -93,7 +92,7 @@ class JobRows(Sessions):
         *,
         recorded_ns: int,
         now_ns: int,
-        runner: str | None = None,
+        runner: str,
     ) -> bool:
         """Keep the result: diagnosis, job, recording and requests in one transaction; again changes nothing.
 
@@ -120,7 +119,7 @@ class JobRows(Sessions):
             diagnose_rows(session, recording.id, now_ns)
             return True
 
-    def reject_recording(self, job_id: str, reason: str, *, now_ns: int, runner: str | None = None) -> None:
+    def reject_recording(self, job_id: str, reason: str, *, now_ns: int, runner: str) -> None:
         """End a job whose record cannot be read: trying again would not help. Raises NotFoundError.
 
         No change where the job is not the runner's any more.
@@ -138,7 +137,7 @@ class JobRows(Sessions):
         now_ns: int,
         max_attempts: int,
         backoff: Backoff,
-        runner: str | None = None,
+        runner: str,
     ) -> JobState:
         """Queue a job again after a pause, or give it up after `max_attempts`; no change without the lease.
 
@@ -172,7 +171,7 @@ class JobRows(Sessions):
             return page_of(session, query, order, _job_result, limit=limit, after=after, descending=True)
 
     def current_diagnosis(self, recording_id: str) -> DiagnosisEntry | None:
-        """The latest result for a recording, None without one."""
+        """Return the latest result for a recording; None without one."""
         query = select(DiagnosisRow).where(DiagnosisRow.recording_id == recording_id, DiagnosisRow.current)
         with self._read() as session:
             row = only(session, query)
@@ -195,7 +194,7 @@ def _give_up(session: Session, row: JobRow, state: RecordingState, reason: str, 
     fail_rows(session, recording.id, reason, now_ns)
 
 
-def _is_held(row: JobRow, runner: str | None) -> bool:
+def _is_held(row: JobRow, runner: str) -> bool:
     return row.state is JobState.RUNNING and row.runner == runner
 
 

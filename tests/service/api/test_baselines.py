@@ -10,6 +10,7 @@ import pytest
 from core.diagnosis.verdict import Diagnosis
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 BASELINE = "/api/v1/motors/PUMP-A1/baseline"
@@ -26,10 +27,12 @@ class Plant:
         stored = self._store.store({f"E{number}.CFF": b"record %d" % number})
         added = self._repository.add_recording(stored, motor=motor, now_ns=NOW_NS + number).recording
         if diagnosis is not None:
-            claimed = self._repository.claim_job(now_ns=2**62)
+            claimed = self._repository.claim_job(now_ns=2**62, runner=RUNNER)
             assert claimed is not None
             recorded_ns = NOW_NS - number * SECOND_NS
-            self._repository.finish_job(claimed.job.id, diagnosis, recorded_ns=recorded_ns, now_ns=NOW_NS)
+            self._repository.finish_job(
+                claimed.job.id, diagnosis, recorded_ns=recorded_ns, now_ns=NOW_NS, runner=RUNNER
+            )
         return added.id
 
 
@@ -57,11 +60,11 @@ def test_a_worker_is_given_the_baselines_files(
     ids = [plant.recording(fault()) for _ in range(3)]
     client.put(BASELINE, json={"recording_ids": ids})
     plant.recording(motor="FAN-A2")
-    of_another = repository.claim_job(now_ns=2**62)
+    of_another = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert of_another is not None
     assert of_another.baseline == ()
     plant.recording()
-    claimed = repository.claim_job(now_ns=2**62)
+    claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
     assert [Path(store.entry(digest)).name for digest in claimed.baseline] == ["E2.CFF", "E1.CFF", "E0.CFF"]
 

@@ -3,6 +3,7 @@ import pytest
 
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 FIRST = "2025-10-09T08:53:20.000000000Z"
@@ -15,10 +16,14 @@ def diagnosed(repository: Repository, store: RecordingStore) -> list[str]:
     for i, diagnosis in enumerate([fault(0.01), fault(0.02), undiagnosable()]):
         stored = store.store({f"E{i}.CFF": b"samples %d" % i})
         added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS + i)
-        claimed = repository.claim_job(now_ns=NOW_NS + i)
+        claimed = repository.claim_job(now_ns=NOW_NS + i, runner=RUNNER)
         assert claimed is not None
         repository.finish_job(
-            claimed.job.id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + SECOND_NS
+            claimed.job.id,
+            diagnosis,
+            recorded_ns=NOW_NS + i * SECOND_NS,
+            now_ns=NOW_NS + SECOND_NS,
+            runner=RUNNER,
         )
         ids.append(added.recording.id)
     return ids

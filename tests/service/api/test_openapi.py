@@ -18,6 +18,7 @@ from service.storage import Repository, connect
 from service.storage.records import Sample
 from service.storage.states import AlarmKind, LinkState
 from testing.service.database import make_database
+from testing.service.job_runner import RUNNER, register_runner
 from testing.service.plants import NOW_NS, fault, two_motor_plant
 from testing.service.small_record import CFG, DAT
 from tests.service.api.serving import serving
@@ -42,12 +43,13 @@ def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BaseSch
     repository = Repository(engine)
     repository.sync_plant(two_motor_plant())
     store = RecordingStore(data / "recordings")
+    register_runner(repository)
     report = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     stored = store.store({"EVENT.CFG": CFG, "EVENT.DAT": DAT})
     repository.add_recording(stored, motor="PUMP-A1", recording_request_id=report.id, now_ns=NOW_NS)
-    claimed = repository.claim_job(now_ns=NOW_NS)
+    claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     repository.set_link_state("A1_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
     repository.register_gateway("here/0", host="here", process_id=1, now_ns=NOW_NS)
     repository.share_relays("here/0", ["A1_SEL710"], most=1)

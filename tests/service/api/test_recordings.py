@@ -11,6 +11,7 @@ from core.diagnosis.stator import MODELS
 from service.api import ApiContext, create_app
 from service.storage import Repository
 from service.storage.records import RemoteRecord
+from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.service.small_record import CFG, DAT, IA
 from tests.core.recordings.cev_files import REPORT
@@ -50,8 +51,8 @@ def test_an_upload_is_stored_once_and_queued(context: ApiContext, repository: Re
     assert document == same
     assert (document["source"], document["state"], document["name"]) == ("upload", "fetched", "EVENT")
     assert document["diagnosis"] is None
-    assert repository.claim_job(now_ns=2**62) is not None
-    assert repository.claim_job(now_ns=2**62) is None
+    assert repository.claim_job(now_ns=2**62, runner=RUNNER) is not None
+    assert repository.claim_job(now_ns=2**62, runner=RUNNER) is None
     assert woken
 
 
@@ -108,9 +109,11 @@ def test_too_large_an_upload(client: httpx.Client) -> None:
 def test_details_with_files_and_diagnosis(
     client: httpx.Client, repository: Repository, recording: str
 ) -> None:
-    claimed = repository.claim_job(now_ns=2**62)
+    claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS + SECOND_NS)
+    repository.finish_job(
+        claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS + SECOND_NS, runner=RUNNER
+    )
     document = client.get(f"/api/v1/recordings/{recording}").json()
     assert document["diagnosis"] == fault().as_dict()
     assert [(file["name"], file["size_bytes"]) for file in document["files"]] == [
@@ -134,9 +137,9 @@ def test_a_recording_can_be_diagnosed_again(
         None,
     )
     assert client.post(url).json()["model"] == "split-winding"
-    claimed = repository.claim_job(now_ns=2**62)
+    claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     runs = client.get(url).json()["items"]
     assert len(runs) == 3
     assert [run["result"] for run in runs if run["state"] == "done"] == [fault().as_dict()]
@@ -146,9 +149,9 @@ def test_a_recording_can_be_diagnosed_again(
 def test_a_diagnosis_the_core_does_not_know_leaves_the_recording_as_it_is(
     client: httpx.Client, repository: Repository, recording: str, field: str, known: Collection[str]
 ) -> None:
-    claimed = repository.claim_job(now_ns=2**62)
+    claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     before = client.get(f"/api/v1/recordings/{recording}").json()
     refused = client.post(f"/api/v1/recordings/{recording}/diagnoses", json={field: "guess"})
     assert refused.status_code == 422
@@ -157,7 +160,7 @@ def test_a_diagnosis_the_core_does_not_know_leaves_the_recording_as_it_is(
     assert error["location"] == f"body.{field}"
     assert all(name in error["message"] for name in known)
     assert client.get(f"/api/v1/recordings/{recording}").json() == before
-    assert repository.claim_job(now_ns=2**62) is None
+    assert repository.claim_job(now_ns=2**62, runner=RUNNER) is None
 
 
 def test_files_come_back_as_they_came(client: httpx.Client, recording: str) -> None:

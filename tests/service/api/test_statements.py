@@ -10,6 +10,7 @@ from sqlalchemy import Connection, Engine, event
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.states import AlarmKind, LinkState
+from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, fault, motor, two_motor_plant
 
 Asked = Callable[[str], Sequence[str]]
@@ -41,9 +42,9 @@ def recording_id(repository: Repository, store: RecordingStore) -> str:
 
 
 def diagnose(repository: Repository) -> None:
-    claimed = repository.claim_job(now_ns=NOW_NS)
+    claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
 
 
 def test_the_metrics_read_no_table_that_grows(

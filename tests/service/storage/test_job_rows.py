@@ -10,6 +10,7 @@ from service.storage.errors import RunnerEndedError, UnstorableDiagnosisError
 from service.storage.records import ClaimedJob, RemoteRecord
 from service.storage.states import JobState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
+from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
 
 
@@ -37,7 +38,7 @@ def recording_id(repository: Repository, store: RecordingStore) -> str:
 
 
 def claim(repository: Repository, now_ns: int = NOW_NS) -> ClaimedJob:
-    claimed = repository.claim_job(now_ns=now_ns)
+    claimed = repository.claim_job(now_ns=now_ns, runner=RUNNER)
     assert claimed is not None
     return claimed
 
@@ -50,14 +51,14 @@ def request_state(repository: Repository) -> tuple[RecordingRequestState, str | 
 def test_a_job_is_claimed_once(repository: Repository, recording_id: str) -> None:
     claimed = claim(repository)
     assert (claimed.job.state, claimed.job.attempts, claimed.job.recording_id) == ("running", 1, recording_id)
-    assert repository.claim_job(now_ns=NOW_NS) is None
+    assert repository.claim_job(now_ns=NOW_NS, runner=RUNNER) is None
 
 
 def test_a_clock_that_is_set_back_holds_up_no_job(repository: Repository, recording_id: str) -> None:
     an_hour_ago_ns = NOW_NS - 3600 * SECOND_NS
     first = claim(repository, now_ns=an_hour_ago_ns)
-    repository.retry_or_fail_job(first.job.id, "broken", now_ns=NOW_NS, **AGAIN)
-    assert repository.claim_job(now_ns=NOW_NS + SECOND_NS) is None, "it is tried again later"
+    repository.retry_or_fail_job(first.job.id, "broken", now_ns=NOW_NS, runner=RUNNER, **AGAIN)
+    assert repository.claim_job(now_ns=NOW_NS + SECOND_NS, runner=RUNNER) is None, "it is tried again later"
     second = claim(repository, now_ns=an_hour_ago_ns + SECOND_NS)
     assert (second.job.id, second.job.finished_ns) == (first.job.id, None)
 
@@ -65,7 +66,9 @@ def test_a_clock_that_is_set_back_holds_up_no_job(repository: Repository, record
 def test_a_result_ends_job_recording_and_request(repository: Repository, recording_id: str) -> None:
     job_id = claim(repository).job.id
     for _ in range(2):
-        repository.finish_job(job_id, fault(), recorded_ns=NOW_NS - SECOND_NS, now_ns=NOW_NS + SECOND_NS)
+        repository.finish_job(
+            job_id, fault(), recorded_ns=NOW_NS - SECOND_NS, now_ns=NOW_NS + SECOND_NS, runner=RUNNER
+        )
     assert repository.job(recording_id, job_id).job.state is JobState.DONE
     recording = repository.recording(recording_id)
     assert (recording.state, recording.recorded_ns) == (RecordingState.DIAGNOSED, NOW_NS - SECOND_NS)
@@ -78,26 +81,35 @@ def test_a_result_ends_job_recording_and_request(repository: Repository, recordi
 
 
 def test_an_unreadable_record_is_rejected_with_the_reason(repository: Repository, recording_id: str) -> None:
-    repository.reject_recording(claim(repository).job.id, "E.CFF: checksum", now_ns=NOW_NS)
+    repository.reject_recording(claim(repository).job.id, "E.CFF: checksum", now_ns=NOW_NS, runner=RUNNER)
     recording = repository.recording(recording_id)
     assert (recording.state, recording.reason) == (RecordingState.REJECTED, "E.CFF: checksum")
     assert request_state(repository) == (RecordingRequestState.FAILED, "E.CFF: checksum")
-    assert repository.claim_job(now_ns=NOW_NS + 1000 * SECOND_NS) is None
+    assert repository.claim_job(now_ns=NOW_NS + 1000 * SECOND_NS, runner=RUNNER) is None
 
 
 def test_an_error_is_retried_later_and_given_up_at_last(repository: Repository, recording_id: str) -> None:
     now_ns = NOW_NS
     for delay_s in (2, 4):
         job_id = claim(repository, now_ns).job.id
-        assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns, **AGAIN) is JobState.QUEUED
-        assert repository.claim_job(now_ns=now_ns + delay_s * SECOND_NS - 1) is None
+        assert (
+            repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns, runner=RUNNER, **AGAIN)
+            is JobState.QUEUED
+        )
+        assert repository.claim_job(now_ns=now_ns + delay_s * SECOND_NS - 1, runner=RUNNER) is None
         now_ns += delay_s * SECOND_NS
     job_id = claim(repository, now_ns).job.id
-    assert repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns, **AGAIN) is JobState.FAILED
+    assert (
+        repository.retry_or_fail_job(job_id, "killed", now_ns=now_ns, runner=RUNNER, **AGAIN)
+        is JobState.FAILED
+    )
     reason = "gave up after 3 attempts: killed"
     assert repository.recording(recording_id).state is RecordingState.FAILED
     assert request_state(repository) == (RecordingRequestState.FAILED, reason)
-    assert repository.retry_or_fail_job(job_id, "again", now_ns=now_ns, **AGAIN) is JobState.FAILED
+    assert (
+        repository.retry_or_fail_job(job_id, "again", now_ns=now_ns, runner=RUNNER, **AGAIN)
+        is JobState.FAILED
+    )
 
 
 def register(repository: Repository, runner: str, installation: str = "ours") -> int:
@@ -160,25 +172,27 @@ def test_what_a_runner_without_its_lease_brings_is_not_kept(
 
 
 def test_a_released_job_has_lost_no_attempt(repository: Repository, recording_id: str) -> None:
-    repository.release_job(claim(repository).job.id)
+    repository.release_job(claim(repository).job.id, runner=RUNNER)
     assert claim(repository).job.attempts == 1
 
 
 def test_the_latest_diagnosis_of_a_recording_counts(repository: Repository, recording_id: str) -> None:
-    repository.finish_job(claim(repository).job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.finish_job(
+        claim(repository).job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER
+    )
     job = repository.request_diagnosis(recording_id, method="genetic", now_ns=NOW_NS + 1)
     claimed = claim(repository, NOW_NS + 1)
     assert (claimed.job.id, claimed.job.method) == (job.id, "genetic")
-    repository.finish_job(job.id, fault(0.06), recorded_ns=NOW_NS, now_ns=NOW_NS + 2)
+    repository.finish_job(job.id, fault(0.06), recorded_ns=NOW_NS, now_ns=NOW_NS + 2, runner=RUNNER)
     (point,) = repository.trend("PUMP-A1", "mu_f", limit=10).items
     assert point.value == 0.06
     assert [one.job.method for one in repository.jobs(recording_id, limit=10).items] == ["genetic", "hybrid"]
 
 
 def test_a_failed_repetition_leaves_the_earlier_diagnosis(repository: Repository, recording_id: str) -> None:
-    repository.finish_job(claim(repository).job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.finish_job(claim(repository).job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     repository.request_diagnosis(recording_id, now_ns=NOW_NS)
-    repository.reject_recording(claim(repository).job.id, "no longer readable", now_ns=NOW_NS)
+    repository.reject_recording(claim(repository).job.id, "no longer readable", now_ns=NOW_NS, runner=RUNNER)
     assert repository.recording(recording_id).state is RecordingState.DIAGNOSED
     assert repository.current_diagnosis(recording_id) is not None
 
@@ -195,7 +209,7 @@ def test_a_result_that_is_no_json_is_refused(repository: Repository, recording_i
     job_id = claim(repository).job.id
     broken = replace(fault(), residual_rms_A=float("nan"))
     with pytest.raises(UnstorableDiagnosisError, match="not JSON compliant"):
-        repository.finish_job(job_id, broken, recorded_ns=NOW_NS, now_ns=NOW_NS)
+        repository.finish_job(job_id, broken, recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     assert repository.job(recording_id, job_id).job.state is JobState.RUNNING
 
 
@@ -203,7 +217,9 @@ def test_trend_and_health(repository: Repository, store: RecordingStore) -> None
     for i, diagnosis in enumerate([fault(0.01), fault(0.02), undiagnosable()]):
         repository.add_recording(store.store({f"U{i}.CFF": bytes([i])}), motor="FAN-A2", now_ns=NOW_NS + i)
         job_id = claim(repository, NOW_NS + i).job.id
-        repository.finish_job(job_id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + 9)
+        repository.finish_job(
+            job_id, diagnosis, recorded_ns=NOW_NS + i * SECOND_NS, now_ns=NOW_NS + 9, runner=RUNNER
+        )
     points = repository.trend("FAN-A2", "mu_f", limit=10).items
     assert [(p.recorded_ns, p.value, str(p.verdict)) for p in points] == [
         (NOW_NS, 0.01, "fault"),

@@ -5,6 +5,7 @@ from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import NotFoundError, Repository
 from service.storage.records import ClockReading, RecordingEntry, RemoteRecord
 from service.storage.states import ClockQuality, RecordingRequestState, RecordingState
+from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault
 
 REMOTE = RemoteRecord("C_0001", 11, NOW_NS)
@@ -53,7 +54,7 @@ def test_a_pulled_record_is_stored_and_queued_with_its_recording_request(
     assert repository.recording_request(request.id).recording_id == announced.id
     files = [(f.name, f.size_bytes, f.sha256) for f in repository.recording_files(announced.id)]
     assert files == [(f.name, f.size_bytes, f.sha256) for f in stored.files]
-    claimed = repository.claim_job(now_ns=NOW_NS + 1)
+    claimed = repository.claim_job(now_ns=NOW_NS + 1, runner=RUNNER)
     assert claimed is not None
     assert (claimed.motor, claimed.digest) == ("PUMP-A1", stored.digest)
 
@@ -101,9 +102,9 @@ def test_a_recording_diagnosed_before_ends_a_request_that_gets_it(
     repository: Repository, store: RecordingStore
 ) -> None:
     repository.add_recording(record(store), motor="PUMP-A1", now_ns=NOW_NS)
-    claimed = repository.claim_job(now_ns=NOW_NS)
+    claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS)
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.add_recording(
         record(store),
@@ -228,7 +229,7 @@ def test_nothing_is_added_when_a_part_fails(repository: Repository, store: Recor
     with pytest.raises(NotFoundError, match="there is no event report 'nope'"):
         repository.add_recording(record(store), motor="PUMP-A1", recording_request_id="nope", now_ns=NOW_NS)
     assert repository.recordings(limit=10).items == ()
-    assert repository.claim_job(now_ns=NOW_NS) is None
+    assert repository.claim_job(now_ns=NOW_NS, runner=RUNNER) is None
     with pytest.raises(NotFoundError, match="there is no motor 'X'"):
         repository.add_recording(record(store), motor="X", now_ns=NOW_NS)
     with pytest.raises(ValueError, match="ied and remote"):
@@ -279,10 +280,12 @@ def test_a_record_of_another_day_loses_the_reading(
 ) -> None:
     """It waited in a relay that could not be reached; its times may be local ones."""
     stored = stored_with_a_clock(repository, store, NOW_NS)
-    claimed = repository.claim_job(now_ns=NOW_NS)
+    claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
     by_the_relay_s_clock_ns = NOW_NS + OFFSET_NS + made_s * SECOND_NS
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=by_the_relay_s_clock_ns, now_ns=NOW_NS)
+    repository.finish_job(
+        claimed.job.id, fault(), recorded_ns=by_the_relay_s_clock_ns, now_ns=NOW_NS, runner=RUNNER
+    )
     found = repository.recording(stored.id)
     assert (found.clock_offset_ns, found.clock_quality) == (
         (OFFSET_NS, ClockQuality.SYNCHRONISED) if kept else (None, None)
