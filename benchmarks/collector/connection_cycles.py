@@ -135,7 +135,7 @@ class Visits:
         session = RelaySession(self.relay, "PUMP-A1", self.repository, self.store, self.settings)
         thread = Thread(target=session.run)
         thread.start()
-        answered = eventually(lambda: self.repository.ied(self.relay.name).link_state is LinkState.UP, 30.0)
+        answered = eventually(lambda: self.repository.relay(self.relay.name).link_state is LinkState.UP, 30.0)
         session.stop()
         thread.join()
         if not answered:

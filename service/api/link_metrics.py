@@ -27,10 +27,10 @@ class LinkMetrics(Collector):
             "When the relay last answered (UNIX time)",
             labels=LABELS,
         )
-        for ied in self._ieds():
-            up.add_metric([ied.name], ied.link_state is LinkState.UP)
-            if ied.last_success_ns is not None:
-                success.add_metric([ied.name], ied.last_success_ns / NANOSECONDS_PER_SECOND)
+        for relay in self._relays():
+            up.add_metric([relay.name], relay.link_state is LinkState.UP)
+            if relay.last_success_ns is not None:
+                success.add_metric([relay.name], relay.last_success_ns / NANOSECONDS_PER_SECOND)
         held = GaugeMetricFamily("mcc_gateway_relays", "Relays held by the gateway", labels=["gateway"])
         for gateway in self._repository.gateways():
             held.add_metric([gateway.id], gateway.relays)
@@ -59,10 +59,10 @@ class LinkMetrics(Collector):
         yield trip
         yield from counters.values()
 
-    def _ieds(self) -> Iterator[IedEntry]:
+    def _relays(self) -> Iterator[IedEntry]:
         after = None
         while True:
-            page = self._repository.ieds(limit=PAGE, after=after)
+            page = self._repository.relays(limit=PAGE, after=after)
             yield from page.items
             if page.next is None:
                 return

@@ -33,14 +33,14 @@ LATEST_CHANGES = 20
 @router.get("/ieds", responses=problems())
 def list_ieds(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Ied]:
     """Relays and the state of their links, by name."""
-    return page(context.repository.ieds(limit=limit, after=decode(cursor, str)), Ied.model_validate)
+    return page(context.repository.relays(limit=limit, after=decode(cursor, str)), Ied.model_validate)
 
 
 @router.get("/ieds/{name}", responses=problems(404))
 def get_ied(context: Context, name: Name) -> IedDetails:
     """One relay, with figures and history of its link and the alarms that stand."""
     repository = context.repository
-    ied = Ied.model_validate(repository.ied(name))
+    ied = Ied.model_validate(repository.relay(name))
     changes = repository.link_changes(name, limit=LATEST_CHANGES)
     quarantine = repository.quarantine(name)
     findings = repository.relay_findings(name)
@@ -100,6 +100,6 @@ def list_alarms(
 ) -> Page[Alarm]:
     """Alarms of the relays, latest first."""
     alarms = context.repository.alarms(
-        ied=ied, standing=standing, limit=limit, after=decode(cursor, int, str)
+        relay=ied, standing=standing, limit=limit, after=decode(cursor, int, str)
     )
     return page(alarms, Alarm.model_validate)

@@ -59,7 +59,7 @@ class OrphanedRequestEnder:
         self._checked_s = now_s
         self._end_dead_gateways(now_s)
         held = self._repository.held_relays()
-        self._held_for_s = {ied: self._held_for_s.get(ied, 0.0) + passed_s for ied in held}
+        self._held_for_s = {relay: self._held_for_s.get(relay, 0.0) + passed_s for relay in held}
         orphaned_for_s = {}
         for request in self._repository.all_open_recording_requests():
             waited_s = orphaned_for_s[request.id] = self._waited_s(request, passed_s)

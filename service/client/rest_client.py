@@ -77,9 +77,9 @@ class ServiceClient:
         path = f"{API}/motors/{segment(motor)}/event-reports"
         return _document(self._request("POST", path, {}, headers))
 
-    def release(self, ied: str) -> None:
+    def release(self, relay: str) -> None:
         """End the quarantine of a relay. Raises ServiceError."""
-        self._request("DELETE", f"{API}/ieds/{segment(ied)}/quarantine", {})
+        self._request("DELETE", f"{API}/ieds/{segment(relay)}/quarantine", {})
 
     def event_report(self, report_id: str) -> Document:
         """How an event report is doing. Raises ServiceError."""

@@ -47,10 +47,10 @@ class RunnerEndedError(StorageError):
 class LeaseLostError(StorageError):
     """A gateway does not hold the lease, of all its relays or of one, that it needs for what it wants."""
 
-    def __init__(self, gateway: str, ied: str | None = None) -> None:
+    def __init__(self, gateway: str, relay: str | None = None) -> None:
         self.gateway = gateway
-        self.ied = ied
-        what = "any lease" if ied is None else f"the lease of {ied}"
+        self.relay = relay
+        what = "any lease" if relay is None else f"the lease of {relay}"
         super().__init__(f"gateway {gateway} does not hold {what} any more")
 
 

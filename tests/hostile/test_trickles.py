@@ -149,7 +149,7 @@ def test_a_session_puts_the_trickle_off_and_says_so(dialogue: Dialogue, bench: B
         bench.relay = replace(bench.relay, port=port)
         with bench.session():
             assert eventually(lambda: bench.link() is LinkState.DOWN, within_s=10)
-            reason = bench.repository.ied(bench.relay.name).link_reason
+            reason = bench.repository.relay(bench.relay.name).link_reason
     assert reason is not None
     assert "expected at least 100 bytes a second" in reason
 

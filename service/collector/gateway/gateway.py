@@ -94,7 +94,7 @@ class Gateway:
                     self._renew_leases()
                     next_renewal_s = boot_time_s() + self._settings.lease_s / RENEWALS_PER_LEASE
                 self._give_back_ended()
-                for relay in self._repository.ieds_with_requests():
+                for relay in self._repository.relays_with_requests():
                     if relay in self._sessions:
                         self._sessions[relay].session.wake()
             except SQLAlchemyError as error:

@@ -111,7 +111,7 @@ class RecordLedger:
             stored,
             motor=self._motor,
             now_ns=time.time_ns(),
-            ied=self._relay,
+            relay=self._relay,
             remote=state.remote,
             recording_request_id=recording_request_id,
         )

@@ -55,7 +55,7 @@ def _known(relays: frozenset[str], repository: Repository) -> frozenset[str]:
     known = set()
     for relay in relays:
         with suppress(NotFoundError):
-            known.add(repository.ied(relay).name)
+            known.add(repository.relay(relay).name)
     return frozenset(known)
 
 

@@ -1,4 +1,7 @@
-"""Tables. Times are UTC, integer nanoseconds since 1970 (columns ..._ns); ids are random UUIDs as text."""
+"""Tables. Times are UTC, integer nanoseconds since 1970 (columns ..._ns); ids are random UUIDs as text.
+
+The code says relay; the tables, their columns and the REST API say IED, as IEC 61850 does.
+"""
 
 from service.storage.models.base import Base
 from service.storage.models.counts import StateCountRow

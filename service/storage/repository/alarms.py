@@ -16,16 +16,16 @@ MOST_CLEARED = 1000
 
 
 class AlarmRows(Sessions):
-    def raise_alarm(self, ied: str, kind: AlarmKind, subject: str, reason: str, *, now_ns: int) -> Alarm:
+    def raise_alarm(self, relay: str, kind: AlarmKind, subject: str, reason: str, *, now_ns: int) -> Alarm:
         """An alarm that stands from now on; the one that stands already, with the new reason.
 
         Raises NotFoundError.
         """
         with self._write() as session:
-            found(session, IedRow, ied, "IED", lock=True)
-            return alarm(raised(session, ied, kind, subject, reason, now_ns))
+            found(session, IedRow, relay, "IED", lock=True)
+            return alarm(raised(session, relay, kind, subject, reason, now_ns))
 
-    def clear_alarms(self, ied: str, alarm_ids: Collection[str], *, now_ns: int) -> None:
+    def clear_alarms(self, relay: str, alarm_ids: Collection[str], *, now_ns: int) -> None:
         """Ends alarms; those that ended before stay as they are."""
         with self._write() as session:
             session.execute(
@@ -33,15 +33,15 @@ class AlarmRows(Sessions):
                 .where(AlarmRow.id.in_(alarm_ids), AlarmRow.cleared_ns.is_(None))
                 .values(cleared_ns=now_ns)
             )
-            cleared = select(AlarmRow.id).where(AlarmRow.ied == ied, AlarmRow.cleared_ns.is_not(None))
+            cleared = select(AlarmRow.id).where(AlarmRow.ied == relay, AlarmRow.cleared_ns.is_not(None))
             too_old = cleared.order_by(AlarmRow.cleared_ns.desc(), AlarmRow.id.desc()).offset(MOST_CLEARED)
             session.execute(delete(AlarmRow).where(AlarmRow.id.in_(session.scalars(too_old).all())))
 
-    def standing_alarms(self, ied: str) -> tuple[Alarm, ...]:
+    def standing_alarms(self, relay: str) -> tuple[Alarm, ...]:
         """Alarms of a relay that are not cleared, oldest first."""
         query = (
             select(AlarmRow)
-            .where(AlarmRow.ied == ied, AlarmRow.cleared_ns.is_(None))
+            .where(AlarmRow.ied == relay, AlarmRow.cleared_ns.is_(None))
             .order_by(AlarmRow.raised_ns, AlarmRow.id)
         )
         with self._read() as session:
@@ -52,13 +52,13 @@ class AlarmRows(Sessions):
         *,
         limit: int,
         after: Cursor | None = None,
-        ied: str | None = None,
+        relay: str | None = None,
         standing: bool | None = None,
     ) -> Page[Alarm]:
         """Latest first; of one relay or of all; only those that stand, only those cleared, or both."""
         query = select(AlarmRow)
-        if ied is not None:
-            query = query.where(AlarmRow.ied == ied)
+        if relay is not None:
+            query = query.where(AlarmRow.ied == relay)
         if standing is not None:
             query = query.where(
                 AlarmRow.cleared_ns.is_(None) if standing else AlarmRow.cleared_ns.is_not(None)
@@ -68,28 +68,28 @@ class AlarmRows(Sessions):
             return page_of(session, query, order, alarm, limit=limit, after=after, descending=True)
 
 
-def raised(session: Session, ied: str, kind: AlarmKind, subject: str, reason: str, now_ns: int) -> AlarmRow:
+def raised(session: Session, relay: str, kind: AlarmKind, subject: str, reason: str, now_ns: int) -> AlarmRow:
     """The alarm that stands, with this reason."""
     standing = select(AlarmRow).where(
-        AlarmRow.ied == ied,
+        AlarmRow.ied == relay,
         AlarmRow.kind == kind,
         AlarmRow.subject == subject,
         AlarmRow.cleared_ns.is_(None),
     )
     row = only(session, standing)
     if row is None:
-        row = AlarmRow(id=str(uuid.uuid4()), ied=ied, kind=kind, subject=subject, raised_ns=now_ns)
+        row = AlarmRow(id=str(uuid.uuid4()), ied=relay, kind=kind, subject=subject, raised_ns=now_ns)
         session.add(row)
     row.reason = reason
     session.flush()
     return row
 
 
-def clear_standing(session: Session, ied: str, kind: AlarmKind, now_ns: int) -> None:
+def clear_standing(session: Session, relay: str, kind: AlarmKind, now_ns: int) -> None:
     """Ends a relay's alarms of a kind."""
     session.execute(
         update(AlarmRow)
-        .where(AlarmRow.ied == ied, AlarmRow.kind == kind, AlarmRow.cleared_ns.is_(None))
+        .where(AlarmRow.ied == relay, AlarmRow.kind == kind, AlarmRow.cleared_ns.is_(None))
         .values(cleared_ns=now_ns)
     )
 

@@ -21,9 +21,9 @@ class FindingsRows(Sessions):
                 )
             )
 
-    def relay_findings(self, ied: str) -> RelayFindings | None:
+    def relay_findings(self, relay: str) -> RelayFindings | None:
         """None before the first visit. Raises NotFoundError."""
         with self._read() as session:
-            found(session, IedRow, ied, "IED")
-            row = session.get(RelayFindingsRow, ied)
+            found(session, IedRow, relay, "IED")
+            row = session.get(RelayFindingsRow, relay)
             return None if row is None else record_of(RelayFindings, row)

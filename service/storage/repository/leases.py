@@ -55,12 +55,12 @@ class LeaseRows(Sessions):
             in_service = set(session.scalars(select(IedRow.name).where(IedRow.in_service)))
             wanted = sorted(in_service.intersection(relays))
             leases = {row.ied: row.gateway for row in session.scalars(select(LeaseRow))}
-            held = {ied for ied, holder in leases.items() if holder == gateway}
+            held = {relay for relay, holder in leases.items() if holder == gateway}
             fair = min(most, -(-len(wanted) // len(rows)))
-            free = [ied for ied in wanted if ied not in leases]
-            for ied in free[: max(0, fair - len(held))]:
-                if _take(session, ied, gateway):
-                    held.add(ied)
+            free = [relay for relay in wanted if relay not in leases]
+            for relay in free[: max(0, fair - len(held))]:
+                if _take(session, relay, gateway):
+                    held.add(relay)
             staying = sorted(held.intersection(wanted))[:fair]
             return Share(
                 frozenset(held), frozenset(held.difference(staying)), {r.id: r.heartbeats for r in rows}
@@ -107,25 +107,25 @@ class LeaseRows(Sessions):
         with self._read() as session:
             return {row.id: row.heartbeats for row in session.scalars(select(GatewayRow))}
 
-    def gateway_of(self, ied: str) -> str | None:
+    def gateway_of(self, relay: str) -> str | None:
         """The gateway that holds a relay; None while none does."""
         with self._read() as session:
-            row = session.get(LeaseRow, ied)
+            row = session.get(LeaseRow, relay)
             return None if row is None else row.gateway
 
 
-def require_lease(session: Session, ied: str, gateway: str) -> None:
+def require_lease(session: Session, relay: str, gateway: str) -> None:
     """Raises LeaseLostError unless the gateway holds the relay."""
-    row = session.get(LeaseRow, ied)
+    row = session.get(LeaseRow, relay)
     if row is None or row.gateway != gateway:
-        raise LeaseLostError(gateway, ied)
+        raise LeaseLostError(gateway, relay)
 
 
-def _take(session: Session, ied: str, gateway: str) -> bool:
+def _take(session: Session, relay: str, gateway: str) -> bool:
     """False where another gateway was faster, which a database with several writers allows."""
     try:
         with session.begin_nested():
-            session.add(LeaseRow(ied=ied, gateway=gateway))
+            session.add(LeaseRow(ied=relay, gateway=gateway))
     except IntegrityError:
         return False
     return True

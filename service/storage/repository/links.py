@@ -42,7 +42,7 @@ _FIGURES = (
 class LinkRows(Sessions):
     def set_link_state(
         self,
-        ied: str,
+        relay: str,
         state: LinkState,
         reason: str | None,
         *,
@@ -56,12 +56,12 @@ class LinkRows(Sessions):
         day_bytes: a UTC day (days since 1970) and all that counts against its limit. Raises NotFoundError.
         """
         with self._write() as session:
-            row = found(session, IedRow, ied, "IED", lock=True)
+            row = found(session, IedRow, relay, "IED", lock=True)
             change_link(session, row, state, reason, now_ns)
             if state is LinkState.UP:
                 row.last_success_ns = now_ns
             if traffic is not None:
-                _add(session, ied, traffic, round_trip_s, day_bytes)
+                _add(session, relay, traffic, round_trip_s, day_bytes)
 
     def note_links(self, notes: Sequence[LinkNote]) -> None:
         """Adds to the figures of links that are up and stay so. One of an unknown relay is passed over."""
@@ -93,20 +93,20 @@ class LinkRows(Sessions):
             for row in session.scalars(known).all():
                 change_link(session, row, LinkState.UNKNOWN, reason, now_ns)
 
-    def link_changes(self, ied: str, *, limit: int, after: Cursor | None = None) -> Page[LinkChange]:
+    def link_changes(self, relay: str, *, limit: int, after: Cursor | None = None) -> Page[LinkChange]:
         """Changes of a relay's link, latest first. Raises NotFoundError."""
-        query = select(LinkChangeRow).where(LinkChangeRow.ied == ied)
+        query = select(LinkChangeRow).where(LinkChangeRow.ied == relay)
         order: Order = [LinkChangeRow.changed_ns, LinkChangeRow.id]
         with self._read() as session:
-            found(session, IedRow, ied, "IED")
+            found(session, IedRow, relay, "IED")
             return page_of(session, query, order, _link_change, limit=limit, after=after, descending=True)
 
-    def link_figures(self, ied: str) -> LinkFigures:
+    def link_figures(self, relay: str) -> LinkFigures:
         """What went over a relay's link; zeros before anything did. Raises NotFoundError."""
         with self._read() as session:
-            found(session, IedRow, ied, "IED")
-            row = session.get(LinkFiguresRow, ied)
-            return LinkFigures(ied) if row is None else record_of(LinkFigures, row)
+            found(session, IedRow, relay, "IED")
+            row = session.get(LinkFiguresRow, relay)
+            return LinkFigures(relay) if row is None else record_of(LinkFigures, row)
 
     def all_link_figures(self) -> tuple[LinkFigures, ...]:
         """Of every relay in service that was ever spoken to, by name."""
@@ -142,15 +142,15 @@ def change_link(session: Session, row: IedRow, state: LinkState, reason: str | N
 
 def _add(
     session: Session,
-    ied: str,
+    relay: str,
     traffic: LinkTraffic,
     round_trip_s: float | None,
     day_bytes: tuple[int, int] | None,
 ) -> None:
-    row = session.get(LinkFiguresRow, ied)
+    row = session.get(LinkFiguresRow, relay)
     if row is None:
         row = LinkFiguresRow(
-            ied=ied, connections=0, received_bytes=0, reports=0, report_gaps=0, day=0, day_bytes=0
+            ied=relay, connections=0, received_bytes=0, reports=0, report_gaps=0, day=0, day_bytes=0
         )
         session.add(row)
     row.connections += traffic.connections

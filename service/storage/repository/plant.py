@@ -43,27 +43,27 @@ class PlantRows(Sessions):
                     )
                 )
 
-    def note_clock(self, ied: str, reading: ClockReading) -> None:
+    def note_clock(self, relay: str, reading: ClockReading) -> None:
         """Remembers how far a relay's clock is from ours. Raises NotFoundError."""
         with self._write() as session:
-            row = found(session, IedRow, ied, "IED")
+            row = found(session, IedRow, relay, "IED")
             row.clock_offset_ns, row.clock_uncertainty_ns = reading.offset_ns, reading.uncertainty_ns
             row.clock_quality, row.clock_measured_ns = reading.quality, reading.measured_ns
 
-    def entry_id(self, ied: str, report_control: str | None = None) -> bytes | None:
+    def entry_id(self, relay: str, report_control: str | None = None) -> bytes | None:
         """EntryID of the last buffered report whose records are safe here; None for another block's.
 
         Each block has a buffer of its own. Raises NotFoundError.
         """
         with self._read() as session:
-            row = found(session, IedRow, ied, "IED")
+            row = found(session, IedRow, relay, "IED")
             unknown = report_control is None or row.entry_report_control is None
             return row.entry_id if unknown or row.entry_report_control == report_control else None
 
-    def save_entry_id(self, ied: str, entry_id: bytes, report_control: str | None = None) -> None:
+    def save_entry_id(self, relay: str, entry_id: bytes, report_control: str | None = None) -> None:
         """Remembers where to resume the buffered report of a block. Raises NotFoundError."""
         with self._write() as session:
-            row = found(session, IedRow, ied, "IED")
+            row = found(session, IedRow, relay, "IED")
             row.entry_id, row.entry_report_control = entry_id, report_control
 
     def sites(self, *, limit: int, after: Cursor | None = None) -> Page[SiteEntry]:
@@ -71,20 +71,20 @@ class PlantRows(Sessions):
             query = select(SiteRow).where(SiteRow.in_service)
             return page_of(session, query, [SiteRow.name], _site, limit=limit, after=after)
 
-    def ieds(self, *, limit: int, after: Cursor | None = None) -> Page[IedEntry]:
+    def relays(self, *, limit: int, after: Cursor | None = None) -> Page[IedEntry]:
         with self._read() as session:
             query = select(IedRow).where(IedRow.in_service)
-            return page_of(session, query, [IedRow.name], _ied, limit=limit, after=after)
+            return page_of(session, query, [IedRow.name], _relay, limit=limit, after=after)
 
-    def ied(self, name: str) -> IedEntry:
+    def relay(self, name: str) -> IedEntry:
         """Raises NotFoundError."""
         with self._read() as session:
-            return _ied(found(session, IedRow, name, "IED"))
+            return _relay(found(session, IedRow, name, "IED"))
 
-    def is_in_service(self, ied: str) -> bool:
+    def is_in_service(self, relay: str) -> bool:
         """Whether a relay is in the plant's files. Raises NotFoundError."""
         with self._read() as session:
-            return found(session, IedRow, ied, "IED").in_service
+            return found(session, IedRow, relay, "IED").in_service
 
     def motors(self, *, limit: int, after: Cursor | None = None) -> Page[MotorEntry]:
         with self._read() as session:
@@ -101,7 +101,7 @@ def _site(row: SiteRow) -> SiteEntry:
     return record_of(SiteEntry, row)
 
 
-def _ied(row: IedRow) -> IedEntry:
+def _relay(row: IedRow) -> IedEntry:
     return record_of(IedEntry, row)
 
 

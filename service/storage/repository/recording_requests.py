@@ -80,7 +80,7 @@ class RecordingRequestRows(Sessions):
                 session, query, order, recording_request, limit=limit, after=after, descending=True
             )
 
-    def ieds_with_requests(self) -> tuple[str, ...]:
+    def relays_with_requests(self) -> tuple[str, ...]:
         """Relays that have a trigger to be given now: none that still owe the record of an earlier one."""
         # Two looks into the index a relay: what was asked for in all those years does not matter.
         waiting, outstanding = (
@@ -91,11 +91,11 @@ class RecordingRequestRows(Sessions):
         with self._read() as session:
             return tuple(session.scalars(query))
 
-    def open_recording_requests(self, ied: str) -> tuple[RecordingRequest, ...]:
+    def open_recording_requests(self, relay: str) -> tuple[RecordingRequest, ...]:
         """Requests to a relay that have no recording yet, oldest first: the work left after a restart."""
         query = (
             select(RecordingRequestRow)
-            .where(RecordingRequestRow.ied == ied, RecordingRequestRow.state.in_(OPEN))
+            .where(RecordingRequestRow.ied == relay, RecordingRequestRow.state.in_(OPEN))
             .order_by(RecordingRequestRow.requested_ns, RecordingRequestRow.id)
         )
         with self._read() as session:

@@ -38,7 +38,7 @@ class AddedRecording:
 
 class RecordingRows(Sessions):
     def remote_recordings(
-        self, ied: str, remotes: Collection[RemoteRecord]
+        self, relay: str, remotes: Collection[RemoteRecord]
     ) -> dict[RemoteRecord, RecordingEntry]:
         """The recordings of those of these records of a relay that were seen before.
 
@@ -55,7 +55,7 @@ class RecordingRows(Sessions):
                 some = asked[first : first + RECORDS_A_QUERY]
                 # The names let the primary key be searched; the whole key keeps out others of these names.
                 of_these = query.where(
-                    RemoteRecordRow.ied == ied,
+                    RemoteRecordRow.ied == relay,
                     RemoteRecordRow.name.in_({remote.name for remote in some}),
                     listed.in_([astuple(remote) for remote in some]),
                 )
@@ -63,23 +63,23 @@ class RecordingRows(Sessions):
                     known[record_of(RemoteRecord, row)] = recording(held)
         return known
 
-    def announced_remote_records(self, ied: str) -> frozenset[RemoteRecord]:
+    def announced_remote_records(self, relay: str) -> frozenset[RemoteRecord]:
         """Records of a relay that were seen and are neither stored nor refused."""
         query = (
             select(RemoteRecordRow)
             .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
-            .where(RemoteRecordRow.ied == ied, RecordingRow.state == RecordingState.ANNOUNCED)
+            .where(RemoteRecordRow.ied == relay, RecordingRow.state == RecordingState.ANNOUNCED)
         )
         with self._read() as session:
             return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
 
-    def unfetched_names(self, ied: str, *, seen_before_ns: int) -> frozenset[str]:
+    def unfetched_names(self, relay: str, *, seen_before_ns: int) -> frozenset[str]:
         """Of records that were seen in a relay before that time and are neither stored nor refused yet."""
         query = (
             select(RemoteRecordRow.name)
             .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
             .where(
-                RemoteRecordRow.ied == ied,
+                RemoteRecordRow.ied == relay,
                 RecordingRow.state == RecordingState.ANNOUNCED,
                 RecordingRow.announced_ns < seen_before_ns,
             )
@@ -87,10 +87,10 @@ class RecordingRows(Sessions):
         with self._read() as session:
             return frozenset(session.scalars(query))
 
-    def give_up_remote_record(self, ied: str, remote: RemoteRecord, reason: str) -> None:
+    def give_up_remote_record(self, relay: str, remote: RemoteRecord, reason: str) -> None:
         """Rejects an announced record that the relay does not list any more; it is new if it does again."""
         with self._write() as session:
-            link = _link(session, ied, remote)
+            link = _link(session, relay, remote)
             if link is None:
                 return
             row = found(session, RecordingRow, link.recording_id, "recording")
@@ -100,18 +100,18 @@ class RecordingRows(Sessions):
                 session.delete(link)
 
     def announce_recording(
-        self, ied: str, motor: str, remote: RemoteRecord, *, now_ns: int
+        self, relay: str, motor: str, remote: RemoteRecord, *, now_ns: int
     ) -> RecordingEntry:
         """The recording of what a relay lists, announced unless it is known. Raises NotFoundError."""
         with self._write() as session:
-            return recording(_announced(session, ied, motor, remote, now_ns))
+            return recording(_announced(session, relay, motor, remote, now_ns))
 
     def note_failed_pull(
-        self, ied: str, motor: str, remote: RemoteRecord, reason: str, *, now_ns: int
+        self, relay: str, motor: str, remote: RemoteRecord, reason: str, *, now_ns: int
     ) -> int:
         """Counts a pull that did not succeed and will be tried again; returns how many there were."""
         with self._write() as session:
-            row = _announced(session, ied, motor, remote, now_ns)
+            row = _announced(session, relay, motor, remote, now_ns)
             if row.state is RecordingState.ANNOUNCED:
                 row.attempts += 1
                 row.reason = reason
@@ -119,7 +119,7 @@ class RecordingRows(Sessions):
 
     def reject_remote_record(
         self,
-        ied: str,
+        relay: str,
         motor: str,
         remote: RemoteRecord,
         reason: str,
@@ -132,7 +132,7 @@ class RecordingRows(Sessions):
         The request that waited for it fails with the same reason.
         """
         with self._write() as session:
-            row = _announced(session, ied, motor, remote, now_ns)
+            row = _announced(session, relay, motor, remote, now_ns)
             if row.state is RecordingState.ANNOUNCED:
                 row.state = RecordingState.REJECTED
                 row.reason = reason
@@ -148,7 +148,7 @@ class RecordingRows(Sessions):
         *,
         motor: str,
         now_ns: int,
-        ied: str | None = None,
+        relay: str | None = None,
         remote: RemoteRecord | None = None,
         recording_request_id: str | None = None,
         method: str = DEFAULT_METHOD,
@@ -156,29 +156,29 @@ class RecordingRows(Sessions):
     ) -> AddedRecording:
         """Add a record whose files are stored: its row, its first job and its request, all or nothing.
 
-        From a relay: `ied` and `remote`; uploaded: neither. Two of a relay are the same by name and waveform:
-        a file that only describes it may come late; it is added. Of two of a motor one of which was uploaded,
-        the waveform is enough.
+        A recording from a relay needs `relay` and `remote`; an uploaded one needs neither. Two recordings of
+        a relay are the same if their names and waveforms are: a file that only describes the waveform may
+        come late and is then added. If one of two recordings of a motor was uploaded, the waveform is enough.
         The request gets what its relay had not sent before: a record that is listed again, under another
         time, is none that a trigger made. Raises NotFoundError, StateConflictError.
         """
-        if (ied is None) != (remote is None):
-            raise ValueError("a recording comes from a relay (ied and remote) or is uploaded (neither)")
+        if (relay is None) != (remote is None):
+            raise ValueError("a recording comes from a relay (relay and remote) or is uploaded (neither)")
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
-            row = _stored_before(session, motor, ied, remote.name if remote else stored.name, stored)
+            row = _stored_before(session, motor, relay, remote.name if remote else stored.name, stored)
             created = row is None
             sent_before = row is not None and row.ied is not None
             if row is None:
-                if ied is None or remote is None:
+                if relay is None or remote is None:
                     row = _uploaded(session, motor, stored.name, now_ns)
                 else:
-                    row = _to_fill(session, ied, motor, remote, now_ns)
+                    row = _to_fill(session, relay, motor, remote, now_ns)
                 _fill(session, row, stored, now_ns)
                 session.add(new_job(row.id, method, model, now_ns))
-            elif ied is not None and remote is not None:
-                _link_remote(session, ied, remote, row)
-                if row.ied == ied:
+            elif relay is not None and remote is not None:
+                _link_remote(session, relay, remote, row)
+                if row.ied == relay:
                     _complete(session, row, stored)
             if recording_request_id is not None and not sent_before:
                 _attach(session, recording_request_id, row, now_ns)
@@ -231,11 +231,11 @@ def new_job(recording_id: str, method: str, model: str, now_ns: int) -> JobRow:
 
 
 def _stored_before(
-    session: Session, motor: str, ied: str | None, name: str, stored: StoredRecording
+    session: Session, motor: str, relay: str | None, name: str, stored: StoredRecording
 ) -> RecordingRow | None:
-    if ied is None:
+    if relay is None:
         return _of_the_same_waveform(session, motor, stored)
-    same_name = (RecordingRow.ied == ied, RecordingRow.name == name)
+    same_name = (RecordingRow.ied == relay, RecordingRow.name == name)
     same = select(RecordingRow).where(*same_name, RecordingRow.digest == stored.digest)
     return (
         only(session, same)
@@ -259,27 +259,27 @@ def _of_the_same_waveform(
     return only(session, query.order_by(RecordingRow.announced_ns, RecordingRow.id))
 
 
-def _announced(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
+def _announced(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
     """The recording of what the relay lists, whatever became of it; a new announcement the first time."""
     found(session, MotorRow, motor, "motor", lock=True)
-    link = _link(session, ied, remote)
+    link = _link(session, relay, remote)
     if link is None:
-        return _announce(session, ied, motor, remote, now_ns)
+        return _announce(session, relay, motor, remote, now_ns)
     return found(session, RecordingRow, link.recording_id, "recording")
 
 
-def _to_fill(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
+def _to_fill(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
     """The recording that new content belongs to: not one which holds other content already."""
-    row = _announced(session, ied, motor, remote, now_ns)
-    return row if row.digest is None else _announce(session, ied, motor, remote, now_ns)
+    row = _announced(session, relay, motor, remote, now_ns)
+    return row if row.digest is None else _announce(session, relay, motor, remote, now_ns)
 
 
-def _announce(session: Session, ied: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
-    found(session, IedRow, ied, "IED")
+def _announce(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
+    found(session, IedRow, relay, "IED")
     row = RecordingRow(
         id=str(uuid.uuid4()),
         motor=motor,
-        ied=ied,
+        ied=relay,
         source=RecordingSource.RELAY,
         name=remote.name,
         size_bytes=remote.size_bytes,
@@ -290,21 +290,21 @@ def _announce(session: Session, ied: str, motor: str, remote: RemoteRecord, now_
     )
     session.add(row)
     session.flush()
-    _link_remote(session, ied, remote, row)
+    _link_remote(session, relay, remote, row)
     return row
 
 
-def _link(session: Session, ied: str, remote: RemoteRecord) -> RemoteRecordRow | None:
-    return session.get(RemoteRecordRow, (ied, remote.name, remote.size_bytes, remote.modified_ns))
+def _link(session: Session, relay: str, remote: RemoteRecord) -> RemoteRecordRow | None:
+    return session.get(RemoteRecordRow, (relay, remote.name, remote.size_bytes, remote.modified_ns))
 
 
-def _link_remote(session: Session, ied: str, remote: RemoteRecord, row: RecordingRow) -> None:
+def _link_remote(session: Session, relay: str, remote: RemoteRecord, row: RecordingRow) -> None:
     """Ties what the relay lists to the recording; an announcement it replaces goes."""
-    link = _link(session, ied, remote)
+    link = _link(session, relay, remote)
     if link is None:
         session.add(
             RemoteRecordRow(
-                ied=ied,
+                ied=relay,
                 name=remote.name,
                 size_bytes=remote.size_bytes,
                 modified_ns=remote.modified_ns,

@@ -104,7 +104,7 @@ class Bench:
         return self
 
     def link(self) -> LinkState:
-        return self.repository.ied(NAME).link_state
+        return self.repository.relay(NAME).link_state
 
 
 @pytest.fixture

@@ -29,7 +29,7 @@ def recording_id(repository: Repository, store: RecordingStore) -> str:
     added = repository.add_recording(
         stored,
         motor="PUMP-A1",
-        ied="A1_SEL710",
+        relay="A1_SEL710",
         remote=RemoteRecord("E", 7, 0),
         recording_request_id=request.id,
         now_ns=NOW_NS,

@@ -88,7 +88,7 @@ def test_a_database_of_the_first_version_keeps_what_it_holds(database_url: str) 
     assert repository.motor("PUMP-A1").schedule is None
     assert repository.recording_request("r").origin == "request"
     assert repository.recording("x").clock_quality is None
-    assert repository.ied("A1").link_state == "up"
+    assert repository.relay("A1").link_state == "up"
     assert repository.counts().recordings == {"announced": 1}
     assert repository.counts().recording_requests == {"diagnosed": 1}
     assert repository.link_changes("A1", limit=10).items == ()

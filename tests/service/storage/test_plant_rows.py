@@ -23,9 +23,9 @@ def test_the_tables_follow_the_plant(repository: Repository) -> None:
     repository.sync_plant(smaller)
 
     assert [site.name for site in repository.sites(limit=10).items] == ["FACTORY_A"]
-    assert [ied.name for ied in repository.ieds(limit=10).items] == ["A1_SEL710"]
+    assert [ied.name for ied in repository.relays(limit=10).items] == ["A1_SEL710"]
     assert [motor.name for motor in repository.motors(limit=10).items] == ["PUMP-A1"]
-    assert (repository.ied("A1_SEL710").host, repository.ied("A1_SEL710").port) == ("10.0.0.7", 102)
+    assert (repository.relay("A1_SEL710").host, repository.relay("A1_SEL710").port) == ("10.0.0.7", 102)
     assert repository.entry_id("A1_SEL710") == b"\x01\x02"
     assert repository.motor("FAN-A2").site == "FACTORY_A", "a motor out of service keeps its history"
 
@@ -67,19 +67,19 @@ def fill_history(engine: Engine) -> None:
 
 
 def test_links_change_state_with_a_reason(repository: Repository) -> None:
-    assert repository.ied("A1_SEL710").link_state is LinkState.UNKNOWN
+    assert repository.relay("A1_SEL710").link_state is LinkState.UNKNOWN
     repository.set_link_state("A1_SEL710", LinkState.UP, None, now_ns=NOW_NS)
     repository.set_link_state("A1_SEL710", LinkState.UP, None, now_ns=NOW_NS + 1)
-    up = repository.ied("A1_SEL710")
+    up = repository.relay("A1_SEL710")
     assert (up.link_changed_ns, up.last_success_ns) == (NOW_NS, NOW_NS + 1)
     repository.set_link_state("A1_SEL710", LinkState.DOWN, "connection refused", now_ns=NOW_NS + 2)
-    down = repository.ied("A1_SEL710")
+    down = repository.relay("A1_SEL710")
     assert (down.link_reason, down.link_changed_ns, down.last_success_ns) == (
         "connection refused",
         NOW_NS + 2,
         NOW_NS + 1,
     )
     repository.reset_links(now_ns=NOW_NS + 3)
-    assert repository.ied("A1_SEL710").link_state is LinkState.UNKNOWN
+    assert repository.relay("A1_SEL710").link_state is LinkState.UNKNOWN
     with pytest.raises(NotFoundError):
         repository.set_link_state("X", LinkState.UP, None, now_ns=NOW_NS)

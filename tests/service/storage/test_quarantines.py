@@ -57,4 +57,4 @@ def test_the_end_of_a_gateway_leaves_a_quarantine(repository: Repository) -> Non
     repository.set_aside(A, "why", backoff=Backoff(PAUSE_S, 86_400.0), now_ns=NOW_NS)
     repository.end_gateway("g", now_ns=NOW_NS)
     repository.reset_links(now_ns=NOW_NS)
-    assert repository.ied(A).link_state is LinkState.QUARANTINED
+    assert repository.relay(A).link_state is LinkState.QUARANTINED

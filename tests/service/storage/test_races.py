@@ -78,8 +78,8 @@ def test_a_record_that_is_uploaded_and_pulled_is_one_recording(
     sources = iter([(None, None), ("A1_SEL710", REMOTE)] * (WRITERS // 2))
 
     def add() -> AddedRecording:
-        ied, remote = next(sources)
-        return repository.add_recording(stored, motor="PUMP-A1", ied=ied, remote=remote, now_ns=NOW_NS)
+        relay, remote = next(sources)
+        return repository.add_recording(stored, motor="PUMP-A1", relay=relay, remote=remote, now_ns=NOW_NS)
 
     added = at_once(add)
     assert len({one.recording.id for one in added}) == 1

@@ -10,10 +10,10 @@ def test_a_request_goes_through_its_states(repository: Repository) -> None:
     assert (request.state, request.ied, request.requested_ns) == ("requested", "A1_SEL710", NOW_NS)
     assert repository.open_recording_requests("A1_SEL710") == (request,)
     assert repository.open_recording_requests("A2_SEL710") == ()
-    assert repository.ieds_with_requests() == ("A1_SEL710",)
+    assert repository.relays_with_requests() == ("A1_SEL710",)
 
     repository.mark_triggered(request.id, now_ns=NOW_NS + 1)
-    assert repository.ieds_with_requests() == ()
+    assert repository.relays_with_requests() == ()
     repository.mark_recorded(request.id, now_ns=NOW_NS + 2)
     assert [r.state for r in repository.open_recording_requests("A1_SEL710")] == [
         RecordingRequestState.RECORDED
@@ -34,13 +34,13 @@ def test_a_request_waits_until_the_relay_owes_no_record(repository: Repository) 
     first = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.request_recording("PUMP-A1", now_ns=NOW_NS + 1)
     repository.request_recording("FAN-A2", now_ns=NOW_NS + 2)
-    assert repository.ieds_with_requests() == ("A1_SEL710", "A2_SEL710")
+    assert repository.relays_with_requests() == ("A1_SEL710", "A2_SEL710")
     repository.mark_triggered(first.id, now_ns=NOW_NS + 3)
-    assert repository.ieds_with_requests() == ("A2_SEL710",)
+    assert repository.relays_with_requests() == ("A2_SEL710",)
     repository.mark_recorded(first.id, now_ns=NOW_NS + 4)
-    assert repository.ieds_with_requests() == ("A2_SEL710",)
+    assert repository.relays_with_requests() == ("A2_SEL710",)
     repository.fail_recording_request(first.id, "the record was refused", now_ns=NOW_NS + 5)
-    assert repository.ieds_with_requests() == ("A1_SEL710", "A2_SEL710")
+    assert repository.relays_with_requests() == ("A1_SEL710", "A2_SEL710")
 
 
 def test_a_repeated_step_changes_nothing(repository: Repository) -> None:

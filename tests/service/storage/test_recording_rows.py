@@ -41,7 +41,7 @@ def test_a_pulled_record_is_stored_and_queued_with_its_recording_request(
     added = repository.add_recording(
         stored,
         motor="PUMP-A1",
-        ied="A1_SEL710",
+        relay="A1_SEL710",
         remote=REMOTE,
         recording_request_id=request.id,
         now_ns=NOW_NS + 1,
@@ -62,7 +62,7 @@ def test_a_pulled_record_is_stored_and_queued_with_its_recording_request(
 def test_pulled_twice_stored_once(repository: Repository, store: RecordingStore) -> None:
     first, again = (
         repository.add_recording(
-            record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS + i
+            record(store), motor="PUMP-A1", relay="A1_SEL710", remote=REMOTE, now_ns=NOW_NS + i
         )
         for i in range(2)
     )
@@ -75,11 +75,11 @@ def test_the_same_content_under_another_time_stamp_is_the_same_recording(
     repository: Repository, store: RecordingStore
 ) -> None:
     first = repository.add_recording(
-        record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
+        record(store), motor="PUMP-A1", relay="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
     )
     repository.announce_recording("A1_SEL710", "PUMP-A1", TOUCHED, now_ns=NOW_NS)
     again = repository.add_recording(
-        record(store), motor="PUMP-A1", ied="A1_SEL710", remote=TOUCHED, now_ns=NOW_NS
+        record(store), motor="PUMP-A1", relay="A1_SEL710", remote=TOUCHED, now_ns=NOW_NS
     )
     assert again.recording.id == first.recording.id
     assert known(repository) == {REMOTE, TOUCHED}
@@ -91,7 +91,7 @@ def test_other_content_under_the_same_listing_is_another_recording(
 ) -> None:
     ids = {
         repository.add_recording(
-            record(store, content), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
+            record(store, content), motor="PUMP-A1", relay="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
         ).recording.id
         for content in (b"samples", b"SAMPLES")
     }
@@ -109,7 +109,7 @@ def test_a_recording_diagnosed_before_ends_a_request_that_gets_it(
     repository.add_recording(
         record(store),
         motor="PUMP-A1",
-        ied="A1_SEL710",
+        relay="A1_SEL710",
         remote=REMOTE,
         recording_request_id=request.id,
         now_ns=NOW_NS,
@@ -120,13 +120,13 @@ def test_a_recording_diagnosed_before_ends_a_request_that_gets_it(
 def test_a_record_listed_under_a_new_time_is_not_the_one_a_trigger_made(
     repository: Repository, store: RecordingStore
 ) -> None:
-    repository.add_recording(record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS)
+    repository.add_recording(record(store), motor="PUMP-A1", relay="A1_SEL710", remote=REMOTE, now_ns=NOW_NS)
     request = repository.request_recording("PUMP-A1", now_ns=NOW_NS)
     repository.mark_triggered(request.id, now_ns=NOW_NS)
     repository.add_recording(
         record(store),
         motor="PUMP-A1",
-        ied="A1_SEL710",
+        relay="A1_SEL710",
         remote=TOUCHED,
         recording_request_id=request.id,
         now_ns=NOW_NS,
@@ -181,7 +181,7 @@ ON_SITE = {"WEEK 47.CFG": b"config", "WEEK 47.DAT": b"samples"}
 
 def test_an_upload_of_what_was_pulled_is_known(repository: Repository, store: RecordingStore) -> None:
     pulled = repository.add_recording(
-        store.store(PULLED), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
+        store.store(PULLED), motor="PUMP-A1", relay="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
     )
     uploaded = repository.add_recording(store.store(ON_SITE), motor="PUMP-A1", now_ns=NOW_NS + 1)
     assert (uploaded.created, uploaded.recording) == (False, pulled.recording)
@@ -194,7 +194,7 @@ def test_a_pull_of_what_was_uploaded_is_known(repository: Repository, store: Rec
     uploaded = repository.add_recording(store.store(ON_SITE), motor="PUMP-A1", now_ns=NOW_NS)
     repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=NOW_NS + 1)
     pulled = repository.add_recording(
-        store.store(PULLED), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS + 2
+        store.store(PULLED), motor="PUMP-A1", relay="A1_SEL710", remote=REMOTE, now_ns=NOW_NS + 2
     )
     assert (pulled.created, pulled.recording) == (False, uploaded.recording)
     assert repository.recordings(limit=10).items == (uploaded.recording,), "the announcement is gone"
@@ -220,7 +220,7 @@ def test_two_records_a_relay_lists_are_two_whatever_they_hold(
     for name, files in (("C_0001", PULLED), ("C_0002", second)):
         remote = RemoteRecord(name, 11, NOW_NS)
         repository.add_recording(
-            store.store(files), motor="PUMP-A1", ied="A1_SEL710", remote=remote, now_ns=NOW_NS
+            store.store(files), motor="PUMP-A1", relay="A1_SEL710", remote=remote, now_ns=NOW_NS
         )
     assert len(repository.recordings(limit=10).items) == 2
 
@@ -232,7 +232,7 @@ def test_nothing_is_added_when_a_part_fails(repository: Repository, store: Recor
     assert repository.claim_job(now_ns=NOW_NS, runner=RUNNER) is None
     with pytest.raises(NotFoundError, match="there is no motor 'X'"):
         repository.add_recording(record(store), motor="X", now_ns=NOW_NS)
-    with pytest.raises(ValueError, match="ied and remote"):
+    with pytest.raises(ValueError, match="relay and remote"):
         repository.add_recording(record(store), motor="PUMP-A1", remote=REMOTE, now_ns=NOW_NS)
 
 
@@ -246,7 +246,7 @@ def stored_with_a_clock(
     repository.note_clock("A1_SEL710", reading)
     repository.announce_recording("A1_SEL710", "PUMP-A1", REMOTE, now_ns=announced_ns)
     added = repository.add_recording(
-        record(store), motor="PUMP-A1", ied="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
+        record(store), motor="PUMP-A1", relay="A1_SEL710", remote=REMOTE, now_ns=NOW_NS
     )
     return added.recording
 

@@ -52,7 +52,7 @@ def test_notes_add_up_and_change_no_state(repository: Repository) -> None:
         3,
     )
     assert (figures.round_trip_s, figures.day, figures.day_bytes) == (0.01, 7, 200)
-    ied = repository.ied(RELAY)
+    ied = repository.relay(RELAY)
     assert (ied.link_state, ied.link_reason) == (LinkState.DOWN, "refused"), "a late note revives no link"
     assert ied.last_success_ns == NOW_NS + 2 * SECOND_NS
     repository.note_links([])

@@ -77,7 +77,7 @@ class Hall:
         return all(visitors(server) == 1 for server in self.servers.values())
 
     def links(self) -> set[LinkState]:
-        return {ied.link_state for ied in self.repository.ieds(limit=100).items}
+        return {ied.link_state for ied in self.repository.relays(limit=100).items}
 
 
 def visitors(server: Server) -> int:
@@ -306,7 +306,7 @@ def test_relays_set_aside_by_a_clock_that_was_ahead_are_visited(hall: Hall) -> N
         assert eventually(lambda: sum(map(visitors, hall.servers.values())) == 5)
         assert visitors(hall.servers[ahead]) == 1
         assert visitors(hall.servers[aside]) == 0
-        assert hall.repository.ied(aside).link_state is LinkState.QUARANTINED
+        assert hall.repository.relay(aside).link_state is LinkState.QUARANTINED
 
 
 def test_a_trigger_needs_the_lease(hall: Hall) -> None:

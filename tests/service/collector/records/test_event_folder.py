@@ -95,7 +95,7 @@ def test_a_second_folder_is_told_of_the_relay(bench: Bench, relay: ScriptedRelay
     write(relay, "EVENTS/X.CEV", "COMTRADE/X.CFG")
     with bench.session():
         assert eventually(
-            lambda: "COMTRADE are not fetched" in (bench.repository.ied(NAME).link_reason or "")
+            lambda: "COMTRADE are not fetched" in (bench.repository.relay(NAME).link_reason or "")
         )
         assert bench.link() is LinkState.UP
 
@@ -124,12 +124,12 @@ def test_of_empty_folders_the_one_that_gets_a_recording_is_it(client: Client, re
 def test_a_folder_that_goes_and_comes(bench: Bench, relay: ScriptedRelay) -> None:
     relay.events.rmdir()
     with bench.with_record_policy(replace(RECORD_POLICY, folder_search_s=0.1)).session():
-        assert eventually(lambda: "looked for" in (bench.repository.ied(NAME).link_reason or ""))
+        assert eventually(lambda: "looked for" in (bench.repository.relay(NAME).link_reason or ""))
         assert bench.link() is LinkState.UP
         relay.events.mkdir()
         relay.write_record("HR_1")
         assert eventually(lambda: bench.is_stored("HR_1"))
-        assert eventually(lambda: bench.repository.ied(NAME).link_reason is None)
+        assert eventually(lambda: bench.repository.relay(NAME).link_reason is None)
 
 
 def test_records_are_pulled_from_where_they_are(bench: Bench, relay: ScriptedRelay, tmp_path: Path) -> None:

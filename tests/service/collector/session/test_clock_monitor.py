@@ -56,7 +56,7 @@ class Stamps:
 
     def are_read(self, bench: Bench) -> bool:
         """Whether a reading was made; an AssertionError where it is wrong."""
-        ied = bench.repository.ied(NAME)
+        ied = bench.repository.relay(NAME)
         if ied.clock_offset_ns is None:
             return False
         assert ied.clock_uncertainty_ns is not None
@@ -71,7 +71,7 @@ def test_a_trigger_compares_the_clocks(bench: Bench, relay: ScriptedRelay) -> No
     request_id = bench.request()
     with bench.session():
         assert bench.reaches(request_id, RecordingRequestState.FETCHED)
-    ied = bench.repository.ied(NAME)
+    ied = bench.repository.relay(NAME)
     assert ied.clock_offset_ns is not None
     assert ied.clock_uncertainty_ns is not None
     assert ied.clock_measured_ns is not None
@@ -90,7 +90,7 @@ def test_a_relay_that_stamps_nothing_has_no_known_clock(bench: Bench, relay: Scr
     request_id = bench.request()
     with bench.session():
         assert bench.reaches(request_id, RecordingRequestState.FETCHED)
-    assert bench.repository.ied(NAME).clock_offset_ns is None
+    assert bench.repository.relay(NAME).clock_offset_ns is None
     assert [recording.clock_quality for recording in bench.recordings()] == [None]
 
 
@@ -121,7 +121,7 @@ def test_a_clock_is_read_though_nobody_triggers(bench: Bench, relay: ScriptedRel
     assert relay.edges == 0
     recording = bench.recording("HR_1")
     assert recording is not None
-    assert recording.clock_offset_ns == bench.repository.ied(NAME).clock_offset_ns
+    assert recording.clock_offset_ns == bench.repository.relay(NAME).clock_offset_ns
 
 
 @pytest.fixture
@@ -151,7 +151,7 @@ def test_a_clock_is_not_read_all_the_time(bench: Bench, relay: ScriptedRelay, mo
     stamps = Stamps(relay)
 
     def measured_ns() -> int | None:
-        return bench.repository.ied(NAME).clock_measured_ns
+        return bench.repository.relay(NAME).clock_measured_ns
 
     with Client.connect("127.0.0.1", relay.port) as client:
         found = []
@@ -194,6 +194,6 @@ def test_a_service_clock_that_is_set_meanwhile_is_not_the_relay_s_error(
         stamps.change()
         monitor.measure_if_due(client)
     assert stamps.are_read(bench)
-    uncertainty_ns = bench.repository.ied(NAME).clock_uncertainty_ns
+    uncertainty_ns = bench.repository.relay(NAME).clock_uncertainty_ns
     assert uncertainty_ns is not None
     assert uncertainty_ns < 30 * NANOSECONDS_PER_SECOND

@@ -153,7 +153,7 @@ def test_a_relay_without_files_is_up_and_says_what_it_lacks(bench: Bench, tmp_pa
         with here.session():
             assert eventually(lambda: visited(here))
             assert "the relay offers no files" in refusal(here)
-            assert "the relay offers no files" in (here.repository.ied(NAME).link_reason or "")
+            assert "the relay offers no files" in (here.repository.relay(NAME).link_reason or "")
     assert acquisition(here)["events_directory"] is None
 
 

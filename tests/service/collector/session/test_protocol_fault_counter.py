@@ -27,7 +27,7 @@ def test_who_breaks_the_protocol_again_and_again_is_set_aside(repository: Reposi
     counter = ProtocolFaultCounter(A, repository, POLICY)
     told = [counter.count_fault("nonsense") for _ in range(SESSION_POLICY.faults_in_a_row)]
     assert told == [False] * (SESSION_POLICY.faults_in_a_row - 1) + [True]
-    assert "broke the protocol 5 times in a row, at last: nonsense" in (repository.ied(A).link_reason or "")
+    assert "broke the protocol 5 times in a row, at last: nonsense" in (repository.relay(A).link_reason or "")
 
 
 def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(bench: Bench) -> None:
@@ -36,7 +36,7 @@ def test_a_relay_that_answers_with_nonsense_is_set_aside_with_its_reason(bench: 
         bench.relay = replace(bench.relay, port=port)
         with bench.session():
             assert eventually(lambda: bench.link() is LinkState.QUARANTINED)
-    reason = bench.repository.ied(NAME).link_reason or ""
+    reason = bench.repository.relay(NAME).link_reason or ""
     assert f"broke the protocol {SESSION_POLICY.faults_in_a_row} times in a row" in reason
     assert "connect: malformed message" in reason
 

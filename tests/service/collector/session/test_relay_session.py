@@ -209,7 +209,7 @@ def test_a_relay_that_is_down_says_so_and_comes_back(bench: Bench) -> None:
     request_id = bench.request()
     with bench.session():
         assert eventually(lambda: bench.link() is LinkState.DOWN)
-        assert str(bench.relay.port) in (bench.repository.ied(NAME).link_reason or "")
+        assert str(bench.relay.port) in (bench.repository.relay(NAME).link_reason or "")
         assert bench.reaches(request_id, RecordingRequestState.FAILED)
         assert "does not answer" in (bench.requested(request_id).reason or "")
         relay = bench.start_relay()
@@ -300,7 +300,7 @@ def test_the_entry_id_is_saved_only_when_its_record_is_safe(
     with monkeypatch.context() as full, bench.session():
         full.setattr(Incoming, "keep", disk_full)
         assert eventually(lambda: bench.link() is LinkState.DOWN)
-        assert "No space left" in (bench.repository.ied(NAME).link_reason or "")
+        assert "No space left" in (bench.repository.relay(NAME).link_reason or "")
         assert bench.repository.entry_id(NAME) is None
     with bench.session():
         assert eventually(lambda: [r.state for r in bench.recordings()] == [RecordingState.FETCHED])

@@ -66,7 +66,7 @@ def test_the_best_block_that_is_free_tells_of_the_records(
         assert eventually(lambda: here.is_stored("HR_7")), "no poll finds it so soon"
         buffered = ".BR." in left
         assert eventually(lambda: (here.repository.entry_id(NAME, left) is not None) == buffered)
-    assert here.repository.ied(NAME).link_reason is None
+    assert here.repository.relay(NAME).link_reason is None
 
 
 def test_with_all_blocks_taken_the_directory_is_polled_until_one_is_free(
@@ -80,12 +80,12 @@ def test_with_all_blocks_taken_the_directory_is_polled_until_one_is_free(
             assert eventually(lambda: used(here) is None)
             relay.write_record("HR_1")
             assert eventually(lambda: here.is_stored("HR_1"))
-            reason = here.repository.ied(NAME).link_reason or ""
+            reason = here.repository.relay(NAME).link_reason or ""
             assert "the directory is polled" in reason
             assert "(and 2 others)" in reason
             others.close()
             assert eventually(lambda: used(here) == BUFFERED[0])
-            assert eventually(lambda: here.repository.ied(NAME).link_reason is None)
+            assert eventually(lambda: here.repository.relay(NAME).link_reason is None)
     history = here.repository.link_changes(NAME, limit=10).items
     assert [("polled" in (change.reason or ""), change.state) for change in history] == [
         (False, LinkState.UP),

@@ -49,7 +49,7 @@ def link_reason(bench: Bench) -> str:
     found: list[str] = []
 
     def is_down() -> bool:
-        ied = bench.repository.ied(NAME)
+        ied = bench.repository.relay(NAME)
         found.append(ied.link_reason or "")
         return ied.link_state is LinkState.DOWN
 

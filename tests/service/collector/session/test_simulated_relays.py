@@ -168,11 +168,11 @@ def test_the_clock_of_a_relay_that_cannot_be_triggered_is_known(bench: Bench, tm
 
         def is_known() -> bool:
             served.relay.update_metering(time.time_ns())  # sooner than it would be
-            return here.repository.ied(NAME).clock_offset_ns is not None
+            return here.repository.relay(NAME).clock_offset_ns is not None
 
         with here.session():
             assert eventually(is_known)
-    ied = here.repository.ied(NAME)
+    ied = here.repository.relay(NAME)
     assert ied.clock_offset_ns is not None
     assert ied.clock_uncertainty_ns is not None
     error_ns = abs(ied.clock_offset_ns - offset_s * NANOSECONDS_PER_SECOND)

@@ -50,7 +50,7 @@ def test_the_relay_the_gateway_was_busy_with_is_set_aside(repository: Repository
     exit_code = crash_in(tmp_path / "visiting" / "0", busy=(A,), idle=(B,))
     assert exit_code == CRASH
     blame_after_end(marks, exit_code, repository, POLICY)
-    ied = repository.ied(A)
+    ied = repository.relay(A)
     assert ied.link_state is LinkState.QUARANTINED
     assert "its answers crashed the gateway (SIGSEGV)" in (ied.link_reason or "")
     assert pause_s(repository.quarantine(A)) == PAUSE_S
