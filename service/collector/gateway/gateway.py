@@ -12,8 +12,7 @@ from service.collector.gateway.batch_writer import BatchWriter
 from service.collector.gateway.lease_watchdog import LeaseWatchdog
 from service.collector.session.relay_session import RelaySession
 from service.collector.session.visit_marks import VisitMarks
-from service.collector.triggers.deadlines import RequestDeadlines
-from service.collector.triggers.unanswered import UnansweredRequests
+from service.collector.triggers.request_deadlines import RequestDeadlines, UnansweredRequests
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.recording_store.store import RecordingStore

@@ -1,23 +1,35 @@
 """Finds out what a relay offers, by browsing it at each connection, and compares that with its SCL.
 
-Differences are stored. A difference in what the service uses raises an alarm. None ends a connection.
+Browsing makes one request after the other: one listing of names for each logical device, then one request for
+each logical device's data sets, for each data set and for each report control block. Differences from the SCL
+are stored. A difference in what the service uses raises an alarm. None ends a connection.
 """
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict
+from itertools import islice
 
 import structlog
 
-from mms import Client
+from mms import (
+    AccessDenied,
+    Client,
+    ControlModel,
+    FunctionalConstraint,
+    NotFound,
+    ProtocolError,
+    TemporarilyUnavailable,
+)
 from service.collector.records.event_folder import ROOT
 from service.collector.records.listing import RefusedFile
-from service.collector.session.browsing import browse, control_model
 from service.collector.session.relay_alarms import RelayAlarms
 from service.plant import (
     Acquisition,
     Difference,
+    Offer,
     Relay,
+    ReportBlock,
     acquisition_from_offer,
     acquisition_from_scl,
     differences,
@@ -29,6 +41,12 @@ from service.storage.states import AlarmKind
 log = structlog.get_logger(__name__)
 
 NOT_BROWSED = "the relay does not tell what it offers: its SCL is taken at its word"
+
+REFUSALS = (AccessDenied, NotFound, ProtocolError, TemporarilyUnavailable, ValueError)
+"""Errors of one request while the link is fine. ValueError: a name that is none."""
+
+MOST_DEVICES, MOST_NODES, MOST_DATA_SETS, MOST_BLOCKS = 64, 4000, 64, 128
+"""Limits for one relay. Protection relays have fewer; a faulty one may list any number."""
 
 
 class Discovery:
@@ -56,14 +74,14 @@ class Discovery:
             self._acquisition = acquisition_from_scl(self._relay)
         else:
             self._acquisition = acquisition_from_offer(
-                self._relay, offer, lambda control: bool(control_model(client, control))
+                self._relay, offer, lambda control: bool(_control_model(client, control))
             )
             if self._relay.expected is not None:
                 self._differences = [
                     _difference_document(each) for each in differences(self._relay.expected, offer)
                 ]
         trigger = self._acquisition.trigger
-        model = None if trigger is None else control_model(client, trigger)
+        model = None if trigger is None else _control_model(client, trigger)
         self._control_model = None if model is None else model.words
         self._raise_alarms()
         return self._acquisition
@@ -133,3 +151,93 @@ def _announced_by(report_control: str | None) -> str:
 
 def _difference_document(difference: Difference) -> dict[str, object]:
     return {"kind": str(difference.kind), "expected": difference.expected, "found": difference.found}
+
+
+def browse(client: Client, expected: Offer | None) -> Offer | None:
+    """Return what the relay offers; None where it cannot be browsed. Raises MmsError (the link).
+
+    expected: what its SCL promises. Data sets are looked for where the SCL has some, and in every LLN0.
+    """
+    try:
+        devices = client.logical_devices()[:MOST_DEVICES]
+    except REFUSALS as error:
+        log.warning("the relay cannot be browsed", host=client.host, reason=str(error))
+        return None
+    nodes = dict(islice(_nodes(client, devices), MOST_NODES))
+    if not nodes:
+        return None
+    promised = () if expected is None else expected.data_sets
+    with_data_sets = {reference.rpartition(".")[0] for reference in promised}
+    return Offer(
+        nodes=nodes,
+        data_sets=dict(
+            islice(
+                _data_sets(
+                    client, [node for node in nodes if node.endswith("/LLN0") or node in with_data_sets]
+                ),
+                MOST_DATA_SETS,
+            )
+        ),
+        report_blocks=tuple(islice(_report_blocks(client, nodes), MOST_BLOCKS)),
+    )
+
+
+def _control_model(client: Client, reference: str) -> ControlModel | None:
+    """Return the control model of a data object as the relay has it; None where it is no control.
+
+    Raises MmsError (the link).
+    """
+    try:
+        model = client.read(f"{reference}.ctlModel", FunctionalConstraint.CF)
+    except REFUSALS:
+        return None
+    return ControlModel(model) if isinstance(model, int) and model in tuple(ControlModel) else None
+
+
+def _nodes(client: Client, devices: list[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    for device in devices:
+        try:
+            names = client.logical_nodes(device)
+        except REFUSALS as error:
+            log.warning("a logical device is passed over", host=client.host, reason=str(error)[:200])
+            continue
+        for name in names:
+            node = f"{device}/{name}"
+            try:
+                yield node, tuple(client.data_objects(node))
+            except REFUSALS as error:
+                log.info("a logical node is passed over", host=client.host, reason=str(error)[:200])
+
+
+def _data_sets(client: Client, nodes: list[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    for node in nodes:
+        try:
+            names = client.data_sets(node)
+        except REFUSALS:
+            continue
+        for name in names:
+            reference = f"{node}.{name}"
+            try:
+                yield reference, client.data_set_directory(reference)
+            except REFUSALS as error:
+                log.info("a data set is passed over", host=client.host, reason=str(error)[:200])
+
+
+def _report_blocks(client: Client, nodes: dict[str, tuple[str, ...]]) -> Iterator[ReportBlock]:
+    for node in nodes:
+        try:
+            blocks = [("BR", name) for name in client.buffered_reports(node)]
+            blocks += [("RP", name) for name in client.unbuffered_reports(node)]
+        except REFUSALS:
+            continue
+        for kind, name in blocks:
+            yield ReportBlock(f"{node}.{kind}.{name}", _data_set_of(client, f"{node}.{name}", kind))
+
+
+def _data_set_of(client: Client, block: str, kind: str) -> str | None:
+    """Return the data set of a report control block. Relays name it as MMS does: LD/LLN0$DSet01."""
+    try:
+        data_set = client.read(f"{block}.DatSet", FunctionalConstraint[kind])
+    except REFUSALS:
+        return None
+    return data_set.replace("$", ".") if isinstance(data_set, str) and data_set else None

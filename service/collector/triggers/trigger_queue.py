@@ -27,8 +27,7 @@ from mms import (
     ValueRefused,
 )
 from service.collector.records.directory import Scan
-from service.collector.triggers.deadlines import RequestDeadlines
-from service.collector.triggers.unanswered import UnansweredRequests
+from service.collector.triggers.request_deadlines import RequestDeadlines, UnansweredRequests
 from service.plant import Acquisition, Relay, TriggerAction, acquisition_from_scl
 from service.storage import Repository
 from service.storage.records import RecordingRequest

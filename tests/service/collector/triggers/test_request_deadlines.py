@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from service.collector.triggers.deadlines import RequestDeadlines
+from service.collector.triggers.request_deadlines import RequestDeadlines
 from service.storage.records import RecordingRequest
 from service.storage.states import RecordingRequestOrigin, RecordingRequestState
 
