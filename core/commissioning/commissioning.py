@@ -1,7 +1,8 @@
 """Commissioning: a motor's parameters, with intervals, from recordings of its starts (thesis chapter 5).
 
-Global search on each start, refinement from its best separated points, all starts fitted together, the load's
-law chosen, then what the records do not tell is fixed and named, and the rest fitted once more.
+Each start is searched globally and refined from its best separated points. Then all starts are fitted
+together and the load law is chosen. At the end the unknowns that the records do not identify are fixed and
+named in the result, and the others are fitted once more.
 """
 
 from collections.abc import Callable, Sequence
@@ -11,7 +12,7 @@ from time import perf_counter
 import numpy as np
 
 from core.commissioning.fit import Fit, Mask, Records
-from core.commissioning.identifiability import Untold, condition_number, making_up, untold
+from core.commissioning.identifiability import Unidentifiable, compensating, condition_number, unidentifiable
 from core.commissioning.plausibility import contradictions, delay_warning
 from core.commissioning.prior import PARAMETERS, Prior, prior_of
 from core.commissioning.result import Commissioning, Estimate, StartFound
@@ -26,13 +27,15 @@ from core.machines.parameters import Motor
 from core.recordings import Recording
 
 STARTING_POINTS = 6
+"""Points of the global search from which the refinement begins."""
 COARSELY = 1e-6
-LAW_TOLD = 3.0
-"""Standard deviations by which one law of the load must be better than the others to be believed."""
+"""Convergence criterion of fits whose result is refined again."""
+LAW_SIGNIFICANCE = 3.0
+"""Standard deviations by which a load law must fit better than the others to be chosen."""
 LIGHT_LOAD = 0.05
-"""Load level below which its law makes no difference."""
+"""Load level below which the load law makes no difference."""
 USUAL_RESIDUAL = 0.05
-"""Share of the current beyond which a motor of constant parameters is not what was recorded."""
+"""Unexplained share of the current above which a motor of constant parameters does not fit the record."""
 
 Progress = Callable[[float, str], None]
 
@@ -81,21 +84,21 @@ def commission(
         raise ValueError("commissioning needs at least one recording of a start")
     vector, evaluations = _found(starts, prior, load_law or LoadLaw.CONSTANT, report)
     report(0.7, "choosing the law of the load")
-    law, vector, spent, law_told = _with_law([thinned(one) for one in starts], prior, vector, load_law)
+    law, vector, spent, law_identified = _with_law([thinned(one) for one in starts], prior, vector, load_law)
     report(0.8, "refining")
     records, vector = _switched_on_again(Records(starts, prior, law), vector)
     near = records.fit(vector, _all(vector), converged=COARSELY)
     records, vector = _switched_on_again(records, near.vector)
     spent += near.evaluations
     whole = records.fit(vector, _all(vector))
-    fit, fixed = _what_is_told(records, whole)
+    fit, fixed = _fit_identifiable(records, whole)
     report(1.0, "done")
     return _result(
         records,
         fit,
         fixed,
         plate,
-        law_told=law_told,
+        law_identified=law_identified,
         condition=condition_number(whole),
         evaluations=evaluations + spent + records.evaluations,
         seconds=perf_counter() - begun,
@@ -103,7 +106,7 @@ def commission(
 
 
 def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) -> tuple[Array, int]:
-    """Near the global minimum of all starts together, each searched on its own."""
+    """Return a vector near the global minimum of all starts together; each start is searched on its own."""
     shared, own, evaluations = [], [], 0
     for k, start in enumerate(starts):
         records = Records([thinned(start)], prior, law)
@@ -127,18 +130,18 @@ def _found(starts: list[Start], prior: Prior, law: LoadLaw, report: Progress) ->
 def _with_law(
     coarse: list[Start], prior: Prior, vector: Array, wanted: LoadLaw | None
 ) -> tuple[LoadLaw, Array, int, bool]:
-    """Return the load's law, the vector under it, what choosing took, and whether the records told it."""
+    """Return the load's law, the vector under it, what choosing took, and whether the records identify it."""
     laws = list(LoadLaw) if wanted is None else [wanted]
     records = {law: Records(coarse, prior, law) for law in laws}
     fits = {law: records[law].fit(vector, _all(vector), converged=COARSELY) for law in laws}
     best, *others = sorted(laws, key=lambda law: fits[law].squared_error)
-    told = all(preference(records[best], fits[best], fits[law]) > LAW_TOLD for law in others)
-    chosen = best if told else LoadLaw.CONSTANT
-    return chosen, fits[chosen].vector, sum(fit.evaluations for fit in fits.values()), told
+    identified = all(preference(records[best], fits[best], fits[law]) > LAW_SIGNIFICANCE for law in others)
+    chosen = best if identified else LoadLaw.CONSTANT
+    return chosen, fits[chosen].vector, sum(fit.evaluations for fit in fits.values()), identified
 
 
 def _switched_on_again(records: Records, vector: Array) -> tuple[Records, Array]:
-    """Return the same starts from the instants that their fitted fluxes tell, and the vector there."""
+    """Return the starts with the switching instants that follow from the fitted fluxes, and their vector."""
     point = records.coordinates.point(vector)
     starts, own = [], point.starts.copy()
     for k, start in enumerate(records.starts):
@@ -150,16 +153,17 @@ def _switched_on_again(records: Records, vector: Array) -> tuple[Records, Array]
     return moved, moved.coordinates.vector(Point(point.machine, own))
 
 
-def _what_is_told(records: Records, whole: Fit) -> tuple[Fit, list[Untold]]:
-    """Fit what the records tell; hold what they do not at what is expected of it."""
-    fixed: list[Untold] = []
+def _fit_identifiable(records: Records, whole: Fit) -> tuple[Fit, list[Unidentifiable]]:
+    """Fit the identifiable unknowns and fix the others at their expected values."""
+    fixed: list[Unidentifiable] = []
     fit = whole
     names, prior = records.coordinates.names, records.coordinates.prior
     reach = np.array([log(prior.spread[name]) for name in PARAMETERS])
-    while new := untold(records, fit) or (making_up(records, fit) if fixed else []):
+    while new := unidentifiable(records, fit) or (compensating(records, fit) if fixed else []):
         fixed += new
         vector, free = fit.vector.copy(), fit.free.copy()
-        # What was not told may have drifted anywhere, and taken the others along.
+        # Unidentifiable unknowns may have drifted anywhere and taken the others along, so the fit starts
+        # again within the range that was searched.
         vector[: reach.size] = np.clip(vector[: reach.size], -reach, reach)
         for one in new:
             entry = names.index(one.name)
@@ -169,7 +173,11 @@ def _what_is_told(records: Records, whole: Fit) -> tuple[Fit, list[Untold]]:
 
 
 def _expected(name: str, starts: Sequence[Start]) -> float:
-    """Coordinate at which an unknown is fixed: the parameter expected, no load, no delay but one seen."""
+    """Return the coordinate at which an unknown is fixed.
+
+    A parameter is fixed at its expected value, the load at none, and the delay at the one seen between the
+    onsets of voltage and current, if there is one.
+    """
     kind, _, number = name.partition("[")
     if kind != "time_offset_s":
         return 0.0
@@ -180,10 +188,10 @@ def _expected(name: str, starts: Sequence[Start]) -> float:
 def _result(
     records: Records,
     fit: Fit,
-    fixed: list[Untold],
+    fixed: list[Unidentifiable],
     plate: Plate,
     *,
-    law_told: bool,
+    law_identified: bool,
     condition: float,
     evaluations: int,
     seconds: float,
@@ -220,7 +228,7 @@ def _result(
         starts=found,
         load_law=records.load_law.name.lower(),
         condition_number=condition,
-        reasons=tuple(_reasons(estimates, found, prior, law_told=law_told)),
+        reasons=tuple(_reasons(estimates, found, prior, law_identified=law_identified)),
         warnings=tuple(_warnings(motor, estimates, found, records)),
         evaluations=evaluations,
         compute_seconds=seconds,
@@ -262,29 +270,29 @@ def _start_found(
     )
 
 
-def _why(one: Untold, prior: Prior) -> str:
+def _why(one: Unidentifiable, prior: Prior) -> str:
     origin = "the motor file's value" if prior.from_file else "typical of the rating"
     taken = origin if one.name in PARAMETERS else "fixed at its usual value"
     if isinf(one.half_interval):
         return f"{taken}: beside the other fixed ones it would only make up for what they are off by"
-    told = "not at all" if one.half_interval > 10.0 else f"only within {one.half_interval:.0%}"
+    precision = "not at all" if one.half_interval > 10.0 else f"only within {one.half_interval:.0%}"
     together = f"; moves with {one.partner} (correlation {one.correlation:+.2f})" if one.partner else ""
-    return f"{taken}: the record tells it {told}{together}"
+    return f"{taken}: the record tells it {precision}{together}"
 
 
 def _reasons(
-    estimates: dict[str, Estimate], starts: Sequence[StartFound], prior: Prior, *, law_told: bool
+    estimates: dict[str, Estimate], starts: Sequence[StartFound], prior: Prior, *, law_identified: bool
 ) -> list[str]:
     reasons = []
     doubt = prior.doubt["stator_resistance_ohm"]
-    told = [key for key in PARAMETERS if estimates[key].fixed is None]
-    if not told:
+    identified = [key for key in PARAMETERS if estimates[key].fixed is None]
+    if not identified:
         reasons.append(
             "not identifiable: the compared part of the record tells no parameter of the motor; a start from "
             "rest with its first half second does"
         )
     reasons += [f"{key}: {one.fixed}" for key, one in estimates.items() if one.fixed is not None]
-    if told and len(told) < len(PARAMETERS):
+    if identified and len(identified) < len(PARAMETERS):
         reasons.append(
             f"the other intervals allow for fixed values off by some {doubt:.0%} (inertia: twice that)"
         )
@@ -292,13 +300,13 @@ def _reasons(
         for key, one in (("load_level", start.load_level), ("time_offset_s", start.time_offset_s)):
             if one.fixed is not None:
                 reasons.append(f"{start.record}: {key}: {one.fixed}")
-        if told and start.residual_share > USUAL_RESIDUAL:
+        if identified and start.residual_share > USUAL_RESIDUAL:
             reasons.append(
                 f"{start.record}: {start.residual_share:.0%} of the current is left unexplained: noise, "
                 "saturated leakages or deep rotor bars; the intervals do not cover a model that is wrong"
             )
     loads = [start.load_level for start in starts]
-    if told and not law_told and any(one.fixed or abs(one.value) > LIGHT_LOAD for one in loads):
+    if identified and not law_identified and any(one.fixed or abs(one.value) > LIGHT_LOAD for one in loads):
         reasons.append(
             "load law: the records do not tell how the load grows with speed; constant torque is assumed, on "
             "which inertia and load level depend"

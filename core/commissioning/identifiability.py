@@ -1,8 +1,9 @@
-"""Which unknowns a record tells, and which must be taken from elsewhere.
+"""Identifiability: which unknowns the records determine, and which have to be fixed at an expected value.
 
-An unknown whose interval would be wider than what is known anyway is fixed, the worst first, until all that
-are left are told, whatever the fixed ones may be off by. Steady running has one current phasor: whatever
-seven unknowns it is asked for, it tells two (thesis 5.3.3).
+An unknown is fixed if its confidence interval would be wider than what is known about it anyway. The worst
+unknown is fixed first, and this is repeated until all the others are identifiable. The intervals allow for
+errors of the fixed values. A record of steady running determines two unknowns only, because all it contains
+is one current phasor (thesis 5.3.3).
 """
 
 from dataclasses import dataclass, replace
@@ -21,30 +22,36 @@ from core.commissioning.uncertainty import (
 from core.commissioning.unknowns import LOAD_LEVEL, TIME_OFFSET
 from core.machines.base import Array
 
-UNTOLD_SHARE = 0.3
-"""Half a 95 % interval of a parameter, relative, beyond which a record does not tell it; of LL, absolute."""
-UNTOLD_CYCLES = 0.05
-"""The same of T_d."""
-UNTOLD_FLUX = 0.5
-"""The same of the switching flux, over the rated one."""
+WIDEST_SHARE = 0.3
+"""Widest half of a 95 % interval at which an unknown counts as identifiable.
+
+It is relative for a parameter of the machine and absolute for the load level.
+"""
+WIDEST_CYCLES = 0.05
+"""The same limit for T_d, in cycles of the supply."""
+WIDEST_FLUX = 0.5
+"""The same limit for the switching flux, relative to the rated flux."""
 TWO_SIDED = 1.96
+"""Quantile of the normal distribution that bounds a two-sided 95 % interval."""
 INRUSH = ("stator_resistance_ohm", "rotor_resistance_ohm", "stator_leakage_H")
+"""Parameters that limit the inrush current."""
 
 
 @dataclass(frozen=True, slots=True)
-class Untold:
-    """An unknown that has to be fixed, because the records do not tell it.
+class Unidentifiable:
+    """An unknown that has to be fixed because the records do not determine it.
 
     Parameters
     ----------
     name : str
-        Its name.
+        Name of the unknown.
     half_interval : float
-        Half the 95 % interval it would have: relative, of LL absolute, of T_d in cycles.
+        Half of the 95 % interval it would have: relative for a parameter, absolute for the load level, in
+        cycles for T_d.
     partner : str or None
-        Unknown that it moves with.
+        Unknown with which it is correlated most.
     correlation : float
-        Their correlation.
+        Correlation of the two.
     """
 
     name: str
@@ -53,8 +60,8 @@ class Untold:
     correlation: float
 
 
-def untold(records: Records, fit: Fit) -> list[Untold]:
-    """Return the free unknowns that have to be fixed, in that order.
+def unidentifiable(records: Records, fit: Fit) -> list[Unidentifiable]:
+    """Return the free unknowns that have to be fixed, the least identifiable first.
 
     Parameters
     ----------
@@ -65,11 +72,11 @@ def untold(records: Records, fit: Fit) -> list[Untold]:
 
     Returns
     -------
-    list of Untold
+    list of Unidentifiable
         The unknowns.
     """
     names = records.coordinates.names
-    found: list[Untold] = []
+    found: list[Unidentifiable] = []
     free = fit.free.copy()
     while free.any():
         part = replace(fit, free=free)
@@ -85,7 +92,7 @@ def untold(records: Records, fit: Fit) -> list[Untold]:
             break
         partner, correlation = _partner(covariance, worst)
         found.append(
-            Untold(
+            Unidentifiable(
                 names[entries[worst]],
                 float(half[worst]),
                 None if partner is None else names[entries[partner]],
@@ -96,12 +103,12 @@ def untold(records: Records, fit: Fit) -> list[Untold]:
     return found
 
 
-def making_up(records: Records, fit: Fit) -> list[Untold]:
-    """Return free parameters that only make up for held ones instead of being estimated.
+def compensating(records: Records, fit: Fit) -> list[Unidentifiable]:
+    """Return free parameters that compensate for errors of the fixed ones and are not estimates.
 
-    They are driven out of the range that was searched; or they are the last one left, all that a single
-    phasor tells; or they are magnetising and inertia where nothing of what limits the inrush is told, so that
-    no torque is known.
+    A parameter compensates in one of three cases. The fit has driven it out of the range that was searched.
+    Or it is the only free parameter. Or no parameter that limits the inrush current is identifiable: then
+    no torque is known, and the self-inductance and the inertia cannot be estimated either.
 
     Parameters
     ----------
@@ -112,7 +119,7 @@ def making_up(records: Records, fit: Fit) -> list[Untold]:
 
     Returns
     -------
-    list of Untold
+    list of Unidentifiable
         The unknowns.
     """
     names, prior = records.coordinates.names, records.coordinates.prior
@@ -120,7 +127,7 @@ def making_up(records: Records, fit: Fit) -> list[Untold]:
     free = [entry for entry in range(len(PARAMETERS)) if fit.free[entry]]
     groundless = len(free) == 1 or not fit.free[of_inrush].any()
     return [
-        Untold(names[entry], float("inf"), None, 0.0)
+        Unidentifiable(names[entry], float("inf"), None, 0.0)
         for entry in free
         if groundless or abs(fit.vector[entry]) > log(prior.spread[names[entry]])
     ]
@@ -129,7 +136,7 @@ def making_up(records: Records, fit: Fit) -> list[Untold]:
 def condition_number(fit: Fit) -> float:
     """Return the greatest over the least singular value of the Jacobian of the free unknowns.
 
-    Each unknown is of order one.
+    The unknowns are scaled to order one.
 
     Parameters
     ----------
@@ -148,8 +155,8 @@ def condition_number(fit: Fit) -> float:
 def _limit(name: str) -> float:
     kind = name.partition("[")[0]
     if kind in PARAMETERS or kind == LOAD_LEVEL:
-        return UNTOLD_SHARE
-    return UNTOLD_CYCLES if kind == TIME_OFFSET else UNTOLD_FLUX
+        return WIDEST_SHARE
+    return WIDEST_CYCLES if kind == TIME_OFFSET else WIDEST_FLUX
 
 
 def _partner(covariance: Array, worst: int) -> tuple[int | None, float]:

@@ -1,8 +1,8 @@
-"""Whether what was found can be the motor on the nameplate.
+"""Plausibility: whether the estimated parameters can belong to the motor on the nameplate.
 
-A wrong current ratio changes nothing in how well the model fits: k times the current is a motor of 1/k of
-every impedance, k times the inertia and k times the load. Only the nameplate and what motors are like tell
-it. What no motor can be is refused, what is unusual is said.
+The quality of the fit does not show a wrong current ratio: k times the current fits a motor with 1/k of every
+impedance, k times the inertia and k times the load. Only a comparison with the nameplate and with typical
+motors shows it. Impossible motors are refused, and unusual ones cause a warning.
 """
 
 from collections.abc import Sequence
@@ -23,16 +23,22 @@ USUAL_LOCKED, POSSIBLE_LOCKED = (5.0, 13.0), (2.0, 30.0)
 0.4 kW on)."""
 HIGHEST_USUAL_LOAD = 1.3
 AT_A_BOUND = 0.02
-"""Load level nearer than this to the end of what is allowed has run against it."""
+"""Distance to the end of the allowed range at which a load level counts as stopped by it."""
 OTHER_RATIO, ALIKE = 1.4, 1.25
-"""Factor from the file's parameters beyond which the recording contradicts them, and how nearly several of
-them must share it for one ratio to be the cause."""
+"""Limits for a wrong ratio of a transformer.
+
+The recording contradicts the motor file beyond the first factor. The cause is one wrong ratio if the factors
+of all impedances agree within the second.
+"""
 OTHER_INERTIA = 2.0
 DELTA_FOR_STAR = 3.0
 UNUSUAL_DELAY_CYCLES = 0.1
-"""T_d beyond it is no relay's: its channels are sampled together."""
+"""A longer delay T_d is unusual, because a relay samples its channels together."""
 NEAR_CYCLES = 0.08
-"""Of half a cycle or a third: delays that look like currents reversed or phases in a ring."""
+"""Tolerance around half a cycle and a third of a cycle.
+
+Such delays point to reversed currents and to cyclically exchanged phases.
+"""
 
 IMPEDANCES, INERTIA = PARAMETERS[:4], PARAMETERS[4]
 CHECK = (
@@ -69,10 +75,14 @@ def contradictions(
     CommissioningError
         If no motor of this nameplate can be so.
     """
-    told = [name for name in PARAMETERS if estimates[name].fixed is None]
-    if not told:
+    identified = [name for name in PARAMETERS if estimates[name].fixed is None]
+    if not identified:
         return []
-    return [*_loads(starts), *_torque_and_inrush(motor, starts), *_beside_the_file(estimates, told, prior)]
+    return [
+        *_loads(starts),
+        *_torque_and_inrush(motor, starts),
+        *_compared_with_motor_file(estimates, identified, prior),
+    ]
 
 
 def delay_warning(start: Start, time_offset_s: float) -> str | None:
@@ -157,11 +167,13 @@ def _torque_and_inrush(motor: Motor, starts: Sequence[StartFound]) -> list[str]:
     ]
 
 
-def _beside_the_file(estimates: dict[str, Estimate], told: Sequence[str], prior: Prior) -> list[str]:
-    """Compare the estimates with the motor file's own parameters: one common factor is a ratio's."""
+def _compared_with_motor_file(
+    estimates: dict[str, Estimate], identified: Sequence[str], prior: Prior
+) -> list[str]:
+    """Compare the estimates with the motor file; a common factor points to a wrong transformer ratio."""
     if not prior.from_file:
         return []
-    off = {name: log(estimates[name].value / getattr(prior.expected, name)) for name in told}
+    off = {name: log(estimates[name].value / getattr(prior.expected, name)) for name in identified}
     impedances = [off[name] for name in IMPEDANCES if name in off]
     inertia = off.get(INERTIA, 0.0)
     limit = log(OTHER_RATIO)

@@ -1,10 +1,11 @@
-"""What the residuals' colour makes of the estimates' scatter.
+"""Covariance of the estimates, from the spectrum of the residuals.
 
     cov = inv(J'J) (J' G J) inv(J'J),   G the covariance of the noise
 
-G comes from the residuals' spectrum, smoothed (Whittle's likelihood; White, Econometrica 48(4), 1980, for
-the form): noise of the voltages reaches the residuals through the machine and is far from white. Sums over
-cycles, as in core.diagnosis.refinement, would not do: of a start a few cycles tell nearly everything.
+G is taken from the smoothed spectrum of the residuals (Whittle's likelihood; White, Econometrica 48(4), 1980,
+for the form), because noise of the voltages reaches the residuals through the machine and is far from white.
+The sums over cycles of core.diagnosis.refinement are no alternative, because a few cycles of a start hold
+nearly all its information.
 """
 
 from math import sqrt
@@ -19,15 +20,15 @@ from core.machines.base import Array
 CONFIDENCE = 0.95
 SMOOTHED_HZ = 2.0
 FEWEST_BINS = 3
-"""Either side of a frequency, over which the spectrum is averaged."""
-LEAST_TOLD = 1e-14
-"""Of the best told direction's information: what is below it is rounding."""
+"""Least number of bins on either side of a frequency over which the spectrum is averaged."""
+LEAST_INFORMATION = 1e-14
+"""Share of the largest eigenvalue of the information below which an eigenvalue is rounding error."""
 COHERENT_ERROR = 0.005
-"""Of the current: what no motor's model and no channel is better than, cycle after cycle."""
+"""Error of model and channels that repeats every cycle, as a share of the current."""
 
 
 def information_inverse(fit: Fit) -> Array:
-    """Return inv(J'J) of the free entries; finite even where the record does not tell them apart.
+    """Return inv(J'J) of the free entries; finite even where it is singular.
 
     Parameters
     ----------
@@ -43,7 +44,7 @@ def information_inverse(fit: Fit) -> Array:
     flat = [one[fit.free].reshape(free, one[0].size) for one in fit.jacobians]
     information = sum((one @ one.T for one in flat), np.zeros((free, free)))
     values, vectors = np.linalg.eigh(information)
-    kept = np.maximum(values, max(LEAST_TOLD * float(values.max(initial=0.0)), 1e-300))
+    kept = np.maximum(values, max(LEAST_INFORMATION * float(values.max(initial=0.0)), 1e-300))
     return np.asarray((vectors / kept) @ vectors.T)
 
 
@@ -66,7 +67,7 @@ def noise_covariance(records: Records, fit: Fit) -> Array:
     filling = np.zeros_like(bread)
     for start, residual, whole in zip(records.starts, fit.residuals, fit.jacobians, strict=True):
         slope = np.fft.rfft(whole[fit.free], axis=2)
-        # Of white noise the fit leaves 1 - leverage at a frequency: p of all 2 n values are gone.
+        # The fit of p unknowns to 2 n values removes the leverage from white noise at each frequency.
         n = residual.shape[1]
         leverage = np.einsum("iak,ij,jak->k", slope.conj(), bread, slope).real / n
         spectrum = _spectrum(residual, leverage, start.sample_rate_hz)

@@ -1,6 +1,10 @@
-"""Names of the search methods and of the fault models: the one definition for programs, files and tables."""
+"""Names of the search methods and of the fault models, the same in programs, files and tables."""
 
 from enum import StrEnum
+
+from core.machines.model_names import Model
+
+__all__ = ["DEFAULT_METHOD", "DEFAULT_MODEL", "Method", "Model"]
 
 
 class Method(StrEnum):
@@ -15,13 +19,6 @@ class Method(StrEnum):
     GENETIC = "genetic"
     PATTERN_SEARCH = "pattern-search"
     PATTERN_SEARCH_LHS = "pattern-search-lhs"
-
-
-class Model(StrEnum):
-    """How shorted turns are modelled."""
-
-    SPLIT_WINDING = "split-winding"
-    SHORTED_WINDING = "shorted-winding"
 
 
 DEFAULT_METHOD = Method.HYBRID

@@ -12,7 +12,7 @@ from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.hypotheses import explain, is_explained
 from core.diagnosis.indicators import indicators
 from core.diagnosis.judgement import identified, judge
-from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Model
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
 from core.diagnosis.search import METHODS, search
 from core.diagnosis.tolerance import systematic
@@ -28,7 +28,7 @@ from core.quality.finding import QualityFinding
 from core.recordings import Quantity, Recording, RecordingError
 from core.signals.terminals import terminals
 
-MODELS: dict[str, StatorModel] = {Model(model.name): model for model in (SplitWinding(), ShortedWinding())}
+MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
 
 
 def diagnose(

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from core.machines.base import CLARKE_PHASE, Array, Circuits, winding_axis
 from core.machines.healthy import symmetrical
+from core.machines.model_names import Model
 from core.machines.parameters import Motor
 
 SMALLEST_LEVEL = 1e-9
@@ -21,7 +22,7 @@ class ShortedWinding:
         0     = (R_s / mu) j + d(psi_j)/dt                                        (6.12)
     """
 
-    name = "shorted-winding"
+    name = Model.SHORTED_WINDING
     lowest_level = 0.0
     knows_path = False
 

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from core.machines.base import CLARKE_PHASE, Array, Circuits, winding_axis
 from core.machines.healthy import symmetrical
+from core.machines.model_names import Model
 from core.machines.parameters import Connection, Motor
 
 WHOLE_PHASE = 1.0
@@ -32,7 +33,7 @@ class SplitWinding:
     R_s / L_ls stays finite for every mu, so nothing is stiff.
     """
 
-    name = "split-winding"
+    name = Model.SPLIT_WINDING
     lowest_level = LOWEST_LEVEL
     knows_path = True
 

@@ -31,7 +31,7 @@ from core.recordings.comtrade_lines import quoted
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
 from core.recordings.waveform import Channel, Recording
-from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
+from core.units import NANOSECONDS_PER_MILLISECOND, NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 
 MAX_BYTES = 32 << 20
 MAX_HEAD_ROWS = 100
@@ -269,7 +269,7 @@ def _trigger_time_ns(head: Mapping[str, _Field], labels: Row) -> int:
         raise row.refuse("date", "a date of the calendar", f"{error}") from None
     elapsed = moment - _EPOCH
     elapsed_s = elapsed.days * SECONDS_PER_DAY + elapsed.seconds
-    return elapsed_s * NANOSECONDS_PER_SECOND + parts["MSEC"] * 1_000_000
+    return elapsed_s * NANOSECONDS_PER_SECOND + parts["MSEC"] * NANOSECONDS_PER_MILLISECOND
 
 
 def _settings(row: Row, content: bytes, repairs: Repairs) -> str:

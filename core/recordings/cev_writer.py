@@ -17,6 +17,7 @@ import numpy as np
 from core.recordings.cev_samples import UNUSED
 from core.recordings.compressed_ascii import checksum, closed
 from core.recordings.waveform import Channel, Recording
+from core.units import NANOSECONDS_PER_MILLISECOND
 
 NO_VALUE = "$$$$$$$"
 DATE_LABELS = '"MONTH","DAY","YEAR","HOUR","MIN","SEC","MSEC"'
@@ -210,7 +211,7 @@ def _text(text: str) -> str:
 
 
 def _date(time_ns: int) -> str:
-    moment = _EPOCH + timedelta(milliseconds=time_ns // 1_000_000)
+    moment = _EPOCH + timedelta(milliseconds=time_ns // NANOSECONDS_PER_MILLISECOND)
     numbers = (moment.month, moment.day, moment.year, moment.hour, moment.minute, moment.second)
     return ",".join(map(str, (*numbers, moment.microsecond // 1000)))
 
