@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from core.commissioning.commissioning import commission
-from core.commissioning.start import start_of
+from core.commissioning.start_detection import start_of
 from core.machines.candidates import LoadLaw
 from core.machines.motor_file import read_plate
 from core.machines.playback import electrical_to_rpm

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.commissioning.start import Start, start_of, thinned
+from core.commissioning.start import Start, thinned
+from core.commissioning.start_detection import start_of
 from core.machines.candidates import LoadLaw
 from core.machines.parameters import MachineParameters, Motor
 from core.machines.starting import StartCandidates

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 
 from core.commissioning.fit import CONVERGED, Records
 from core.commissioning.prior import prior_of
-from core.commissioning.start import start_of
+from core.commissioning.start_detection import start_of
 from core.commissioning.unknowns import Point
 from core.machines.candidates import LoadLaw
 from core.machines.parameters import ChannelNames, MachineParameters, Motor

@@ -31,7 +31,7 @@ from benchmarks.thesis.commissioning_plots import (
 from core.commissioning.commissioning import commission
 from core.commissioning.prior import PARAMETERS
 from core.commissioning.result import Commissioning
-from core.commissioning.start import start_of
+from core.commissioning.start_detection import start_of
 from core.machines.candidates import LoadLaw
 from core.machines.parameters import MachineParameters
 from core.machines.playback import electrical_to_rpm

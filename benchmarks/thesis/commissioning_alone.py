@@ -15,7 +15,8 @@ from scipy.optimize import OptimizeResult
 
 from benchmarks.optimisers.start_problems import LOWER, TRUTH, UPPER, Box
 from benchmarks.reporting import spread, table
-from core.commissioning.start import Start, start_of
+from core.commissioning.start import Start
+from core.commissioning.start_detection import start_of
 from core.optimisers import hcpa
 from testing.machines.motors import REFERENCE
 from testing.machines.starts import StartRecord, plate_of

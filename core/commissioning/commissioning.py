@@ -17,7 +17,8 @@ from core.commissioning.plausibility import contradictions, delay_warning
 from core.commissioning.prior import PARAMETERS, Prior, prior_of
 from core.commissioning.result import Commissioning, Estimate, StartFound
 from core.commissioning.search import search
-from core.commissioning.start import Start, start_of, thinned
+from core.commissioning.start import Start, thinned
+from core.commissioning.start_detection import start_of
 from core.commissioning.uncertainty import inherited_covariance, noise_covariance, preference, quantile
 from core.commissioning.unknowns import OF_A_START, Point
 from core.machines.base import Array
