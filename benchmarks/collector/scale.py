@@ -120,8 +120,8 @@ def _watch(
     while (elapsed_s := time.monotonic() - begun_s) < minutes * 60:
         due = int(elapsed_s / (period_minutes * 60) * len(motors)) if period_minutes else 0
         for number in range(len(seen.asked), due):
-            report = client.request_event_report(motors[number % len(motors)])
-            seen.asked.append(str(report["id"]))
+            request = client.request_recording(motors[number % len(motors)])
+            seen.asked.append(str(request["id"]))
         if elapsed_s >= seen.looks * LOOK_S:
             seen.looks += 1
             _look(service, client, seen, elapsed_s / 60)
@@ -157,8 +157,8 @@ def _note_delays(client: ServiceClient, files: Path, seen: Seen) -> None:
 
 
 def _open(client: ServiceClient, seen: Seen) -> list[str]:
-    """Event reports that have no recording yet."""
-    return [each for each in seen.asked if client.event_report(each)["state"] in UNDER_WAY]
+    """Return the recording requests that have no recording yet."""
+    return [each for each in seen.asked if client.recording_request(each)["state"] in UNDER_WAY]
 
 
 def _told(seen: Seen, minutes: float, spent_s: float, simulated_s: float) -> Iterator[str]:
@@ -180,10 +180,10 @@ def _told(seen: Seen, minutes: float, spent_s: float, simulated_s: float) -> Ite
 
 
 def _outcome(client: ServiceClient, seen: Seen) -> Iterator[str]:
-    states = Counter(str(client.event_report(each)["state"]) for each in seen.asked)
+    states = Counter(str(client.recording_request(each)["state"]) for each in seen.asked)
     if states:
         told = ", ".join(f"{number} {state}" for state, number in states.items())
-        yield f"event reports: {len(seen.asked)} asked, {told}"
+        yield f"recording requests: {len(seen.asked)} asked, {told}"
     measured = [motor for motor in client.items("/motors") if _is_measured(client, str(motor["name"]))]
     yield f"read: {len(measured)} motors have measured values"
 

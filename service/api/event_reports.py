@@ -20,7 +20,7 @@ IdempotencyKey = Annotated[
     Header(
         min_length=1,
         max_length=200,
-        description="The same key again gives the first request's event report instead of another one.",
+        description="The same key again gives the first recording request instead of another one.",
     ),
 ]
 
@@ -29,7 +29,11 @@ IdempotencyKey = Annotated[
     "/motors/{name}/event-reports",
     status_code=HTTPStatus.ACCEPTED,
     responses=problems(404, 409)
-    | {202: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The event report."}}}},
+    | {
+        202: {
+            "headers": {"Location": {"schema": {"type": "string"}, "description": "The recording request."}}
+        }
+    },
 )
 def request_event_report(
     context: Context,
@@ -38,12 +42,12 @@ def request_event_report(
     name: Name,
     idempotency_key: IdempotencyKey = None,
 ) -> EventReport:
-    """Asks the motor's relay for an event recording. Follow the event report until diagnosed or failed."""
-    wanted = context.repository.request_recording(
+    """Request a recording from the motor's relay. Follow the request until it is diagnosed or failed."""
+    recording_request = context.repository.request_recording(
         name, now_ns=time.time_ns(), idempotency_key=idempotency_key
     )
-    response.headers["Location"] = request.url_for("get_event_report", report_id=wanted.id).path
-    return EventReport.model_validate(wanted)
+    response.headers["Location"] = request.url_for("get_event_report", report_id=recording_request.id).path
+    return EventReport.model_validate(recording_request)
 
 
 @router.get("/event-reports", responses=problems())
@@ -53,12 +57,12 @@ def list_event_reports(
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[EventReport]:
-    """Event reports, of one motor or of all, latest first."""
+    """Return the recording requests of one motor or of all motors, latest first."""
     requests = context.repository.recording_requests(motor=motor, limit=limit, after=decode(cursor, int, str))
     return page(requests, EventReport.model_validate)
 
 
 @router.get("/event-reports/{report_id}", responses=problems(404))
 def get_event_report(context: Context, report_id: UUID) -> EventReport:
-    """One event report."""
+    """Return one recording request."""
     return EventReport.model_validate(context.repository.recording_request(str(report_id)))

@@ -44,7 +44,7 @@ def get_readiness(context: Context, request: Request) -> Status | JSONResponse:
 
 @router.get("/metrics", response_class=PlainTextResponse)
 def get_metrics(context: Context) -> Response:
-    """How many links, event reports, recordings, jobs and alarms there are, and what each relay's link does.
+    """Return the numbers of links, recording requests, recordings, jobs and alarms, and each link's figures.
 
     Prometheus text format.
     """

@@ -108,7 +108,7 @@ class Diagnosis(Document):
 
 
 class EventReport(Document):
-    """An event recording somebody, or the motor's schedule, asked a relay for.
+    """A recording request: somebody, or the motor's schedule, asked a relay for a recording.
 
     It has the time of each state it went through.
     """

@@ -227,7 +227,7 @@ def trigger(
     ] = None,
     as_json: Json = False,
 ) -> None:
-    """Have a motor's relay record an event report."""
+    """Request a recording of a motor from its relay."""
     from service.cli.remote import trigger_motor
 
     trigger_motor(url, motor, key=key, wait_s=wait, as_json=as_json)

@@ -26,33 +26,33 @@ def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_js
     Raises CommandError.
     """
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        report = service.request_event_report(motor, idempotency_key=key)
+        request = service.request_recording(motor, idempotency_key=key)
         _warn_of_a_link_that_is_down(service, motor)
         deadline_s = time.monotonic() + wait_s
-        state = report["state"]
+        state = request["state"]
         while state not in ENDED and time.monotonic() < deadline_s:
             time.sleep(POLL_PERIOD_S)
-            report = service.event_report(str(report["id"]))
-            if report["state"] != state:
-                state = report["state"]
+            request = service.recording_request(str(request["id"]))
+            if request["state"] != state:
+                state = request["state"]
                 progress().print(f"{motor}: {state}")
         if state == "diagnosed":
-            recording = service.get(f"/recordings/{segment(str(report['recording_id']))}")
-            report = {**report, "diagnosis": recording["diagnosis"]}
+            recording = service.get(f"/recordings/{segment(str(request['recording_id']))}")
+            request = {**request, "diagnosis": recording["diagnosis"]}
     if state == "failed":
-        raise CommandError(f"{motor}: {report['reason']}", details={"event_report": dict(report)})
+        raise CommandError(f"{motor}: {request['reason']}", details={"event_report": dict(request)})
     if wait_s and state != "diagnosed":
         raise CommandError(
-            f"{motor}: still {state} after {wait_s:g} s", details={"event_report": dict(report)}
+            f"{motor}: still {state} after {wait_s:g} s", details={"event_report": dict(request)}
         )
     if as_json:
-        print_document(report)
+        print_document(request)
         return
-    diagnosis = report.get("diagnosis")
+    diagnosis = request.get("diagnosis")
     if isinstance(diagnosis, Mapping):
         results().print(_verdict_line(motor, diagnosis), soft_wrap=True)
     else:
-        results().print(Text(f"{motor}: event report {report['id']} {state}"), soft_wrap=True)
+        results().print(Text(f"{motor}: recording request {request['id']} {state}"), soft_wrap=True)
 
 
 def list_motors(url: str, *, as_json: bool) -> None:

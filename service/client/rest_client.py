@@ -68,8 +68,8 @@ class ServiceClient:
                 return
             cursor = {"cursor": following}
 
-    def request_event_report(self, motor: str, *, idempotency_key: str | None = None) -> Document:
-        """Have the motor's relay record an event report; the same key again changes nothing.
+    def request_recording(self, motor: str, *, idempotency_key: str | None = None) -> Document:
+        """Request a recording of the motor; the same key again requests nothing new.
 
         Raises ServiceError.
         """
@@ -81,9 +81,9 @@ class ServiceClient:
         """End the quarantine of a relay. Raises ServiceError."""
         self._request("DELETE", f"{API}/ieds/{segment(relay)}/quarantine", {})
 
-    def event_report(self, report_id: str) -> Document:
-        """How an event report is doing. Raises ServiceError."""
-        return self.get(f"/event-reports/{segment(report_id)}")
+    def recording_request(self, request_id: str) -> Document:
+        """Return a recording request, with its present state. Raises ServiceError."""
+        return self.get(f"/event-reports/{segment(request_id)}")
 
     def _request(
         self, method: str, path: str, query: Mapping[str, str], headers: Mapping[bytes, bytes] | None = None

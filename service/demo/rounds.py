@@ -20,7 +20,7 @@ class _UnderWay:
     """A motor whose relay was triggered."""
 
     motor: DemoMotor
-    report_id: str
+    request_id: str
     deadline_s: float
     steps: int = 0
 
@@ -33,19 +33,19 @@ def play_round(
 ) -> None:
     """Trigger all motors at once; add to each its new diagnosis, or the reason why there is none.
 
-    `advance` is told how many states the event reports went through since it was told last, in all
+    `advance` is told how many states the recording requests went through since it was told last, in all
     len(motors) * len(STATES). `pause` waits some seconds. Raises ServiceError.
     """
     under_way = [
-        _UnderWay(motor, str(service.request_event_report(motor.name)["id"]), time.monotonic() + LIMIT_S)
+        _UnderWay(motor, str(service.request_recording(motor.name)["id"]), time.monotonic() + LIMIT_S)
         for motor in motors
     ]
     while under_way:
         pause(POLL_PERIOD_S)
         for one in list(under_way):
-            report = service.event_report(one.report_id)
-            ended = _ended(service, report, late=time.monotonic() > one.deadline_s)
-            steps = len(STATES) if ended else _steps(report)
+            request = service.recording_request(one.request_id)
+            ended = _ended(service, request, late=time.monotonic() > one.deadline_s)
+            steps = len(STATES) if ended else _steps(request)
             advance(steps - one.steps)
             one.steps = steps
             if ended:
@@ -53,24 +53,26 @@ def play_round(
                 under_way.remove(one)
 
 
-def _ended(service: ServiceClient, report: Document, *, late: bool) -> DemoDiagnosis | None:
+def _ended(service: ServiceClient, request: Document, *, late: bool) -> DemoDiagnosis | None:
     """The result of a recording request; None while it is under way."""
-    state = report["state"]
+    state = request["state"]
     if state == "diagnosed":
-        recording = service.get(f"/recordings/{segment(str(report['recording_id']))}")
+        recording = service.get(f"/recordings/{segment(str(request['recording_id']))}")
         diagnosis = recording["diagnosis"]
         if not isinstance(diagnosis, dict):
-            raise ServiceError(f"recording {report['recording_id']} is diagnosed and has no diagnosis")
-        return DemoDiagnosis(diagnosis, _seconds_between(report["requested_time"], report["diagnosed_time"]))
+            raise ServiceError(f"recording {request['recording_id']} is diagnosed and has no diagnosis")
+        return DemoDiagnosis(
+            diagnosis, _seconds_between(request["requested_time"], request["diagnosed_time"])
+        )
     if state == "failed":
-        return DemoDiagnosis(None, None, str(report["reason"]))
+        return DemoDiagnosis(None, None, str(request["reason"]))
     if late:
         return DemoDiagnosis(None, None, f"still {state} after {LIMIT_S:g} s")
     return None
 
 
-def _steps(report: Document) -> int:
-    state = str(report["state"])
+def _steps(request: Document) -> int:
+    state = str(request["state"])
     return STATES.index(state) + 1 if state in STATES else 0
 
 

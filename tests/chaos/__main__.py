@@ -60,7 +60,7 @@ def _print(console: Console, result: Result, directory: Path) -> None:
         f"{result.records_made} records made ({result.half_records} more by half), "
         f"{result.records_stored} stored; "
         f"lost {result.lost}, doubled {result.doubled}, falsified {result.falsified}; "
-        f"event reports {dict(result.event_reports)}, failed because {dict(result.failed_because)}; "
+        f"recording requests {dict(result.event_reports)}, failed because {dict(result.failed_because)}; "
         f"triggers repeated {result.triggers_repeated}; {result.pulled_bytes / 1e6:.1f} MB from the relays; "
         f"made to stored {dict(result.made_to_stored_s)} s; settled after {result.settled_after_s} s; "
         f"files and threads {dict(result.files_and_threads)}; integrity {result.integrity}; "

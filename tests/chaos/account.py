@@ -28,8 +28,8 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Report:
-    """An event report as GET /event-reports tells it."""
+class Request:
+    """A recording request as GET /event-reports tells it."""
 
     id: str
     relay: str
@@ -63,10 +63,10 @@ def rows(client: ServiceClient) -> list[Row]:
     ]
 
 
-def reports(client: ServiceClient) -> list[Report]:
+def requests(client: ServiceClient) -> list[Request]:
     """Raises ServiceError."""
     return [
-        Report(
+        Request(
             id=str(each["id"]),
             relay=str(each["ied"]),
             state=str(each["state"]),

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from tests.chaos.account import Folder, Report, Row
+from tests.chaos.account import Folder, Request, Row
 from tests.chaos.history import History
 from tests.chaos.ledger import File, Ledger, RelayRecord
 from tests.chaos.schedule import Action
@@ -30,7 +30,7 @@ class Evidence:
     triggers: Triggers
     truth: Sequence[RelayRecord]
     rows: Sequence[Row]
-    reports: Sequence[Report]
+    requests: Sequence[Request]
     told: Mapping[str, Mapping[str, File]]
     store: Sequence[Folder]
     left_arriving: Sequence[str]
@@ -50,7 +50,7 @@ class Evidence:
             *(Breach("process", "", "", what) for what in self.noticed),
             *of_records(self.truth, self.rows, self.ledger),
             *of_contents(self.truth, self.rows, self.told, self.store, self.ledger),
-            *of_triggers(self.triggers, self.reports, self.truth, self.rows),
+            *of_triggers(self.triggers, self.requests, self.truth, self.rows),
             *(Breach("leftover", "", name, "half arrived, and never removed") for name in self.left_arriving),
             *self._of_processes(),
             *([] if self.integrity == "ok" else [Breach("integrity", "", "database", self.integrity)]),

@@ -57,7 +57,7 @@ def result_of(order: Order, profiles: Mapping[str, int], disk: str, evidence: Ev
     breaches = evidence.breaches()
     kinds = Counter(breach.kind for breach in breaches)
     whole = sum(record.is_whole for record in evidence.truth)
-    reasons = [report.reason for report in evidence.reports if report.state == "failed"]
+    reasons = [request.reason for request in evidence.requests if request.state == "failed"]
     return Result(
         seed=order.seed,
         minutes=order.minutes,
@@ -76,7 +76,7 @@ def result_of(order: Order, profiles: Mapping[str, int], disk: str, evidence: Ev
         breaches=[str(breach) for breach in breaches],
         around=[evidence.history.around(breach.made_ns) for breach in breaches[:BREACHES_WITH_HISTORY]],
         faults=faults_by_kind(evidence.schedule),
-        event_reports=dict(Counter(report.state for report in evidence.reports)),
+        event_reports=dict(Counter(request.state for request in evidence.requests)),
         failed_because=_by_kind(reasons),
         triggers_repeated=sum(asked.tries - 1 for asked in evidence.triggers.asked.values()),
         pulled_bytes=evidence.pulled_bytes,

@@ -130,7 +130,7 @@ def _evidence(
         open_matters = settle(client, plant, ledger, triggers, tell)
         settled_s = time.monotonic()
         triggers.ask_again(MOST_ASKED_AGAIN)
-        rows, reports = account.rows(client), account.reports(client)
+        rows, requests = account.rows(client), account.requests(client)
         told = account.files_of_all(client, [row.id for row in rows if row.is_fetched])
         eventually(lambda: not growth(at_first, _handles(service)), REST_LIMIT_S)
         at_last = _handles(service)
@@ -144,7 +144,7 @@ def _evidence(
             triggers=triggers,
             truth=ledger.records(),
             rows=rows,
-            reports=reports,
+            requests=requests,
             told=told,
             store=account.folders(recordings),
             left_arriving=account.left_arriving(recordings),

@@ -31,9 +31,9 @@ def open_matters(client: ServiceClient, plant: ChaosPlant, ledger: Ledger, trigg
             if row.state not in account.SETTLED
         ),
         *(
-            f"event report {report.id} of {report.relay} is {report.state}"
-            for report in account.reports(client)
-            if report.state not in account.ENDED
+            f"recording request {request.id} of {request.relay} is {request.state}"
+            for request in account.requests(client)
+            if request.state not in account.ENDED
         ),
     ]
 

@@ -8,7 +8,7 @@ from typing import cast
 
 import pytest
 
-from tests.chaos.account import Folder, Report, Row
+from tests.chaos.account import Folder, Request, Row
 from tests.chaos.ledger import File, Ledger, RelayRecord
 from tests.chaos.plant import make_plant
 from tests.chaos.schedule import make_schedule
@@ -19,7 +19,7 @@ from tests.chaos.verdict import of_contents, of_records, of_triggers
 FILES = {"HR_1.CFG": File(1, "c" * 64), "HR_1.DAT": File(2, "d" * 64)}
 RECORD = RelayRecord("R01", "HR_1", FILES, made_ns=1)
 ROW = Row("row", "R01", "HR_1", "diagnosed", "", is_fetched=True)
-REPORT = Report("report", "R01", "diagnosed", "", "row", was_triggered=True)
+REQUEST = Request("request", "R01", "diagnosed", "", "row", was_triggered=True)
 STORE = [Folder(Path("aa"), FILES, 2)]
 
 
@@ -46,13 +46,13 @@ def triggers(*asked: Asked, made: int = 0) -> Triggers:
     return cast("Triggers", told)
 
 
-ASKED = Asked("key", "R01", "MOTOR-01", "report", 1)
+ASKED = Asked("key", "R01", "MOTOR-01", "request", 1)
 
 
 def test_where_all_is_well_nothing_is_told() -> None:
     assert list(of_records([RECORD], [ROW], LEDGER)) == []
     assert list(of_contents([RECORD], [ROW], {"row": FILES}, STORE, LEDGER)) == []
-    assert list(of_triggers(triggers(ASKED), [REPORT], [RECORD], [ROW])) == []
+    assert list(of_triggers(triggers(ASKED), [REQUEST], [RECORD], [ROW])) == []
 
 
 @pytest.mark.parametrize(
@@ -98,22 +98,25 @@ def test_other_content_is_told(told: dict[str, File], store: list[Folder], kind:
 
 
 @pytest.mark.parametrize(
-    ("reports", "made", "kind"),
+    ("requests", "made", "kind"),
     [
         ([], 1, "lost"),
         (
-            [REPORT, replace(REPORT, id="other", recording=None, state="failed", reason="a .* b")],
+            [REQUEST, replace(REQUEST, id="other", recording=None, state="failed", reason="a .* b")],
             0,
             "doubled",
         ),
-        ([replace(REPORT, state="triggered")], 0, "unsettled"),
-        ([replace(REPORT, state="failed", reason="")], 0, "reason"),
-        ([replace(REPORT, recording="of another")], 1, "contradiction"),
-        ([replace(REPORT, was_triggered=False)], 0, "doubled"),
+        ([replace(REQUEST, state="triggered")], 0, "unsettled"),
+        ([replace(REQUEST, state="failed", reason="")], 0, "reason"),
+        ([replace(REQUEST, recording="of another")], 1, "contradiction"),
+        ([replace(REQUEST, was_triggered=False)], 0, "doubled"),
         (
             [
                 replace(
-                    REPORT, state="failed", reason="expected a record within 15 s, found none", recording=None
+                    REQUEST,
+                    state="failed",
+                    reason="expected a record within 15 s, found none",
+                    recording=None,
                 )
             ],
             0,
@@ -121,8 +124,8 @@ def test_other_content_is_told(told: dict[str, File], store: list[Folder], kind:
         ),
     ],
 )
-def test_triggers_that_do_not_add_up_are_told(reports: list[Report], made: int, kind: str) -> None:
-    found = of_triggers(triggers(ASKED, made=made), reports, [RECORD], [ROW])
+def test_triggers_that_do_not_add_up_are_told(requests: list[Request], made: int, kind: str) -> None:
+    found = of_triggers(triggers(ASKED, made=made), requests, [RECORD], [ROW])
     assert kind in {breach.kind for breach in found}
 
 

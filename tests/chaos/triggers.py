@@ -1,4 +1,4 @@
-"""Asking for event reports: over REST until there is an answer, or at the relay as another client would."""
+"""Requesting recordings: over REST until there is an answer, or at the relay as another client would."""
 
 import time
 from collections import Counter
@@ -23,12 +23,12 @@ ASKED_AT_ONCE = 8
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """A trigger the service accepted: the event report it was answered with, after so many tries."""
+    """A trigger the service accepted: the recording request it was answered with, after so many tries."""
 
     key: str
     relay: str
     motor: str
-    report: str
+    request: str
     tries: int
 
 
@@ -60,11 +60,11 @@ class Triggers:
             self.unanswered.add(key)
         while not self._give_up.is_set():
             tries += 1
-            report = self.post(relay.motor, key)
-            if report is not None:
+            request = self.post(relay.motor, key)
+            if request is not None:
                 with self._lock:
                     self.unanswered.discard(key)
-                    self.asked[key] = Asked(key, relay.name, relay.motor, report, tries)
+                    self.asked[key] = Asked(key, relay.name, relay.motor, request, tries)
                 return
             self._give_up.wait(RETRY_AFTER_S)
 
@@ -75,7 +75,7 @@ class Triggers:
         timer.start()
 
     def post(self, motor: str, key: str) -> str | None:
-        """The event report's id; None where there was no answer, or one that means: try again."""
+        """Return the recording request's id; None where there was no answer, or one that means: try again."""
         try:
             answer = self._http.post(f"{API}/motors/{motor}/event-reports", headers={"Idempotency-Key": key})
         except httpx.TransportError:
@@ -87,13 +87,13 @@ class Triggers:
         return None
 
     def ask_again(self, most: int) -> None:
-        """Keys that were answered before must give the same reports again."""
+        """Keys that were answered before must give the same requests again."""
         asked = list(self.asked.values())[:most]
         with ThreadPoolExecutor(ASKED_AT_ONCE) as asking:
             answers = asking.map(lambda each: self.post(each.motor, each.key), asked)
-            for each, report in zip(asked, answers, strict=True):
-                if report != each.report:
-                    self.contradictions.append(f"{each.key}: was {each.report}, asked again: {report}")
+            for each, request in zip(asked, answers, strict=True):
+                if request != each.request:
+                    self.contradictions.append(f"{each.key}: was {each.request}, asked again: {request}")
 
     def make(self, action: Action) -> None:
         """A record made at the relay, by a client that is not the service."""

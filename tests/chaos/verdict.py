@@ -5,7 +5,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from tests.chaos.account import ENDED, SETTLED, Folder, Report, Row
+from tests.chaos.account import ENDED, SETTLED, Folder, Request, Row
 from tests.chaos.ledger import File, Ledger, RecordKey, RelayRecord
 from tests.chaos.triggers import Triggers
 
@@ -106,53 +106,55 @@ def of_contents(
 
 
 def of_triggers(
-    triggers: Triggers, reports: Sequence[Report], truth: Sequence[RelayRecord], account: Sequence[Row]
+    triggers: Triggers, requests: Sequence[Request], truth: Sequence[RelayRecord], account: Sequence[Row]
 ) -> Iterator[Breach]:
-    """Every trigger that was accepted is a report that came to its end, with a reason that is true."""
+    """Every trigger that was accepted is a request that came to its end, with a reason that is true."""
     for key in sorted(triggers.unanswered):
         yield Breach("unanswered", "", key, "the service never accepted this trigger")
     for words in triggers.contradictions:
         yield Breach("contradiction", "", "", words)
-    by_id = {report.id: report for report in reports}
-    ids = Counter(asked.report for asked in triggers.asked.values())
+    by_id = {request.id: request for request in requests}
+    ids = Counter(asked.request for asked in triggers.asked.values())
     for asked in triggers.asked.values():
-        if asked.report not in by_id:
-            yield Breach("lost", asked.relay, asked.key, f"event report {asked.report} is not there")
-        elif ids[asked.report] > 1:
-            yield Breach("contradiction", asked.relay, asked.key, f"shares event report {asked.report}")
+        if asked.request not in by_id:
+            yield Breach("lost", asked.relay, asked.key, f"recording request {asked.request} is not there")
+        elif ids[asked.request] > 1:
+            yield Breach("contradiction", asked.relay, asked.key, f"shares recording request {asked.request}")
     of_rows = {row.id: row for row in account}
-    claimed = Counter(report.recording for report in reports if report.recording is not None)
-    for report in reports:
-        if report.id not in ids:
-            yield Breach("doubled", report.relay, report.id, "an event report nobody asked for")
-        yield from _of_report(report, of_rows, claimed)
-    yield from _of_counts(triggers, reports, truth, account)
+    claimed = Counter(request.recording for request in requests if request.recording is not None)
+    for request in requests:
+        if request.id not in ids:
+            yield Breach("doubled", request.relay, request.id, "a recording request nobody asked for")
+        yield from _of_request(request, of_rows, claimed)
+    yield from _of_counts(triggers, requests, truth, account)
 
 
-def _of_report(report: Report, rows: Mapping[str, Row], claimed: Counter[str]) -> Iterator[Breach]:
-    where = (report.relay, f"event report {report.id}")
-    if report.state not in ENDED:
-        yield Breach("unsettled", *where, f"it is still {report.state}")
-    if report.state == "failed" and not any(
-        reason.search(report.reason) for reason in (NO_RECORD, NO_ANSWER, REFUSED, INCOMPLETE)
+def _of_request(request: Request, rows: Mapping[str, Row], claimed: Counter[str]) -> Iterator[Breach]:
+    where = (request.relay, f"recording request {request.id}")
+    if request.state not in ENDED:
+        yield Breach("unsettled", *where, f"it is still {request.state}")
+    if request.state == "failed" and not any(
+        reason.search(request.reason) for reason in (NO_RECORD, NO_ANSWER, REFUSED, INCOMPLETE)
     ):
-        yield Breach("reason", *where, f"failed: {report.reason or 'no reason'}")
-    if report.state == "diagnosed":
-        row = None if report.recording is None else rows.get(report.recording)
-        if row is None or row.relay != report.relay:
-            yield Breach("contradiction", *where, f"its recording {report.recording} is not this relay's")
+        yield Breach("reason", *where, f"failed: {request.reason or 'no reason'}")
+    if request.state == "diagnosed":
+        row = None if request.recording is None else rows.get(request.recording)
+        if row is None or row.relay != request.relay:
+            yield Breach("contradiction", *where, f"its recording {request.recording} is not this relay's")
         elif claimed[row.id] > 1:
-            yield Breach("contradiction", *where, f"{claimed[row.id]} event reports have recording {row.id}")
+            yield Breach(
+                "contradiction", *where, f"{claimed[row.id]} recording requests have recording {row.id}"
+            )
 
 
 def _of_counts(
-    triggers: Triggers, reports: Sequence[Report], truth: Sequence[RelayRecord], account: Sequence[Row]
+    triggers: Triggers, requests: Sequence[Request], truth: Sequence[RelayRecord], account: Sequence[Row]
 ) -> Iterator[Breach]:
-    """No relay was triggered twice for one report, and no report failed for lack of a record that came."""
+    """No relay was triggered twice for one request, and no request failed for lack of a record that came."""
     records = Counter(record.relay for record in truth)
-    triggered = Counter(report.relay for report in reports if report.was_triggered)
-    excused = Counter(report.relay for report in reports if NO_ANSWER.search(report.reason))
-    claimed = {report.recording for report in reports}
+    triggered = Counter(request.relay for request in requests if request.was_triggered)
+    excused = Counter(request.relay for request in requests if NO_ANSWER.search(request.reason))
+    claimed = {request.recording for request in requests}
     unclaimed = Counter(row.relay for row in account if row.is_fetched and row.id not in claimed)
     for relay, number in records.items():
         if number > triggered[relay] + triggers.made[relay]:
@@ -161,7 +163,7 @@ def _of_counts(
     for relay, number in unclaimed.items():
         if number > triggers.made[relay] + excused[relay]:
             what = (
-                f"{number} recordings belong to no event report; {triggers.made[relay]} were made at "
+                f"{number} recordings belong to no recording request; {triggers.made[relay]} were made at "
                 f"the relay, {excused[relay]} came after the relay had not answered"
             )
             yield Breach("unmatched", relay, "", what)

@@ -45,7 +45,7 @@ def a_link_down_for_long_costs_what_the_relay_discards(enterprise: Enterprise) -
     before, points = enterprise.recordings(), enterprise.trend(MOTOR)
     enterprise.compose("stop", "router-b")
     enterprise.wait("its link is down", lambda: enterprise.links()[RELAY] == "down", START_LIMIT_S)
-    asked = str(enterprise.service.request_event_report(MOTOR)["id"])
+    asked = str(enterprise.service.request_recording(MOTOR)["id"])
     script = ("python", "-c", RECORD_AND_TAKE_THE_FIRST, RELAY, str(held + 1))
     printed = enterprise.compose.inside("relay-b2", *script).splitlines()
     taken = json.loads(next(line for line in printed if line.startswith('{"taken"')))["taken"]
@@ -91,13 +91,13 @@ def an_upload_of_what_is_known_changes_nothing(enterprise: Enterprise) -> None:
 
 
 def _require_in_vain(enterprise: Enterprise, asked: str) -> None:
-    """An event report that the relay could not be asked for ends, and says why."""
+    """A recording request that the relay could not be asked for ends, and says why."""
 
     def has_failed() -> bool:
-        return enterprise.service.event_report(asked)["state"] == "failed"
+        return enterprise.service.recording_request(asked)["state"] == "failed"
 
-    enterprise.wait("the event report fails", has_failed, START_LIMIT_S)
-    reason = str(enterprise.service.event_report(asked)["reason"])
+    enterprise.wait("the recording request fails", has_failed, START_LIMIT_S)
+    reason = str(enterprise.service.recording_request(asked)["reason"])
     assert "router-b:10214" in reason, reason
 
 

@@ -58,11 +58,13 @@ class Enterprise:
     def trigger(self, *motors: str) -> None:
         """Over REST; each comes to one diagnosis of one more recording."""
         before = self.recordings()
-        reports = {motor: str(self.service.request_event_report(motor)["id"]) for motor in motors}
+        requests = {motor: str(self.service.request_recording(motor)["id"]) for motor in motors}
 
         def ended() -> bool:
-            states = {self.service.event_report(report)["state"] for report in reports.values()}
-            assert "failed" not in states, [self.service.event_report(report) for report in reports.values()]
+            states = {self.service.recording_request(request)["state"] for request in requests.values()}
+            assert "failed" not in states, [
+                self.service.recording_request(request) for request in requests.values()
+            ]
             return states == {"diagnosed"}
 
         self.wait(f"diagnoses of {', '.join(motors)}", ended, DIAGNOSIS_LIMIT_S)

@@ -97,7 +97,7 @@ def run(dialogue: Dialogue, seed: int, directory: Path, *, cases: int, limit_s: 
                 _look(service, outcome, gateways)
                 time.sleep(PROBE_S)
             for motor in GOOD_MOTORS:
-                client.request_event_report(motor)
+                client.request_recording(motor)
             eventually(lambda: _good_recordings(client) >= len(GOOD_MOTORS), 60)
             outcome.gateways = len(gateways)
             outcome.quarantines = _quarantines(client)

@@ -142,7 +142,7 @@ def test_a_configuration_alone_is_rejected(bench: Bench) -> None:
     assert bench.reason_for_rejecting("HR_20004") == "HR_20004: expected a .DAT file in EVENTS, found none"
 
 
-def test_a_relay_that_is_down_fails_its_event_report_alone(
+def test_a_relay_that_is_down_fails_its_recording_request_alone(
     bench: Bench, capsys: pytest.CaptureFixture[str]
 ) -> None:
     url = bench.service.url

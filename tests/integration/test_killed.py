@@ -25,32 +25,32 @@ from testing.waiting import eventually
 PROGRESS = ("requested", "triggered", "recorded", "fetched", "diagnosed")
 
 
-def states(client: ServiceClient, reports: list[str]) -> list[str]:
-    return [str(client.event_report(report)["state"]) for report in reports]
+def states(client: ServiceClient, requests: list[str]) -> list[str]:
+    return [str(client.recording_request(request)["state"]) for request in requests]
 
 
 def request_all(client: ServiceClient) -> list[str]:
-    return [str(client.request_event_report(motor)["id"]) for motor in MOTOR_NAMES]
+    return [str(client.request_recording(motor)["id"]) for motor in MOTOR_NAMES]
 
 
-def in_the_middle(client: ServiceClient, reports: list[str], past: str) -> bool:
-    """Every relay was triggered, one report got past a state, and not everything is done."""
-    reached = [PROGRESS.index(state) for state in states(client, reports)]
+def in_the_middle(client: ServiceClient, requests: list[str], past: str) -> bool:
+    """Every relay was triggered, one request got past a state, and not everything is done."""
+    reached = [PROGRESS.index(state) for state in states(client, requests)]
     return min(reached) >= 1 and max(reached) > PROGRESS.index(past) and min(reached) < len(PROGRESS) - 1
 
 
 def kill_in_the_middle(service: Service, past: str, *, alone: bool) -> list[str]:
-    """Trigger every motor, kill everything on the way, start again. Returns the event reports."""
+    """Trigger every motor, kill everything on the way, start again. Returns the recording requests."""
     with ServiceClient(service.url) as client:
         assert eventually(lambda: set(link_states(client).values()) == {"up"}, 30)
-        reports = request_all(client)
-        assert eventually(lambda: in_the_middle(client, reports, past), 30)
+        requests = request_all(client)
+        assert eventually(lambda: in_the_middle(client, requests, past), 30)
     service.kill(alone=alone)
     repository = Repository(connect(sqlite_url(service.data)))
-    left = {repository.recording_request(report).state for report in reports}
+    left = {repository.recording_request(request).state for request in requests}
     assert left - {RecordingRequestState.DIAGNOSED}, "it was killed before everything was done"
     service.start()
-    return reports
+    return requests
 
 
 @pytest.mark.timeout(300)  # it starts the service four times and waits for twelve diagnoses
@@ -59,22 +59,22 @@ def test_twelve_recordings_are_twelve_rows(tmp_path: Path) -> None:
         simulated_plant(tmp_path) as plant,
         running_service(tmp_path, plant.scd, MCC_POLL_PERIOD_S="1") as service,
     ):
-        reports = kill_in_the_middle(service, past="triggered", alone=False)
+        requests = kill_in_the_middle(service, past="triggered", alone=False)
         with ServiceClient(service.url) as client:
-            assert eventually(lambda: set(states(client, reports)) == {"diagnosed"}, 60), (
+            assert eventually(lambda: set(states(client, requests)) == {"diagnosed"}, 60), (
                 service.log.read_text()
             )
-        reports += kill_in_the_middle(service, past="recorded", alone=True)
+        requests += kill_in_the_middle(service, past="recorded", alone=True)
         with ServiceClient(service.url) as client:
-            assert eventually(lambda: set(states(client, reports)) == {"diagnosed"}, 60), (
+            assert eventually(lambda: set(states(client, requests)) == {"diagnosed"}, 60), (
                 service.log.read_text()
             )
             rows = Counter((str(row["ied"]), str(row["name"])) for row in client.items("/recordings"))
-            of_reports = {client.event_report(report)["recording_id"] for report in reports}
+            of_requests = {client.recording_request(request)["recording_id"] for request in requests}
             trends = [len(list(client.items(f"/motors/{motor}/trend"))) for motor in MOTOR_NAMES]
         assert len(plant.records()) == 12
         assert rows == Counter(plant.records())
-        assert len(of_reports) == 12
+        assert len(of_requests) == 12
         assert trends == [2] * 6
 
 
@@ -97,8 +97,8 @@ def test_a_collector_that_dies_is_replaced_and_the_api_goes_on(tmp_path: Path) -
         assert first is not None
         os.kill(first, signal.SIGKILL)
         assert eventually(lambda: link_states(client)["A1_SEL710"] == "unknown", 10), "the API says so"
-        report = str(client.request_event_report("PUMP-A1")["id"])
-        assert eventually(lambda: states(client, [report]) == ["diagnosed"], 40), service.log.read_text()
+        request = str(client.request_recording("PUMP-A1")["id"])
+        assert eventually(lambda: states(client, [request]) == ["diagnosed"], 40), service.log.read_text()
         assert collector_of(service) not in (None, first)
         assert link_states(client)["A1_SEL710"] == "up"
         assert len(plant.records()) == 1

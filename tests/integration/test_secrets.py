@@ -108,7 +108,7 @@ def test_secrets_let_in_and_are_told_nowhere(tmp_path: Path) -> None:
         both = ("A1_SEL710", "A2_SEL710")
         assert eventually(lambda: all(link_states(client)[name] == "up" for name in both), 30)
         for motor in ("PUMP-A1", "FAN-A2"):
-            client.request_event_report(motor)
+            client.request_recording(motor)
         assert eventually(lambda: len(stored(client)) == 2, 60)
 
         write_secret(password, WRONG)
