@@ -57,7 +57,7 @@ class RecordAlarms(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Scan:
-    """Names of records, by what became of them.
+    """What one scan of a relay's directory came to: names of records, by what became of them.
 
     listed: all there are.  taken: newly stored or refused for good.  waiting: new ones that are not ready, or
     are to be tried again soon, or are refused while their event is still to be had in another format.
@@ -114,7 +114,10 @@ class RecordDirectory:
         on_bytes: Callable[[int], None],
         policy: RecordPolicy = RECORD_POLICY,
     ) -> None:
-        """on_bytes: gets the number of bytes of every part of a file that came."""
+        """Follow the records of one relay.
+
+        on_bytes: gets the number of bytes of every part of a file that came.
+        """
         self._relay = relay.name
         self._store = store
         self._folder = folder
@@ -333,7 +336,7 @@ class RecordDirectory:
 
 
 def _is_to_come(state: RecordState, chosen: Chosen) -> bool:
-    """Whether its event is still to be had, in another format where the record itself is refused."""
+    """Return whether its event is still to be had, in another format where the record itself is refused."""
     if state.life is Life.REFUSED:
         return state in chosen.replaceable
     return not state.is_decided

@@ -28,14 +28,14 @@ log = structlog.get_logger(__name__)
 
 USUAL = ("EVENTS", "COMTRADE")
 SPELLINGS = ("/{}", "{}/", "{}\\", "\\{}")
-"""Spellings to try where neither the plain name nor the root's listing leads to a folder."""
+"""These spellings are tried where neither the plain name nor the root's listing leads to a folder."""
 
 ROOT = ""
 MOST_FOLDERS = 16
 """So many of the folders that the root lists are looked into."""
 
 NO_SERVICE_CODES = (4, 98, 99)
-"""Error codes of the library: service not supported, not implemented, and a reject."""
+"""The library means by these codes: service not supported, service not implemented, request rejected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class EventFolder:
 
     @property
     def directory(self) -> str | None:
-        """The folder in use, None while there is none."""
+        """Return the folder in use, None while there is none."""
         return self._candidates[0] if self._candidates else None
 
     def begin(self) -> None:

@@ -17,8 +17,9 @@ _RAW = "CR_"
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """states: one for each event.  passed_over: files of the formats that are not taken, and why.
+    """The records that are chosen of all that a relay lists.
 
+    states: one for each event.  passed_over: files of the formats that are not taken, and why.
     replaceable: those of `states` whose event is there in another format too that may yet be taken.  early:
     those that are event reports alone while the relay writes COMTRADE as well, which may be still to come.
     """
@@ -30,10 +31,11 @@ class Chosen:
 
 
 def one_format_an_event(states: Iterable[RecordState]) -> Chosen:
-    """COMTRADE before event reports, unless the event was taken otherwise before (it is in the store).
+    """Choose one format of each event.
 
-    Incomplete records are taken only where there is nothing else. Refused ones are not pulled: they stand for
-    their event only where each of its formats is refused.
+    COMTRADE comes before event reports, unless the event is in the store in another format. Incomplete
+    records are taken only where there is nothing else. Refused ones are not pulled: they stand for their
+    event only where each of its formats is refused.
     """
     events: dict[str, list[RecordState]] = {}
     for state in states:
@@ -62,7 +64,7 @@ def one_format_an_event(states: Iterable[RecordState]) -> Chosen:
 
 
 def _order(state: RecordState) -> tuple[bool, bool, bool, int, str]:
-    """The format of an event that sorts first is taken."""
+    """Return what the formats of an event are sorted by. The first is taken."""
     return (
         not state.in_store,
         state.life is Life.REFUSED,
@@ -73,7 +75,7 @@ def _order(state: RecordState) -> tuple[bool, bool, bool, int, str]:
 
 
 def _event(record: ListedRecord) -> str:
-    """What all formats of one event have in common."""
+    """Return what all formats of one event have in common."""
     name = record.name.upper()
     numbered = _NUMBERED.fullmatch(name)
     return name if numbered is None else numbered[1]
@@ -83,7 +85,11 @@ _EVENT_REPORT = 2
 
 
 def _rank(record: ListedRecord) -> int:
-    """COMTRADE, COMTRADE combined, event report of raw samples, any other, what belongs to COMTRADE alone."""
+    """Return the place of a record's format among the formats.
+
+    The order is: COMTRADE, combined COMTRADE, event report of raw samples, any other event report, and last
+    a record that holds only what belongs beside COMTRADE.
+    """
     if record.suffixes & {".CFG", ".DAT"}:
         return 0
     if ".CFF" in record.suffixes:

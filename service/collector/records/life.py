@@ -23,10 +23,10 @@ class Life(StrEnum):
 
 
 DECIDED = frozenset({Life.STORED, Life.REFUSED})
-"""Records of which nothing more is asked of the relay."""
+"""Nothing more is asked of the relay for records that stand here."""
 
 WHOLE = frozenset({Life.READY, Life.RETRYING})
-"""Records that have come whole and stood still for long enough."""
+"""Records that stand here have come whole and stood still for long enough."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,12 +68,12 @@ class RecordState:
 
     @property
     def is_decided(self) -> bool:
-        """Whether nothing more is asked of the relay."""
+        """Return whether nothing more is asked of the relay."""
         return self.life in DECIDED
 
     @property
     def attempts(self) -> int:
-        """How many attempts failed since the collector started."""
+        """Return how many attempts failed since the collector started."""
         return self.failures.total()
 
     def settle(self, now_s: float, times: SettlingTimes) -> None:

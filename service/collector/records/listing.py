@@ -11,7 +11,7 @@ from typing import Protocol
 REQUIRED_SUFFIXES = (".CFG", ".DAT")
 OPTIONAL_SUFFIXES = (".HDR", ".INF")
 WHOLE_SUFFIXES = (".CFF", ".CEV")
-"""Files that are a whole recording each: COMTRADE 2013 combined, SEL Compressed ASCII event report."""
+"""Each such file is a whole recording: combined COMTRADE of 2013, or Compressed ASCII event report of SEL."""
 
 RECORD_SUFFIXES = REQUIRED_SUFFIXES + OPTIONAL_SUFFIXES + WHOLE_SUFFIXES
 LONGEST_NAME = 100
@@ -52,12 +52,12 @@ class ListedRecord:
 
     @property
     def modified_ns(self) -> int:
-        """Time of the youngest file, by the relay's clock [ns]."""
+        """Return the time of the youngest file, by the relay's clock [ns]."""
         return max(file.modified_ns for file in self.files)
 
     @property
     def missing(self) -> tuple[str, ...]:
-        """Suffixes that a COMTRADE record needs and this one lacks."""
+        """Return the suffixes that a COMTRADE record needs and this one lacks."""
         if self.suffixes & set(WHOLE_SUFFIXES):
             return ()
         return tuple(suffix for suffix in REQUIRED_SUFFIXES if suffix not in self.suffixes)
@@ -68,7 +68,7 @@ class ListedRecord:
 
     @property
     def file_names(self) -> str:
-        """The names of all files, for people to read."""
+        """Return the names of all files, for people to read."""
         return ", ".join(file.local_name for file in self.files)
 
 

@@ -54,7 +54,7 @@ _KINDS: dict[type[Exception], Failure] = {
 }
 
 PULL_FAILURES = tuple(_KINDS)
-"""Errors that are due to a record, or may be."""
+"""These errors are due to a record, or may be."""
 
 VISIT_ENDS = frozenset({Failure.LINK_LOST, Failure.PROTOCOL_BROKEN})
 

@@ -28,16 +28,16 @@ from service.storage.records import ClockReading
 from service.storage.states import ClockQuality
 
 FRACTION_BITS = 0x1F
-"""The bits of the quality octet that say how many bits of the fraction of a second are significant."""
+"""These bits of the quality octet say how many bits of the fraction of a second are significant."""
 
 MOST_BITS = 24
 """A larger number of significant bits means that it is unspecified."""
 
 PERIOD_S = 1800.0
-"""Between two measurements of a clock."""
+"""A clock is measured this often [s]."""
 
 FAST_READING_S, FAST_PERIOD_S = 1.0, 0.05
-"""How long, and how often, a value that changes is read: many relays refresh theirs within a second."""
+"""A value that changes is read for so long and so often: many relays refresh theirs within a second."""
 
 
 def stamp_of(client: Client, reference: str, constraint: FunctionalConstraint) -> Timestamp | None:

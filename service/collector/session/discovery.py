@@ -43,10 +43,10 @@ log = structlog.get_logger(__name__)
 NOT_BROWSED = "the relay does not tell what it offers: its SCL is taken at its word"
 
 REFUSALS = (AccessDenied, NotFound, ProtocolError, TemporarilyUnavailable, ValueError)
-"""Errors of one request while the link is fine. ValueError: a name that is none."""
+"""These errors concern one request, and the link is fine. ValueError stands for a name that is none."""
 
 MOST_DEVICES, MOST_NODES, MOST_DATA_SETS, MOST_BLOCKS = 64, 4000, 64, 128
-"""Limits for one relay. Protection relays have fewer; a faulty one may list any number."""
+"""No more of one relay is browsed. Protection relays have fewer; a faulty one may list any number."""
 
 
 class Discovery:

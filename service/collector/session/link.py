@@ -31,8 +31,9 @@ class Link:
         on_note: Callable[[LinkNote], None] | None = None,
         reminder_s: float = SESSION_POLICY.reminder_s,
     ) -> None:
-        """on_note: takes what goes over a link that stays up; None where it is written at once.
+        """Begin with a link of which nothing is known yet.
 
+        on_note: takes what goes over a link that stays up; None where it is written at once.
         reminder_s: a link that stays down for the same reason is logged this often.
         """
         self._relay = relay

@@ -20,10 +20,10 @@ from service.storage.records import Sample
 log = structlog.get_logger(__name__)
 
 LARGEST_POWER_OF_TEN = 24
-"""The multiplier yotta (IEC 61850-7-3)."""
+"""The largest multiplier of IEC 61850-7-3 is yotta."""
 
 STATISTICS_PERIOD_S = 60.0
-"""Between samples of the relay's own statistics, which are many and change slowly."""
+"""The relay's own statistics, which are many and change slowly, are sampled this often."""
 
 NOT_OFFERED = (AccessDenied, NotFound)
 
@@ -38,7 +38,10 @@ class Metering:
     def __init__(
         self, relay: Relay, motor: str, *, period_s: float, on_sample: Callable[[Sample], None]
     ) -> None:
-        """period_s: between samples; 0 where none is wanted.  on_sample: takes each sample."""
+        """Sample what the relay's model promises, until a connection tells what it offers.
+
+        period_s: between samples; 0 where none is wanted.  on_sample: takes each sample.
+        """
         self._relay = relay
         self._measurands = relay.measurands
         self._motor = motor

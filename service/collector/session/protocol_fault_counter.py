@@ -24,7 +24,10 @@ class ProtocolFaultCounter:
         policy: SessionPolicy = SESSION_POLICY,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """clock: tells a time that only goes forward [s]. Raises SQLAlchemyError."""
+        """Read from the database whether the relay is on probation. Raises SQLAlchemyError.
+
+        clock: tells a time that only goes forward [s].
+        """
         self._relay = relay
         self._repository = repository
         self._quarantine = quarantine

@@ -21,7 +21,10 @@ class RelayAlarms:
     """
 
     def __init__(self, relay: str, repository: Repository, *, most: int = SESSION_POLICY.most_alarms) -> None:
-        """most: of a kind; one more alarm says that there are others. Raises SQLAlchemyError."""
+        """Read the standing alarms from the database. Raises SQLAlchemyError.
+
+        most: so many alarms of a kind stand; one more says that there are others.
+        """
         self._relay = relay
         self._repository = repository
         self._most = most

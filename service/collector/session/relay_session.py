@@ -38,10 +38,10 @@ from service.timing.backoff import RestartDelay
 log = structlog.get_logger(__name__)
 
 HURRIED_PERIOD_S = 0.2
-"""Between scans while a record is known to be on its way."""
+"""The directory is scanned this often while a record is known to be on its way."""
 
 LISTING_PAUSE = 4.0
-"""The pause before the next listing of the directory, in units of the time that the latest one took."""
+"""The next listing of the directory waits for so many times the time that the latest one took."""
 
 
 class RelaySession:
@@ -61,8 +61,9 @@ class RelaySession:
         on_note: Callable[[LinkNote], None] | None = None,
         policy: SessionPolicy = SESSION_POLICY,
     ) -> None:
-        """gateway: who holds the relay's lease; None where relays are not shared.
+        """Put together what one relay needs; `run` then connects. Raises SQLAlchemyError.
 
+        gateway: who holds the relay's lease; None where relays are not shared.
         visit_marks: where a visit is marked, for whoever finds the process dead; None where nobody looks.
         on_sample: takes what the relay measures; None where nobody wants it.
         on_note: takes what goes over a link that stays up; None where it is written at once.

@@ -31,13 +31,13 @@ from service.storage import Repository
 log = structlog.get_logger(__name__)
 
 ENTRY_ID_OCTETS = 8
-"""Size in IEC 61850-8-1. An EntryID of another size could not be given back to the relay."""
+"""An EntryID has this size (IEC 61850-8-1). One of another size could not be given back to the relay."""
 
 MOST_BLOCKS = 16
 """So many blocks are tried at a time: at some relays a block has many instances, all of them taken."""
 
 REFUSALS = (AccessDenied, NotFound, ProtocolError, ReportControlInUse, TemporarilyUnavailable, ValueError)
-"""Errors of one block while the link is fine. ValueError: a reference that is none."""
+"""These errors concern one block, and the link is fine. ValueError stands for a reference that is none."""
 
 SEQUENCE_NUMBERS = 65_536
 """A report's sequence number has 16 bits (IEC 61850-7-2, SqNum) and begins again after the last."""
@@ -118,7 +118,10 @@ class ReportSubscription:
         *,
         retry_s: float = SESSION_POLICY.report_retry_s,
     ) -> None:
-        """retry_s: between attempts to get a block, where all were refused."""
+        """Begin without a block; `begin` subscribes.
+
+        retry_s: between attempts to get a block, where all were refused.
+        """
         self._relay = relay
         self._repository = repository
         self._link = link

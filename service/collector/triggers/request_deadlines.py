@@ -60,7 +60,7 @@ class RequestDeadlines:
 
 
 class UnansweredRequests:
-    """The open recording requests of one relay, as long as the relay cannot be asked."""
+    """The open recording requests of one relay, while the relay cannot be asked."""
 
     def __init__(self, relay: str, repository: Repository, deadlines: RequestDeadlines) -> None:
         self._relay = relay

@@ -36,11 +36,11 @@ from service.storage.states import IN_THE_RELAY, RecordingRequestState
 log = structlog.get_logger(__name__)
 
 REFUSALS = (AccessDenied, ControlRefused, NotFound, ProtocolError, ValueError)
-"""The relay answers, and the answer is no. ValueError: an override that is no reference. Errors of the link
-leave a request as it is until its time limit."""
+"""By these errors the relay refuses. ValueError stands for an override that is no reference. Errors of the
+link leave a request as it is until its time limit."""
 
 HOLD_S = 0.05
-"""How long the remote bit stays set: relays look at their equations every quarter cycle, some less often."""
+"""The remote bit stays set so long: relays look at their equations every quarter cycle, some less often."""
 
 
 class ControlClock(Protocol):
@@ -116,9 +116,9 @@ class TriggerQueue:
         return request.id
 
     def follow(self, client: Client, scan: Scan) -> bool:
-        """After `recall` and a scan: trigger for the next request, or see how the outstanding one is doing.
+        """Trigger for the next request, or see how the outstanding one is doing.
 
-        Returns whether a record is on its way. Raises MmsError when the link fails.
+        `recall` and a scan come first. Returns whether a record is on its way. Raises MmsError (the link).
         """
         if self._claimed:
             self.recall()
@@ -168,7 +168,7 @@ class TriggerQueue:
         self._unanswered.fail_overdue(reason)
 
     def _is_held_up(self, scan: Scan) -> bool:
-        """Whether the trigger waits for older records that are about to be taken.
+        """Return whether the trigger waits for older records that are about to be taken.
 
         Otherwise, after a crash in between, it would not be known that they were there before the trigger.
         """
@@ -227,7 +227,10 @@ class TriggerQueue:
 
 
 def _is_set(client: Client, control: str) -> bool:
-    """Whether a control is on; some relays do not let what may be written be read. Raises MmsError (link)."""
+    """Return whether a control is on: False too where it can be written but not read.
+
+    Raises MmsError (the link).
+    """
     try:
         return client.read(f"{control}.stVal", FunctionalConstraint.ST) is True
     except (AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused):
