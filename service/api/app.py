@@ -27,7 +27,7 @@ Every error is a problem document (RFC 9457)."""
 
 
 def create_app(context: ApiContext) -> FastAPI:
-    """The ASGI application on a plant that is in the database already."""
+    """Return the ASGI application for a plant that is in the database already."""
     app = FastAPI(
         title="StatorWatch",
         version=version("statorwatch"),
@@ -53,7 +53,7 @@ def create_app(context: ApiContext) -> FastAPI:
 
 
 def _document_problems(app: FastAPI) -> None:
-    """Adds the schema that the routes' error responses point to."""
+    """Add the schema that the routes' error responses point to."""
 
     def openapi() -> dict[str, object]:
         if not app.openapi_schema:

@@ -16,20 +16,20 @@ router = APIRouter(prefix="/motors/{name}/baseline", tags=["condition"])
 
 @router.get("", responses=problems(404))
 def get_baseline(context: Context, name: Name) -> Baseline:
-    """The recordings of a motor's baseline, oldest first; none where it has no baseline."""
+    """Return the recordings of a motor's baseline, oldest first; none where it has no baseline."""
     return _document(context.repository.baseline(name))
 
 
 @router.put("", responses=problems(400, 404, 409, 413))
 def set_baseline(context: Context, name: Name, wanted: BaselineRequest) -> Baseline:
-    """Has recordings known to be healthy be the motor's baseline, for diagnoses from now on."""
+    """Replace a motor's baseline by recordings known to be healthy, for diagnoses from now on."""
     ids = sorted(str(one) for one in wanted.recording_ids)
     return _document(context.repository.set_baseline(name, ids, now_ns=time.time_ns()))
 
 
 @router.delete("", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
 def drop_baseline(context: Context, name: Name) -> None:
-    """Forgets a motor's baseline; its recordings stay."""
+    """Delete a motor's baseline; its recordings stay."""
     context.repository.set_baseline(name, [], now_ns=time.time_ns())
 
 

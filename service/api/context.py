@@ -11,11 +11,11 @@ from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository
 
 Problem = Callable[[], str | None]
-"""Says what keeps a part of the service from working, None when it works."""
+"""A check that returns what keeps a part of the service from working; None when it works."""
 
 
 def _nothing() -> None:
-    """For an API without a job runner of its own."""
+    """Do nothing, for an API without a job runner of its own."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,7 +28,7 @@ def request_diagnosis(
     recording_id: UUID,
     wanted: DiagnosisRequest | None = None,
 ) -> DiagnosisRun:
-    """Queues another diagnosis of a stored recording; when done, it takes the place of the earlier one."""
+    """Queue another diagnosis of a stored recording; when done, it takes the place of the earlier one."""
     wanted = wanted or DiagnosisRequest()
     job = context.repository.request_diagnosis(
         str(recording_id), method=wanted.method, model=wanted.model, now_ns=time.time_ns()
@@ -43,14 +43,14 @@ def request_diagnosis(
 def list_diagnoses(
     context: Context, recording_id: UUID, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
 ) -> Page[DiagnosisRun]:
-    """Diagnoses of a recording, latest first."""
+    """Return the diagnoses of a recording, latest first."""
     jobs = context.repository.jobs(str(recording_id), limit=limit, after=decode(cursor, int, str))
     return page(jobs, _run)
 
 
 @router.get("/{diagnosis_id}", responses=problems(404))
 def get_diagnosis(context: Context, recording_id: UUID, diagnosis_id: UUID) -> DiagnosisRun:
-    """One diagnosis of a recording."""
+    """Return one diagnosis of a recording."""
     return _run(context.repository.job(str(recording_id), str(diagnosis_id)))
 
 

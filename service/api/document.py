@@ -7,7 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, StringConstraints
 from core.units import NANOSECONDS_PER_SECOND
 
 Name = Annotated[str, StringConstraints(min_length=1, max_length=200, pattern=r"^[^\x00/]+$")]
-"""Name of a site, IED or motor in a path."""
+"""This is the name of a site, IED or motor in a path."""
 
 
 def _seconds(value: object) -> object:
@@ -15,7 +15,7 @@ def _seconds(value: object) -> object:
 
 
 Seconds = Annotated[float, BeforeValidator(_seconds)]
-"""Made from an integer of nanoseconds."""
+"""Seconds are made from an integer of nanoseconds."""
 
 
 class Document(BaseModel):

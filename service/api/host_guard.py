@@ -60,7 +60,7 @@ class HostGuard:
             return False
 
     def _limited(self, receive: Receive) -> Receive:
-        """Counts what a body without Content-Length brings."""
+        """Return a `receive` that counts the bytes of a body, and refuses it beyond the limit."""
         received = 0
 
         async def limited() -> Message:

@@ -28,7 +28,7 @@ def list_measurements(
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[Measurement]:
-    """Currents, voltages, power and frequency of a motor as its relay measures them, oldest first."""
+    """Return what a motor's relay measures, oldest first: currents, voltages, power and frequency."""
     measurements = context.repository.measurements(
         name, int(step), from_ns=from_, to_ns=to, limit=limit, after=decode(cursor, int)
     )

@@ -17,7 +17,7 @@ router = APIRouter()
 
 @router.get("/sites", responses=problems(), tags=["plant"])
 def list_sites(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Site]:
-    """Sites (substations of the plant's SCD), by name."""
+    """Return the sites (substations of the plant's SCD), by name."""
     return page(context.repository.sites(limit=limit, after=decode(cursor, str)), Site.model_validate)
 
 
@@ -28,7 +28,7 @@ def list_motors(
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[ListedMotor]:
-    """Motors, by name."""
+    """Return the motors, by name."""
     after = decode(cursor, str)
     if health:
         return page(context.repository.health_of_motors(limit=limit, after=after), _with_health)
@@ -37,13 +37,13 @@ def list_motors(
 
 @router.get("/motors/{name}", responses=problems(404), tags=["plant"])
 def get_motor(context: Context, name: Name) -> Motor:
-    """One motor."""
+    """Return one motor."""
     return Motor.model_validate(context.repository.motor(name))
 
 
 @router.get("/motors/{name}/health", responses=problems(404), tags=["condition"])
 def get_health(context: Context, name: Name) -> Health:
-    """The condition of a motor as of its latest recording, and whether its relay answers."""
+    """Return the condition of a motor as of its latest recording, and whether its relay answers."""
     return _health(context.repository.health(name))
 
 
@@ -57,7 +57,7 @@ def get_trend(
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[TrendPoint]:
-    """One figure for each recording of a motor, oldest first."""
+    """Return one figure for each recording of a motor, oldest first."""
     points = context.repository.trend(
         name, quantity, from_ns=from_, to_ns=to, limit=limit, after=decode(cursor, int, str)
     )
@@ -68,7 +68,7 @@ def get_trend(
 def list_recordings_of_motor(
     context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
 ) -> Page[Recording]:
-    """Recordings of a motor, latest first."""
+    """Return the recordings of a motor, latest first."""
     context.repository.motor(name)
     recordings = context.repository.recordings(motor=name, limit=limit, after=decode(cursor, int, str))
     return page(recordings, Recording.model_validate)

@@ -42,7 +42,10 @@ def encode(cursor: Cursor) -> str:
 
 
 def decode(text: str | None, *kinds: type[int] | type[str]) -> Cursor | None:
-    """The sort key of a cursor whose parts are of these kinds. Raises ProblemError for any other text."""
+    """Return the sort key of a cursor whose parts are of these kinds.
+
+    Raises ProblemError for any other text.
+    """
     if text is None:
         return None
     try:

@@ -23,13 +23,13 @@ router = APIRouter(tags=["operation"])
 
 @router.get("/healthz")
 def get_health_of_service() -> Status:
-    """The service answers."""
+    """Answer, which shows that the service runs."""
     return Status(status="ok")
 
 
 @router.get("/readyz", response_model=Status, responses={503: problems(503)[503]})
 def get_readiness(context: Context, request: Request) -> Status | JSONResponse:
-    """All parts of the service work; otherwise 503 and which part does not, and why."""
+    """Tell whether all parts of the service work; otherwise answer 503, and say which does not and why."""
     parts = _parts(context)
     failing = {part: problem for part, problem in parts.items() if problem is not None}
     if not failing:

@@ -26,10 +26,10 @@ STATUS_OF: dict[type[Exception], HTTPStatus] = {
     OutOfServiceError: HTTPStatus.CONFLICT,
     StateConflictError: HTTPStatus.CONFLICT,
 }
-"""What the storage refuses, and how it is told."""
+"""The HTTP status that answers each refusal of the storage."""
 
 RETRY_AFTER_S = 5
-"""Told to clients while the database does not answer: a full disk, a lock held for long."""
+"""Clients are told to wait this long while the database does not answer (a full disk, a long lock)."""
 
 OF_ALL = (HTTPStatus.UNPROCESSABLE_ENTITY, HTTPStatus.SERVICE_UNAVAILABLE)
 
@@ -64,7 +64,7 @@ class ProblemError(Exception):
 
 
 def problems(*statuses: int) -> dict[int | str, dict[str, object]]:
-    """OpenAPI's description of the errors a route answers with; those that any may have are among them."""
+    """Return OpenAPI's description of a route's errors, and of those that any route may have."""
     return {
         int(status): {
             "description": HTTPStatus(status).phrase,
@@ -107,13 +107,13 @@ def _with_status(status: HTTPStatus) -> Callable[[Request, Exception], JSONRespo
 
 
 def _unstorable(request: Request, error: Exception) -> JSONResponse:
-    """A text with a NUL in it, say, which PostgreSQL cannot hold."""
+    """Return the answer to a value that cannot be stored, e.g. a NUL, which PostgreSQL cannot hold."""
     detail = f"the database cannot hold a value of this request: {getattr(error, 'orig', error)}"
     return problem_response(request.url.path, HTTPStatus.UNPROCESSABLE_ENTITY, detail)
 
 
 def install(app: FastAPI) -> None:
-    """Makes `app` answer every error with a problem document."""
+    """Make `app` answer every error with a problem document."""
 
     @app.exception_handler(ProblemError)
     def _problem(request: Request, error: ProblemError) -> JSONResponse:

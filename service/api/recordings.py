@@ -38,7 +38,7 @@ def list_recordings(
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[Recording]:
-    """Recordings, of one motor or of all, in one state or in any, latest first."""
+    """Return recordings, of one motor or of all, in one state or in any, latest first."""
     recordings = context.repository.recordings(
         motor=motor, state=state, limit=limit, after=decode(cursor, int, str)
     )
@@ -64,7 +64,7 @@ def upload_recording(
     motor: Annotated[str, Form(min_length=1, max_length=200, description="Name of the motor recorded.")],
     files: Annotated[list[UploadFile], File(description="COMTRADE: .CFG and .DAT, or .CFF; or a .CEV.")],
 ) -> RecordingDetails:
-    """Stores the files of one recording and queues its diagnosis; one the motor has stays as it is."""
+    """Store the files of one recording and queue its diagnosis; one the motor has stays as it is."""
     context.repository.motor(motor)
     stored = _store_upload(context, files)
     added = context.repository.add_recording(stored, motor=motor, now_ns=time.time_ns())
@@ -77,7 +77,7 @@ def upload_recording(
 
 @router.get("/recordings/{recording_id}", responses=problems(404))
 def get_recording(context: Context, recording_id: UUID) -> RecordingDetails:
-    """One recording with its files and its latest diagnosis."""
+    """Return one recording with its files and its latest diagnosis."""
     return _details(context, context.repository.recording(str(recording_id)))
 
 
@@ -87,7 +87,7 @@ def get_waveform(
     recording_id: UUID,
     points: Annotated[int, Query(ge=2, le=20_000, description="Most intervals a channel.")] = 2000,
 ) -> Waveform:
-    """The samples of a recording, as the smallest and largest value of up to `points` intervals."""
+    """Return the samples of a recording as the smallest and largest value of up to `points` intervals."""
     entry = context.repository.recording(str(recording_id))
     path = context.store.entry(_digest(entry))
     try:
@@ -103,7 +103,7 @@ def get_waveform(
     | {200: {"content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}}}},
 )
 def download_recording(context: Context, recording_id: UUID) -> StreamingResponse:
-    """The files of a recording as they came from the relay, in a ZIP archive."""
+    """Return the files of a recording as they came from the relay, in a ZIP archive."""
     entry = context.repository.recording(str(recording_id))
     stored = context.store.find(_digest(entry))
     return StreamingResponse(

@@ -27,18 +27,18 @@ from service.storage.records import RelayFindings
 router = APIRouter(tags=["relays"])
 
 LATEST_CHANGES = 20
-"""Shown with the relay itself; the others have a route of their own."""
+"""So many are shown with the relay itself; all have a route of their own."""
 
 
 @router.get("/ieds", responses=problems())
 def list_ieds(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Ied]:
-    """Relays and the state of their links, by name."""
+    """Return the relays and the state of their links, by name."""
     return page(context.repository.relays(limit=limit, after=decode(cursor, str)), Ied.model_validate)
 
 
 @router.get("/ieds/{name}", responses=problems(404))
 def get_ied(context: Context, name: Name) -> IedDetails:
-    """One relay, with figures and history of its link and the alarms that stand."""
+    """Return one relay, with figures and history of its link and its standing alarms."""
     repository = context.repository
     ied = Ied.model_validate(repository.relay(name))
     changes = repository.link_changes(name, limit=LATEST_CHANGES)
@@ -76,14 +76,14 @@ def _acquisition(findings: RelayFindings | None) -> Acquisition | None:
 def list_link_changes(
     context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
 ) -> Page[LinkChange]:
-    """Every change of a relay's link with its reason, latest first; the latest thousand are kept."""
+    """Return the changes of a relay's link with their reasons, latest first; the latest thousand are kept."""
     changes = context.repository.link_changes(name, limit=limit, after=decode(cursor, int, str))
     return page(changes, LinkChange.model_validate)
 
 
 @router.get("/gateways", responses=problems())
 def list_gateways(context: Context) -> Page[Gateway]:
-    """The processes that visit the relays, on all hosts, by id; always one page."""
+    """Return the processes that visit the relays, on all hosts, by id; always one page."""
     gateways = context.repository.gateways()
     return Page(items=[Gateway.model_validate(gateway) for gateway in gateways], next_cursor=None)
 
@@ -91,14 +91,14 @@ def list_gateways(context: Context) -> Page[Gateway]:
 @router.get("/alarms", responses=problems())
 def list_alarms(
     context: Context,
-    ied: Annotated[str | None, Query(max_length=200, description="Of this relay only.")] = None,
+    ied: Annotated[str | None, Query(max_length=200, description="Only alarms of this relay.")] = None,
     standing: Annotated[
         bool | None, Query(description="true: those not cleared; false: those cleared; without: both.")
     ] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[Alarm]:
-    """Alarms of the relays, latest first."""
+    """Return the alarms of the relays, latest first."""
     alarms = context.repository.alarms(
         relay=ied, standing=standing, limit=limit, after=decode(cursor, int, str)
     )

@@ -25,7 +25,7 @@ from service.storage.states import (
 
 
 def _one_of(known: Iterable[str]) -> AfterValidator:
-    """What the core does not know must not become a job: no attempt of it could end well."""
+    """Return a validator that refuses what the core does not know: a job with it could only fail."""
     names = tuple(known)
 
     def check(name: str) -> str:

@@ -9,21 +9,21 @@ from pydantic import BeforeValidator, WithJsonSchema
 from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 
 MAX_NS = 2**63 - 1
-"""Largest time the database can hold, in the year 2262."""
+"""This is the largest time the database can hold, in the year 2262."""
 
 _RFC3339 = re.compile(r"(\d{4}-\d\d-\d\d)[Tt](\d\d:\d\d:\d\d)(?:\.(\d+))?([Zz]|[+-]\d\d:\d\d)", re.ASCII)
 
 
 def rfc3339(time_ns: int) -> str:
-    """2026-01-31T12:00:00.123456789Z; all nine digits, so that nothing is lost on the way out and in."""
+    """Return a time as 2026-01-31T12:00:00.123456789Z; all nine digits, so that nothing is lost."""
     seconds, nanoseconds = divmod(time_ns, NANOSECONDS_PER_SECOND)
     return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%dT%H:%M:%S}.{nanoseconds:09d}Z"
 
 
 def nanoseconds(text: str) -> int:
-    """UTC [ns] of an RFC 3339 time; times the database cannot hold are moved to the first or last it can.
+    """Return an RFC 3339 time as UTC [ns].
 
-    Raises ValueError.
+    Times the database cannot hold are moved to the first or last it can. Raises ValueError.
     """
     match = _RFC3339.fullmatch(text)
     if match is None:
@@ -42,9 +42,9 @@ def _outside(value: object) -> object:
 
 
 Time = Annotated[str, BeforeValidator(_outside), WithJsonSchema({"type": "string", "format": "date-time"})]
-"""Field of a response, filled from nanoseconds."""
+"""A time in a response is made from nanoseconds."""
 
 TimeParameter = Annotated[
     int, BeforeValidator(nanoseconds), WithJsonSchema({"type": "string", "format": "date-time"})
 ]
-"""Query parameter, in nanoseconds for whom it concerns."""
+"""A time in a query is RFC 3339 and becomes nanoseconds."""

@@ -11,7 +11,7 @@ from service.api.times import rfc3339
 
 
 def waveform_of(recording_id: str, recording: Recording, points: int) -> Waveform:
-    """Smallest and largest sample of up to `points` intervals of equal length (to within a sample)."""
+    """Return the smallest and largest sample of up to `points` intervals of equal length, within a sample."""
     count = recording.samples.shape[1]
     starts = np.unique(np.linspace(0, count, num=min(points, count), endpoint=False).astype(np.int64))
     lowest, highest = _envelope(recording.samples, starts)
@@ -46,5 +46,5 @@ def _envelope(
 
 
 def _numbers(values: NDArray[np.float64]) -> list[float | None]:
-    """JSON knows no NaN."""
+    """Return the values as a list, with None for NaN, which JSON does not know."""
     return [value if isfinite(value) else None for value in values.tolist()]

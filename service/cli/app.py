@@ -26,7 +26,7 @@ Url = Annotated[str, typer.Option("--url", envvar="MCC_URL", help="Address of th
 MotorName = Annotated[str, typer.Argument(metavar="MOTOR", help="The motor's name in the plant's SCD.")]
 
 INTERRUPTED = 130
-"""Typer's exit code after Ctrl-C."""
+"""Typer ends with this exit code after Ctrl-C."""
 
 DEFAULT_URL = "http://127.0.0.1:8710"
 

@@ -85,7 +85,7 @@ def _check_output(output: Path, nameplate: Path, records: Sequence[Path]) -> Non
 
 
 def _is_same(output: Path, read: Path) -> bool:
-    """Whether two paths lead to the same file, or `output` to a part of the recording `read`."""
+    """Tell whether two paths lead to the same file, or `output` to a part of the recording `read`."""
     one, other = output.resolve(), read.resolve()
     part = one.suffix.lower() != ".toml" and one.with_suffix("") == other.with_suffix("")
     return part or one == other or (one.exists() and other.exists() and one.samefile(other))

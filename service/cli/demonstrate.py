@@ -28,7 +28,7 @@ from service.demo.truth import TruthError, ask_simulator
 
 ROUNDS = 2
 REST_S = 60.0
-"""Pause between two rounds of a demo that runs until Ctrl-C."""
+"""A demo that runs until Ctrl-C pauses this long between two rounds."""
 
 
 def demonstrate(*, once: bool, json_file: Path | None, data: Path | None, url: str | None) -> None:
@@ -91,7 +91,7 @@ def _run(
 
 
 def _motors(plant: DemoPlant, service: ServiceClient) -> list[DemoMotor]:
-    """The service's motors with the simulator's truth, once both are up."""
+    """Return the service's motors with the simulator's truth, once both are up."""
     truths = ask_simulator(plant.scd, plant.scenario)
     for relay in wait_until_ready(plant, service):
         _report(f"{relay} does not answer yet; the others go on")

@@ -10,10 +10,10 @@ from rich.console import Console
 DONE, FAILED, WRONG_USE = 0, 1, 2
 
 UNLIMITED_WIDTH = 10_000
-"""Columns; tables use only what they need."""
+"""A file has this many columns; tables use only what they need."""
 
 DETAILS = ("path", "source", "host", "operation", "line", "element", "field", "expected", "found")
-"""Attributes of the project's errors that tell a program where to look."""
+"""These attributes of the project's errors tell a program where to look."""
 
 
 class CommandError(Exception):

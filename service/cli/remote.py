@@ -147,7 +147,7 @@ def _overview(health: Document) -> tuple[RenderableType, ...]:
 
 
 def _condition(health: Document) -> list[tuple[str, RenderableType]]:
-    """The lines of one motor's condition."""
+    """Return the lines of one motor's condition."""
     last = _last_recording(health)
     rows: list[tuple[str, RenderableType]] = []
     if health["verdict"] is not None:
@@ -169,7 +169,7 @@ def _condition(health: Document) -> list[tuple[str, RenderableType]]:
 
 
 def _last_recording(health: Document) -> str | None:
-    """When the last recording was made, and its state where it is not diagnosed."""
+    """Return when the last recording was made, and its state where it is not diagnosed."""
     last = health["last_recording"]
     if not isinstance(last, Mapping):
         return None

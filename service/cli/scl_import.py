@@ -36,7 +36,7 @@ def show_scl(file: Path, *, as_json: bool) -> None:
 
 
 def describe(document: Scl) -> dict[str, object]:
-    """The file's contents as a JSON document."""
+    """Return the file's contents as a JSON document."""
     return {
         "file": str(document.path),
         "motors": [
@@ -79,7 +79,7 @@ def _describe_relay(document: Scl, ied: Ied) -> dict[str, object]:
 
 
 def _warnings(document: Scl) -> list[str]:
-    """The reader's warnings, and every address that the service could not use."""
+    """Return the reader's warnings, and every address that the service could not use."""
     warnings = [str(warning) for warning in document.warnings]
     addressed = []
     for ied in document.ieds:
@@ -94,7 +94,7 @@ def _warnings(document: Scl) -> list[str]:
 
 
 def _address(document: Scl, ied_name: str) -> Address | None:
-    """The address of a relay; None without one, as in an ICD. Raises SclError for an unusable one."""
+    """Return the address of a relay; None without one, as in an ICD. Raises SclError if unusable."""
     try:
         document.connected_access_point(ied_name)
     except SclError:
@@ -103,7 +103,7 @@ def _address(document: Scl, ied_name: str) -> Address | None:
 
 
 def _usable_address(document: Scl, ied_name: str) -> Address | None:
-    """The address of a relay; None also for an unusable one, which is among the warnings."""
+    """Return the address of a relay; None also for an unusable one, which is among the warnings."""
     try:
         return _address(document, ied_name)
     except SclError:
@@ -123,7 +123,7 @@ def _motors(document: Scl) -> RenderableType:
 
 
 def _relays(document: Scl) -> Table:
-    """The table of relays, with references that leave out the relay's name at their beginning."""
+    """Return the table of relays; references leave out the relay's name at their beginning."""
     table = Table(title="Relays", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("relay\nmake", "address"):
         table.add_column(heading, no_wrap=True)

@@ -44,18 +44,18 @@ class ServiceClient:
         self._http.close()
 
     def is_ready(self) -> bool:
-        """Whether every part of the service works."""
+        """Tell whether every part of the service works."""
         try:
             return self._http.get("/readyz").status_code == HTTPStatus.OK
         except httpx.TransportError:
             return False
 
     def get(self, path: str, **query: str) -> Document:
-        """GET a document below /api/v1. Raises ServiceError."""
+        """Get a document below /api/v1. Raises ServiceError."""
         return _document(self._request("GET", f"{API}{path}", query))
 
     def items(self, path: str, **query: str) -> Iterator[Document]:
-        """Every item of a list, page after page. Raises ServiceError."""
+        """Yield every item of a list, page after page. Raises ServiceError."""
         cursor: dict[str, str] = {}
         while True:
             page = self.get(path, **query, **cursor)
@@ -100,7 +100,7 @@ class ServiceClient:
 
 
 def segment(name: str) -> str:
-    """A name as one segment of a path."""
+    """Return a name as one segment of a path."""
     return quote(name, safe="")
 
 
@@ -117,7 +117,7 @@ def _document(response: httpx.Response) -> Document:
 
 
 def _problem(response: httpx.Response) -> str:
-    """What an RFC 9457 problem document says."""
+    """Return what an RFC 9457 problem document says."""
     try:
         problem = response.json()
     except ValueError:

@@ -6,12 +6,12 @@ VERDICT_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red", "undia
 
 
 def verdict_text(verdict: str, phase: object = None) -> Text:
-    """A verdict in its colour, with the faulted phase where there is one: "fault b"."""
+    """Return a verdict in its colour, with the faulted phase where there is one: "fault b"."""
     return Text(f"{verdict} {phase or ''}".strip(), style=VERDICT_COLOURS.get(verdict, ""))
 
 
 def level(mu_f: object, ci95: object) -> str:
-    """A fault level as percent of the phase turns, with its 95 % interval; "-" where there is none."""
+    """Return a fault level in percent of the phase turns, with its 95 % interval; "-" where there is none."""
     if not isinstance(mu_f, int | float):
         return "-"
     interval = ""
@@ -21,5 +21,5 @@ def level(mu_f: object, ci95: object) -> str:
 
 
 def to_the_second(time: object) -> str:
-    """An RFC 3339 time of the API, without the fractions of a second: "2026-01-31 12:00:00 UTC"."""
+    """Return an RFC 3339 time without the fractions of a second: "2026-01-31 12:00:00 UTC"."""
     return f"{str(time)[:19].replace('T', ' ')} UTC"

@@ -102,7 +102,7 @@ def acquisition_from_offer(relay: Relay, offer: Offer, is_control: Callable[[str
 
 
 def _promised_reports(relay: Relay) -> tuple[str, ...]:
-    """The report control of its SCL, then the others that announce a record too."""
+    """Return the report control of the SCL, then the others that announce a record too."""
     first = () if relay.report_control is None else (relay.report_control,)
     if relay.expected is None or relay.record_made is None:
         return first

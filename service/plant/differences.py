@@ -8,7 +8,7 @@ from itertools import islice
 from service.plant.offer import Offer, ReportBlock, node_class
 
 MOST_DIFFERENCES = 200
-"""Enough to see that a relay is of quite another kind."""
+"""So many are enough to see that a relay is of quite another kind."""
 
 LONGEST = 300
 
@@ -70,7 +70,7 @@ def _differences(expected: Offer, found: Offer) -> Iterator[Difference]:
 
 
 def _namesakes(expected: Offer, found: Offer) -> dict[str, str]:
-    """The relay's name of each logical device of the SCL; devices that the relay lacks are left out.
+    """Return the relay's name of each logical device of the SCL, without devices that the relay lacks.
 
     Devices are matched by name, then by the end of the name (its inst), then by their logical nodes.
     """
@@ -89,7 +89,7 @@ def _namesakes(expected: Offer, found: Offer) -> dict[str, str]:
 
 
 def _common_ending(one: str, other: str) -> int:
-    """Length of the common end of two names; 0 below three characters, since every inst is longer."""
+    """Return the length of the common end of two names; 0 below three, since every inst is longer."""
     length = 0
     while length < min(len(one), len(other)) and one[-1 - length] == other[-1 - length]:
         length += 1
@@ -97,7 +97,7 @@ def _common_ending(one: str, other: str) -> int:
 
 
 def _renamed(offer: Offer, names: Mapping[str, str]) -> Offer:
-    """The offer of the SCL with the relay's own names, without the devices that the relay lacks."""
+    """Return the offer of the SCL with the relay's own names, without the devices that the relay lacks."""
 
     def named(reference: str) -> str:
         device, slash, rest = reference.partition("/")

@@ -40,7 +40,7 @@ def read_plant(settings: Settings) -> Plant:
 
 
 def _at_its_port(relay: Relay, access: Mapping[str, RelayAccess]) -> Relay:
-    """The relay, at its port for TLS if the settings give one."""
+    """Return the relay, at its port for TLS if the settings give one."""
     tls = access.get(relay.name, RelayAccess()).tls
     return relay if tls is None or tls.port is None else replace(relay, port=tls.port)
 
@@ -80,7 +80,7 @@ class _Entry:
 
 
 def _motors(path: Path) -> dict[str, _Entry]:
-    """What the motors file says of each motor, by its name."""
+    """Return what the motors file says of each motor, by its name."""
     try:
         document = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
@@ -191,7 +191,7 @@ def _one_relay_an_address(configuration: scl.Scl, relays: Iterable[str]) -> None
 
 
 def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder, overrides: Overrides) -> Relay:
-    """The relay with what its SCL offers and what the motors file says of it."""
+    """Return the relay with what its SCL offers and what the motors file says of it."""
     ied = configuration.ied(feeder.ied)
     address = configuration.address(feeder.ied)
     points = recognise(ied)

@@ -8,7 +8,7 @@ from service.plant.offer import Offer
 from service.plant.quantities import MeteredQuantity
 
 _VALUES = ("cVal.mag.f", "mag.f")
-"""Complex and plain measured values (CMV, MV) as floating point."""
+"""These are the attributes of complex and plain measured values (CMV, MV) in floating point."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class Measurand:
 
     @property
     def stamp(self) -> str:
-        """Reference of the time stamp of its latest change (IEC 61850-7-3, `t`; MX)."""
+        """Return the reference of the time stamp of its latest change (IEC 61850-7-3, `t`; MX)."""
         value = next(each for each in _VALUES if self.reference.endswith(f".{each}"))
         return f"{self.reference.removesuffix(value)}t"
 

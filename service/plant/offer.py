@@ -38,33 +38,33 @@ class Offer:
 
     @property
     def devices(self) -> tuple[str, ...]:
-        """The logical devices (MMS domains)."""
+        """Return the logical devices (MMS domains)."""
         return tuple(dict.fromkeys(node.partition("/")[0] for node in self.nodes))
 
     def nodes_of(self, device: str) -> frozenset[str]:
-        """Names of a logical device's nodes."""
+        """Return the names of a logical device's nodes."""
         return frozenset(node.partition("/")[2] for node in self.nodes if node.startswith(f"{device}/"))
 
     def objects(self, ln_class: str, name: str) -> Iterator[str]:
-        """References of the data objects of a name in the nodes of a class ("RDRE")."""
+        """Return the references of the data objects of a name in the nodes of a class ("RDRE")."""
         for node, names in self.nodes.items():
             if name in names and node_class(node.partition("/")[2]) == ln_class:
                 yield f"{node}.{name}"
 
     def has(self, reference: str) -> bool:
-        """Whether the data object a reference lies in is offered."""
+        """Tell whether the data object that a reference lies in is offered."""
         node, _, path = reference.partition(".")
         return path.partition(".")[0] in self.nodes.get(node, ())
 
     def data_sets_covering(self, reference: str) -> Iterator[str]:
-        """Data sets with a member that carries the referenced object, or part of it."""
+        """Return the data sets with a member that carries the referenced object, or part of it."""
         for data_set, members in self.data_sets.items():
             if any(_overlap(member.partition("[")[0], reference) for member in members):
                 yield data_set
 
 
 def node_class(name: str) -> str | None:
-    """Class of a logical node by its name: the four capitals before its number; None without them."""
+    """Return the class of a logical node by its name: the four capitals before its number; None without."""
     found = _NODE_CLASS.search(name)
     return None if found is None else found[1]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 NONE = "none"
-"""In place of a reference: use none, whatever the relay offers."""
+"""This word in place of a reference means: use none, whatever the relay offers."""
 
 _REFERENCES = {
     "trigger": 'a control such as "A1_SEL710CON/RBGGIO1.SPCSO01", or "none"',

@@ -62,17 +62,17 @@ class MeteredQuantity(StrEnum):
 
     @property
     def is_statistic(self) -> bool:
-        """Whether it is the relay's own figure of a long time, which changes slowly."""
+        """Tell whether it is the relay's own figure of a long time, which changes slowly."""
         return self.logical_node == "MSTA"
 
     @property
     def is_maximum(self) -> bool:
-        """Whether the largest of several values stands for them, not their mean."""
+        """Tell whether the largest of several values stands for them, not their mean."""
         return self.value.startswith("maximum_")
 
     @property
     def is_minimum(self) -> bool:
-        """Whether the smallest of several values stands for them, not their mean."""
+        """Tell whether the smallest of several values stands for them, not their mean."""
         return self.value.startswith("minimum_")
 
 

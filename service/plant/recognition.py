@@ -10,10 +10,10 @@ from scl.ied_model import Ied
 from service.plant.offer import Offer, offer_from_scl
 
 REMOTE_BIT = "RBGGIO1.SPCSO01"
-"""Remote bit RB01 of the SEL-700 family, which the relay's event report trigger equation (ER) listens to."""
+"""This is remote bit RB01 of the SEL-700 family; the event report trigger equation (ER) is set to it."""
 
 RECORD_TRIGGER = "RcdTrg"
-"""Data object of an RDRE (IEC 61850-7-4) that goes back by itself."""
+"""This data object of an RDRE (IEC 61850-7-4) goes back by itself."""
 
 NO_TRIGGER = (
     "no control that makes a record (remote bit RB01, or RcdTrg of an RDRE): "
@@ -108,7 +108,7 @@ def _metering_data_set(offer: Offer, expected: Sequence[str]) -> str | None:
 
 
 def _rank(reference: str, expected: Sequence[str]) -> int:
-    """The sort key of a reference: expected ones first, then their namesakes in other logical devices."""
+    """Return a reference's sort key: expected ones first, then namesakes in other logical devices."""
     if reference in expected:
         return expected.index(reference)
     tails = {known.partition("/")[2] for known in expected}

@@ -48,22 +48,22 @@ class StoredRecording:
 
     @property
     def size_bytes(self) -> int:
-        """Size of all files together [bytes]."""
+        """Return the size of all files together [bytes]."""
         return sum(file.size_bytes for file in self.files)
 
     @property
     def name(self) -> str:
-        """Name of the record: that of its entry file without suffix."""
+        """Return the record's name: that of its entry file without suffix."""
         return self.entry.stem
 
     @property
     def waveform_files(self) -> tuple[StoredFile, ...]:
-        """The files with the samples, without those that only describe them (.HDR, .INF)."""
+        """Return the files with the samples, without those that only describe them (.HDR, .INF)."""
         return tuple(file for file in self.files if Path(file.name).suffix in WAVEFORM_SUFFIXES)
 
     @property
     def entry(self) -> Path:
-        """The file that a reader opens first (.CFG, .CFF or .CEV)."""
+        """Return the file that a reader opens first (.CFG, .CFF or .CEV)."""
         return _entry(self.directory, (file.name for file in self.files))
 
 
@@ -119,7 +119,7 @@ class RecordingStore:
 
     @contextmanager
     def incoming(self) -> Iterator[Incoming]:
-        """A place for the files of one record. What is not kept is removed when the block ends."""
+        """Provide a place for the files of one record; what is not kept is removed when the block ends."""
         directory = self._incoming / uuid.uuid4().hex
         directory.mkdir()
         try:

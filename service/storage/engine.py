@@ -14,16 +14,16 @@ from sqlalchemy.pool import ConnectionPoolEntry
 from service.storage.errors import StorageError
 
 BUSY_TIMEOUT_S = 30.0
-"""How long a transaction waits while others write to an SQLite file."""
+"""A transaction waits at most this long while others write to an SQLite file."""
 
 LOOK_S = 0.003
-"""Between looks whether SQLite's write lock is free."""
+"""A waiting writer looks this often whether SQLite's write lock is free."""
 
 WRITES = "statorwatch_writes"
-"""Execution option of connections that will write."""
+"""This execution option marks connections that will write."""
 
 WAITS_S = "statorwatch_busy_timeout_s"
-"""Execution option that says how long a writing connection waits for its turn [s]."""
+"""This execution option says how long a writing connection waits for its turn [s]."""
 
 
 def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:

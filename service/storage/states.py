@@ -50,7 +50,7 @@ class RecordingRequestState(StrEnum):
 
 
 IN_THE_RELAY = (RecordingRequestState.TRIGGERED, RecordingRequestState.RECORDED)
-"""Triggered, and the record not yet in the store: the relay owes it."""
+"""In these states the relay was triggered, and its record is not yet in the store."""
 
 
 class RecordingState(StrEnum):

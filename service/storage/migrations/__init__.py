@@ -13,10 +13,10 @@ from service.storage.errors import StorageError
 
 
 def migrate(url: str) -> None:
-    """Creates the tables or brings older ones up to date; nothing to do is fine too.
+    """Create the tables, or bring older ones up to date.
 
-    Raises StorageError (no such URL, a newer version's database), sqlalchemy.exc.SQLAlchemyError (the
-    database does not answer).
+    Do nothing where they are up to date. Raises StorageError (no such URL, a newer version's database),
+    sqlalchemy.exc.SQLAlchemyError (the database does not answer).
     """
     engine = connect(url)
     try:
@@ -40,7 +40,7 @@ def _require_known(connection: Connection, settings: Config) -> None:
 
 
 def config(connection: Connection) -> Config:
-    """Alembic's configuration for one connection; there is no alembic.ini."""
+    """Return Alembic's configuration for one connection; there is no alembic.ini."""
     settings = Config()
     settings.set_main_option("script_location", str(Path(__file__).parent).replace("%", "%%"))
     settings.set_main_option("path_separator", "os")

@@ -20,7 +20,10 @@ from service.storage.states import (
 
 
 def _words(enum: type[StrEnum]) -> Enum:
-    """Column of the enum's values, as text: readable in any database tool, no migration to grow."""
+    """Return a column of the enum's values as text.
+
+    Any database tool can read it, and a new value needs no migration.
+    """
     return Enum(
         enum,
         values_callable=lambda members: [member.value for member in members],

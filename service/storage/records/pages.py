@@ -6,7 +6,7 @@ from typing import Generic, TypeVar
 T = TypeVar("T")
 
 Cursor = tuple[str | int, ...]
-"""Sort key of the last item of a page."""
+"""A cursor is the sort key of the last item of a page."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,14 +32,15 @@ class Quarantine:
 
     @property
     def pause_s(self) -> float:
-        """For how long the relay is set aside [s]."""
+        """Return for how long the relay is set aside [s]."""
         return (self.until_ns - self.since_ns) / NANOSECONDS_PER_SECOND
 
     def holds(self, now_ns: int) -> bool:
-        """Whether the relay is to be left alone at `now_ns`, by a clock that may have been set since.
+        """Tell whether the relay is to be left alone at `now_ns`, by a clock that may have been set since.
 
-        Only within the pause's own length of its beginning, on either side: a clock that was a day ahead
-        keeps no relay away for a day, and one of another host, a second behind, ends no pause early.
+        It is left alone only within the pause's own length of its beginning, on either side: a clock that
+        was a day ahead keeps no relay away for a day, and one of another host, a second behind, ends no
+        pause early.
         """
         return abs(now_ns - self.since_ns) < self.until_ns - self.since_ns
 

@@ -12,12 +12,12 @@ from service.storage.repository.sessions import Order, Sessions, found, only, pa
 from service.storage.states import AlarmKind
 
 MOST_CLEARED = 1000
-"""Kept of each relay's past alarms; the oldest go."""
+"""So many cleared alarms are kept of each relay; older ones are deleted."""
 
 
 class AlarmRows(Sessions):
     def raise_alarm(self, relay: str, kind: AlarmKind, subject: str, reason: str, *, now_ns: int) -> Alarm:
-        """An alarm that stands from now on; the one that stands already, with the new reason.
+        """Raise an alarm; one that stands already gets the new reason.
 
         Raises NotFoundError.
         """
@@ -26,7 +26,7 @@ class AlarmRows(Sessions):
             return alarm(raised(session, relay, kind, subject, reason, now_ns))
 
     def clear_alarms(self, relay: str, alarm_ids: Collection[str], *, now_ns: int) -> None:
-        """Ends alarms; those that ended before stay as they are."""
+        """Clear alarms; those that were cleared before stay as they are."""
         with self._write() as session:
             session.execute(
                 update(AlarmRow)
@@ -38,7 +38,7 @@ class AlarmRows(Sessions):
             session.execute(delete(AlarmRow).where(AlarmRow.id.in_(session.scalars(too_old).all())))
 
     def standing_alarms(self, relay: str) -> tuple[Alarm, ...]:
-        """Alarms of a relay that are not cleared, oldest first."""
+        """Return a relay's alarms that are not cleared, oldest first."""
         query = (
             select(AlarmRow)
             .where(AlarmRow.ied == relay, AlarmRow.cleared_ns.is_(None))
@@ -55,7 +55,11 @@ class AlarmRows(Sessions):
         relay: str | None = None,
         standing: bool | None = None,
     ) -> Page[Alarm]:
-        """Latest first; of one relay or of all; only those that stand, only those cleared, or both."""
+        """Return a page of alarms, latest first.
+
+        relay: None for all relays. standing: True for alarms that stand, False for cleared ones, None for
+        both.
+        """
         query = select(AlarmRow)
         if relay is not None:
             query = query.where(AlarmRow.ied == relay)
@@ -69,7 +73,7 @@ class AlarmRows(Sessions):
 
 
 def raised(session: Session, relay: str, kind: AlarmKind, subject: str, reason: str, now_ns: int) -> AlarmRow:
-    """The alarm that stands, with this reason."""
+    """Raise an alarm, or give the standing one this reason, and return its row."""
     standing = select(AlarmRow).where(
         AlarmRow.ied == relay,
         AlarmRow.kind == kind,
@@ -86,7 +90,7 @@ def raised(session: Session, relay: str, kind: AlarmKind, subject: str, reason: 
 
 
 def clear_standing(session: Session, relay: str, kind: AlarmKind, now_ns: int) -> None:
-    """Ends a relay's alarms of a kind."""
+    """Clear a relay's standing alarms of a kind."""
     session.execute(
         update(AlarmRow)
         .where(AlarmRow.ied == relay, AlarmRow.kind == kind, AlarmRow.cleared_ns.is_(None))

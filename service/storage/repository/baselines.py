@@ -14,7 +14,7 @@ from service.storage.repository.sessions import Sessions, found, only, record_of
 
 class BaselineRows(Sessions):
     def baseline(self, motor: str) -> tuple[RecordingEntry, ...]:
-        """The motor's baseline recordings, oldest first; none without a baseline. Raises NotFoundError."""
+        """Return the motor's baseline recordings, oldest first, if there are any. Raises NotFoundError."""
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
             return tuple(record_of(RecordingEntry, row) for row in baseline_rows(session, motor))
@@ -22,10 +22,10 @@ class BaselineRows(Sessions):
     def set_baseline(
         self, motor: str, recording_ids: Sequence[str], *, now_ns: int
     ) -> tuple[RecordingEntry, ...]:
-        """Has these recordings be the motor's baseline in place of any others; without any it has none.
+        """Replace the motor's baseline by these recordings; without any, the motor has no baseline.
 
-        For diagnoses that begin from now on. Raises NotFoundError (for another motor's recording too),
-        UnusableBaselineError (one that is not diagnosed, or was refused).
+        It is used for diagnoses that begin from now on. Raises NotFoundError (for another motor's recording
+        too), UnusableBaselineError (one that is not diagnosed, or was refused).
         """
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
@@ -41,7 +41,7 @@ class BaselineRows(Sessions):
 
 
 def baseline_rows(session: Session, motor: str) -> Sequence[RecordingRow]:
-    """Rows of the motor's baseline recordings, oldest first."""
+    """Return the rows of the motor's baseline recordings, oldest first."""
     query = (
         select(RecordingRow)
         .join(BaselineRecordingRow, BaselineRecordingRow.recording_id == RecordingRow.id)

@@ -7,14 +7,17 @@ from core.units import NANOSECONDS_PER_SECOND
 from service.storage.models import IedRow, RecordingRow
 
 NEAR_NS = 3600 * NANOSECONDS_PER_SECOND
-"""Between a reading and the recording it is given to."""
+"""A recording is given a reading at most this far from it."""
 
 ZONE_NS = 14 * 3600 * NANOSECONDS_PER_SECOND
 """UTC+14 is the farthest local time; records do not always tell that theirs is local."""
 
 
 def give_clock(recording: RecordingRow, relay: IedRow) -> None:
-    """The relay's latest reading, if that was within NEAR_NS of when the record was first seen there."""
+    """Give a recording its relay's latest clock reading.
+
+    A reading more than NEAR_NS from the time when the record was first seen is not given.
+    """
     if relay.clock_measured_ns is None or abs(relay.clock_measured_ns - recording.announced_ns) > NEAR_NS:
         return
     recording.clock_offset_ns = relay.clock_offset_ns
@@ -24,7 +27,10 @@ def give_clock(recording: RecordingRow, relay: IedRow) -> None:
 
 
 def withdraw_clock(recording: RecordingRow) -> None:
-    """The record's own time is known now: it was seen long after it was made, or the clock was set since."""
+    """Withdraw a recording's clock reading if the record's own time contradicts it.
+
+    The record's time is known now: the record was seen long after it was made, or the clock was set since.
+    """
     if recording.recorded_ns is None or recording.clock_measured_ns is None:
         return
     made_ns = recording.recorded_ns - (recording.clock_offset_ns or 0)

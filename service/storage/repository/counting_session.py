@@ -40,7 +40,10 @@ def _note_changes(session: Session, _context: UOWTransaction) -> None:
 
 @event.listens_for(CountingSession, "before_commit")
 def _write_changes(session: Session) -> None:
-    """Comes last in a transaction and in one order: writers wait for each other briefly, and in no circle."""
+    """Write the changed counts last in a transaction and in one order.
+
+    So writers wait for each other briefly, and in no circle.
+    """
     session.flush()
     changes: Counter[tuple[str, str]] = session.info.pop(_CHANGES, Counter())
     for (table, state), change in sorted(changes.items()):

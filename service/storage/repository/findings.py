@@ -7,7 +7,7 @@ from service.storage.repository.sessions import Sessions, found, record_of
 
 class FindingsRows(Sessions):
     def note_findings(self, findings: RelayFindings) -> None:
-        """Remembers what was found at a relay in the place of what was found before. Raises NotFoundError."""
+        """Replace what was found at a relay before by these findings. Raises NotFoundError."""
         with self._write() as session:
             found(session, IedRow, findings.ied, "IED")
             session.merge(
@@ -22,7 +22,7 @@ class FindingsRows(Sessions):
             )
 
     def relay_findings(self, relay: str) -> RelayFindings | None:
-        """None before the first visit. Raises NotFoundError."""
+        """Return what was found at a relay; None before the first visit. Raises NotFoundError."""
         with self._read() as session:
             found(session, IedRow, relay, "IED")
             row = session.get(RelayFindingsRow, relay)

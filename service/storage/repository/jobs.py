@@ -238,7 +238,7 @@ def _diagnosis_row(
 
 
 def _document(diagnosis: Diagnosis) -> Mapping[str, object]:
-    """Raises UnstorableDiagnosisError."""
+    """Return the diagnosis as a document. Raises UnstorableDiagnosisError."""
     document = diagnosis.as_dict()
     try:
         json.dumps(document, allow_nan=False)

@@ -34,7 +34,10 @@ class Share:
 
 class LeaseRows(Sessions):
     def register_gateway(self, gateway: str, *, host: str, process_id: int, now_ns: int) -> None:
-        """A gateway that starts, holding nothing. Whatever had its id before must be known to be dead."""
+        """Register a gateway that starts and holds nothing.
+
+        The caller knows that whatever had its id before is dead.
+        """
         with self._write() as session:
             _end(session, gateway, now_ns)
             session.add(
@@ -42,7 +45,7 @@ class LeaseRows(Sessions):
             )
 
     def share_relays(self, gateway: str, relays: Collection[str], *, most: int) -> Share:
-        """Bumps the gateway's counter and takes what is free of these relays, up to its fair share.
+        """Renew the gateway's counter and take what is free of these relays, up to its fair share.
 
         Raises LeaseLostError where the gateway was declared dead: it holds nothing any more.
         """
@@ -67,14 +70,14 @@ class LeaseRows(Sessions):
             )
 
     def give_back_relays(self, gateway: str, relays: Collection[str]) -> None:
-        """Ends leases of relays that are not visited any more."""
+        """End the leases of relays that are not visited any more."""
         with self._write() as session:
             session.execute(delete(LeaseRow).where(LeaseRow.gateway == gateway, LeaseRow.ied.in_(relays)))
 
     def end_gateway(self, gateway: str, *, now_ns: int, heartbeats: int | None = None) -> bool:
-        """Frees the relays of a gateway that is dead; with `heartbeats`, only if that is still its counter.
+        """Free the relays of a gateway that is dead; with `heartbeats`, only if that is still its counter.
 
-        False when there was nothing to end.
+        Returns False where there was nothing to end.
         """
         with self._write() as session:
             row = session.get(GatewayRow, gateway)
@@ -84,7 +87,7 @@ class LeaseRows(Sessions):
             return True
 
     def gateways(self) -> tuple[GatewayEntry, ...]:
-        """All there are, by id, with the number of relays each holds."""
+        """Return all gateways, by id, with the number of relays each holds."""
         query = (
             select(GatewayRow, func.count(LeaseRow.ied))
             .outerjoin(LeaseRow, LeaseRow.gateway == GatewayRow.id)
@@ -98,31 +101,34 @@ class LeaseRows(Sessions):
             )
 
     def held_relays(self) -> frozenset[str]:
-        """The relays some gateway holds."""
+        """Return the relays that some gateway holds."""
         with self._read() as session:
             return frozenset(session.scalars(select(LeaseRow.ied)))
 
     def heartbeats(self) -> dict[str, int]:
-        """Every gateway's counter."""
+        """Return every gateway's counter."""
         with self._read() as session:
             return {row.id: row.heartbeats for row in session.scalars(select(GatewayRow))}
 
     def gateway_of(self, relay: str) -> str | None:
-        """The gateway that holds a relay; None while none does."""
+        """Return the gateway that holds a relay; None while none does."""
         with self._read() as session:
             row = session.get(LeaseRow, relay)
             return None if row is None else row.gateway
 
 
 def require_lease(session: Session, relay: str, gateway: str) -> None:
-    """Raises LeaseLostError unless the gateway holds the relay."""
+    """Raise LeaseLostError unless the gateway holds the relay."""
     row = session.get(LeaseRow, relay)
     if row is None or row.gateway != gateway:
         raise LeaseLostError(gateway, relay)
 
 
 def _take(session: Session, relay: str, gateway: str) -> bool:
-    """False where another gateway was faster, which a database with several writers allows."""
+    """Take a relay's lease, and tell whether that worked.
+
+    In a database with several writers another gateway may be faster.
+    """
     try:
         with session.begin_nested():
             session.add(LeaseRow(ied=relay, gateway=gateway))

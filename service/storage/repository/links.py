@@ -13,7 +13,7 @@ from service.storage.repository.sessions import Order, Sessions, found, page_of,
 from service.storage.states import LinkState
 
 MOST_CHANGES = 1000
-"""Kept of each link; the oldest go. A link that changes all day must not fill the disk."""
+"""So many changes are kept of each link: one that changes all day must not fill the disk."""
 
 
 _ANSWERED = update(IedRow).where(IedRow.name == bindparam("of")).values(last_success_ns=bindparam("at"))
@@ -51,7 +51,7 @@ class LinkRows(Sessions):
         round_trip_s: float | None = None,
         day_bytes: tuple[int, int] | None = None,
     ) -> None:
-        """Notes whether a relay answers, and why not; what went over the link since this was last called.
+        """Note whether a relay answers and why not, and what went over its link since the last call.
 
         day_bytes: a UTC day (days since 1970) and all that counts against its limit. Raises NotFoundError.
         """
@@ -64,7 +64,7 @@ class LinkRows(Sessions):
                 _add(session, relay, traffic, round_trip_s, day_bytes)
 
     def note_links(self, notes: Sequence[LinkNote]) -> None:
-        """Adds to the figures of links that are up and stay so. One of an unknown relay is passed over."""
+        """Add to the figures of links that are up and stay so. An unknown relay is passed over."""
         if not notes:
             return
         with self._write() as session:
@@ -84,7 +84,7 @@ class LinkRows(Sessions):
             )
 
     def reset_links(self, *, now_ns: int, reason: str | None = None) -> None:
-        """Sets the link of every relay that nobody visits to unknown: for the start."""
+        """Set the link of every relay that nobody visits to unknown. The service does so when it starts."""
         with self._write() as session:
             known = select(IedRow).where(
                 IedRow.link_state.not_in((LinkState.UNKNOWN, LinkState.QUARANTINED)),
@@ -94,7 +94,7 @@ class LinkRows(Sessions):
                 change_link(session, row, LinkState.UNKNOWN, reason, now_ns)
 
     def link_changes(self, relay: str, *, limit: int, after: Cursor | None = None) -> Page[LinkChange]:
-        """Changes of a relay's link, latest first. Raises NotFoundError."""
+        """Return the changes of a relay's link, latest first. Raises NotFoundError."""
         query = select(LinkChangeRow).where(LinkChangeRow.ied == relay)
         order: Order = [LinkChangeRow.changed_ns, LinkChangeRow.id]
         with self._read() as session:
@@ -102,14 +102,14 @@ class LinkRows(Sessions):
             return page_of(session, query, order, _link_change, limit=limit, after=after, descending=True)
 
     def link_figures(self, relay: str) -> LinkFigures:
-        """What went over a relay's link; zeros before anything did. Raises NotFoundError."""
+        """Return what went over a relay's link; zeros before anything did. Raises NotFoundError."""
         with self._read() as session:
             found(session, IedRow, relay, "IED")
             row = session.get(LinkFiguresRow, relay)
             return LinkFigures(relay) if row is None else record_of(LinkFigures, row)
 
     def all_link_figures(self) -> tuple[LinkFigures, ...]:
-        """Of every relay in service that was ever spoken to, by name."""
+        """Return the figures of every relay in service that was ever spoken to, by name."""
         query = (
             select(LinkFiguresRow)
             .join(IedRow, IedRow.name == LinkFiguresRow.ied)
@@ -121,7 +121,7 @@ class LinkRows(Sessions):
 
 
 def change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:
-    """Notes a link's state, and the change in its history if it is one."""
+    """Set a link's state, and add it to the history if it is a change."""
     if row.link_state is state and row.link_reason == reason:
         return
     if row.link_state is not state:

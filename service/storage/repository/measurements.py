@@ -28,7 +28,7 @@ _OF_A_TIME = delete(MeasurementRow).where(
 
 class MeasurementRows(Sessions):
     def add_samples(self, samples: Iterable[Sample]) -> None:
-        """Writes samples; a second one of a motor at the very same time replaces the first."""
+        """Write samples; a second one of a motor at the very same time replaces the first."""
         latest = {(sample.motor, sample.time_ns): sample for sample in samples}
         if not latest:
             return
@@ -51,9 +51,9 @@ class MeasurementRows(Sessions):
             )
 
     def average_measurements(self, *, now_ns: int) -> None:
-        """Makes the means of all intervals that are over and have none yet.
+        """Make the means of all intervals that are over and have none yet.
 
-        A mean that a clock made while it was ahead holds up none of those before it.
+        A mean that was made while the clock was ahead holds up none of those before it.
         """
         for finer, step_s in pairwise(step.value for step in AveragingStep):
             with self._write() as session:
@@ -69,7 +69,7 @@ class MeasurementRows(Sessions):
                 _average(session, finer, step_s, from_ns, to_ns)
 
     def forget_measurements(self, step_s: int, *, before_ns: int) -> None:
-        """Deletes those of one step from before a time."""
+        """Delete the measurements of one step from before a time."""
         with self._write() as session:
             session.execute(
                 delete(MeasurementRow).where(
@@ -87,7 +87,7 @@ class MeasurementRows(Sessions):
         to_ns: int | None = None,
         after: Cursor | None = None,
     ) -> Page[Measurement]:
-        """Of one motor, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
+        """Return a motor's measurements, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
         query = select(MeasurementRow).where(MeasurementRow.motor == motor, MeasurementRow.step_s == step_s)
         if from_ns is not None:
             query = query.where(MeasurementRow.time_ns >= from_ns)
@@ -100,7 +100,7 @@ class MeasurementRows(Sessions):
 
 
 def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int) -> None:
-    """Means of the rows of step `finer` in [from_ns, to_ns), each row weighted with its samples."""
+    """Store the means of the rows of step `finer` in [from_ns, to_ns), weighted with their samples."""
     step_ns = step_s * NANOSECONDS_PER_SECOND
     begin = (MeasurementRow.time_ns - MeasurementRow.time_ns % step_ns).label("begin")
     means = (
@@ -121,7 +121,7 @@ def _average(session: Session, finer: int, step_s: int, from_ns: int, to_ns: int
 
 
 def _of_an_interval(quantity: MeteredQuantity) -> ColumnElement[Any]:
-    """The mean, weighted by samples; for a relay's own maxima and minima, the largest and the smallest."""
+    """Return the mean, weighted with samples; for a relay's own extremes, the largest or smallest."""
     column = _COLUMNS[quantity]
     if quantity.is_maximum:
         return func.max(column)

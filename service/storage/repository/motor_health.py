@@ -53,7 +53,7 @@ class MotorHealthRows(Sessions):
         to_ns: int | None = None,
         after: Cursor | None = None,
     ) -> Page[TrendPoint]:
-        """One point a recording, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
+        """Return a figure of each recording, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
         query = select(DiagnosisRow).where(DiagnosisRow.motor == motor, DiagnosisRow.current)
         if from_ns is not None:
             query = query.where(DiagnosisRow.recorded_ns >= from_ns)
@@ -68,7 +68,10 @@ class MotorHealthRows(Sessions):
 
 
 def _health_of(session: Session, motors: Sequence[MotorRow]) -> tuple[MotorHealth, ...]:
-    """Ask four times, however many motors there are; the index finds each motor's latest rows."""
+    """Return the condition of each motor from four queries, however many motors there are.
+
+    The index finds each motor's latest rows.
+    """
     names = [motor.name for motor in motors]
     diagnosis, recording = aliased(DiagnosisRow), aliased(RecordingRow)
     latest_diagnosis = (
@@ -111,7 +114,7 @@ def _health_of(session: Session, motors: Sequence[MotorRow]) -> tuple[MotorHealt
 
 
 def _for_each(motors: Sequence[str], latest: Select[str]) -> Select[str]:
-    """One id for each of the motors: what `latest` finds for it."""
+    """Return one id for each of the motors: what `latest` finds for it."""
     return select(latest.scalar_subquery()).select_from(MotorRow).where(MotorRow.name.in_(motors))
 
 

@@ -12,7 +12,7 @@ from service.storage.states import LinkState
 
 class PlantRows(Sessions):
     def sync_plant(self, plant: Plant) -> None:
-        """Makes the tables say what the plant's files say.
+        """Make the tables say what the plant's files say.
 
         What left the plant is put out of service, not deleted: its recordings stay.
         """
@@ -44,14 +44,14 @@ class PlantRows(Sessions):
                 )
 
     def note_clock(self, relay: str, reading: ClockReading) -> None:
-        """Remembers how far a relay's clock is from ours. Raises NotFoundError."""
+        """Note how far a relay's clock is from ours. Raises NotFoundError."""
         with self._write() as session:
             row = found(session, IedRow, relay, "IED")
             row.clock_offset_ns, row.clock_uncertainty_ns = reading.offset_ns, reading.uncertainty_ns
             row.clock_quality, row.clock_measured_ns = reading.quality, reading.measured_ns
 
     def entry_id(self, relay: str, report_control: str | None = None) -> bytes | None:
-        """EntryID of the last buffered report whose records are safe here; None for another block's.
+        """Return the EntryID of the last buffered report whose records are stored; None for another block's.
 
         Each block has a buffer of its own. Raises NotFoundError.
         """
@@ -61,7 +61,7 @@ class PlantRows(Sessions):
             return row.entry_id if unknown or row.entry_report_control == report_control else None
 
     def save_entry_id(self, relay: str, entry_id: bytes, report_control: str | None = None) -> None:
-        """Remembers where to resume the buffered report of a block. Raises NotFoundError."""
+        """Save where to resume the buffered report of a block. Raises NotFoundError."""
         with self._write() as session:
             row = found(session, IedRow, relay, "IED")
             row.entry_id, row.entry_report_control = entry_id, report_control
@@ -77,12 +77,12 @@ class PlantRows(Sessions):
             return page_of(session, query, [IedRow.name], _relay, limit=limit, after=after)
 
     def relay(self, name: str) -> IedEntry:
-        """Raises NotFoundError."""
+        """Return a relay by its name. Raises NotFoundError."""
         with self._read() as session:
             return _relay(found(session, IedRow, name, "IED"))
 
     def is_in_service(self, relay: str) -> bool:
-        """Whether a relay is in the plant's files. Raises NotFoundError."""
+        """Tell whether a relay is in the plant's files. Raises NotFoundError."""
         with self._read() as session:
             return found(session, IedRow, relay, "IED").in_service
 
@@ -92,7 +92,7 @@ class PlantRows(Sessions):
             return page_of(session, query, [MotorRow.name], _motor, limit=limit, after=after)
 
     def motor(self, name: str) -> MotorEntry:
-        """Raises NotFoundError."""
+        """Return a motor by its name. Raises NotFoundError."""
         with self._read() as session:
             return _motor(found(session, MotorRow, name, "motor"))
 

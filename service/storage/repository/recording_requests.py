@@ -20,7 +20,7 @@ OPEN = (RecordingRequestState.REQUESTED, *IN_THE_RELAY)
 ENDED = (RecordingRequestState.DIAGNOSED, RecordingRequestState.FAILED)
 
 KIND = "event report"
-"""What messages of errors call a recording request."""
+"""Error messages call a recording request by this name."""
 
 
 class RecordingRequestRows(Sessions):
@@ -63,14 +63,14 @@ class RecordingRequestRows(Sessions):
             return _request(session, where, RecordingRequestOrigin.SCHEDULE, key, now_ns)
 
     def recording_request(self, request_id: str) -> RecordingRequest:
-        """Raises NotFoundError."""
+        """Return a recording request by its id. Raises NotFoundError."""
         with self._read() as session:
             return recording_request(found(session, RecordingRequestRow, request_id, KIND))
 
     def recording_requests(
         self, *, limit: int, after: Cursor | None = None, motor: str | None = None
     ) -> Page[RecordingRequest]:
-        """Latest first; of one motor or of all."""
+        """Return a page of recording requests, of one motor or of all, latest first."""
         query = select(RecordingRequestRow)
         if motor is not None:
             query = query.where(RecordingRequestRow.motor == motor)
@@ -81,7 +81,7 @@ class RecordingRequestRows(Sessions):
             )
 
     def relays_with_requests(self) -> tuple[str, ...]:
-        """Relays that have a trigger to be given now: none that still owe the record of an earlier one."""
+        """Return the relays to be triggered now: none that still owes the record of an earlier trigger."""
         # Two looks into the index a relay: what was asked for in all those years does not matter.
         waiting, outstanding = (
             exists().where(RecordingRequestRow.ied == IedRow.name, RecordingRequestRow.state.in_(states))
@@ -92,7 +92,10 @@ class RecordingRequestRows(Sessions):
             return tuple(session.scalars(query))
 
     def open_recording_requests(self, relay: str) -> tuple[RecordingRequest, ...]:
-        """Requests to a relay that have no recording yet, oldest first: the work left after a restart."""
+        """Return the requests to a relay that have no recording yet, oldest first.
+
+        They are the work left after a restart.
+        """
         query = (
             select(RecordingRequestRow)
             .where(RecordingRequestRow.ied == relay, RecordingRequestRow.state.in_(OPEN))
@@ -102,7 +105,7 @@ class RecordingRequestRows(Sessions):
             return tuple(recording_request(row) for row in session.scalars(query))
 
     def all_open_recording_requests(self) -> tuple[RecordingRequest, ...]:
-        """Requests without a recording, to every relay, including those that left the plant."""
+        """Return the requests without a recording, also those to relays that left the plant."""
         # By relay, which the index begins with: those long ended do not matter.
         query = select(RecordingRequestRow).where(
             RecordingRequestRow.ied.in_(select(IedRow.name)), RecordingRequestRow.state.in_(OPEN)
@@ -113,7 +116,7 @@ class RecordingRequestRows(Sessions):
     def fail_orphaned_request(self, request: RecordingRequest, reason: str, *, now_ns: int) -> bool:
         """Fail a request that is still as it was seen. Raises NotFoundError.
 
-        False, and nothing is changed, where its state is another by now or a gateway holds its relay.
+        Returns False, and changes nothing, where its state is another by now or a gateway holds its relay.
         """
         with self._write() as session:
             row = found(session, RecordingRequestRow, request.id, KIND, lock=True)
@@ -123,7 +126,7 @@ class RecordingRequestRows(Sessions):
             return True
 
     def mark_triggered(self, request_id: str, *, now_ns: int, gateway: str | None = None) -> RecordingRequest:
-        """The relay is about to be triggered, by the gateway that holds its lease.
+        """Note that the gateway that holds the relay's lease is about to trigger it.
 
         Raises NotFoundError, StateConflictError, LeaseLostError where that gateway does not hold it.
         """
@@ -136,7 +139,7 @@ class RecordingRequestRows(Sessions):
             return recording_request(row)
 
     def mark_recorded(self, request_id: str, *, now_ns: int) -> RecordingRequest:
-        """The relay reported the record. Raises NotFoundError, StateConflictError."""
+        """Note that the relay reported the record. Raises NotFoundError, StateConflictError."""
         with self._write() as session:
             row = found(session, RecordingRequestRow, request_id, KIND, lock=True)
             before = {RecordingRequestState.REQUESTED, RecordingRequestState.TRIGGERED}
@@ -182,7 +185,7 @@ def _advances(
 
 
 def fetch_row(row: RecordingRequestRow, recording_id: str, now_ns: int) -> None:
-    """The requested recording is stored. Raises StateConflictError."""
+    """Note that the requested recording is stored. Raises StateConflictError."""
     if row.recording_id == recording_id:
         return
     if _advances(row, set(OPEN), RecordingRequestState.FETCHED):

@@ -40,7 +40,7 @@ class RecordingRows(Sessions):
     def remote_recordings(
         self, relay: str, remotes: Collection[RemoteRecord]
     ) -> dict[RemoteRecord, RecordingEntry]:
-        """The recordings of those of these records of a relay that were seen before.
+        """Return the recordings of those of a relay's records that were seen before.
 
         What is read grows with the records asked for, not with what the relay listed in all its years.
         """
@@ -64,7 +64,7 @@ class RecordingRows(Sessions):
         return known
 
     def announced_remote_records(self, relay: str) -> frozenset[RemoteRecord]:
-        """Records of a relay that were seen and are neither stored nor refused."""
+        """Return a relay's records that were seen and are neither stored nor refused."""
         query = (
             select(RemoteRecordRow)
             .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
@@ -74,7 +74,7 @@ class RecordingRows(Sessions):
             return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
 
     def unfetched_names(self, relay: str, *, seen_before_ns: int) -> frozenset[str]:
-        """Of records that were seen in a relay before that time and are neither stored nor refused yet."""
+        """Return the names of records seen before a time that are neither stored nor refused yet."""
         query = (
             select(RemoteRecordRow.name)
             .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
@@ -88,7 +88,7 @@ class RecordingRows(Sessions):
             return frozenset(session.scalars(query))
 
     def give_up_remote_record(self, relay: str, remote: RemoteRecord, reason: str) -> None:
-        """Rejects an announced record that the relay does not list any more; it is new if it does again."""
+        """Reject an announced record that its relay no longer lists; it is new if listed again."""
         with self._write() as session:
             link = _link(session, relay, remote)
             if link is None:
@@ -102,14 +102,14 @@ class RecordingRows(Sessions):
     def announce_recording(
         self, relay: str, motor: str, remote: RemoteRecord, *, now_ns: int
     ) -> RecordingEntry:
-        """The recording of what a relay lists, announced unless it is known. Raises NotFoundError."""
+        """Return the recording of what a relay lists, announced unless known. Raises NotFoundError."""
         with self._write() as session:
             return recording(_announced(session, relay, motor, remote, now_ns))
 
     def note_failed_pull(
         self, relay: str, motor: str, remote: RemoteRecord, reason: str, *, now_ns: int
     ) -> int:
-        """Counts a pull that did not succeed and will be tried again; returns how many there were."""
+        """Count a pull that failed and will be tried again; return how many there were."""
         with self._write() as session:
             row = _announced(session, relay, motor, remote, now_ns)
             if row.state is RecordingState.ANNOUNCED:
@@ -127,7 +127,7 @@ class RecordingRows(Sessions):
         now_ns: int,
         recording_request_id: str | None = None,
     ) -> RecordingEntry:
-        """Refuses a record for good without storing it (too large, incomplete): it is not pulled again.
+        """Refuse a record for good without storing it (too large, incomplete): it is not pulled again.
 
         The request that waited for it fails with the same reason.
         """
@@ -185,7 +185,7 @@ class RecordingRows(Sessions):
             return AddedRecording(recording(row), created)
 
     def recording(self, recording_id: str) -> RecordingEntry:
-        """Raises NotFoundError."""
+        """Return a recording by its id. Raises NotFoundError."""
         with self._read() as session:
             return recording(found(session, RecordingRow, recording_id, "recording"))
 
@@ -206,7 +206,7 @@ class RecordingRows(Sessions):
         motor: str | None = None,
         state: RecordingState | None = None,
     ) -> Page[RecordingEntry]:
-        """Latest first; of one motor or of all, in one state or in any."""
+        """Return a page of recordings, of one motor or all, in one state or any, latest first."""
         query = select(RecordingRow)
         if motor is not None:
             query = query.where(RecordingRow.motor == motor)
@@ -247,7 +247,10 @@ def _stored_before(
 def _of_the_same_waveform(
     session: Session, motor: str, stored: StoredRecording, *further: ColumnElement[bool]
 ) -> RecordingRow | None:
-    """Whoever fetches a record on site may rename its files, and leave out those that only describe it."""
+    """Return the recording of the motor with the same waveform, whatever its files are called.
+
+    Whoever fetches a record on site may rename its files, and leave out those that only describe it.
+    """
     contents = {file.sha256 for file in stored.waveform_files}
     holders = (
         select(RecordingFileRow.recording_id)
@@ -260,7 +263,7 @@ def _of_the_same_waveform(
 
 
 def _announced(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
-    """The recording of what the relay lists, whatever became of it; a new announcement the first time."""
+    """Return the recording of what the relay lists, whatever became of it; announce it the first time."""
     found(session, MotorRow, motor, "motor", lock=True)
     link = _link(session, relay, remote)
     if link is None:
@@ -269,7 +272,7 @@ def _announced(session: Session, relay: str, motor: str, remote: RemoteRecord, n
 
 
 def _to_fill(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
-    """The recording that new content belongs to: not one which holds other content already."""
+    """Return the recording that new content belongs to: not one that holds other content already."""
     row = _announced(session, relay, motor, remote, now_ns)
     return row if row.digest is None else _announce(session, relay, motor, remote, now_ns)
 
@@ -299,7 +302,7 @@ def _link(session: Session, relay: str, remote: RemoteRecord) -> RemoteRecordRow
 
 
 def _link_remote(session: Session, relay: str, remote: RemoteRecord, row: RecordingRow) -> None:
-    """Ties what the relay lists to the recording; an announcement it replaces goes."""
+    """Link what the relay lists to the recording; an announcement that this replaces is deleted."""
     link = _link(session, relay, remote)
     if link is None:
         session.add(
@@ -348,7 +351,7 @@ def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: 
 
 
 def _complete(session: Session, row: RecordingRow, stored: StoredRecording) -> None:
-    """The same waveform once more, now with files that had not come yet."""
+    """Add the files that had not come yet with the same waveform."""
     listed = select(RecordingFileRow.name).where(RecordingFileRow.recording_id == row.id)
     if not {file.name for file in stored.files} > set(session.scalars(listed)):
         return

@@ -36,7 +36,7 @@ class Sessions:
         self._turn = Lock() if engine.dialect.name == "sqlite" else None
 
     def check(self) -> None:
-        """One round trip to the database. Raises sqlalchemy.exc.SQLAlchemyError when it does not answer."""
+        """Make one round trip to the database. Raises SQLAlchemyError when it does not answer."""
         with self._read() as session:
             session.execute(text("SELECT 1"))
 
@@ -52,9 +52,10 @@ class Sessions:
 
     @contextmanager
     def _own_turn(self) -> Iterator[None]:
-        """SQLite has one writer, and who waits for it looks again now and then, whoever was there first.
+        """Wait for this thread's turn to write, where the database is SQLite.
 
-        So threads of a process take turns before: the next one goes on at once, and no renewal of a lease is
+        SQLite has one writer, and who waits for it looks again now and then, whoever was there first. So
+        threads of a process take turns before: the next one goes on at once, and no renewal of a lease is
         passed by forty others. Raises sqlalchemy.exc.TimeoutError.
         """
         if self._turn is None:
@@ -81,7 +82,7 @@ def found(session: Session, row_type: type[Row], key: str, kind: str, *, lock: b
 
 
 def record_of(record_type: "type[Record]", row: Base) -> "Record":
-    """The dataclass whose fields are columns of the row, by name."""
+    """Return the dataclass whose fields are columns of the row, by name."""
     return record_type(**{field.name: getattr(row, field.name) for field in fields(record_type)})
 
 
@@ -95,9 +96,9 @@ def page_of(
     after: Cursor | None,
     descending: bool = False,
 ) -> Page[Item]:
-    """One page of `query` in the order of unique `order` columns, from behind the sort key `after`.
+    """Return one page of `query` in the order of unique `order` columns, from behind the sort key `after`.
 
-    Keys, not offsets: rows that come or go meanwhile neither repeat nor hide others.
+    It uses keys, not offsets: rows that come or go meanwhile neither repeat nor hide others.
     """
     if after is not None:
         position: ColumnElement[bool] = (
@@ -114,5 +115,5 @@ def page_of(
 
 
 def only(session: Session, query: Select[Row]) -> Row | None:
-    """The first row of a query, None without one."""
+    """Return the first row of a query, None without one."""
     return session.scalars(query.limit(1)).first()

@@ -46,6 +46,6 @@ class StateCounts(Sessions):
 
 
 def _of(table: type[Base], states: type[State], numbers: Mapping[tuple[str, str], int]) -> dict[State, int]:
-    """The states in which there are any."""
+    """Return the numbers of rows by state, without states that have none."""
     found = {state: numbers[table.__tablename__, state] for state in states}
     return {state: number for state, number in found.items() if number}
