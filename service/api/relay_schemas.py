@@ -93,13 +93,17 @@ class Quarantine(Document):
 
 
 class Gateway(Document):
-    """A process that visits relays: `relays` is how many it holds at present."""
+    """A process that visits relays: `relays` is how many it holds at present.
+
+    problem: what does not work in it at present; null while all does.
+    """
 
     id: str
     host: str
     process_id: int
     started_time: Time = Field(validation_alias="started_ns")
     relays: int
+    problem: str | None
 
 
 class Acquisition(Document):

@@ -153,7 +153,7 @@ def _parts(
         settings,
         plant,
         repository,
-        gateway_problem=gateways.problem,
+        gateway_problem=gateways.not_running,
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
     )
     return jobs, {"collector": gateways, "jobs": jobs, **workers}

@@ -8,14 +8,11 @@ from collections.abc import Callable, Sequence
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
-import structlog
-from sqlalchemy.exc import InterfaceError, OperationalError, TimeoutError  # noqa: A004 - of the database
+from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, TimeoutError  # noqa: A004 - of the database
 
 from service.storage import Repository
 from service.storage.records import LinkNote, Sample
 from service.timing.periodic_worker import PeriodicWorker
-
-log = structlog.get_logger(__name__)
 
 Item = TypeVar("Item")
 
@@ -29,6 +26,10 @@ NO_ANSWER = (OperationalError, InterfaceError, TimeoutError)
 """Errors of a database that is locked, full or away."""
 
 
+class BatchRefusedError(RuntimeError):
+    """The database refuses items, which are lost."""
+
+
 class BatchWriter:
     """Collects items from the threads of the sessions, and writes them from a thread of its own."""
 
@@ -36,7 +37,7 @@ class BatchWriter:
         """period_s: between transactions."""
         self._samples = _Batch(repository.add_samples)
         self._notes = _Batch(repository.note_links)
-        self._worker = PeriodicWorker("batch-writer", self._write, period_s=period_s, once_more=True)
+        self._worker = PeriodicWorker("the batch writer", self._write, period_s=period_s, once_more=True)
 
     def add_sample(self, sample: Sample) -> None:
         """Write what a relay measured."""
@@ -54,9 +55,15 @@ class BatchWriter:
         """Write what is left and end the thread; wait at most `timeout_s` for that."""
         self._worker.stop(timeout_s)
 
+    def problem(self) -> str | None:
+        """Return why items are not written at present; None while all is well."""
+        return self._worker.problem()
+
     def _write(self) -> None:
-        self._samples.write_or_keep()
-        self._notes.write_or_keep()
+        try:
+            self._samples.write()
+        finally:  # what goes wrong with items of one kind holds up none of the other
+            self._notes.write()
 
 
 class _Batch(Generic[Item]):
@@ -70,8 +77,12 @@ class _Batch(Generic[Item]):
     def add(self, item: Item) -> None:
         self._arrived.put(item)
 
-    def write_or_keep(self) -> None:
-        """Write all items in one transaction; keep them while the database does not answer."""
+    def write(self) -> None:
+        """Write all items in one transaction.
+
+        Raises SQLAlchemyError where the database does not answer: the items are kept. Raises
+        BatchRefusedError where it refuses them: they are lost.
+        """
         while not self._arrived.empty():
             self._unwritten.append(self._arrived.get())
         del self._unwritten[:-MOST_UNWRITTEN]
@@ -79,9 +90,11 @@ class _Batch(Generic[Item]):
             return
         try:
             self._write(self._unwritten)
-        except NO_ANSWER as error:
-            log.warning("database does not answer, trying again", error=str(error))
-            return
-        except Exception:  # items the database never takes must not hold up all that come after them
-            log.exception("lost, the database refuses it", number=len(self._unwritten))
+        except NO_ANSWER:
+            raise
+        except Exception as error:  # items the database never takes must not hold up all that come after them
+            lost = len(self._unwritten)
+            self._unwritten.clear()
+            reason = error.orig if isinstance(error, DBAPIError) else error  # without the whole statement
+            raise BatchRefusedError(f"lost {lost} items, the database refuses them: {reason}") from error
         self._unwritten.clear()

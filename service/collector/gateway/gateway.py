@@ -1,4 +1,4 @@
-"""A gateway: visits the relays whose leases it holds, one session a relay, and shares with other gateways."""
+"""Visit the relays whose leases a gateway holds, one session a relay, and share with other gateways."""
 
 import time
 from collections.abc import Callable
@@ -19,6 +19,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import LeaseLostError, Repository
 from service.timing.boot_clock import boot_time_s
 from service.timing.peer_liveness import PeerLiveness
+from service.timing.periodic_worker import PeriodicWorker
 
 log = structlog.get_logger(__name__)
 
@@ -34,7 +35,7 @@ STOP_TIMEOUT_S = 2.0
 
 @dataclass(frozen=True, slots=True)
 class GatewayIdentity:
-    """Who a gateway is. `id` is never that of two processes that live at the same time."""
+    """Tell who a gateway is. `id` is never that of two processes that live at the same time."""
 
     id: str
     host: str
@@ -43,14 +44,19 @@ class GatewayIdentity:
 
 @dataclass(frozen=True, slots=True)
 class _SessionThread:
-    """A relay's session, and the thread it runs on."""
+    """Hold a relay's session and the thread it runs on."""
 
     session: RelaySession
     thread: Thread
 
 
 class Gateway:
-    """Visits the relays whose leases this gateway holds. `run` is the main loop of its process."""
+    """Visit the relays whose leases this gateway holds. `run` lasts as long as its process.
+
+    One thread, the dispatcher, renews the leases, starts and stops the sessions and wakes them. An error in
+    it that lasts keeps the leases from being renewed: the lease watchdog then ends the process, and whoever
+    supervises it starts another.
+    """
 
     def __init__(
         self,
@@ -63,7 +69,9 @@ class Gateway:
         on_expiry: Callable[[], None],
         visit_marks: VisitMarks | None = None,
     ) -> None:
-        """on_expiry: called when the leases could not be renewed for too long; it has to end the process.
+        """Prepare a gateway that holds no relay yet.
+
+        on_expiry: called when the leases could not be renewed for too long; it has to end the process.
 
         visit_marks: where it marks which relays it is busy with; None where nobody would read them.
         """
@@ -80,25 +88,40 @@ class Gateway:
         self._quarantined: dict[str, UnansweredRequests] = {}
         self._batches = BatchWriter(repository)
         self._registered = False
+        self._next_renewal_s = 0.0
+        self._dispatcher = PeriodicWorker("the dispatcher", self._dispatch, period_s=REQUEST_PERIOD_S)
         self._watchdog = LeaseWatchdog(settings.lease_s, on_expiry=on_expiry)
 
     def run(self, stop: Event) -> list[str]:
         """Visit relays until `stop` is set. Returns the names of the threads that did not end in time."""
         self._watchdog.start()
         self._batches.start()
-        next_renewal_s = 0.0
-        while not stop.wait(REQUEST_PERIOD_S):
-            try:
-                if boot_time_s() >= next_renewal_s:
-                    self._renew_leases()
-                    next_renewal_s = boot_time_s() + self._settings.lease_s / RENEWALS_PER_LEASE
-                self._give_back_ended()
-                for relay in self._repository.relays_with_requests():
-                    if relay in self._sessions:
-                        self._sessions[relay].session.wake()
-            except SQLAlchemyError as error:
-                log.warning("database does not answer, trying again", error=str(error))
+        self._dispatcher.start()
+        stop.wait()
+        self._dispatcher.stop()
         return self._stop_all()
+
+    def problem(self) -> str | None:
+        """Return which thread of the gateway does not do its work at present; None while all do."""
+        problems = {
+            "dispatcher": self._dispatcher.problem(),
+            "batch writer": self._batches.problem(),
+            "lease watchdog": self._watchdog.problem(),
+        }
+        return "; ".join(f"{name}: {text}" for name, text in problems.items() if text is not None) or None
+
+    def _dispatch(self) -> None:
+        """Renew the leases when that is due; wake the sessions of relays that are asked for a recording.
+
+        Raises SQLAlchemyError.
+        """
+        if boot_time_s() >= self._next_renewal_s:
+            self._renew_leases()
+            self._next_renewal_s = boot_time_s() + self._settings.lease_s / RENEWALS_PER_LEASE
+        self._give_back_ended()
+        for relay in self._repository.relays_with_requests():
+            if relay in self._sessions:
+                self._sessions[relay].session.wake()
 
     def _renew_leases(self) -> None:
         """Renew the leases; start and stop sessions as the fair share of this gateway changes.
@@ -113,7 +136,10 @@ class Gateway:
             self._register()
         try:
             share = self._repository.share_relays(
-                self._identity.id, self._names, most=self._settings.relays_per_gateway
+                self._identity.id,
+                self._names,
+                most=self._settings.relays_per_gateway,
+                problem=self.problem(),
             )
         except LeaseLostError as error:
             log.warning("starting again", reason=str(error))
@@ -156,9 +182,11 @@ class Gateway:
             self._quarantined[relay].fail_overdue(f"it is set aside, {reason}")
 
     def _unanswered_requests(self, relay: str) -> UnansweredRequests:
+        """Return what ends the requests for a relay that is not visited."""
         return UnansweredRequests(relay, self._repository, RequestDeadlines(self._settings.record_timeout_s))
 
     def _register(self) -> None:
+        """Enter the gateway in the database, holding nothing. Raises SQLAlchemyError."""
         self._repository.register_gateway(
             self._identity.id,
             host=self._identity.host,
@@ -168,6 +196,7 @@ class Gateway:
         self._registered = True
 
     def _start_session(self, relay: str) -> None:
+        """Start the session of a relay on a thread of its own."""
         session = RelaySession(
             self._plant.relay(relay),
             self._plant.motor_of(relay).name,
@@ -199,6 +228,7 @@ class Gateway:
             del self._sessions[relay]
 
     def _abandon_all(self) -> None:
+        """End every session at once, because others may visit the relays already."""
         for relay in list(self._sessions):
             visit = self._sessions.pop(relay)
             visit.session.abandon()

@@ -34,7 +34,7 @@ class LeaseWatchdog:
         self._clock = clock
         self._renewed_s = clock()
         period_s = min(lease_s / CHECKS_PER_LEASE, LONGEST_CHECK_PERIOD_S)
-        self._worker = PeriodicWorker("lease-watchdog", self._check, period_s=period_s)
+        self._worker = PeriodicWorker("the lease watchdog", self._check, period_s=period_s)
 
     def start(self) -> None:
         """Start the thread."""
@@ -44,6 +44,10 @@ class LeaseWatchdog:
         """End the thread, and wait for that."""
         self._worker.stop()
 
+    def problem(self) -> str | None:
+        """Return why the leases are not watched at present; None while they are."""
+        return self._worker.problem()
+
     def renewed(self, began_s: float) -> None:
         """Note that a renewal succeeded which began at this time of the clock [s].
 
@@ -52,5 +56,6 @@ class LeaseWatchdog:
         self._renewed_s = began_s
 
     def _check(self) -> None:
+        """Call `on_expiry` if the latest renewal is too long ago."""
         if self._clock() - self._renewed_s > self._usable_s:
             self._on_expiry()

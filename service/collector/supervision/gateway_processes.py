@@ -28,13 +28,14 @@ class GatewayProcesses:
         self._settings = settings
         self._repository = repository
         gateways = -(-len(plant.relays) // settings.relays_per_gateway)
+        self._ids = [gateway_id(settings, number) for number in range(gateways)]
         self._supervisors = [
             GatewaySupervisor(
                 settings,
                 number=number,
-                on_exit=partial(self._handle_exit, number, gateway_id(settings, number)),
+                on_exit=partial(self._handle_exit, number, name),
             )
-            for number in range(gateways)
+            for number, name in enumerate(self._ids)
         ]
 
     def start(self) -> None:
@@ -50,11 +51,26 @@ class GatewayProcesses:
             supervisor.stop()
 
     def problem(self) -> str | None:
+        """Return which gateways do not run, or what does not work in one; None while all is well."""
+        return self.not_running() or self._reported_problem()
+
+    def not_running(self) -> str | None:
         """Return how many gateways do not run at present; None while all do."""
         failing = [found for found in (each.problem() for each in self._supervisors) if found is not None]
         if not failing:
             return None
         return f"{len(failing)} of {len(self._supervisors)}: {failing[0]}"
+
+    def _reported_problem(self) -> str | None:
+        """Return what the gateways wrote down with their latest heartbeats; None while all is well."""
+        try:
+            gateways = self._repository.gateways()
+        except SQLAlchemyError as error:
+            return f"what the gateways report is not known, the database does not answer: {error}"
+        reported = [
+            f"{each.id}: {each.problem}" for each in gateways if each.id in self._ids and each.problem
+        ]
+        return "; ".join(reported) or None
 
     def _handle_exit(self, number: int, gateway: str, exit_code: int | None) -> None:
         """Find the relay that brought the process down, if one did, and free the process's relays.

@@ -10,7 +10,10 @@ from service.storage.states import AlarmKind, LinkState
 
 
 class GatewayRow(Base):
-    """A process that visits relays. `heartbeats` goes up as long as it lives."""
+    """A process that visits relays. `heartbeats` goes up as long as it lives.
+
+    problem: what did not work in it at the latest heartbeat.
+    """
 
     __tablename__ = "gateways"
 
@@ -19,6 +22,7 @@ class GatewayRow(Base):
     process_id: Mapped[int]
     heartbeats: Mapped[int] = mapped_column("beats")
     started_ns: Mapped[int]
+    problem: Mapped[str | None]
 
 
 class LeaseRow(Base):

@@ -47,13 +47,17 @@ class Quarantine:
 
 @dataclass(frozen=True, slots=True)
 class GatewayEntry:
-    """A process that visits relays, and how many it holds leases of."""
+    """A process that visits relays, and how many it holds leases of.
+
+    problem: what did not work in it at its latest heartbeat; None while all did.
+    """
 
     id: str
     host: str
     process_id: int
     started_ns: int
     relays: int
+    problem: str | None
 
 
 @dataclass(frozen=True, slots=True)

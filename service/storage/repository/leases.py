@@ -44,9 +44,10 @@ class LeaseRows(Sessions):
                 GatewayRow(id=gateway, host=host, process_id=process_id, heartbeats=0, started_ns=now_ns)
             )
 
-    def share_relays(self, gateway: str, relays: Collection[str], *, most: int) -> Share:
+    def share_relays(self, gateway: str, relays: Collection[str], *, most: int, problem: str | None) -> Share:
         """Renew the gateway's counter and take what is free of these relays, up to its fair share.
 
+        problem: what does not work in the gateway, for others to see; None while all does.
         Raises LeaseLostError where the gateway was declared dead: it holds nothing any more.
         """
         with self._write() as session:
@@ -54,6 +55,7 @@ class LeaseRows(Sessions):
             if own is None:
                 raise LeaseLostError(gateway)
             own.heartbeats += 1
+            own.problem = problem
             rows = session.scalars(select(GatewayRow)).all()
             in_service = set(session.scalars(select(IedRow.name).where(IedRow.in_service)))
             wanted = sorted(in_service.intersection(relays))
@@ -96,7 +98,7 @@ class LeaseRows(Sessions):
         )
         with self._read() as session:
             return tuple(
-                GatewayEntry(row.id, row.host, row.process_id, row.started_ns, relays)
+                GatewayEntry(row.id, row.host, row.process_id, row.started_ns, relays, row.problem)
                 for row, relays in session.execute(query)
             )
 

@@ -52,7 +52,7 @@ def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BaseSch
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
     repository.set_link_state("A1_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
     repository.register_gateway("here/0", host="here", process_id=1, now_ns=NOW_NS)
-    repository.share_relays("here/0", ["A1_SEL710"], most=1)
+    repository.share_relays("here/0", ["A1_SEL710"], most=1, problem=None)
     repository.add_samples([Sample("PUMP-A1", NOW_NS, {"ia_A": 1.0})])
     repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "X.CFG", "outside", now_ns=NOW_NS)
     context = ApiContext(Settings(data_directory=data), repository, store)

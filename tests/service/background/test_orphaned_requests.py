@@ -43,7 +43,7 @@ class Watch:
         for _ in range(round(seconds / step_s)):
             self.now_s += step_s
             for gateway in self.beating:
-                self.repository.share_relays(gateway, [], most=0)
+                self.repository.share_relays(gateway, [], most=0, problem=None)
             self.ender.end_overdue(self.now_s)
 
     @contextmanager
@@ -57,7 +57,7 @@ class Watch:
 
     def takes(self, *relays: str) -> None:
         self.repository.register_gateway("g", host="here", process_id=1, now_ns=NOW_NS)
-        self.repository.share_relays("g", relays, most=10)
+        self.repository.share_relays("g", relays, most=10, problem=None)
 
     def ask(self) -> str:
         report = self.repository.request_recording(MOTOR, now_ns=NOW_NS).id
@@ -168,7 +168,9 @@ def test_without_running_gateways_the_reason_says_so(repository: Repository, tmp
     settings = Settings(data_directory=tmp_path, record_timeout_s=0.1, lease_s=1.0)
     report = repository.request_recording(MOTOR, now_ns=NOW_NS).id
     gateways = GatewayProcesses(settings, two_motor_plant(), repository)
-    ender = OrphanedRequestEnder(settings, repository, gateway_problem=gateways.problem, restart_delay_s=0.0)
+    ender = OrphanedRequestEnder(
+        settings, repository, gateway_problem=gateways.not_running, restart_delay_s=0.0
+    )
     for now_s in (0.0, 1.0, 2.0):
         ender.end_overdue(now_s)
     assert "the collector process is not running" in (repository.recording_request(report).reason or "")

@@ -53,7 +53,7 @@ def test_a_suspect_that_comes_back_at_once_is_not_held(repository: Repository) -
 
 def test_the_end_of_a_gateway_leaves_a_quarantine(repository: Repository) -> None:
     repository.register_gateway("g", host="h", process_id=os.getpid(), now_ns=NOW_NS)
-    repository.share_relays("g", {A, B}, most=2)
+    repository.share_relays("g", {A, B}, most=2, problem=None)
     repository.set_aside(A, "why", backoff=Backoff(PAUSE_S, 86_400.0), now_ns=NOW_NS)
     repository.end_gateway("g", now_ns=NOW_NS)
     repository.reset_links(now_ns=NOW_NS)

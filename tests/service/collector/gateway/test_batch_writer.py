@@ -82,9 +82,11 @@ def test_a_locked_database_costs_nothing_and_doubles_nothing(
             batches.add_sample(Sample(MOTOR, NOW_NS + number, {"ia_A": 1.0}))
         with capture_logs() as logs:
             assert eventually(lambda: any("does not answer" in entry["event"] for entry in logs))
+        assert "the database does not answer" in (batches.problem() or "")
         assert repository.link_figures(RELAY).reports == 0
         other.rollback()
     assert eventually(lambda: repository.link_figures(RELAY).reports == 10)
+    assert eventually(lambda: batches.problem() is None)
     batches.add_note(note(9))
     batches.stop(10)
     assert repository.link_figures(RELAY).received_bytes == 600, "what is left is written at the end"
@@ -100,5 +102,7 @@ def test_what_the_database_refuses_holds_up_nothing(repository: Repository) -> N
         batches.add_sample(Sample(MOTOR, time.time_ns(), {"ia_A": 1.0}))
         return bool(repository.measurements(MOTOR, 0, limit=100).items)
 
+    assert eventually(lambda: "lost 1 items, the database refuses them" in (batches.problem() or ""))
     assert eventually(good_ones_arrive)
+    assert eventually(lambda: batches.problem() is None)
     batches.stop(10)

@@ -18,6 +18,7 @@ import scl
 from mms import Server
 from scl import Address
 from scl.model_text import model_text
+from service.api import ApiContext, create_app
 from service.application.parts import running
 from service.collector.gateway.gateway import Gateway, GatewayIdentity
 from service.collector.session.visit_marks import BUSY
@@ -34,6 +35,7 @@ from service.timing.backoff import Backoff
 from testing.service.database import make_database
 from testing.service.plants import NOW_NS, SECOND_NS
 from testing.waiting import eventually
+from tests.service.api.serving import serving
 
 LEASE_S = 1.5
 
@@ -251,6 +253,35 @@ def test_a_stray_file_among_the_marks_of_visits_keeps_no_gateway_from_coming_aga
         assert gateways.problem() is None
 
 
+def test_a_gateway_that_cannot_write_what_it_measures_is_not_ready(hall: Hall) -> None:
+    hall.settings = hall.settings.model_copy(update={"metering_period_s": 0.2})
+    gateways = GatewayProcesses(hall.settings, hall.plant, hall.repository)
+    store = RecordingStore(hall.settings.recordings_directory)
+    context = ApiContext(hall.settings, hall.repository, store, readiness={"collector": gateways.problem})
+    with (
+        running([gateways]),
+        serving(create_app(context)) as client,
+        closing(sqlite3.connect(hall.settings.database_url.removeprefix("sqlite:///"), timeout=60)) as tables,
+    ):
+        motor = hall.plant.motors[0].name
+        assert eventually(lambda: hall.repository.measurements(motor, 0, limit=1).items, 60)
+        assert client.get("/readyz").json()["parts"]["collector"] == "ready"
+        tables.execute(
+            "CREATE TRIGGER refusal BEFORE INSERT ON measurements BEGIN SELECT RAISE(ABORT, 'no room'); END"
+        )
+        assert eventually(lambda: client.get("/readyz").status_code == 503)
+        failing = client.get("/readyz").json()["parts"]["collector"]
+        assert "/0: batch writer: BatchRefusedError: " in failing
+        assert "the database refuses them: " in failing
+        assert "no room" in failing
+        (listed,) = client.get("/api/v1/gateways").json()["items"]
+        assert failing == f"{listed['id']}: {listed['problem']}"
+        tables.execute("DROP TRIGGER refusal")
+        assert eventually(lambda: client.get("/readyz").status_code == 200, 60)
+        (listed,) = client.get("/api/v1/gateways").json()["items"]
+        assert listed["problem"] is None
+
+
 def test_gateways_alone_share_the_relays_of_a_service_elsewhere(hall: Hall) -> None:
     settings = hall.settings_of("other").model_copy(update={"lease_s": 10.0, "relays_per_gateway": 3})
     chosen = settings.model_dump(mode="json", exclude_defaults=True)
@@ -314,7 +345,7 @@ def test_a_trigger_needs_the_lease(hall: Hall) -> None:
     motor = hall.plant.motors[0]
     report = repository.request_recording(motor.name, now_ns=NOW_NS)
     repository.register_gateway("a", host="here", process_id=1, now_ns=NOW_NS)
-    repository.share_relays("a", [motor.relay], most=10)
+    repository.share_relays("a", [motor.relay], most=10, problem=None)
     repository.register_gateway("b", host="here", process_id=2, now_ns=NOW_NS)
     with pytest.raises(LeaseLostError, match=f"gateway b does not hold the lease of {motor.relay}"):
         repository.mark_triggered(report.id, now_ns=NOW_NS, gateway="b")
@@ -323,4 +354,4 @@ def test_a_trigger_needs_the_lease(hall: Hall) -> None:
     assert not repository.end_gateway("a", now_ns=NOW_NS, heartbeats=7), "it has gone on since"
     assert repository.end_gateway("a", now_ns=NOW_NS, heartbeats=1)
     with pytest.raises(LeaseLostError):
-        repository.share_relays("a", [motor.relay], most=10)
+        repository.share_relays("a", [motor.relay], most=10, problem=None)
