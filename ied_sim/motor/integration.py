@@ -5,6 +5,7 @@ load torque are known functions of time, given at the middle of the steps too.
 """
 
 from math import cos, sin, sqrt
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,47 @@ from numpy.typing import NDArray
 from ied_sim.motor.compiled import compiled
 
 Array = NDArray[np.float64]
+
+
+class Loops(NamedTuple):
+    """Loop matrices of the winding circuit, see `windings`, and what turns with its rotor.
+
+    Parameters
+    ----------
+    A, B, D : ndarray, shape (m, m)
+        Parts of the inductance L(theta) = A + B cos(theta) + D sin(theta) [H].
+    R : ndarray, shape (m, m)
+        Resistance [ohm].
+    pole_pairs : int
+        Pole pairs of the motor.
+    inertia : float
+        Moment of inertia [kg m^2].
+    """
+
+    A: Array
+    B: Array
+    D: Array
+    R: Array
+    pole_pairs: int
+    inertia: float
+
+
+class Drive(NamedTuple):
+    """Known inputs at every half step.
+
+    Parameters
+    ----------
+    voltage : ndarray, shape (2 n + 1, m)
+        Voltage around each loop [V].
+    load_torque : ndarray, shape (2 n + 1,)
+        Load torque [N m].
+    step : float
+        Length of a step [s].
+    """
+
+    voltage: Array
+    load_torque: Array
+    step: float
 
 
 @compiled
@@ -45,39 +87,29 @@ def _solve_symmetric(matrix: Array, x: Array) -> None:
 
 
 @compiled
-def _loop_currents(A: Array, B: Array, D: Array, state: Array, work: Array, q: Array) -> None:
-    """Solve L(theta) q = flux for the loop currents q."""
+def _loop_currents(loops: Loops, c: float, s: float, state: Array, matrix: Array, q: Array) -> None:
+    """Solve L(theta) q = flux for the loop currents q, with c = cos(theta) and s = sin(theta)."""
+    A, B, D = loops.A, loops.B, loops.D
     m = q.size
-    c, s = cos(state[m + 1]), sin(state[m + 1])
     for i in range(m):
         q[i] = state[i]
         for j in range(i + 1):
-            work[i, j] = A[i, j] + B[i, j] * c + D[i, j] * s
-    _solve_symmetric(work, q)
+            matrix[i, j] = A[i, j] + B[i, j] * c + D[i, j] * s
+    _solve_symmetric(matrix, q)
 
 
 @compiled
 def _derivative(
-    A: Array,
-    B: Array,
-    D: Array,
-    R: Array,
-    pole_pairs: int,
-    inertia: float,
-    drive: Array,
-    load_torque: float,
-    state: Array,
-    work: Array,
-    q: Array,
-    rate: Array,
+    loops: Loops, voltage: Array, load_torque: float, state: Array, work: Array, q: Array, rate: Array
 ) -> None:
-    """Compute the state's derivative.
+    """Compute the state's derivative into `rate`.
 
     d(flux)/dt = e - R q;  J dw_m/dt = p q' (dL/dtheta) q / 2 - T_load;  dtheta/dt = p w_m.
     """
+    B, D, R = loops.B, loops.D, loops.R
     m = q.size
-    _loop_currents(A, B, D, state, work, q)
     c, s = cos(state[m + 1]), sin(state[m + 1])
+    _loop_currents(loops, c, s, state, work, q)
     torque = 0.0
     for i in range(m):
         drop = 0.0
@@ -85,42 +117,22 @@ def _derivative(
         for j in range(m):
             drop += R[i, j] * q[j]
             turn += (D[i, j] * c - B[i, j] * s) * q[j]
-        rate[i] = drive[i] - drop
+        rate[i] = voltage[i] - drop
         torque += q[i] * turn
-    rate[m] = (0.5 * pole_pairs * torque - load_torque) / inertia
-    rate[m + 1] = pole_pairs * state[m]
+    rate[m] = (0.5 * loops.pole_pairs * torque - load_torque) / loops.inertia
+    rate[m + 1] = loops.pole_pairs * state[m]
 
 
 @compiled
-def integrate(
-    A: Array,
-    B: Array,
-    D: Array,
-    R: Array,
-    pole_pairs: int,
-    inertia: float,
-    drive: Array,
-    load_torque: Array,
-    step: float,
-    steps_per_sample: int,
-    state: Array,
-) -> tuple[Array, Array]:
+def integrate(loops: Loops, drive: Drive, steps_per_sample: int, state: Array) -> tuple[Array, Array]:
     """Integrate the winding circuit; return loop currents and speed at every `steps_per_sample`-th step.
 
     Parameters
     ----------
-    A, B, D, R : ndarray, shape (m, m)
-        Loop matrices, see `windings`.
-    pole_pairs : int
-        Pole pairs of the motor.
-    inertia : float
-        Moment of inertia [kg m^2].
-    drive : ndarray, shape (2 n + 1, m)
-        Voltage around each loop at every half step [V].
-    load_torque : ndarray, shape (2 n + 1,)
-        Load torque at every half step [N m].
-    step : float
-        Length of a step [s].
+    loops : Loops
+        The circuit and its rotor.
+    drive : Drive
+        Voltages and load torque at every half step.
     steps_per_sample : int
         Number of steps between samples.
     state : ndarray, shape (m + 2,)
@@ -134,6 +146,7 @@ def integrate(
         Mechanical speed [rad/s].
     """
     m = state.size - 2
+    voltage, load_torque, step = drive.voltage, drive.load_torque, drive.step
     steps = (load_torque.size - 1) // 2
     samples = steps // steps_per_sample + 1
     currents = np.empty((samples, m))
@@ -143,27 +156,27 @@ def integrate(
     trial = np.empty(m + 2)
     k1, k2, k3, k4 = np.empty(m + 2), np.empty(m + 2), np.empty(m + 2), np.empty(m + 2)
 
-    _loop_currents(A, B, D, state, work, q)
+    _loop_currents(loops, cos(state[m + 1]), sin(state[m + 1]), state, work, q)
     currents[0] = q
     speed[0] = state[m]
     for n in range(samples - 1):
         for k in range(steps_per_sample):
             now = 2 * (n * steps_per_sample + k)
-            e0, e1, e2 = drive[now], drive[now + 1], drive[now + 2]
+            e0, e1, e2 = voltage[now], voltage[now + 1], voltage[now + 2]
             T0, T1, T2 = load_torque[now], load_torque[now + 1], load_torque[now + 2]
-            _derivative(A, B, D, R, pole_pairs, inertia, e0, T0, state, work, q, k1)
+            _derivative(loops, e0, T0, state, work, q, k1)
             for i in range(m + 2):
                 trial[i] = state[i] + 0.5 * step * k1[i]
-            _derivative(A, B, D, R, pole_pairs, inertia, e1, T1, trial, work, q, k2)
+            _derivative(loops, e1, T1, trial, work, q, k2)
             for i in range(m + 2):
                 trial[i] = state[i] + 0.5 * step * k2[i]
-            _derivative(A, B, D, R, pole_pairs, inertia, e1, T1, trial, work, q, k3)
+            _derivative(loops, e1, T1, trial, work, q, k3)
             for i in range(m + 2):
                 trial[i] = state[i] + step * k3[i]
-            _derivative(A, B, D, R, pole_pairs, inertia, e2, T2, trial, work, q, k4)
+            _derivative(loops, e2, T2, trial, work, q, k4)
             for i in range(m + 2):
                 state[i] += step / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i])
-        _loop_currents(A, B, D, state, work, q)
+        _loop_currents(loops, cos(state[m + 1]), sin(state[m + 1]), state, work, q)
         currents[n + 1] = q
         speed[n + 1] = state[m]
     return currents, speed

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from core.machines.parameters import Connection, Motor
 from ied_sim.motor.contactor import Closure, Contactor
 from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
-from ied_sim.motor.integration import integrate
+from ied_sim.motor.integration import Drive, Loops, integrate
 from ied_sim.motor.load import Load
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
@@ -200,20 +200,17 @@ class MotorPlant:
         times = first_s + half_steps * (step / 2)
         nameplate = self.motor.nameplate
         load_torque = self.supply.direction * nameplate.rated_torque_Nm * self.load.levels(times)
-        drive = self.supply.phase_voltages(times).T @ circuit.drive.T
-        currents, speed = integrate(
+        voltage = self.supply.phase_voltages(times).T @ circuit.drive.T
+        loops = Loops(
             circuit.constant,
             circuit.cosine,
             circuit.sine,
             circuit.resistance,
             nameplate.pole_pairs,
             self.motor.parameters.inertia_kgm2,
-            np.ascontiguousarray(drive),
-            load_torque,
-            step,
-            steps_per_sample,
-            state,
         )
+        drive = Drive(np.ascontiguousarray(voltage), load_torque, step)
+        currents, speed = integrate(loops, drive, steps_per_sample, state)
         return circuit.line_currents(currents), speed
 
     def _running_state(self, circuit: WindingCircuit, time_s: float) -> Array:
