@@ -1,4 +1,4 @@
-"""A motor's own standing asymmetry, learnt from its healthy recordings and taken off later ones.
+"""A motor's standing asymmetry, learnt from its healthy recordings and subtracted from later ones.
 
 Sensors' ratios, joints and windings give every motor a backward-turning current of its own. Against the
 voltage it keeps its size and direction, so it is averaged in that frame and subtracted before a diagnosis.
@@ -17,7 +17,7 @@ from core.diagnosis.tolerance import backward_voltage
 
 FEWEST_RECORDINGS = 3
 REMAINING = 0.3
-"""Share of the asymmetry that sensors make up which changes with load and temperature all the same."""
+"""Share of the sensors' asymmetry that changes with load and temperature and remains after subtraction."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""One recording of one motor, brought into the form every stage works on.
+"""One recording of one motor, in the form on which every stage of the diagnosis works.
 
 Stages see winding quantities in a positive-sequence supply (core.machines.winding_frame). The winding that a
 stage names is turned back into the terminals' labels on the way out.
@@ -23,7 +23,7 @@ from core.signals.sequence import PhaseSequence
 LONGEST_WINDOW_S, LONGEST_RECORD_S = 1.0, 1.2
 """What is compared, and what is looked at: with it the cycles before and behind that delays reach to."""
 FEWEST_SAMPLES_A_CYCLE = 40
-"""Samples a cycle that a thinned record keeps: enough for its shape up to the 13th harmonic."""
+"""Samples a cycle of a thinned record; they show its waveform up to the 13th harmonic."""
 
 
 @dataclass(frozen=True, slots=True)

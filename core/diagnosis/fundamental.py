@@ -1,4 +1,4 @@
-"""What a hypothesis is held against: both sequences of a record's voltages and currents at supply frequency.
+"""Both sequences of a record's voltages and currents at supply frequency, with which hypotheses are compared.
 
 Shorted turns, load and sensors' delays all show there, turning forwards or backwards. Whatever else a record
 holds (noise, slots, saturation, harmonics, a load that swings) tells nothing of them and would bend a fit:
@@ -18,7 +18,7 @@ from core.machines.steady_state import ComplexArray
 from core.signals.windows import tukey_window
 
 HIGHEST_ORDER = 13
-"""Harmonics that repeat every cycle and so are no noise."""
+"""Highest harmonic that counts as signal. Harmonics repeat every cycle, so they are no noise."""
 TAPERED = 0.25
 """Share of the record over which it fades in and out: where a load swings, the current at one end of a record
 differs from that at the other, and the step between them would pass for backward-turning current."""
@@ -26,7 +26,7 @@ CYCLE_SHORT = 0.05
 """Share of a cycle that a record may lack and still count as whole: no frequency is known to the last
 digit."""
 MOST_CORRELATED = 0.8
-"""Correlation from cycle to cycle beyond which a record is too short to tell it."""
+"""Correlation from cycle to cycle above which a record is too short to estimate it."""
 EQUAL_CYCLES = 5.0
 """Weight, in cycles, of equal and independent noise on the four components."""
 

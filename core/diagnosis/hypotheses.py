@@ -1,4 +1,4 @@
-"""Which explanation of the currents holds: healthy, shorted turns in one winding, or another asymmetry.
+"""Choice of the hypothesis: healthy, shorted turns in one winding, or another asymmetry.
 
 Shorted turns draw a current that is in one of three fixed directions to the voltage; any other asymmetry
 (a sensor's gain, a joint, a winding) leaves a backward-turning current in any direction. So beside the
@@ -38,7 +38,7 @@ SIGNIFICANT = 3.0
 UNLIKELY = 2.15
 """Standard deviations that a complex error exceeds once in a hundred times: sqrt(ln 100)."""
 PATH_START = 0.5
-"""Path ratio that a fit starts from; beside it the least level a fit starts from, for its angle to count."""
+"""Path ratio and least level at which a fit starts; the level is above zero so that its angle counts."""
 LEVEL_START = 0.005
 
 

@@ -1,4 +1,4 @@
-"""Signature indicators: what the currents and voltages say without a model, for comparison beside the fit."""
+"""Signature indicators, computed from currents and voltages without a model, to compare with the fit."""
 
 from math import degrees, pi
 

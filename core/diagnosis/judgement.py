@@ -1,4 +1,4 @@
-"""The verdict: what the fits say, against what noise, sensors and parameters could make up, in words."""
+"""The verdict and its reasons: the fits compared with the effects of noise, sensors and parameters."""
 
 from core.diagnosis.case import Case
 from core.diagnosis.hypotheses import Explanation, is_explained, limit_of_chance

@@ -1,4 +1,4 @@
-"""Load from phasors alone: where a fit may begin without any search."""
+"""Estimation of the load from phasors, so that a fit can begin without a search."""
 
 import numpy as np
 

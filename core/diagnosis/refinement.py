@@ -25,13 +25,13 @@ from core.machines.running import SteadyRunning
 CONFIDENCE = 0.95
 MOST_ROUNDS = 40
 HIGHEST_PATH_RATIO = 4.0
-"""Beyond it a path draws a current in the voltage's own direction, as many an asymmetry does that is none."""
+"""Highest path ratio. Beyond it the path current is in phase with the voltage, as in other asymmetries."""
 OFFSET_SCALE_S = 100e-6
 """Half width at half maximum of the Cauchy distribution of the offset between a relay's channels."""
 ADMITTANCE_STEP = 1e-4
 """Step of the difference quotient of currents by voltages, a share of the forward voltage."""
 CONVERGED = 0.01
-"""Share of the misfit that a fit may still be able to lose."""
+"""Share of the misfit by which a converged fit may still improve."""
 POOR, GOOD = 0.25, 0.75
 """Shares of the promised fall of the misfit: a step that keeps less is followed by shorter ones, one that
 keeps more by longer ones."""

@@ -25,7 +25,7 @@ HIGHEST_LOAD_LEVEL = 1.25
 WINDINGS = (0, 1, 2)
 
 FINENESS = 18
-"""Lets single coordinates reach a thousandth of their range."""
+"""Fineness at which single coordinates reach a thousandth of their range."""
 THESIS_SETTINGS = HcpaSettings(
     adaptiveness=0.4, fineness=FINENESS, max_global=400, max_local=120, allowed=(None, WINDINGS, None, None)
 )

@@ -1,4 +1,4 @@
-"""What sensors within their class and parameters within their tolerance can make up.
+"""Asymmetry that sensors within their class and parameters within their tolerance can cause.
 
 Noise averages out over a record; a ratio error of a sensor or a wrong parameter does not. Each leaves
 a backward-turning current that a fault would explain as well, so its size, not the noise, decides how small a

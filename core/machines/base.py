@@ -1,4 +1,4 @@
-"""What a machine model is: coupled circuits, linear in flux at a given speed.
+"""Interface of the machine models: coupled circuits, linear in flux at a given speed.
 
 Every model of the stator is five coupled circuits z = (i_s_alpha, i_s_beta, i_r_alpha, i_r_beta, j)
 

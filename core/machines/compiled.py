@@ -1,4 +1,4 @@
-"""The one door to the compiler: numba with a typed signature, cached beside the source."""
+"""Compilation of functions with numba, with typed signatures and a cache beside the source."""
 
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar, cast
@@ -9,7 +9,10 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 FAST_MATH = {"contract", "reassoc", "nsz", "arcp"}
-"""What LLVM may do to sums. Not among it: nnan and ninf, which assume that no NaN or infinity occurs."""
+"""Changes that LLVM may make to sums.
+
+The flags nnan and ninf are left out, because they assume that no NaN or infinity occurs.
+"""
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:

@@ -1,4 +1,4 @@
-"""Voltages as they were a sensor's delay ago."""
+"""Interpolation of voltages that are delayed by a sensor."""
 
 import numpy as np
 

@@ -22,11 +22,11 @@ from core.machines.stepping import Comparison, InitialState, MachineRates, Stepp
 
 LANES = 16
 SHORTEST_BLOCK, LONGEST_BLOCK = 16, 256
-"""Steps between two looks at the speed: twice as many or half as many as it changes slowly or fast."""
+"""Steps between two checks of the speed; doubled while it changes slowly, halved while it changes fast."""
 REFERENCE_DRIFT = 10.0
-"""Largest |w - w_reference| before a candidate is discretised anew [rad/s]: the error follows it."""
+"""Largest |w - w_reference| before a candidate is discretised anew [rad/s]; the error grows with it."""
 NO_REFERENCE = -1e300
-"""Reference speed of a candidate that was never discretised: finite, and farther than any drift."""
+"""Reference speed of a candidate that was never discretised; it is finite and far from every speed."""
 
 
 class LaneVoltage(NamedTuple):

@@ -11,7 +11,7 @@ from core.machines.parameters import ChannelNames, Connection, Limits, MachinePa
 TABLES = ("nameplate", "parameters", "intervals", "channels", "limits")
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))
 HIGHEST_FAULT_LIMIT = 0.2
-"""The search looks no higher: a limit above it would switch the alarm off."""
+"""Upper end of the search. A higher limit would never be reached and would switch the alarm off."""
 
 
 class MotorFileError(ValueError):

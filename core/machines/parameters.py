@@ -1,4 +1,4 @@
-"""What is known of a motor: nameplate, equivalent-circuit parameters, channels of its recordings, limits."""
+"""Description of a motor: nameplate, equivalent-circuit parameters, channel names and limits."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum

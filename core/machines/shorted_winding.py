@@ -9,7 +9,7 @@ from core.machines.model_names import Model
 from core.machines.parameters import Motor
 
 SMALLEST_LEVEL = 1e-9
-"""Below it the loop's current is less than double precision can see beside i_s: the machine is healthy."""
+"""Level below which the loop current vanishes beside i_s in double precision: the machine is healthy."""
 
 
 class ShortedWinding:

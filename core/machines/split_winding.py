@@ -9,9 +9,9 @@ from core.machines.model_names import Model
 from core.machines.parameters import Connection, Motor
 
 WHOLE_PHASE = 1.0
-"""No more turns than the phase has can be shorted."""
+"""Highest level: all turns of the phase."""
 LOWEST_LEVEL = -0.01
-"""Continued below zero, the loop's inductance L_ls + 2/3 mu L_m stays positive: L_m / L_ls is under 100."""
+"""Lowest level. The loop's inductance L_ls + 2/3 mu L_m stays positive while L_m / L_ls is below 100."""
 
 
 class SplitWinding:

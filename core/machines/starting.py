@@ -21,8 +21,10 @@ from core.machines.stepping import Comparison, InitialState, MachineRates, Stepp
 from core.machines.supply import Supply
 
 REFERENCE_RUN_UP_S = 0.3
-"""Energy of the inertia that the kernel is told, at synchronous speed, over rated power. Any value of the
-order of real motors' keeps the matrices well scaled."""
+"""Energy of the kernel's reference inertia at synchronous speed, over rated power [s].
+
+Any value of the order of real motors keeps the matrices well scaled.
+"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Where no voltages were recorded: a balanced supply at rated voltage, in step with the currents.
+"""A balanced supply at rated voltage, assumed for records without voltages and in step with the currents.
 
 An unbalanced supply then looks like a fault, so the verdict is never better than "watch". The voltage's
 direction against the current is unknown and found like a sensors' delay.
@@ -15,9 +15,12 @@ from core.signals.phasors import fundamental_frequency, fundamental_phasors
 from core.signals.sequence import PhaseSequence, sequence_phasors
 
 USUAL_LAG_DEG = 50.0
-"""Lag of a motor's current behind its voltage: only where the search for the true lag begins."""
+"""Lag of the current behind the voltage at which the search for the true lag begins."""
 SUPPLY_UNBALANCE = 0.01
-"""Standard deviation of a plant's voltage unbalance, not to be told from a fault here (EN 50160: 2 %)."""
+"""Standard deviation of the voltage unbalance (EN 50160: 2 %).
+
+Without recorded voltages an unbalance cannot be distinguished from a fault.
+"""
 
 
 def assumed_voltage(current_abc: Array, sample_rate_hz: float, nameplate: Nameplate) -> Array:

@@ -1,4 +1,4 @@
-"""What currents a healthy machine can draw: the circle diagram of its equivalent circuit.
+"""Circle diagram of the equivalent circuit: the currents that a healthy machine can draw.
 
 Two points bound every running motor: at no load it draws what magnetises it, at standstill the most it ever
 does. Both follow from the motor's parameters, so the gate needs no rule of thumb on the nameplate.

@@ -1,4 +1,4 @@
-"""Checks on the currents: every phase there, undistorted, the right way round, and a running motor's."""
+"""Checks that the currents are those of a running motor: all phases present, undistorted, in sequence."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,32 +15,46 @@ from core.signals.sequence import SequencePhasors, sequence_phasors
 from core.signals.terminals import Terminals
 
 OPEN_WIRE, OPEN_CHANNEL = 0.01, 0.1
-"""Least over greatest phase current. An open wire carries nothing; severe shorts without load on an
-unbalanced supply come down to 0.016, without a sum. An open channel leaves a sum and may show crosstalk."""
+"""Least ratio of the smallest phase current to the greatest.
+
+An open wire carries no current. Severe shorts without load on an unbalanced supply reach 0.016, and their
+currents add up to zero. With an open channel they do not, and the channel may show crosstalk.
+"""
 SATURATED, SATURATED_UNPAIRED = 0.05, 0.15
-"""2nd and 3rd harmonic of the currents' sum over a phase current. Three wires carry no such sum whatever the
-supply and the winding do; transformers that saturate make 10 % and more."""
+"""Limit for the 2nd and 3rd harmonic of the sum of the currents, over a phase current.
+
+The sum of three wires has no such harmonics, whatever supply and winding are like. Saturated transformers
+cause 10 % and more.
+"""
 SATURATED_PHASE = 0.15
-"""The same harmonics of one phase, used where the sum is zero because the recorder computed the third
-current."""
+"""Limit for the same harmonics of one phase.
+
+It is used where the sum is zero because the recorder computed the third current.
+"""
 COMPUTED_SUM = 1e-6
 CURRENT_SUM, CURRENT_SUM_UNPAIRED = 0.045, 0.3
 """Fundamental of the currents' sum over the greatest: 1 % and 50 us between channels leave 2.6 % at worst.
 Unpaired: currents recorded without voltages often come from sensors scaled one by one."""
 LEAST_OF_NO_LOAD = 0.5
-"""Positive-sequence current over the no-load current: parameters within 10 % and sensors leave 0.85."""
+"""Least positive-sequence current over the no-load current.
+
+Errors of the sensors and of parameters within 10 % lower it to 0.85 at most.
+"""
 MOST_OF_STANDSTILL, IMPOSSIBLE_OF_STANDSTILL = 0.6, 1.4
 """Shares of the locked rotor's current: severe shorts at full load reach 0.35; only a wrong ratio exceeds
 1."""
 CLEAN = 0.8
-"""Fundamental over rms: a small but clean current is scaled wrongly, a small and noisy one is none."""
+"""Least share of the fundamental in the rms value.
+
+It separates a small clean current, which is scaled wrongly, from noise without a current.
+"""
 BACKWARD = 1.3
 """Backward over forward current, in the supply's own sense: exchanged phases make 2 and more; a motor without
 load on a supply unbalanced by 5 %, with severe shorts, comes near 1."""
 STRONGLY_UNBALANCED = 0.05
 """Unbalance of a supply beyond which a motor that runs light looks as if two of its phases were exchanged."""
 LEAST_LAG_DEG, MOST_LAG_DEG = -20.0, 110.0
-"""Lag of the current behind the voltage: a motor's 0 to 90 degrees, and delays between the channels."""
+"""Range of the lag of the current: 0 to 90 degrees of a motor, widened by delays between channels."""
 
 _SIGNS = ((-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, -1.0))
 

@@ -1,9 +1,9 @@
-"""How a check says what it found."""
+"""Findings of the quality checks."""
 
 from dataclasses import dataclass
 
 HUGE = 1e30
-"""Figures beyond it are shown as it: a document has no infinity."""
+"""Greatest figure of a finding. Greater ones are cut to it, because JSON has no infinity."""
 
 
 @dataclass(frozen=True, slots=True)

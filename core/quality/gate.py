@@ -1,4 +1,4 @@
-"""The order of the checks."""
+"""The quality gate: it runs the checks in their order."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass

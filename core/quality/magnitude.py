@@ -14,9 +14,9 @@ SILENT, DEAFENING = 0.005, 1e4
 """Shares of the rated amplitude: offsets and noise of a motor switched off; more than any ratio's mistake
 makes."""
 NO_CURRENT = 1e-6
-"""Share of the rated current: below the mistake of any ratio or unit."""
+"""Share of the rated current that is too small to be explained by a wrong ratio or unit."""
 EFFICIENCY_TIMES_POWER_FACTOR = 0.6
-"""Typical of small motors; only for the order of magnitude of the rated current."""
+"""Value of small motors, from which the order of magnitude of the rated current is estimated."""
 
 
 def rated_current_A(nameplate: Nameplate) -> float:

@@ -1,4 +1,4 @@
-"""Checks on the samples of single channels: they are there, enough of them, and as the sensor saw them."""
+"""Checks on the samples of single channels: presence, number, and changes by converter and recorder."""
 
 from collections.abc import Iterator
 from math import pi
@@ -13,20 +13,23 @@ from core.recordings import Channel
 from core.signals.terminals import Terminals
 
 FEWEST_CYCLES = 4.9
-"""Delay margin, settling and the fewest cycles a scatter can be taken from."""
+"""Least length: delay margin, settling, and the fewest cycles from which a scatter can be estimated."""
 FEWEST_SAMPLES_A_CYCLE, MOST_SAMPLES_A_CYCLE = 10.0, 2_000.0
-"""600 Hz for 60 Hz, the slowest relays; above, the samples cost time and tell nothing about a winding."""
+"""Range of sampling rates: 600 Hz at 60 Hz is that of the slowest relays.
+
+Higher rates than the upper limit cost time and add no information about a winding.
+"""
 AT_FULL_SCALE, CLIPPED_SHARE = 0.999, 0.001
 FLAT_SHARE = 0.02
 """Share of samples in runs of three and more that equal a channel's extreme: a crest cut off at 0.998 of its
 height. What the converter's own step makes flat at a crest comes on top."""
 HELD_CYCLES = 0.15
-"""Longest stretch of one value away from the extremes: the converter's step explains no such stretch."""
+"""Longest stretch of one value away from the extremes that a converter's step can explain."""
 REPEATED_SHARE = 0.02
 """Share of samples on the flanks that equal the one before, beyond what chance does. A recorder that writes
 every sample twice has a half."""
 FEWEST_REPEATS = 3
-"""Equal neighbours that a short record may have by chance."""
+"""Number of equal neighbours that a short record may have by chance."""
 FLAT, FLANK = 0.05, 0.7
 """Shares of the greatest magnitude: between them a sine always moves, and a saturated transformer does not
 rest."""
@@ -37,7 +40,7 @@ COARSEST_LAG_CYCLES = 1 / 12
 DEAD = 0.03
 """Share of the greatest channel's swing: less is no signal, and for the check on missing phases to name."""
 RUN = 3
-"""Samples: two equal ones stand on both sides of a crest by chance."""
+"""Least number of equal samples in a run. Two occur by chance, one on either side of a crest."""
 
 
 def extent(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFinding]:

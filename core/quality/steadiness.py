@@ -1,4 +1,4 @@
-"""Is it one operating point? The models are started in periodic steady state at one load."""
+"""Check for one steady operating point, because the models start in periodic steady state at one load."""
 
 from collections.abc import Iterator
 

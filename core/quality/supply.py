@@ -1,4 +1,4 @@
-"""Checks on the voltages: the supply's frequency and shape, and every channel of it."""
+"""Checks on the voltages: frequency, waveform, and every single channel."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -28,9 +28,12 @@ HIGHEST_HARMONIC = 25
 LINE_AMONG_PULSES = 0.3
 """Share of the energy in one line where no frequency can be fitted: pulses carry a line, noise has none."""
 LINE_WIDTH_BINS = 2.5
-"""Half width of a line in a Hann-windowed spectrum, with room for a frequency that drifts a little."""
+"""Half width of a line in a Hann-windowed spectrum, with a margin for a drifting frequency."""
 UNBALANCE = 0.15
-"""V2 / V1 beyond which it is not the supply: motors trip at 5 %, a lost or reversed channel makes 50 %."""
+"""Ratio V2 / V1 above which a channel is at fault and not the supply.
+
+Motors trip at 5 %, and a lost or reversed channel causes 50 %.
+"""
 LOST_CHANNEL = 0.5
 """Least over greatest voltage, at such an unbalance: a blown fuse leaves what couples in from the others."""
 RATIO_ZERO, RATIO_LIKENESS = 0.055, 0.5
