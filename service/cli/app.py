@@ -54,7 +54,7 @@ def options(
         typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and stop."),
     ] = False,
 ) -> None:
-    """What comes before a command."""
+    """Read the options that come before a command."""
 
 
 @app.command()
