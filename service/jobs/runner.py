@@ -1,4 +1,4 @@
-"""Takes jobs from the database, has them done in worker processes, writes the results back."""
+"""Take jobs from the database, have worker processes do them, write the results back."""
 
 import time
 import uuid
@@ -33,7 +33,7 @@ RENEWALS_A_LEASE = 3
 
 @dataclass(frozen=True, slots=True)
 class JobLimits:
-    """What the settings say of jobs.
+    """Hold what the settings say of jobs.
 
     workers: how many at once.  job_timeout_s: how long each may take.  attempts: how often it is tried.
     backoff: pauses before it is tried again.  lease_s: others do the jobs of a runner that has not renewed
@@ -48,7 +48,7 @@ class JobLimits:
 
 
 class JobRunner:
-    """One thread feeds a pool of worker processes.
+    """Feed a pool of worker processes from one thread.
 
     A worker that dies or takes too long costs its own job an attempt and nothing else. Services that share a
     database share its jobs: what was running when a service was killed is queued again when that installation
@@ -149,12 +149,13 @@ class JobRunner:
                 log.warning("another job runner is gone: its jobs are queued again", runner=runner)
 
     def _give_back(self) -> None:
-        """Jobs nobody does any more: as if they had not been claimed."""
+        """Put the jobs under way back into the queue as if they had not been claimed."""
         for job_id in list(self._in_flight):
             self._repository.release_job(job_id, runner=self._id)
             del self._in_flight[job_id]
 
     def _claim(self) -> bool:
+        """Claim the next job and give it to a worker. Returns False where there is none to do."""
         claimed = self._repository.claim_job(now_ns=time.time_ns(), runner=self._id)
         if claimed is None:
             return False
@@ -181,12 +182,12 @@ class JobRunner:
         return True
 
     def _done(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
-        """Called by a thread of the pool: hands over to ours."""
+        """Hand a result over to the runner's thread; a thread of the pool calls this."""
         self._results.append((claimed, future))
         self._worker.wake()
 
     def _settle(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
-        """Writes a result back. Raises SQLAlchemyError (the database does not answer): to be tried again."""
+        """Write a result back. Raises SQLAlchemyError: try again."""
         job_id = claimed.job.id
         if self._in_flight.get(job_id) is not future:  # late word of workers whose jobs were given back
             return
@@ -204,6 +205,7 @@ class JobRunner:
         self._in_flight.pop(job_id, None)
 
     def _keep(self, claimed: ClaimedJob, outcome: Outcome) -> None:
+        """Write back what a worker returned. Raises SQLAlchemyError."""
         job = claimed.job
         match outcome:
             case Rejected(reason):
@@ -232,6 +234,7 @@ class JobRunner:
                 )
 
     def _retry(self, claimed: ClaimedJob, error: str) -> None:
+        """Queue a job again, or give it up after its last attempt. Raises SQLAlchemyError."""
         state = self._repository.retry_or_fail_job(
             claimed.job.id,
             error,
@@ -243,6 +246,7 @@ class JobRunner:
         log.warning("diagnosis failed", recording=claimed.job.recording_id, error=error, job=str(state))
 
     def _shut_down(self) -> None:
+        """Stop the workers, write the results that are there, and put the other jobs back."""
         self._pool.stop()
         try:
             while self._results:

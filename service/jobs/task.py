@@ -1,4 +1,4 @@
-"""What goes to a worker process and what comes back; all of it can be pickled."""
+"""Define what goes to a worker process and what comes back; all of it can be pickled."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from core.machines.parameters import Motor
 
 @dataclass(frozen=True, slots=True)
 class DiagnosisTask:
-    """One recording to diagnose: the file a reader starts from, its motor, and how.
+    """Name a recording to diagnose, by the file a reader starts from, its motor, and how to do it.
 
     baseline: files of the motor's healthy recordings, whose standing asymmetry is taken off; or none.
     """
@@ -24,7 +24,10 @@ class DiagnosisTask:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosed:
-    """recorded_ns: trigger time written in the record, UTC [ns]."""
+    """Hold a diagnosis and the time of its record.
+
+    recorded_ns: trigger time written in the record, UTC [ns].
+    """
 
     diagnosis: Diagnosis
     recorded_ns: int
@@ -32,7 +35,7 @@ class Diagnosed:
 
 @dataclass(frozen=True, slots=True)
 class Rejected:
-    """The record cannot be read, or not be diagnosed as asked; trying again would give the same."""
+    """Say why the record cannot be read or diagnosed as asked; trying again would give the same."""
 
     reason: str
 

@@ -1,4 +1,4 @@
-"""What runs in a worker process.
+"""Diagnose recordings in a worker process.
 
 The service's own process imports this module to name what its workers do. The numbers, and the compiler
 behind them, are imported where the work is done: without them the service starts sooner and stays smaller.
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def prepare_worker() -> None:
-    """Runs once in every worker before its first job, which then need not wait for the compiler."""
+    """Prepare a worker for its first job, which then need not wait for the compiler."""
     from core.warm_up import warm_up
 
     follow_service()
@@ -27,7 +27,7 @@ def prepare_worker() -> None:
 
 
 def diagnose_recording(task: DiagnosisTask) -> Outcome:
-    """Reads and diagnoses one recording; what would fail again is an outcome, not an error."""
+    """Read and diagnose one recording; what would fail again is an outcome, not an error."""
     from core.diagnosis.stator import diagnose
 
     try:
@@ -46,7 +46,10 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
 
 @lru_cache(maxsize=64)
 def _learnt(healthy: tuple[Path, ...], motor: Motor) -> "Baseline":
-    """Stored files never change, so what was learnt from them once holds as long as this worker lives."""
+    """Return the baseline learnt from healthy recordings. Raises DiagnosisError.
+
+    Stored files never change, so what was learnt from them once holds as long as this worker lives.
+    """
     from core.diagnosis.stator import learn_baseline
 
     try:

@@ -1,4 +1,4 @@
-"""The worker processes, replaced when they cannot go on.
+"""Run the worker processes, and replace them when they cannot go on.
 
 A worker that dies while none has a task takes its whole pool with it (pebble: "All workers expired"); so does
 one that cannot even start. A machine that is short of memory, processes or file descriptors starts none at
@@ -29,7 +29,7 @@ class NoWorkersError(RuntimeError):
 
 
 class WorkerPool:
-    """The worker processes, for use by one thread.
+    """Run the worker processes. For use by one thread.
 
     prepare_worker: runs first in every worker.
     """
@@ -113,7 +113,7 @@ class WorkerPool:
             self._started_s = time.monotonic()
 
     def _lose(self, pool: ProcessPool) -> None:
-        """Let go of workers that have ended.
+        """Leave workers that have ended, and have others started.
 
         The pool is stopped in a thread of its own, because that waits for the pool's threads, one of which
         may wait for a process that is gone.

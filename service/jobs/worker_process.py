@@ -1,4 +1,4 @@
-"""A worker process and the service it belongs to."""
+"""Tie a worker process to the service it belongs to."""
 
 import multiprocessing
 import os
@@ -8,7 +8,7 @@ from multiprocessing.connection import wait
 
 
 def follow_service() -> None:
-    """Ties a worker to the service: the service decides when it stops, and its death is the worker's too."""
+    """End this worker when the service says so, or with the service."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole process group
     service = multiprocessing.parent_process()
     if service is None:
@@ -17,5 +17,6 @@ def follow_service() -> None:
 
 
 def _end_with(sentinel: int) -> None:
+    """End this process when that of the sentinel has ended."""
     wait([sentinel])
     os._exit(1)  # whatever the worker computes now, nobody is left to take it

@@ -1,4 +1,4 @@
-"""Writes what comes often and matters little one by one: all relays together, in one transaction a second.
+"""Write what comes often and matters little one by one: all relays together, in one transaction a second.
 
 With a transaction for each, hundreds of relays would wait for the one writer that SQLite allows, and so would
 what cannot wait: the renewal of their leases.
@@ -31,10 +31,13 @@ class BatchRefusedError(RuntimeError):
 
 
 class BatchWriter:
-    """Collects items from the threads of the sessions, and writes them from a thread of its own."""
+    """Collect items from the threads of the sessions, and write them from a thread of its own."""
 
     def __init__(self, repository: Repository, *, period_s: float = PERIOD_S) -> None:
-        """period_s: between transactions."""
+        """Prepare the thread.
+
+        period_s: between transactions.
+        """
         self._samples = _Batch(repository.add_samples)
         self._notes = _Batch(repository.note_links)
         self._worker = PeriodicWorker("the batch writer", self._write, period_s=period_s, once_more=True)
@@ -67,7 +70,7 @@ class BatchWriter:
 
 
 class _Batch(Generic[Item]):
-    """The items of one kind."""
+    """Hold the items of one kind until they are written."""
 
     def __init__(self, write: Callable[[Sequence[Item]], None]) -> None:
         self._write = write

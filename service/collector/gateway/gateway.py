@@ -35,7 +35,7 @@ STOP_TIMEOUT_S = 2.0
 
 @dataclass(frozen=True, slots=True)
 class GatewayIdentity:
-    """Tell who a gateway is. `id` is never that of two processes that live at the same time."""
+    """Identify a gateway. `id` is never that of two processes that live at the same time."""
 
     id: str
     host: str

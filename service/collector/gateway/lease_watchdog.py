@@ -1,4 +1,4 @@
-"""Ends a gateway before anybody else may think it dead.
+"""End a gateway before anybody else may think it dead.
 
 Whoever has seen a gateway's counter stand still for `lease_s` takes over its relays. A gateway that has not
 renewed its leases for four fifths of that ends as a process, whatever its threads are doing, and the system
@@ -20,7 +20,7 @@ LONGEST_CHECK_PERIOD_S = 0.1
 
 
 class LeaseWatchdog:
-    """A thread that watches how long ago the leases were renewed.
+    """Watch, on a thread of its own, how long ago the leases were renewed.
 
     Times are those of the boot clock, which goes on while the machine is suspended.
     """
@@ -28,7 +28,10 @@ class LeaseWatchdog:
     def __init__(
         self, lease_s: float, *, on_expiry: Callable[[], None], clock: Callable[[], float] = boot_time_s
     ) -> None:
-        """on_expiry: called when the latest renewal is too long ago; it has to end the process."""
+        """Prepare the thread; the leases count as renewed now.
+
+        on_expiry: called when the latest renewal is too long ago; it has to end the process.
+        """
         self._usable_s = USABLE_FRACTION * lease_s
         self._on_expiry = on_expiry
         self._clock = clock

@@ -1,4 +1,4 @@
-"""A gateway process: a session for every relay it holds a lease of.
+"""Run a gateway as a process of its own, with a session for every relay it holds a lease of.
 
 It is started by the service, which hands it the settings as one line of JSON on standard input and keeps that
 pipe open. When the pipe closes the service is gone, however it went, and the gateway ends with it.
@@ -58,6 +58,7 @@ def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
 
 
 def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
+    """Visit relays until `stop` is set. Returns the names of the threads that did not end in time."""
     name = gateway_id(settings, number)
     store = RecordingStore(settings.recordings_directory, name.replace("/", "-"))
     store.discard_incoming()
@@ -77,10 +78,12 @@ def _collect(settings: Settings, number: int, stop: Event) -> list[str]:
 
 
 def _end_process() -> NoReturn:
+    """End this process at once, whatever its threads are doing."""
     log.error("the leases could not be renewed: ending before others take the relays over")
     os._exit(LEASES_EXPIRED)
 
 
 def _wait_for_end_of_input(pipe: BinaryIO, service_gone: Event) -> None:
+    """Set `service_gone` when the service has closed the pipe, however it went."""
     pipe.read()
     service_gone.set()

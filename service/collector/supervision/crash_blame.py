@@ -1,4 +1,4 @@
-"""Which relay brought a gateway process down: the one the process was busy with when it crashed.
+"""Find which relay brought a gateway process down: the one it was busy with when it crashed.
 
 Where the gateway was busy with several relays, each is a suspect: one half is visited again at once, the
 other half a probation time later. The next crash has at most half the suspects, until one is left, which
@@ -52,6 +52,7 @@ def blame_after_end(
 
 
 def _known(relays: frozenset[str], repository: Repository) -> frozenset[str]:
+    """Return those of the names that are relays of the plant. Raises SQLAlchemyError."""
     known = set()
     for relay in relays:
         with suppress(NotFoundError):
@@ -60,6 +61,7 @@ def _known(relays: frozenset[str], repository: Repository) -> frozenset[str]:
 
 
 def _halves(relays: Collection[str]) -> tuple[list[str], list[str]]:
+    """Return the relays in two halves, the first of which has one more where their number is odd."""
     ordered = sorted(relays)
     middle = (len(ordered) + 1) // 2
     return ordered[:middle], ordered[middle:]

@@ -1,4 +1,4 @@
-"""The gateway processes of this installation: as many as its relays need, each kept running."""
+"""Run the gateway processes of this installation, as many as its relays need."""
 
 import time
 from functools import partial
@@ -19,7 +19,7 @@ log = structlog.get_logger(__name__)
 
 
 class GatewayProcesses:
-    """Starts and stops all gateways together. One that ends frees its relays and is started again.
+    """Start and stop all gateways together. One that ends frees its relays and is started again.
 
     Raises OSError where the installation's name cannot be kept.
     """

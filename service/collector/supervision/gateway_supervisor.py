@@ -1,4 +1,4 @@
-"""Keeps one gateway process running. A crash in the C library costs a restart, not the service."""
+"""Keep one gateway process running. A crash in the C library costs a restart, not the service."""
 
 import subprocess
 import sys
@@ -23,7 +23,7 @@ PIPE_BYTES = 1024**2
 
 @dataclass(frozen=True, slots=True)
 class RestartPolicy:
-    """When a gateway that ended is started again, and how long one may take to end.
+    """Say when a gateway that ended is started again, and how long one may take to end.
 
     backoff: the pauses before further starts.  stable_after_s: a gateway that ran for longer than this ran
     well, and the next pause is the first one again.  stop_timeout_s: a gateway that takes longer to end is
@@ -43,7 +43,7 @@ def _ignore(_exit_code: int | None) -> None:
 
 
 class GatewaySupervisor:
-    """Starts a gateway as a child process, and starts it again when it ends.
+    """Start a gateway as a child process, and start it again when it ends.
 
     The child reads its settings from its standard input and ends when that closes: it cannot outlive this
     process, however this process dies, and no setting appears in a command line or an environment.
@@ -58,7 +58,9 @@ class GatewaySupervisor:
         policy: RestartPolicy = RESTART_POLICY,
         on_exit: Callable[[int | None], None] = _ignore,
     ) -> None:
-        """number: tells the gateway from the others of this service.
+        """Prepare the thread that keeps the gateway running.
+
+        number: tells the gateway from the others of this service.
 
         on_exit: called after each end of the process with its exit code; None where it did not start.
         """
@@ -73,7 +75,7 @@ class GatewaySupervisor:
 
     @property
     def process_id(self) -> int | None:
-        """Of the running gateway; None while there is none."""
+        """Return the process id of the running gateway; None while there is none."""
         child = self._child
         return child.pid if child is not None and child.poll() is None else None
 
@@ -106,6 +108,7 @@ class GatewaySupervisor:
             self._thread.join()
 
     def _run(self) -> None:
+        """Run gateways one after the other, with pauses between them, until no more is wanted."""
         delay = RestartDelay(self._policy.backoff, stable_after_s=self._policy.stable_after_s)
         while not self._stopping.is_set():
             started_s = time.monotonic()
@@ -146,6 +149,7 @@ class GatewaySupervisor:
 
 
 def _send_settings(child: subprocess.Popen[bytes], settings: Settings) -> None:
+    """Write the settings to the input of a gateway as one line."""
     assert child.stdin is not None  # noqa: S101 - it was opened as a pipe
     # A child that is dead already reports itself by its exit code.
     with suppress(BrokenPipeError):
@@ -154,6 +158,7 @@ def _send_settings(child: subprocess.Popen[bytes], settings: Settings) -> None:
 
 
 def _close_input(child: subprocess.Popen[bytes]) -> None:
+    """Close the input of a gateway, which ends it."""
     assert child.stdin is not None  # noqa: S101 - it was opened as a pipe
     with suppress(BrokenPipeError):
         child.stdin.close()
