@@ -78,7 +78,7 @@ def commission(
         If a recording is no start, or none that a motor of this nameplate can make.
     """
     begun = perf_counter()
-    report = progress or _silent
+    report = progress or _no_progress
     prior = prior_of(plate.nameplate, plate.parameters)
     starts = [start_of(one, plate.nameplate, plate.channels, span_s=span_s) for one in recordings]
     if not starts:
@@ -321,5 +321,5 @@ def _all(vector: Array) -> Mask:
     return np.ones(vector.size, dtype=np.bool_)
 
 
-def _silent(share: float, stage: str) -> None:
+def _no_progress(share: float, stage: str) -> None:
     del share, stage

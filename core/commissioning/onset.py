@@ -41,7 +41,7 @@ def current_onset(current_ab: Array, samples_per_cycle: float) -> float | None:
     greatest = float(np.quantile(length, 1.0 - min(0.5, 2.0 / length.size)))
     if greatest <= 0.0 or length[0] > QUIET * greatest:
         return None
-    # For a while, so that no spike is a start.
+    # The current must stay for a while, so that a spike does not count as a start.
     sustained = max(2, round(SUSTAINED_CYCLES * samples_per_cycle))
     above = sliding_window_view(length >= RISE_FROM * greatest, sustained).all(axis=1)
     begins = np.flatnonzero(above)

@@ -64,7 +64,8 @@ def prior_of(nameplate: Nameplate, parameters: MachineParameters | None) -> Prio
         doubt = dict.fromkeys(PARAMETERS, 0.2) | {"inertia_kgm2": 0.4}
         return Prior(parameters, known, doubt, from_file=True)
     size = nameplate.rated_power_W / 800.0
-    # Of a winding: in delta it sees the line voltage and carries a third of the power, as in star.
+    # The impedance is that of a winding, which in delta sees the line voltage. It carries a third of the
+    # power in star and in delta.
     impedance = nameplate.rated_voltage_V**2 / nameplate.rated_power_W
     if nameplate.connection.value == "delta":
         impedance *= 3.0

@@ -30,12 +30,12 @@ from core.machines.candidates import Candidates
 SHARE_UNEXPLAINED = 0.15
 """Share of the asymmetry that a winding's fit may leave: the path and the leakages of the shorted turns
 are never known exactly."""
-PATH_WORTH, PATH_WORTH_SHARE = 0.007, 0.02
+PATH_THRESHOLD, PATH_THRESHOLD_SHARE = 0.007, 0.02
 """Unexplained current, of the forward one (what current sensors within their class can leave) and of the
 asymmetry, beyond which a resistive path is tried."""
 SIGNIFICANT = 3.0
-"""Standard errors beyond which a level or a path counts as seen."""
-UNLIKELY = 2.15
+"""Standard errors above which a level or a path is significant."""
+ONE_IN_A_HUNDRED = 2.15
 """Standard deviations that a complex error exceeds once in a hundred times: sqrt(ln 100)."""
 PATH_START = 0.5
 """Path ratio and least level at which a fit starts; the level is above zero so that its angle counts."""
@@ -101,7 +101,7 @@ def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
     for winding, found in enumerate(starts.by_winding):
         tried.append(refinement.fit(found, unknowns))
         if abs(tried[-1].value(TIME_OFFSET)) > OFFSET_SCALE_S:
-            # A light load on a strongly unbalanced supply has two valleys; the other is that without offset.
+            # A light load on a strongly unbalanced supply has two minima; the other one is without offset.
             directly = from_phasors(refinement.record, case.motor, winding)
             tried.append(refinement.fit(directly, unknowns))
             fits.append(min(tried[-2:], key=_misfit))
@@ -116,7 +116,7 @@ def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
 
     forward = abs(refinement.record.current.forward)
     before, after = abs(healthy.left) / forward, abs(_left(fit, healthy)) / forward
-    if model.knows_path and after > max(PATH_WORTH, PATH_WORTH_SHARE * before):
+    if model.knows_path and after > max(PATH_THRESHOLD, PATH_THRESHOLD_SHARE * before):
         through = [refinement.fit(_with_path(one), (*unknowns, PATH_RATIO)) for one in fits]
         tried += through
         likeliest = _likeliest(through)
@@ -153,7 +153,7 @@ def limit_of_chance(explanation: Explanation, tolerance: Systematic) -> float:
     float
         Fraction of the forward-turning current.
     """
-    return UNLIKELY * hypot(tolerance.backward, explanation.noise)
+    return ONE_IN_A_HUNDRED * hypot(tolerance.backward, explanation.noise)
 
 
 def is_explained(explanation: Explanation, tolerance: Systematic) -> bool:

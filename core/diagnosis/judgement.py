@@ -57,7 +57,7 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
     ]
     figures.append(_unknowns(case, fit))
     offset = fit.value(TIME_OFFSET)
-    # Without voltages there is nothing that an offset could be against.
+    # An offset is only defined where voltages were recorded.
     late = 0.0 if case.voltages_assumed else abs(offset) * case.frequency_hz
     if late > USUAL_OFFSET_CYCLES:
         figures.append(

@@ -284,7 +284,7 @@ class Refinement:
     def _finished(self, point: "_Point", unknowns: tuple[Unknown, ...], evaluations: int) -> Fit:
         free = _free(point, unknowns)
         slopes = point.slopes[:, free]
-        # What one more step would still gain, in the misfit's own units.
+        # Reduction of the misfit that one more step would bring.
         gain = float(np.sum((slopes @ _step(point, unknowns, 0.0)[free]) ** 2))
         noise = self._whitening @ self._noise @ self._whitening.T
         seen = [one.name for one, is_free in zip(unknowns, free, strict=True) if is_free]
@@ -293,7 +293,7 @@ class Refinement:
             filling = slopes[:4].T @ noise @ slopes[:4] + np.outer(slopes[4], slopes[4])
             errors = np.sqrt(np.diag(inverse @ filling @ inverse)).tolist()
         except np.linalg.LinAlgError:
-            # The record does not tell the unknowns apart: no value of theirs is better than another.
+            # The record does not identify the unknowns: all their values fit equally well.
             errors = [float("inf")] * len(seen)
         balanced = self._running.state(point.candidate).balanced[0]
         return Fit(

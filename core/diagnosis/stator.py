@@ -102,7 +102,7 @@ def diagnose(
         reasons.append(f"relative to a baseline of {baseline.recordings} healthy recordings")
     fit = explanation.fit
     named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and is_explained(explanation, tolerance))
-    # Load and speed belong to the hypothesis believed: a level too small to believe would bend them.
+    # Load and speed are those of the accepted hypothesis; an insignificant level would bias them.
     running = fit if named else explanation.healthy
     low, high = (max(0.0, bound) for bound in fit.interval(FAULT_LEVEL))
     return Diagnosis(

@@ -28,7 +28,7 @@ def student_t_quantile(probability: float, degrees_of_freedom: int) -> float:
     """
     t = NormalDist().inv_cdf(probability)
     while True:
-        # Beyond its middle the distribution function is concave: Newton's method comes from below.
+        # The distribution function is concave above its median, so Newton's method converges from below.
         ahead = (probability - _below(t, degrees_of_freedom)) / _density(t, degrees_of_freedom)
         if not t + ahead > t * (1.0 + 1e-14):
             return t

@@ -20,10 +20,10 @@ PARAMETERS = 0.06
 """Standard deviation of the machine's negative-sequence impedance: within 10 %, uniformly. Windings warm up,
 data sheets round off."""
 
-BELIEF = NormalDist().inv_cdf(0.975)
-ALARM = NormalDist().inv_cdf(1.0 - 0.001 / 3.0)
+CONFIDENCE_QUANTILE = NormalDist().inv_cdf(0.975)
+FALSE_ALARM_QUANTILE = NormalDist().inv_cdf(1.0 - 0.001 / 3.0)
 """Standard errors that none of three windings' levels exceeds in 999 of 1,000 healthy records."""
-SEEN = NormalDist().inv_cdf(0.9)
+DETECTION_QUANTILE = NormalDist().inv_cdf(0.9)
 """Standard errors above the least that is called a fault, at which nine of ten records call it one."""
 PROBE_LEVEL = 0.005
 
@@ -59,7 +59,7 @@ class Systematic:
             Level, a fraction of the phase turns.
         """
         total = self._total(fit)
-        return max(limit + BELIEF * total, ALARM * total)
+        return max(limit + CONFIDENCE_QUANTILE * total, FALSE_ALARM_QUANTILE * total)
 
     def detection_limit(self, fit: Fit, limit: float) -> float:
         """Return the level that nine of ten such records would have shown to lie above the motor's limit.
@@ -76,7 +76,7 @@ class Systematic:
         float
             Level, a fraction of the phase turns.
         """
-        return self.least_fault(fit, limit) + SEEN * self._total(fit)
+        return self.least_fault(fit, limit) + DETECTION_QUANTILE * self._total(fit)
 
     def _total(self, fit: Fit) -> float:
         return hypot(self.level, fit.standard_error.get(FAULT_LEVEL, 0.0))

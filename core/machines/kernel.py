@@ -137,7 +137,7 @@ def advance(
     lanes : int
         Number of lanes in use.
     """
-    # Arrays made here have strides the compiler knows: without that it will not use vector instructions.
+    # The compiler uses vector instructions because it knows the strides of arrays that are made here.
     E, G0, G1 = np.empty((5, 5, LANES)), np.empty((5, 2, LANES)), np.empty((5, 2, LANES))
     H, torque, load = np.empty((5, 2, LANES)), np.empty((3, LANES)), np.empty((3, LANES))
     E[:], G0[:], G1[:], H[:] = machines.hold.E, machines.hold.G0, machines.hold.G1, machines.hold.H
@@ -155,13 +155,13 @@ def advance(
     for b in range(lanes):
         u[0, b] = voltage[source[b], 0, 0]
         u[1, b] = voltage[source[b], 0, 1]
-    # Indices that cannot be negative (n, source): no wrapping around to be checked for.
+    # The indices n and source cannot be negative, so the compiler need not check for wrapping around.
     for n in range(last - first):
         k = first + 1 + n
         for b in range(lanes):
             u_next[0, b] = voltage[source[b], n + 1, 0]
             u_next[1, b] = voltage[source[b], n + 1, 1]
-        # Everything of one candidate and step in one expression tree: values stay in registers.
+        # One expression tree for each candidate and step keeps the values in registers.
         for b in range(lanes):
             x0, x1, x2, x3, x4 = x[0, b], x[1, b], x[2, b], x[3, b], x[4, b]
             u0, u1, y0, y1 = u[0, b], u[1, b], u_next[0, b], u_next[1, b]

@@ -188,7 +188,7 @@ def _plate_from_table(table: Mapping[str, object], *, name: str, source: Path | 
         ),
     )
     for parameter in PARAMETERS:
-        # For people and programs that weigh the parameters; the models take the values alone.
+        # The intervals are for readers of the file; the models use the values alone.
         intervals.interval(parameter)
     for section in (nameplate, machine, intervals, limits, channels):
         if section is not None:

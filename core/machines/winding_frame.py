@@ -18,7 +18,7 @@ Winding = Literal[0, 1, 2]
 _TERMINAL_WINDINGS: dict[tuple[Connection, PhaseSequence], tuple[Winding, Winding, Winding]] = {
     (Connection.STAR, PhaseSequence.ABC): (0, 1, 2),
     (Connection.DELTA, PhaseSequence.ABC): (0, 1, 2),
-    # Mirroring swaps terminals b and c: in delta the windings a-b and c-a change places.
+    # Mirroring exchanges terminals b and c, so in delta the windings a-b and c-a change places.
     (Connection.STAR, PhaseSequence.ACB): (0, 2, 1),
     (Connection.DELTA, PhaseSequence.ACB): (2, 1, 0),
 }

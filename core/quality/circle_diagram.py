@@ -88,7 +88,7 @@ def circle_diagram(motor: Motor, frequency_hz: float) -> CircleDiagram:
     star = 1.0 / sqrt(3.0) if nameplate.connection is Connection.STAR else 1.0
     current: Array = star * nameplate.rated_voltage_V / np.abs(impedance)
     torque = 3.0 * (rotor_share * current) ** 2 * rotor.real * nameplate.pole_pairs / w
-    # A motor that cannot bear its rated torque has no rated current: its greatest torque stands for it.
+    # A motor that cannot bear its rated torque has no rated current, so its greatest torque is used.
     pull_out = int(np.argmax(torque))
     reached = torque[: pull_out + 1] >= nameplate.rated_torque_Nm
     point = int(np.argmax(reached)) if reached.any() else pull_out

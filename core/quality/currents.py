@@ -333,7 +333,7 @@ def order(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     lag = float(np.degrees(np.angle(voltage * forward.conjugate())))
     within = LEAST_LAG_DEG <= lag <= MOST_LAG_DEG
     off = lag - circle.lag_deg(abs(forward) / abs(voltage))
-    # Turned by a third of a cycle either way the phases are exchanged in a ring, by half a cycle reversed.
+    # A lag off by a third of a cycle means cyclically exchanged phases, one by half a cycle reversed ones.
     ring = not within and abs((off + 180.0) % 360.0 - 180.0) < 150.0
     nearest = LEAST_LAG_DEG if lag < LEAST_LAG_DEG else MOST_LAG_DEG
     if ring:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-HUGE = 1e30
+GREATEST_FIGURE = 1e30
 """Greatest figure of a finding. Greater ones are cut to it, because JSON has no infinity."""
 
 
@@ -76,7 +76,7 @@ def finding(
     QualityFinding
         The finding.
     """
-    shown = min(max(float(value), -HUGE), HUGE)
+    shown = min(max(float(value), -GREATEST_FIGURE), GREATEST_FIGURE)
     return QualityFinding(name, shown, float(limit), unit, bool(passed), "" if passed else message)
 
 

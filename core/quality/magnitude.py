@@ -10,9 +10,11 @@ from core.machines.parameters import Nameplate
 from core.quality.finding import QualityFinding, finding
 from core.signals.terminals import Terminals
 
-SILENT, DEAFENING = 0.005, 1e4
-"""Shares of the rated amplitude: offsets and noise of a motor switched off; more than any ratio's mistake
-makes."""
+LEAST_SIGNAL, HIGHEST_SIGNAL = 0.005, 1e4
+"""Range of a signal, over the rated amplitude.
+
+A motor that is switched off shows offsets and noise below it. No wrong ratio causes values above it.
+"""
 NO_CURRENT = 1e-6
 """Share of the rated current that is too small to be explained by a wrong ratio or unit."""
 EFFICIENCY_TIMES_POWER_FACTOR = 0.6
@@ -54,20 +56,20 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
         A failure.
     """
     amps = _swing(terminals.current_abc) / (sqrt(2.0) * rated_current_A(nameplate))
-    yield from _deafening("current", amps)
+    yield from _too_large("current", amps)
     if terminals.voltage_ab is None:
         volts = 1.0
     else:
         volts = _swing(terminals.voltages) / (sqrt(2.0) * nameplate.rated_voltage_V)
-        yield from _deafening("voltage", volts)
-    if volts < SILENT and amps < SILENT:
+        yield from _too_large("voltage", volts)
+    if volts < LEAST_SIGNAL and amps < LEAST_SIGNAL:
         yield finding(
-            "running", amps, SILENT, "of rated", passed=False,
+            "running", amps, LEAST_SIGNAL, "of rated", passed=False,
             message="neither voltage nor current: the motor is switched off",
         )  # fmt: skip
-    elif volts < SILENT:
+    elif volts < LEAST_SIGNAL:
         yield finding(
-            "voltage", volts, SILENT, "of rated", passed=False,
+            "voltage", volts, LEAST_SIGNAL, "of rated", passed=False,
             message=f"current flows but the voltages are {volts:.2g} of rated: transformers off, fuses blown "
             "or a wrong ratio or unit",
         )  # fmt: skip
@@ -78,10 +80,10 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
         )  # fmt: skip
 
 
-def _deafening(name: str, share: float) -> Iterator[QualityFinding]:
-    if share > DEAFENING:
+def _too_large(name: str, share: float) -> Iterator[QualityFinding]:
+    if share > HIGHEST_SIGNAL:
         yield finding(
-            name, share, DEAFENING, "of rated", passed=False,
+            name, share, HIGHEST_SIGNAL, "of rated", passed=False,
             message=f"the samples reach {share:.3g} times the rated value: wrong ratio or unit",
         )  # fmt: skip
 

@@ -152,7 +152,7 @@ def drive(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
     """
     cycles = feed.voltage_ab.shape[1] / terminals.sample_rate_hz * feed.frequency_hz
     if feed.assumed or cycles < 3 * LINE_WIDTH_BINS:
-        # In a few cycles the harmonics' lines lie so close that nothing is beside them.
+        # The harmonics' lines of a few cycles lie so close that there is nothing between them.
         return
     yield _pulses(_energy_beside_harmonics(feed.voltage_ab, feed.frequency_hz, terminals.sample_rate_hz))
 

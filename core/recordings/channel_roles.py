@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from core.recordings.waveform import Quantity
 
-# m and M are told apart (milli, mega); "MA" is nobody's mega-ampere and stays unknown.
+# Upper and lower case of m differ (milli, mega). "MA" is ambiguous and stays unknown.
 _SI_UNITS = {
     "A": ("A", 1.0), "a": ("A", 1.0), "mA": ("A", 1e-3), "kA": ("A", 1e3), "KA": ("A", 1e3), "ka": ("A", 1e3),
     "V": ("V", 1.0), "v": ("V", 1.0), "mV": ("V", 1e-3), "kV": ("V", 1e3), "KV": ("V", 1e3), "kv": ("V", 1e3),
