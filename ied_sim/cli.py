@@ -63,7 +63,10 @@ def ied_sim(
         bool, typer.Option("--truth", help="Print the motors' true condition as JSON and stop.")
     ] = False,
     at: Annotated[
-        float, typer.Option(metavar="SECONDS", help="With --truth: time since the simulator's start.")
+        float,
+        typer.Option(
+            metavar="SECONDS", min=0.0, max=1e9, help="With --truth: time since the simulator's start."
+        ),
     ] = 0.0,
     _profiles: Annotated[
         bool,

@@ -150,4 +150,6 @@ def _first_problem(error: ValidationError, config: Path | None) -> SettingsError
         )
     if problem["type"] == "missing":
         return SettingsError(source, field, expected="this setting", found="none")
-    return SettingsError(source, field, expected=problem["msg"], found=repr(problem["input"]))
+    return SettingsError(
+        source, field, expected=problem["msg"].removeprefix("Input should be "), found=repr(problem["input"])
+    )

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from service.client.rest_client import Document, ServiceClient, segment
-from service.demo.truth import Truth
+from service.demo.truth import Truth, TruthError
 
 CONDITION = ("verdict", "phase", "mu_f", "mu_f_ci95", "load_level", "recorded_time")
 LINK = ("link_state", "link_reason")
@@ -33,8 +33,19 @@ class MotorStatus:
 
 
 def ask_status(service: ServiceClient, truths: Mapping[str, Truth]) -> list[MotorStatus]:
-    """Return the status of every motor. truths: by name of the relay. Raises ServiceError."""
+    """Return the status of every motor. truths: by name of the relay.
+
+    Raises ServiceError, TruthError where the service watches another plant.
+    """
     return [
-        MotorStatus(service.get(f"/motors/{segment(str(motor['name']))}/health"), truths[str(motor["ied"])])
+        MotorStatus(
+            service.get(f"/motors/{segment(str(motor['name']))}/health"), _truth_of(str(motor["ied"]), truths)
+        )
         for motor in service.items("/motors")
     ]
+
+
+def _truth_of(relay: str, truths: Mapping[str, Truth]) -> Truth:
+    if relay not in truths:
+        raise TruthError(f"expected a service that watches the demo plant, found one with the relay {relay}")
+    return truths[relay]

@@ -53,7 +53,7 @@ def test_lists_in_the_environment_are_json(monkeypatch: pytest.MonkeyPatch) -> N
     ("content", "message"),
     [
         ("prot = 1", "prot: expected a setting named in docs/reference/settings.md"),
-        ("port = 99999", "port: expected Input should be less than or equal to 65535, found 99999"),
+        ("port = 99999", "port: expected less than or equal to 65535, found 99999"),
         ("port = ", "expected valid TOML in UTF-8"),
     ],
 )
@@ -121,7 +121,7 @@ def test_settings_handed_to_a_gateway_keep_their_relays(tmp_path: Path) -> None:
             "relays.A1.tls.certificate: expected this setting, found none",
         ),
         ('[relays.A1.tls]\ncertificate = "c"\nkey = "k"\npinned = []', "relays.A1.tls.pinned: expected"),
-        ('relays = "hidden"', "relays: expected Input should be a valid dictionary"),
+        ('relays = "hidden"', "relays: expected a valid dictionary"),
     ],
 )
 def test_what_is_wrong_with_a_relay_is_named(tmp_path: Path, content: str, message: str) -> None:

@@ -5,11 +5,19 @@ from pathlib import Path
 
 import pytest
 
+from service.api import ApiContext, create_app
 from service.cli import main
-from service.client.rest_client import Document
-from service.demo.status import MotorStatus
-from service.demo.truth import Truth
+from service.client.rest_client import Document, ServiceClient
+from service.configuration.settings import Settings
+from service.demo.status import MotorStatus, ask_status
+from service.demo.truth import Truth, TruthError
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
 from testing.service.processes import MOTOR_NAMES, running_service, simulated_plant
+from tests.service.api.serving import serving
+from tests.service.fixtures import database_url, engine, repository
+
+__all__ = ["database_url", "engine", "repository"]
 
 FAULT_B = Truth(mu_f=0.05, theta_f=1, load_level=0.65)
 
@@ -60,3 +68,14 @@ def test_no_service_is_one_line_and_one_document(capsys: pytest.CaptureFixture[s
 
 def test_data_of_a_demo_elsewhere_is_wrong_use(tmp_path: Path) -> None:
     assert main(["demo", "--url", "http://127.0.0.1:1", "--data", str(tmp_path)]) == 2
+
+
+def test_the_plant_of_somebody_else_is_no_demo(repository: Repository, tmp_path: Path) -> None:
+    store = RecordingStore(tmp_path / "recordings")
+    app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
+    with (
+        serving(app) as client,
+        ServiceClient(str(client.base_url)) as service,
+        pytest.raises(TruthError, match="watches the demo plant, found one with the relay A"),
+    ):
+        ask_status(service, {"B1_SEL710": FAULT_B})
