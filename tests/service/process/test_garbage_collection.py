@@ -1,8 +1,21 @@
 import gc
+from collections.abc import Iterator
 
 import pytest
 
 from service.process.garbage_collection import collection_paused
+
+
+@pytest.fixture(autouse=True)
+def nothing_stays_frozen() -> Iterator[None]:
+    yield
+    gc.unfreeze()
+
+
+def test_what_was_made_meanwhile_is_not_looked_through_at_the_end() -> None:
+    with collection_paused():
+        made: list[list[int]] = [[] for _ in range(10)]
+    assert gc.get_freeze_count() > len(made)
 
 
 def test_the_collector_runs_again_afterwards() -> None:
