@@ -30,13 +30,12 @@ import numpy as np
 
 from benchmarks.recordings.fuzz_seeds import Files, mutant, seeds
 from core.recordings import Recording, RecordingError, read
+from testing.memory_folder import memory_folder
 
 SECONDS_A_FILE = 1.0
 SECONDS_UNTIL_KILLED = 60.0
 MEMORY_BYTES = 64 << 20
 MEMORY_TIMES_FILE = 10
-MEMORY_FOLDER = Path("/dev/shm")  # noqa: S108 - folders in it are made by tempfile
-"""A disk would set the pace."""
 REPORT_EVERY = 500
 MUTANTS_A_SEED = 20
 TELL_EVERY_S = 60.0
@@ -93,7 +92,7 @@ def _run(
     ours, theirs = multiprocessing.Pipe(duplex=False)
     told = time.monotonic()
     end = told + seconds
-    with tempfile.TemporaryDirectory(dir=MEMORY_FOLDER if MEMORY_FOLDER.is_dir() else None) as name:
+    with tempfile.TemporaryDirectory(dir=memory_folder()) as name:
         folder = Path(name)
         child = multiprocessing.get_context("spawn").Process(
             target=_child, args=(theirs, folder, seed, corpus)

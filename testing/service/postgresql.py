@@ -13,6 +13,7 @@ from pathlib import Path
 import sqlalchemy
 
 from service.storage import migrate
+from testing.memory_folder import memory_folder
 from testing.waiting import wait_until
 
 INSTALLED = Path("/usr/lib/postgresql")
@@ -30,9 +31,6 @@ OPTIONS = {
     "shared_buffers": "32MB",
 }
 TEMPLATE = "migrated"
-
-MEMORY = Path("/dev/shm")  # noqa: S108 - a folder of its own is made in it
-"""Files in memory, where the system has such: a database is 300 files, and each test has one of its own."""
 
 
 def binaries() -> Path | None:
@@ -88,8 +86,8 @@ class PostgresServer:
 def serving_postgresql(folder: Path) -> Iterator[PostgresServer]:
     """A server of the programs in `folder` that ends with the block, and with this process at the latest."""
     # Not in pytest's folder: the server's user may not enter that, and a socket's path is short.
-    where = MEMORY if os.access(MEMORY, os.W_OK) else None
-    with tempfile.TemporaryDirectory(prefix="pg-", dir=where, ignore_cleanup_errors=True) as name:
+    # A database is 300 files, and each test has one of its own: in memory they are copied sooner.
+    with tempfile.TemporaryDirectory(prefix="pg-", dir=memory_folder(), ignore_cleanup_errors=True) as name:
         directory = Path(name)
         as_owner: list[str] = ["setpriv", "--pdeathsig=QUIT"]
         if os.getuid() == 0:
