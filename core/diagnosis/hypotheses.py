@@ -62,6 +62,11 @@ class Explanation:
         Standard deviation of the backward-turning current, the same fraction.
     evaluations : int
         Number of simulated candidates or evaluated points.
+    level_interval, load_interval : tuple of float
+        95 % intervals of the fault level and of the load over every hypothesis that holds for this winding:
+        dead-shorted turns and paths of any resistance, as far as the record leaves them open. They hold the
+        record's own noise and this ambiguity. They do not hold what sensors and parameters add at a given
+        path; that is `Systematic`'s. Where one hypothesis stands alone they are `fit.interval(...)`.
     """
 
     record: Fundamental
@@ -72,6 +77,8 @@ class Explanation:
     unexplained: float
     noise: float
     evaluations: int
+    level_interval: tuple[float, float]
+    load_interval: tuple[float, float]
 
 
 def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
@@ -133,6 +140,8 @@ def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
         unexplained=after,
         noise=refinement.backward_noise_A / forward,
         evaluations=sum(one.evaluations for one in tried),
+        level_interval=fit.interval(FAULT_LEVEL),
+        load_interval=fit.interval(LOAD_LEVEL),
     )
 
 
