@@ -1,6 +1,6 @@
 """States of what is stored. The words are part of the REST contract."""
 
-from enum import StrEnum
+from enum import IntEnum, StrEnum
 
 
 class LinkState(StrEnum):
@@ -77,3 +77,11 @@ class JobState(StrEnum):
     RUNNING = "running"
     DONE = "done"
     FAILED = "failed"
+
+
+class JobPriority(IntEnum):
+    """Which diagnoses are made first: the lower, the sooner."""
+
+    RELAY_RECORD = 0
+    UPLOAD = 1
+    REPETITION = 2

@@ -22,7 +22,10 @@ class JobRunnerRow(Base):
 
 
 class JobRow(Base):
-    """A diagnosis to be made. `runner`: the job runner that makes or made it."""
+    """A diagnosis to be made.
+
+    priority: a JobPriority.  runner: the job runner that makes or made it.
+    """
 
     __tablename__ = "jobs"
 
@@ -31,6 +34,7 @@ class JobRow(Base):
     method: Mapped[str]
     model: Mapped[str]
     state: Mapped[JobState]
+    priority: Mapped[int] = mapped_column(server_default="0")
     attempts: Mapped[int]
     not_before_ns: Mapped[int]
     created_ns: Mapped[int]
@@ -41,7 +45,7 @@ class JobRow(Base):
     result: Mapped["DiagnosisRow | None"] = relationship(viewonly=True)
 
     __table_args__ = (
-        Index("ix_jobs_state_not_before_ns", "state", "not_before_ns"),
+        Index("ix_jobs_state_priority_not_before_ns_id", "state", "priority", "not_before_ns", "id"),
         Index("ix_jobs_recording_id_created_ns_id", "recording_id", "created_ns", "id"),
     )
 

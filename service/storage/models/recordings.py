@@ -49,6 +49,16 @@ class RecordingRow(Base):
         ),
         Index("ix_recordings_announced_ns_id", "announced_ns", "id"),
         Index("ix_recordings_motor_announced_ns_id", "motor", "announced_ns", "id"),
+        Index("ix_recordings_digest", "digest"),
+        Index("ix_recordings_motor_recorded_ns_id", "motor", "recorded_ns", "id"),
+        Index(
+            "ix_recordings_untimed",
+            "motor",
+            "announced_ns",
+            "id",
+            sqlite_where=text("recorded_ns IS NULL"),
+            postgresql_where=text("recorded_ns IS NULL"),
+        ),
     )
 
 
@@ -102,7 +112,7 @@ class RecordingRequestRow(Base):
     failed_ns: Mapped[int | None]
 
     __table_args__ = (
-        Index("ux_recording_requests_key", "motor", "idempotency_key", unique=True),
+        Index("ux_recording_requests_key", "motor", "origin", "idempotency_key", unique=True),
         Index("ix_recording_requests_ied_state_requested_ns", "ied", "state", "requested_ns"),
         Index("ix_recording_requests_requested_ns_id", "requested_ns", "id"),
     )

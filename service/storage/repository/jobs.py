@@ -23,7 +23,7 @@ from service.storage.repository.clocks import withdraw_clock
 from service.storage.repository.recording_requests import diagnose_rows, fail_rows
 from service.storage.repository.recordings import new_job
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
-from service.storage.states import JobState, RecordingState
+from service.storage.states import JobPriority, JobState, RecordingState
 from service.timing.backoff import Backoff
 
 
@@ -38,13 +38,13 @@ class JobRows(Sessions):
                 raise StateConflictError(
                     "recording", recording_id, present=recording.state, wanted=RecordingState.DIAGNOSED
                 )
-            row = new_job(recording_id, method, model, now_ns)
+            row = new_job(recording_id, method, model, JobPriority.REPETITION, now_ns)
             session.add(row)
             session.flush()
             return job(row)
 
     def claim_job(self, *, now_ns: int, runner: str) -> ClaimedJob | None:
-        """Take the next job that is due: it is running from now on, one attempt more.
+        """Take the next job that is due, by priority: it is running from now on, one attempt more.
 
         One that was queued later than now is of a time before the clock was set back: it is due.
         runner: a registered runner, whose job it is from now on. Raises RunnerEndedError.
@@ -54,7 +54,7 @@ class JobRows(Sessions):
         query = (
             select(JobRow)
             .where(JobRow.state == JobState.QUEUED, is_due)
-            .order_by(JobRow.not_before_ns, JobRow.id)
+            .order_by(JobRow.priority, JobRow.not_before_ns, JobRow.id)
             .with_for_update(skip_locked=True)
         )
         with self._write() as session:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, func, or_, select
 from sqlalchemy.orm import Session, aliased
 
 from service.storage.models import (
@@ -68,22 +68,16 @@ class MotorHealthRows(Sessions):
 
 
 def _health_of(session: Session, motors: Sequence[MotorRow]) -> tuple[MotorHealth, ...]:
-    """Return the condition of each motor from four queries, however many motors there are.
+    """Return the condition of each motor from a few queries, however many motors there are.
 
-    The index finds each motor's latest rows.
+    An index finds each motor's latest rows.
     """
     names = [motor.name for motor in motors]
-    diagnosis, recording = aliased(DiagnosisRow), aliased(RecordingRow)
+    diagnosis = aliased(DiagnosisRow)
     latest_diagnosis = (
         select(diagnosis.id)
         .where(diagnosis.motor == MotorRow.name, diagnosis.current)
         .order_by(diagnosis.recorded_ns.desc(), diagnosis.id.desc())
-        .limit(1)
-    )
-    latest_recording = (
-        select(recording.id)
-        .where(recording.motor == MotorRow.name, recording.state != RecordingState.ANNOUNCED)
-        .order_by(recording.announced_ns.desc(), recording.id.desc())
         .limit(1)
     )
     diagnoses = {
@@ -92,12 +86,7 @@ def _health_of(session: Session, motors: Sequence[MotorRow]) -> tuple[MotorHealt
             select(DiagnosisRow).where(DiagnosisRow.id.in_(_for_each(names, latest_diagnosis)))
         )
     }
-    recordings = {
-        row.motor: record_of(RecordingEntry, row)
-        for row in session.scalars(
-            select(RecordingRow).where(RecordingRow.id.in_(_for_each(names, latest_recording)))
-        )
-    }
+    recordings = _latest_recordings(session, names)
     relays = {
         row.name: record_of(IedEntry, row)
         for row in session.scalars(select(IedRow).where(IedRow.name.in_({motor.ied for motor in motors})))
@@ -111,6 +100,34 @@ def _health_of(session: Session, motors: Sequence[MotorRow]) -> tuple[MotorHealt
         )
         for motor in motors
     )
+
+
+def _latest_recordings(session: Session, motors: Sequence[str]) -> dict[str, RecordingEntry]:
+    """Return each motor's latest recording: by its own time, or when it was first seen while that is unknown.
+
+    A record of last year that is uploaded today is not the latest. Each of the two has an index.
+    """
+    recording = aliased(RecordingRow)
+    of_motor = select(recording.id).where(
+        recording.motor == MotorRow.name, recording.state != RecordingState.ANNOUNCED
+    )
+    timed = (
+        of_motor.where(recording.recorded_ns.is_not(None))
+        .order_by(recording.recorded_ns.desc(), recording.id.desc())
+        .limit(1)
+    )
+    untimed = (
+        of_motor.where(recording.recorded_ns.is_(None))
+        .order_by(recording.announced_ns.desc(), recording.id.desc())
+        .limit(1)
+    )
+    time_ns = func.coalesce(RecordingRow.recorded_ns, RecordingRow.announced_ns)
+    latest = (
+        select(RecordingRow)
+        .where(or_(*(RecordingRow.id.in_(_for_each(motors, one)) for one in (timed, untimed))))
+        .order_by(time_ns, RecordingRow.id)
+    )
+    return {row.motor: record_of(RecordingEntry, row) for row in session.scalars(latest)}
 
 
 def _for_each(motors: Sequence[str], latest: Select[str]) -> Select[str]:

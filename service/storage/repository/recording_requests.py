@@ -34,10 +34,7 @@ class RecordingRequestRows(Sessions):
         with self._write() as session:
             where = found(session, MotorRow, motor, "motor", lock=True)
             if idempotency_key is not None:
-                same = select(RecordingRequestRow).where(
-                    RecordingRequestRow.motor == motor, RecordingRequestRow.idempotency_key == idempotency_key
-                )
-                earlier = only(session, same)
+                earlier = _of_key(session, motor, RecordingRequestOrigin.REQUEST, idempotency_key)
                 if earlier is not None:
                     return recording_request(earlier)
             if not where.in_service:
@@ -51,13 +48,14 @@ class RecordingRequestRows(Sessions):
         relay that makes none. Nor is there one for a motor that left the plant. Raises NotFoundError.
         """
         key = f"schedule {due_ns}"
-        of_motor = select(RecordingRequestRow).where(RecordingRequestRow.motor == motor)
         with self._write() as session:
             where = found(session, MotorRow, motor, "motor", lock=True)
-            earlier = only(session, of_motor.where(RecordingRequestRow.idempotency_key == key))
+            earlier = _of_key(session, motor, RecordingRequestOrigin.SCHEDULE, key)
             if earlier is not None:
                 return recording_request(earlier)
-            is_open = of_motor.where(RecordingRequestRow.state.in_(OPEN))
+            is_open = select(RecordingRequestRow).where(
+                RecordingRequestRow.motor == motor, RecordingRequestRow.state.in_(OPEN)
+            )
             if not where.in_service or only(session, is_open) is not None:
                 return None
             return _request(session, where, RecordingRequestOrigin.SCHEDULE, key, now_ns)
@@ -153,6 +151,18 @@ class RecordingRequestRows(Sessions):
             row = found(session, RecordingRequestRow, request_id, KIND, lock=True)
             fail_row(row, reason, now_ns)
             return recording_request(row)
+
+
+def _of_key(
+    session: Session, motor: str, origin: RecordingRequestOrigin, key: str
+) -> RecordingRequestRow | None:
+    """Return the motor's request of this key; a key of a client is never one of a schedule."""
+    query = select(RecordingRequestRow).where(
+        RecordingRequestRow.motor == motor,
+        RecordingRequestRow.origin == origin,
+        RecordingRequestRow.idempotency_key == key,
+    )
+    return only(session, query)
 
 
 def _request(

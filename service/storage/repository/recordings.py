@@ -22,7 +22,7 @@ from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile,
 from service.storage.repository.clocks import give_clock
 from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_row, fail_rows, fetch_row
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
-from service.storage.states import JobState, RecordingSource, RecordingState
+from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
 
 RECORDS_A_QUERY = 500
 """Databases limit how many values a query may hold."""
@@ -175,7 +175,8 @@ class RecordingRows(Sessions):
                 else:
                     row = _to_fill(session, relay, motor, remote, now_ns)
                 _fill(session, row, stored, now_ns)
-                session.add(new_job(row.id, method, model, now_ns))
+                priority = JobPriority.UPLOAD if relay is None else JobPriority.RELAY_RECORD
+                session.add(new_job(row.id, method, model, priority, now_ns))
             elif relay is not None and remote is not None:
                 _link_remote(session, relay, remote, row)
                 if row.ied == relay:
@@ -217,13 +218,14 @@ class RecordingRows(Sessions):
             return page_of(session, query, order, recording, limit=limit, after=after, descending=True)
 
 
-def new_job(recording_id: str, method: str, model: str, now_ns: int) -> JobRow:
+def new_job(recording_id: str, method: str, model: str, priority: JobPriority, now_ns: int) -> JobRow:
     return JobRow(
         id=str(uuid.uuid4()),
         recording_id=recording_id,
         method=method,
         model=model,
         state=JobState.QUEUED,
+        priority=priority,
         attempts=0,
         not_before_ns=now_ns,
         created_ns=now_ns,

@@ -245,3 +245,40 @@ def test_trend_and_health(repository: Repository, store: RecordingStore) -> None
     counts = repository.counts()
     assert (counts.recordings, counts.jobs) == ({"diagnosed": 3}, {"done": 3})
     assert (counts.links, counts.recording_requests) == ({"unknown": 2}, {})
+
+
+def test_records_of_relays_come_first_and_repetitions_last(
+    repository: Repository, store: RecordingStore
+) -> None:
+    old = repository.add_recording(store.store({"OLD.CFF": b"old"}), motor="PUMP-A1", now_ns=NOW_NS)
+    job_id = claim(repository).job.id
+    repository.finish_job(job_id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    for _ in range(3):
+        repository.request_diagnosis(old.recording.id, now_ns=NOW_NS)
+    uploaded = repository.add_recording(
+        store.store({"UP.CFF": b"up"}), motor="PUMP-A1", now_ns=NOW_NS + 1
+    ).recording
+    fresh = repository.add_recording(
+        store.store({"NEW.CFF": b"new"}),
+        motor="PUMP-A1",
+        relay="A1_SEL710",
+        remote=RemoteRecord("NEW", 3, NOW_NS),
+        now_ns=NOW_NS + 2,
+    ).recording
+    claimed = [claim(repository, NOW_NS + 3).job.recording_id for _ in range(5)]
+    assert claimed == [fresh.id, uploaded.id, *[old.recording.id] * 3]
+
+
+def test_the_last_recording_is_the_one_made_last(repository: Repository, store: RecordingStore) -> None:
+    for number, recorded_ns in enumerate([NOW_NS, NOW_NS - 1000 * SECOND_NS]):
+        stored = store.store({f"U{number}.CFF": bytes([number])})
+        repository.add_recording(stored, motor="FAN-A2", now_ns=NOW_NS + number)
+        job_id = claim(repository, NOW_NS + number).job.id
+        repository.finish_job(job_id, fault(), recorded_ns=recorded_ns, now_ns=NOW_NS + number, runner=RUNNER)
+    last = repository.health("FAN-A2").last_recording
+    assert last is not None
+    assert last.name == "U0", "U1 was uploaded later, and was made before it"
+    repository.add_recording(store.store({"U2.CFF": b"2"}), motor="FAN-A2", now_ns=NOW_NS + 2)
+    last = repository.health("FAN-A2").last_recording
+    assert last is not None
+    assert last.name == "U2", "its own time is not known yet"

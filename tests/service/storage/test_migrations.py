@@ -106,3 +106,17 @@ def test_every_step_leads_back(database_url: str) -> None:
         context = MigrationContext.configure(connection)
         assert compare_metadata(context, Base.metadata) == []
     engine.dispose()
+
+
+def test_a_key_that_a_client_shares_with_a_schedule_stands_in_no_way_back(
+    database_url: str, engine: Engine, repository: Repository
+) -> None:
+    repository.request_recording("PUMP-A1", now_ns=NOW_NS, idempotency_key=f"schedule {NOW_NS}")
+    repository.fail_recording_request(
+        repository.recording_requests(limit=1).items[0].id, "no record", now_ns=NOW_NS
+    )
+    assert repository.schedule_recording("PUMP-A1", due_ns=NOW_NS, now_ns=NOW_NS) is not None
+    with engine.begin() as connection:
+        command.downgrade(config(connection), "0016")
+    migrate(database_url)
+    assert len(repository.recording_requests(limit=10).items) == 2

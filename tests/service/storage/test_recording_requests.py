@@ -93,3 +93,18 @@ def test_what_does_not_exist_is_named(repository: Repository) -> None:
         repository.request_recording("PUMP-X", now_ns=NOW_NS)
     with pytest.raises(NotFoundError, match="there is no event report 'nope'"):
         repository.mark_triggered("nope", now_ns=NOW_NS)
+
+
+def test_a_key_of_a_client_is_never_one_of_a_schedule(repository: Repository) -> None:
+    """A client that sent the keys of coming schedules kept the motor from being recorded."""
+    clients = repository.request_recording(
+        "PUMP-A1", now_ns=NOW_NS, idempotency_key=f"schedule {NOW_NS + SECOND_NS}"
+    )
+    repository.fail_recording_request(clients.id, "no record", now_ns=NOW_NS)
+    ours = repository.schedule_recording("PUMP-A1", due_ns=NOW_NS + SECOND_NS, now_ns=NOW_NS + SECOND_NS)
+    assert ours is not None
+    assert (ours.origin, ours.id != clients.id) == ("schedule", True)
+    again = repository.request_recording(
+        "PUMP-A1", now_ns=NOW_NS, idempotency_key=f"schedule {NOW_NS + SECOND_NS}"
+    )
+    assert again.id == clients.id
