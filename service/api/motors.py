@@ -8,7 +8,7 @@ from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Diagnosis, Health, ListedMotor, Motor, Recording, Site, TrendPoint
+from service.api.schemas import Health, ListedMotor, Motor, Recording, Site, TrendPoint
 from service.api.times import TimeParameter, rfc3339
 from service.storage.records import MotorHealth, Quantity
 
@@ -79,8 +79,7 @@ def _with_health(health: MotorHealth) -> ListedMotor:
 
 
 def _health(health: MotorHealth) -> Health:
-    entry = health.diagnosis
-    diagnosis = None if entry is None else Diagnosis.model_validate(entry.document)
+    diagnosis = health.diagnosis
     link = health.ied
     last = health.last_recording
     return Health(
@@ -92,9 +91,9 @@ def _health(health: MotorHealth) -> Health:
         mu_f_ci95=None if diagnosis is None else diagnosis.mu_f_ci95,
         phase=None if diagnosis is None else diagnosis.phase,
         load_level=None if diagnosis is None else diagnosis.load_level,
-        reasons=[] if diagnosis is None else diagnosis.reasons,
-        recording_id=None if entry is None else entry.recording_id,
-        recorded_time=None if entry is None else rfc3339(entry.recorded_ns),
+        reasons=[] if diagnosis is None else list(diagnosis.reasons),
+        recording_id=None if diagnosis is None else diagnosis.recording_id,
+        recorded_time=None if diagnosis is None else rfc3339(diagnosis.recorded_ns),
         link_state=link.link_state,
         link_reason=link.link_reason,
         last_success_time=None if link.last_success_ns is None else rfc3339(link.last_success_ns),

@@ -11,13 +11,15 @@ from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 MAX_NS = 2**63 - 1
 """This is the largest time the database can hold, in the year 2262."""
 
+SECONDS_END = len("2026-01-31T12:00:00")
+
 _RFC3339 = re.compile(r"(\d{4}-\d\d-\d\d)[Tt](\d\d:\d\d:\d\d)(?:\.(\d+))?([Zz]|[+-]\d\d:\d\d)", re.ASCII)
 
 
 def rfc3339(time_ns: int) -> str:
     """Return a time as 2026-01-31T12:00:00.123456789Z; all nine digits, so that nothing is lost."""
     seconds, nanoseconds = divmod(time_ns, NANOSECONDS_PER_SECOND)
-    return f"{datetime.fromtimestamp(seconds, UTC):%Y-%m-%dT%H:%M:%S}.{nanoseconds:09d}Z"
+    return f"{datetime.fromtimestamp(seconds, UTC).isoformat()[:SECONDS_END]}.{nanoseconds:09d}Z"
 
 
 def nanoseconds(text: str) -> int:

@@ -1,6 +1,6 @@
 """Jobs, their results, and what these say of a motor."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -75,12 +75,41 @@ class TrendPoint:
 
 
 @dataclass(frozen=True, slots=True)
+class LatestDiagnosis:
+    """What the diagnosis of a motor's latest recording says, without the findings behind it."""
+
+    motor: str
+    recording_id: str
+    recorded_ns: int
+    verdict: Verdict
+    mu_f: float | None
+    mu_f_ci95_low: float | None
+    mu_f_ci95_high: float | None
+    theta_f: int | None
+    load_level: float | None
+    reasons: Sequence[str]
+
+    @property
+    def mu_f_ci95(self) -> tuple[float, float] | None:
+        """Return the 95 % interval of mu_f; None where the recording does not tell it."""
+        if self.mu_f_ci95_low is None or self.mu_f_ci95_high is None:
+            return None
+        return self.mu_f_ci95_low, self.mu_f_ci95_high
+
+    @property
+    def phase(self) -> Literal["a", "b", "c"] | None:
+        """Return the phase with the fault; None unless shorted turns are found."""
+        phases: tuple[Literal["a", "b", "c"], ...] = ("a", "b", "c")
+        return None if self.theta_f is None else phases[self.theta_f]
+
+
+@dataclass(frozen=True, slots=True)
 class MotorHealth:
     """What is known of a motor now: the latest recording's diagnosis, its relay, its latest recording."""
 
     motor: MotorEntry
     ied: IedEntry
-    diagnosis: DiagnosisEntry | None
+    diagnosis: LatestDiagnosis | None
     last_recording: RecordingEntry | None
 
 

@@ -8,7 +8,7 @@ from sqlalchemy.orm import Session
 
 from service.storage.models import AlarmRow, IedRow
 from service.storage.records import Alarm, Cursor, Page
-from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import AlarmKind
 
 MOST_CLEARED = 1000
@@ -60,7 +60,7 @@ class AlarmRows(Sessions):
         relay: None for all relays. standing: True for alarms that stand, False for cleared ones, None for
         both.
         """
-        query = select(AlarmRow)
+        query = select(*columns_of(Alarm, AlarmRow))
         if relay is not None:
             query = query.where(AlarmRow.ied == relay)
         if standing is not None:
@@ -69,7 +69,7 @@ class AlarmRows(Sessions):
             )
         order: Order = [AlarmRow.raised_ns, AlarmRow.id]
         with self._read() as session:
-            return page_of(session, query, order, alarm, limit=limit, after=after, descending=True)
+            return page_of(session, query, order, Alarm, limit=limit, after=after, descending=True)
 
 
 def raised(session: Session, relay: str, kind: AlarmKind, subject: str, reason: str, now_ns: int) -> AlarmRow:

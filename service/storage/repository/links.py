@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from service.storage.models import IedRow, LeaseRow, LinkChangeRow, LinkFiguresRow
 from service.storage.records import Cursor, LinkChange, LinkFigures, LinkNote, LinkTraffic, Page
-from service.storage.repository.sessions import Order, Sessions, found, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 from service.storage.states import LinkState
 
 MOST_CHANGES = 1000
@@ -95,11 +95,11 @@ class LinkRows(Sessions):
 
     def link_changes(self, relay: str, *, limit: int, after: Cursor | None = None) -> Page[LinkChange]:
         """Return the changes of a relay's link, latest first. Raises NotFoundError."""
-        query = select(LinkChangeRow).where(LinkChangeRow.ied == relay)
+        query = select(*columns_of(LinkChange, LinkChangeRow)).where(LinkChangeRow.ied == relay)
         order: Order = [LinkChangeRow.changed_ns, LinkChangeRow.id]
         with self._read() as session:
             found(session, IedRow, relay, "IED")
-            return page_of(session, query, order, _link_change, limit=limit, after=after, descending=True)
+            return page_of(session, query, order, LinkChange, limit=limit, after=after, descending=True)
 
     def link_figures(self, relay: str) -> LinkFigures:
         """Return what went over a relay's link; zeros before anything did. Raises NotFoundError."""
@@ -161,7 +161,3 @@ def _add(
         row.round_trip_s = round_trip_s
     if day_bytes is not None:
         row.day, row.day_bytes = day_bytes
-
-
-def _link_change(row: LinkChangeRow) -> LinkChange:
-    return record_of(LinkChange, row)

@@ -19,6 +19,8 @@ LATENESS_NS = 120 * NANOSECONDS_PER_SECOND
 
 _COLUMNS = {quantity: MeasurementRow.__table__.c[quantity.value] for quantity in MeteredQuantity}
 
+_NAMES = [quantity.value for quantity in MeteredQuantity]
+
 _OF_A_TIME = delete(MeasurementRow).where(
     MeasurementRow.motor == bindparam("of"),
     MeasurementRow.step_s == AveragingStep.AS_SAMPLED.value,
@@ -88,7 +90,8 @@ class MeasurementRows(Sessions):
         after: Cursor | None = None,
     ) -> Page[Measurement]:
         """Return a motor's measurements, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
-        query = select(MeasurementRow).where(MeasurementRow.motor == motor, MeasurementRow.step_s == step_s)
+        columns = (MeasurementRow.time_ns, MeasurementRow.samples, *_COLUMNS.values())
+        query = select(*columns).where(MeasurementRow.motor == motor, MeasurementRow.step_s == step_s)
         if from_ns is not None:
             query = query.where(MeasurementRow.time_ns >= from_ns)
         if to_ns is not None:
@@ -131,6 +134,5 @@ def _of_an_interval(quantity: MeteredQuantity) -> ColumnElement[Any]:
     return func.sum(column * MeasurementRow.samples) / func.nullif(func.sum(weight), 0)
 
 
-def _measurement(row: MeasurementRow) -> Measurement:
-    values = {quantity.value: getattr(row, quantity.value) for quantity in MeteredQuantity}
-    return Measurement(row.time_ns, row.samples, values)
+def _measurement(time_ns: int, samples: int, *values: float | None) -> Measurement:
+    return Measurement(time_ns, samples, dict(zip(_NAMES, values, strict=True)))

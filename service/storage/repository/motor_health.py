@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from sqlalchemy import Select, func, or_, select
 from sqlalchemy.orm import Session, aliased
 
+from core.diagnosis.verdict import Verdict
 from service.storage.models import (
     DiagnosisRow,
     IedRow,
@@ -13,8 +14,8 @@ from service.storage.models import (
 )
 from service.storage.records import (
     Cursor,
-    DiagnosisEntry,
     IedEntry,
+    LatestDiagnosis,
     MotorEntry,
     MotorHealth,
     Page,
@@ -22,8 +23,27 @@ from service.storage.records import (
     RecordingEntry,
     TrendPoint,
 )
-from service.storage.repository.sessions import Order, Sessions, found, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 from service.storage.states import RecordingState
+
+_INTERVAL = (DiagnosisRow.mu_f_ci95_low, DiagnosisRow.mu_f_ci95_high)
+_FIGURE = {
+    "mu_f": DiagnosisRow.mu_f,
+    "theta_f": DiagnosisRow.theta_f,
+    "load_level": DiagnosisRow.load_level,
+}
+_SAID = (
+    DiagnosisRow.motor,
+    DiagnosisRow.recording_id,
+    DiagnosisRow.recorded_ns,
+    DiagnosisRow.verdict,
+    DiagnosisRow.mu_f,
+    *_INTERVAL,
+    DiagnosisRow.theta_f,
+    DiagnosisRow.load_level,
+    DiagnosisRow.document["reasons"],
+)
+"""The columns of a LatestDiagnosis. The database takes the reasons from the document, which is long."""
 
 
 class MotorHealthRows(Sessions):
@@ -33,15 +53,16 @@ class MotorHealthRows(Sessions):
         The latest recording counts, not the latest diagnosis made.
         """
         with self._read() as session:
-            (health,) = _health_of(session, [found(session, MotorRow, motor, "motor")])
+            entry = record_of(MotorEntry, found(session, MotorRow, motor, "motor"))
+            (health,) = _health_of(session, [entry])
             return health
 
     def health_of_motors(self, *, limit: int, after: Cursor | None = None) -> Page[MotorHealth]:
         """Return what is known of the motors in service, by name."""
-        query = select(MotorRow).where(MotorRow.in_service)
+        query = select(*columns_of(MotorEntry, MotorRow)).where(MotorRow.in_service)
         with self._read() as session:
-            rows = page_of(session, query, [MotorRow.name], lambda row: row, limit=limit, after=after)
-            return Page(_health_of(session, rows.items), rows.next)
+            motors = page_of(session, query, [MotorRow.name], MotorEntry, limit=limit, after=after)
+            return Page(_health_of(session, motors.items), motors.next)
 
     def trend(
         self,
@@ -54,7 +75,14 @@ class MotorHealthRows(Sessions):
         after: Cursor | None = None,
     ) -> Page[TrendPoint]:
         """Return a figure of each recording, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
-        query = select(DiagnosisRow).where(DiagnosisRow.motor == motor, DiagnosisRow.current)
+        # All of these columns are in the index: no row with its document is read.
+        query = select(
+            DiagnosisRow.recorded_ns,
+            _FIGURE[quantity],
+            *_INTERVAL,
+            DiagnosisRow.verdict,
+            DiagnosisRow.recording_id,
+        ).where(DiagnosisRow.motor == motor, DiagnosisRow.current)
         if from_ns is not None:
             query = query.where(DiagnosisRow.recorded_ns >= from_ns)
         if to_ns is not None:
@@ -62,12 +90,11 @@ class MotorHealthRows(Sessions):
         order: Order = [DiagnosisRow.recorded_ns, DiagnosisRow.id]
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(
-                session, query, order, lambda row: _trend_point(row, quantity), limit=limit, after=after
-            )
+            to_point = _mu_f_point if quantity == "mu_f" else _point
+            return page_of(session, query, order, to_point, limit=limit, after=after)
 
 
-def _health_of(session: Session, motors: Sequence[MotorRow]) -> tuple[MotorHealth, ...]:
+def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHealth, ...]:
     """Return the condition of each motor from a few queries, however many motors there are.
 
     An index finds each motor's latest rows.
@@ -80,20 +107,14 @@ def _health_of(session: Session, motors: Sequence[MotorRow]) -> tuple[MotorHealt
         .order_by(diagnosis.recorded_ns.desc(), diagnosis.id.desc())
         .limit(1)
     )
-    diagnoses = {
-        row.motor: record_of(DiagnosisEntry, row)
-        for row in session.scalars(
-            select(DiagnosisRow).where(DiagnosisRow.id.in_(_for_each(names, latest_diagnosis)))
-        )
-    }
+    said = select(*_SAID).where(DiagnosisRow.id.in_(_for_each(names, latest_diagnosis)))
+    diagnoses = {row.motor: LatestDiagnosis(*row) for row in session.execute(said)}
     recordings = _latest_recordings(session, names)
-    relays = {
-        row.name: record_of(IedEntry, row)
-        for row in session.scalars(select(IedRow).where(IedRow.name.in_({motor.ied for motor in motors})))
-    }
+    links = select(*columns_of(IedEntry, IedRow)).where(IedRow.name.in_({motor.ied for motor in motors}))
+    relays = {row.name: IedEntry(*row) for row in session.execute(links)}
     return tuple(
         MotorHealth(
-            motor=record_of(MotorEntry, motor),
+            motor=motor,
             ied=relays[motor.ied],
             diagnosis=diagnoses.get(motor.name),
             last_recording=recordings.get(motor.name),
@@ -123,11 +144,11 @@ def _latest_recordings(session: Session, motors: Sequence[str]) -> dict[str, Rec
     )
     time_ns = func.coalesce(RecordingRow.recorded_ns, RecordingRow.announced_ns)
     latest = (
-        select(RecordingRow)
+        select(*columns_of(RecordingEntry, RecordingRow))
         .where(or_(*(RecordingRow.id.in_(_for_each(motors, one)) for one in (timed, untimed))))
         .order_by(time_ns, RecordingRow.id)
     )
-    return {row.motor: record_of(RecordingEntry, row) for row in session.scalars(latest)}
+    return {row.motor: RecordingEntry(*row) for row in session.execute(latest)}
 
 
 def _for_each(motors: Sequence[str], latest: Select[str]) -> Select[str]:
@@ -135,9 +156,24 @@ def _for_each(motors: Sequence[str], latest: Select[str]) -> Select[str]:
     return select(latest.scalar_subquery()).select_from(MotorRow).where(MotorRow.name.in_(motors))
 
 
-def _trend_point(row: DiagnosisRow, quantity: Quantity) -> TrendPoint:
-    ci95 = None
-    if quantity == "mu_f" and row.mu_f_ci95_low is not None and row.mu_f_ci95_high is not None:
-        ci95 = (row.mu_f_ci95_low, row.mu_f_ci95_high)
-    value = {"mu_f": row.mu_f, "theta_f": row.theta_f, "load_level": row.load_level}[quantity]
-    return TrendPoint(row.recorded_ns, value, ci95, row.verdict, row.recording_id)
+def _mu_f_point(
+    recorded_ns: int,
+    value: float | None,
+    low: float | None,
+    high: float | None,
+    verdict: Verdict,
+    recording_id: str,
+) -> TrendPoint:
+    ci95 = None if low is None or high is None else (low, high)
+    return TrendPoint(recorded_ns, value, ci95, verdict, recording_id)
+
+
+def _point(
+    recorded_ns: int,
+    value: float | None,
+    _low: float | None,
+    _high: float | None,
+    verdict: Verdict,
+    recording_id: str,
+) -> TrendPoint:
+    return TrendPoint(recorded_ns, value, None, verdict, recording_id)

@@ -6,7 +6,7 @@ from service.plant import Plant
 from service.storage.engine import one_at_a_time
 from service.storage.models import IedRow, MotorRow, SiteRow
 from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
-from service.storage.repository.sessions import Sessions, found, page_of, record_of
+from service.storage.repository.sessions import Sessions, columns_of, found, page_of, record_of
 from service.storage.states import LinkState
 
 
@@ -68,13 +68,13 @@ class PlantRows(Sessions):
 
     def sites(self, *, limit: int, after: Cursor | None = None) -> Page[SiteEntry]:
         with self._read() as session:
-            query = select(SiteRow).where(SiteRow.in_service)
-            return page_of(session, query, [SiteRow.name], _site, limit=limit, after=after)
+            query = select(*columns_of(SiteEntry, SiteRow)).where(SiteRow.in_service)
+            return page_of(session, query, [SiteRow.name], SiteEntry, limit=limit, after=after)
 
     def relays(self, *, limit: int, after: Cursor | None = None) -> Page[IedEntry]:
         with self._read() as session:
-            query = select(IedRow).where(IedRow.in_service)
-            return page_of(session, query, [IedRow.name], _relay, limit=limit, after=after)
+            query = select(*columns_of(IedEntry, IedRow)).where(IedRow.in_service)
+            return page_of(session, query, [IedRow.name], IedEntry, limit=limit, after=after)
 
     def relay(self, name: str) -> IedEntry:
         """Return a relay by its name. Raises NotFoundError."""
@@ -88,17 +88,13 @@ class PlantRows(Sessions):
 
     def motors(self, *, limit: int, after: Cursor | None = None) -> Page[MotorEntry]:
         with self._read() as session:
-            query = select(MotorRow).where(MotorRow.in_service)
-            return page_of(session, query, [MotorRow.name], _motor, limit=limit, after=after)
+            query = select(*columns_of(MotorEntry, MotorRow)).where(MotorRow.in_service)
+            return page_of(session, query, [MotorRow.name], MotorEntry, limit=limit, after=after)
 
     def motor(self, name: str) -> MotorEntry:
         """Return a motor by its name. Raises NotFoundError."""
         with self._read() as session:
             return _motor(found(session, MotorRow, name, "motor"))
-
-
-def _site(row: SiteRow) -> SiteEntry:
-    return record_of(SiteEntry, row)
 
 
 def _relay(row: IedRow) -> IedEntry:

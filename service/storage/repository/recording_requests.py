@@ -13,7 +13,7 @@ from service.storage.errors import OutOfServiceError, StateConflictError
 from service.storage.models import IedRow, LeaseRow, MotorRow, RecordingRequestRow
 from service.storage.records import Cursor, Page, RecordingRequest
 from service.storage.repository.leases import require_lease
-from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import IN_THE_RELAY, RecordingRequestOrigin, RecordingRequestState
 
 OPEN = (RecordingRequestState.REQUESTED, *IN_THE_RELAY)
@@ -69,14 +69,12 @@ class RecordingRequestRows(Sessions):
         self, *, limit: int, after: Cursor | None = None, motor: str | None = None
     ) -> Page[RecordingRequest]:
         """Return a page of recording requests, of one motor or of all, latest first."""
-        query = select(RecordingRequestRow)
+        query = select(*columns_of(RecordingRequest, RecordingRequestRow))
         if motor is not None:
             query = query.where(RecordingRequestRow.motor == motor)
         order: Order = [RecordingRequestRow.requested_ns, RecordingRequestRow.id]
         with self._read() as session:
-            return page_of(
-                session, query, order, recording_request, limit=limit, after=after, descending=True
-            )
+            return page_of(session, query, order, RecordingRequest, limit=limit, after=after, descending=True)
 
     def relays_with_requests(self) -> tuple[str, ...]:
         """Return the relays to be triggered now: none that still owes the record of an earlier trigger."""

@@ -21,7 +21,7 @@ from service.storage.models import (
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
 from service.storage.repository.clocks import give_clock
 from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_row, fail_rows, fetch_row
-from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
 
 RECORDS_A_QUERY = 500
@@ -208,14 +208,14 @@ class RecordingRows(Sessions):
         state: RecordingState | None = None,
     ) -> Page[RecordingEntry]:
         """Return a page of recordings, of one motor or all, in one state or any, latest first."""
-        query = select(RecordingRow)
+        query = select(*columns_of(RecordingEntry, RecordingRow))
         if motor is not None:
             query = query.where(RecordingRow.motor == motor)
         if state is not None:
             query = query.where(RecordingRow.state == state)
         order: Order = [RecordingRow.announced_ns, RecordingRow.id]
         with self._read() as session:
-            return page_of(session, query, order, recording, limit=limit, after=after, descending=True)
+            return page_of(session, query, order, RecordingEntry, limit=limit, after=after, descending=True)
 
 
 def new_job(recording_id: str, method: str, model: str, priority: JobPriority, now_ns: int) -> JobRow:

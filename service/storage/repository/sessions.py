@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
 from threading import Lock
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from sqlalchemy import ColumnElement, Engine, Select, text, tuple_
 from sqlalchemy.exc import TimeoutError  # noqa: A004 - that of the database
@@ -86,11 +86,22 @@ def record_of(record_type: "type[Record]", row: Base) -> "Record":
     return record_type(**{field.name: getattr(row, field.name) for field in fields(record_type)})
 
 
+def columns_of(
+    record_type: "type[DataclassInstance]", row_type: type[Base]
+) -> list[InstrumentedAttribute[Any]]:
+    """Return the columns of a table that a record has, in the order of its fields.
+
+    `record_type(*row)` makes the record. To read a thousand rows of columns takes a fourth of the time of a
+    thousand objects, and leaves out what the record does not have.
+    """
+    return [getattr(row_type, field.name) for field in fields(record_type)]
+
+
 def page_of(
     session: Session,
-    query: Select[Row],
+    query: Select[*tuple[Any, ...]],
     order: Order,
-    to_item: Callable[[Row], Item],
+    to_item: Callable[..., Item],
     *,
     limit: int,
     after: Cursor | None,
@@ -99,6 +110,8 @@ def page_of(
     """Return one page of `query` in the order of unique `order` columns, from behind the sort key `after`.
 
     It uses keys, not offsets: rows that come or go meanwhile neither repeat nor hide others.
+
+    to_item: takes what the query selects, one argument each.
     """
     if after is not None:
         position: ColumnElement[bool] = (
@@ -106,11 +119,12 @@ def page_of(
         )
         query = query.where(position)
     query = query.order_by(*(column.desc() if descending else column.asc() for column in order))
-    rows = session.scalars(query.limit(limit + 1)).all()
+    rows = session.execute(query.add_columns(*order).limit(limit + 1)).all()
     last = rows[limit - 1] if len(rows) > limit else None
+    width = len(order)
     return Page(
-        items=tuple(to_item(row) for row in rows[:limit]),
-        next=None if last is None else tuple(getattr(last, column.key) for column in order),
+        items=tuple(to_item(*row[:-width]) for row in rows[:limit]),
+        next=None if last is None else tuple(last[-width:]),
     )
 
 
