@@ -26,6 +26,11 @@ class Kind(StrEnum):
     REFUSED_CONTROL = "refused-control"
     FEW_SESSIONS = "few-sessions"
     FROZEN = "frozen"
+    FILES_BUSY = "files-busy"
+    READS_BUSY = "reads-busy"
+    UNREADABLE_MEASURAND = "unreadable-measurand"
+    REPORT_OPTFIELDS_READONLY = "report-optfields-readonly"
+    REPORT_WITHOUT_DATA_SET = "report-without-data-set"
 
 
 PARAMETERS: dict[Kind, tuple[str, float]] = {
@@ -37,6 +42,8 @@ PARAMETERS: dict[Kind, tuple[str, float]] = {
     Kind.CLOCK_OFFSET: ("offset_s", 3600.0),
     Kind.LOCAL_TIME: ("offset_s", 3600.0),
     Kind.FEW_SESSIONS: ("sessions", 1.0),
+    Kind.UNREADABLE_MEASURAND: ("error", 1.0),
+    Kind.REPORT_OPTFIELDS_READONLY: ("fields", 5.0),
 }
 """The one number some kinds have: its name and what it is where none is given."""
 
@@ -53,9 +60,13 @@ MADE_BY_PROXY = frozenset(
         Kind.EMPTY_RPTID,
         Kind.FEW_SESSIONS,
         Kind.FROZEN,
+        Kind.READS_BUSY,
     }
 )
 """Kinds that are made between client and server; the others the relay makes itself."""
+
+BUILT_IN = frozenset({Kind.REPORT_OPTFIELDS_READONLY, Kind.REPORT_WITHOUT_DATA_SET})
+"""Kinds that belong to the relay's data model and cannot come and go."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +96,10 @@ class MisbehaviourState:
         self._clock = clock
         self._lock = threading.Lock()
         self._risen: dict[str, float] = {}
+
+    def built_in(self, kind: Kind) -> float | None:
+        """Return the number of a kind that the relay is built with, None where it is built without."""
+        return next((each.number for each in self._known if each.kind is kind), None)
 
     @property
     def kinds(self) -> frozenset[Kind]:

@@ -44,7 +44,8 @@ from mms.security.tls import TlsConfiguration, TlsVersion
 from mms.server.controls import ControlAction
 from mms.server.file_access import FileAnswer, FileOperation, FileRequest
 from mms.server.pump import ServerPump
-from mms.server.server import MOST_CONNECTIONS, Server
+from mms.server.server import Server
+from mms.server.services import MOST_CONNECTIONS, Identity
 from mms.values import GOOD, BitString, DataAccessError, Quality, Timestamp, Validity, Value
 
 __all__ = [
@@ -75,6 +76,7 @@ __all__ = [
     "FileServiceFailed",
     "FileSizeMismatch",
     "FunctionalConstraint",
+    "Identity",
     "MmsError",
     "ModelError",
     "NotFound",

@@ -132,6 +132,11 @@ class RelayProxy:
             while True:
                 message = await read_message(reader)
                 await self._wait_while_frozen()
+                refusal = session.rewriter.refusal(message.user_data)
+                if refusal is not None:
+                    session.client.write(units_of(refusal, session.unit_size))
+                    await session.client.drain()
+                    continue
                 if message.kind == DATA:
                     rewritten = session.rewriter.request(message.user_data)
                     session.server.write(_units(message, rewritten, session.unit_size))

@@ -18,6 +18,10 @@ _SIMPLE_FIRST, _SIMPLE_SECOND = b"\x80", b"\x81"
 _SEQUENCE, _VISIBLE_STRING = b"\x30", b"\x8a"
 _READ, _STRUCTURE, _BOOLEAN = b"\xa4", b"\xa2", b"\x83"
 _FIELDS_OF_A_CONTROL_BLOCK = 11
+_CONFIRMED_ERROR = b"\xa2"
+_RESOURCE_OTHER = element(b"\xa2", element(b"\xa0", b"\x83\x01\x00"))
+"""ServiceError of a ConfirmedErrorPDU: class resource, code other."""
+_NEEDED_BY_CONTROLS = (b"$CF$", b"$CO$")
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +70,21 @@ class Rewriter:
         except MalformedError:
             return user_data
         return message.with_service(encode(service))
+
+    def refusal(self, user_data: bytes) -> bytes | None:
+        """Return the answer to a client's message that the server is not to get, None for any other.
+
+        Controls are not refused: what a client reads to prepare one is passed on.
+        """
+        if not self._misbehaviour_state.is_on(Kind.READS_BUSY):
+            return None
+        message = _opened(user_data)
+        if message is None or (message.pdu_tag, message.service_tag) != (_CONFIRMED_REQUEST, _READ):
+            return None
+        if any(constraint in message.service for constraint in _NEEDED_BY_CONTROLS):
+            return None
+        invoke_id = element(_SIMPLE_FIRST, message.head[2:])
+        return message.with_pdu(_CONFIRMED_ERROR, invoke_id + _RESOURCE_OTHER)
 
     def response(self, user_data: bytes) -> Rewritten:
         """Rewrite a server's message."""
@@ -182,8 +201,12 @@ class _Opened:
 
     def with_service(self, service: bytes) -> bytes:
         """Encode the message with another service, a whole element."""
+        return self.with_pdu(self.pdu_tag, self.head + service)
+
+    def with_pdu(self, tag: bytes, content: bytes) -> bytes:
+        """Encode the message with another PDU."""
         outermost, values, value = self.presentation_tags
-        pdu = element(self.pdu_tag, self.head + service)
+        pdu = element(tag, content)
         return _SESSION + element(outermost, element(values, self.context + element(value, pdu)))
 
 

@@ -145,6 +145,7 @@ class Profile(Table):
     firmware: Annotated[str, Field(pattern=r"^[\x21-\x7e]+$")]
     sessions: Annotated[int, Field(ge=1, le=2 * MOST_CONNECTIONS)] = MOST_CONNECTIONS
     report_buffer_bytes: Annotated[int, Field(ge=500, le=1_000_000)] = 8_192
+    dynamic_data_sets: Annotated[int, Field(ge=0, le=100)] = 0
     points: Points
     record: Record
     triggers: Triggers = Triggers()

@@ -42,6 +42,12 @@ class RelayPoints:
         reports = self._points.reports
         return None if reports is None else self.reference(reports)
 
+    @property
+    def frequency(self) -> str | None:
+        """Reference of the metered frequency, None where there is none."""
+        reference = f"{self._points.metering}.Hz"
+        return self.reference(reference) if self.has(self.reference(reference)) else None
+
     def reference(self, inst_reference: str) -> str:
         """Return the reference that clients use, with the domain in place of the logical device's inst."""
         inst, _, rest = inst_reference.partition("/")

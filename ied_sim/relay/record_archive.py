@@ -22,7 +22,7 @@ TARGET_BITS = ("50P1T", "49T", "46UBT")
 
 
 @dataclass(frozen=True, slots=True)
-class Identity:
+class RecordOrigin:
     """What every record says of its relay. The direction is +1 for abc, -1 for acb."""
 
     relay: str
@@ -36,14 +36,14 @@ class RecordArchive:
 
     def __init__(
         self,
-        identity: Identity,
+        origin: RecordOrigin,
         files: EventFiles | None,
         journal: Journal,
         word: RelayWord,
         clock: RelayClock,
         misbehaviour_state: MisbehaviourState,
     ) -> None:
-        self._identity = identity
+        self._origin = origin
         self._files = files
         self._journal = journal
         self._word = word
@@ -53,7 +53,7 @@ class RecordArchive:
 
     def store(self, capture: Capture) -> int:
         """Store a capture and return its number. Raise OSError where it cannot be written."""
-        metering = _at_trigger(capture.recording, self._identity.direction)
+        metering = _at_trigger(capture.recording, self._origin.direction)
         record = self._complete(capture.recording)
         targets = " ".join(bit for bit in TARGET_BITS if self._word[bit])
         if self._files is None:
@@ -82,7 +82,7 @@ class RecordArchive:
         times_ns = recording.start_time_ns + elapsed_ns
         return replace(
             recording,
-            device=self._identity.firmware,
+            device=self._origin.firmware,
             digitals=Digitals.of(BITS, self._word.states(times_ns)),
             start_time_ns=self._clock.written(recording.start_time_ns),
         )
@@ -93,8 +93,8 @@ class RecordArchive:
         trigger = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S")
         zone = "local" if self._misbehaviour_state.is_on(Kind.LOCAL_TIME) else "UTC"
         return (
-            f"RELAY     {self._identity.relay}\r\n"
-            f"FID       {self._identity.firmware}\r\n"
+            f"RELAY     {self._origin.relay}\r\n"
+            f"FID       {self._origin.firmware}\r\n"
             f"EVENT     {kind}\r\n"
             f"TRIGGER   {trigger}.{nanoseconds:09d} {zone}\r\n"
             f"FREQ      {metering.frequency_Hz:.2f} Hz\r\n"
@@ -111,7 +111,7 @@ class RecordArchive:
             event=kind,
             targets=targets,
             figures=dict(zip(names, np.round([*currents, *voltages], 3).tolist(), strict=True)),
-            settings="\r\n".join(f"{name} := {value}" for name, value in self._identity.settings),
+            settings="\r\n".join(f"{name} := {value}" for name, value in self._origin.settings),
         )
 
 

@@ -22,12 +22,12 @@ from ied_sim.relay.event_recorder import Capture, EventRecorder
 from ied_sim.relay.misbehaviour import RelayMisbehaviour
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.protection import Protection
-from ied_sim.relay.record_archive import Identity, RecordArchive
+from ied_sim.relay.record_archive import RecordArchive, RecordOrigin
 from ied_sim.relay.server import RelayServer
 from ied_sim.relay.settings import relay_settings
 from ied_sim.relay.values import RelayValues
 from ied_sim.texts import RelaySnapshot, TextMaker, texts
-from mms import MOST_CONNECTIONS, AddCause, ControlAction, Server
+from mms import MOST_CONNECTIONS, AddCause, ControlAction, Identity, Server
 from scl import Address, Scl
 from scl.model_text import model_text
 
@@ -88,7 +88,8 @@ class Relay:
         self._configuration = configuration
         self._epoch_ns = epoch_ns
         self._rated_A = rated_current(configuration.plant.motor)
-        self._points = RelayPoints(document.ied(ied_name), profile, str(document.path))
+        ied = document.ied(ied_name)
+        self._points = RelayPoints(ied, profile, str(document.path))
         self.misbehaviour_state = MisbehaviourState(
             configuration.misbehaviour, lambda: self._seconds(RelayClock.now_ns())
         )
@@ -112,9 +113,11 @@ class Relay:
         self._offered: dict[str, TextMaker] = {}
         root, staging = files / ied_name, files / _STAGING / ied_name
         self._event_files = self._make_event_files(root, staging)
-        identity = Identity(ied_name, profile.firmware, configuration.plant.supply.direction, self._settings)
+        origin = RecordOrigin(
+            ied_name, profile.firmware, configuration.plant.supply.direction, self._settings
+        )
         self._archive = RecordArchive(
-            identity, self._event_files, self._journal, self._word, self._clock, self.misbehaviour_state
+            origin, self._event_files, self._journal, self._word, self._clock, self.misbehaviour_state
         )
         self._recorder = EventRecorder(
             ied_name, configuration.plant, configuration.recorder, epoch_ns=epoch_ns, store=self._store
@@ -131,6 +134,8 @@ class Relay:
             operated=self._operate,
             texts={path: self._text(maker) for path, maker in self._offered.items()},
             access=configuration.access,
+            identity=Identity(ied.manufacturer, ied.type, profile.firmware),
+            misbehaviour_state=self.misbehaviour_state,
         )
         self._values = RelayValues(
             self._relay_server,

@@ -6,18 +6,22 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from ied_sim.front.reserved_address import ReservedAddress
+from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.profiles.profile import Profile
 from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.configuration import Access
 from ied_sim.relay.points import RelayPoints
+from ied_sim.relay.report_control import with_optional_fields, without_data_set
 from mms import (
     GOOD,
     MOST_CONNECTIONS,
     AddCause,
     ControlAction,
+    DataAccessError,
     FileAnswer,
     FileOperation,
     FileRequest,
+    Identity,
     Quality,
     Server,
     Timestamp,
@@ -56,9 +60,12 @@ class RelayServer:
         operated: Operated,
         texts: Mapping[str, TextSource],
         access: Access,
+        identity: Identity,
+        misbehaviour_state: MisbehaviourState,
     ) -> None:
         # All models have the same name: relays of one kind then share one text, which is checked once.
-        self._model = sys.intern(model.replace(f"MODEL({name}){{", f"MODEL({_ANY_NAME}){{", 1))
+        anonymous = model.replace(f"MODEL({name}){{", f"MODEL({_ANY_NAME}){{", 1)
+        self._model = sys.intern(_with_built_in(misbehaviour_state, points, anonymous))
         self._name = name
         self._points = points
         self._profile = profile
@@ -69,6 +76,8 @@ class RelayServer:
         self._operated = operated
         self._texts = texts
         self._access = access
+        self._identity = identity
+        self._misbehaviour_state = misbehaviour_state
         self._values: dict[str, Value | Quality] = {}
         self._stamps: dict[str, tuple[str | None, str | None]] = {}
         self._lock = threading.Lock()
@@ -156,17 +165,33 @@ class RelayServer:
             max_connections=sessions,
             report_buffer_bytes=self._profile.report_buffer_bytes,
             file_root=self._root if served else None,
-            on_file_request=self._make_texts if served else None,
+            on_file_request=self._asked_for_file if served else None,
             tls=self._access.tls,
             passwords=self._access.passwords,
+            identity=self._identity,
+            dynamic_data_sets=self._profile.dynamic_data_sets,
+            optional_fields_writable=Kind.REPORT_OPTFIELDS_READONLY not in self._misbehaviour_state.kinds,
         )
+        unreadable = self._points.frequency
+        if unreadable is not None and Kind.UNREADABLE_MEASURAND in self._misbehaviour_state.kinds:
+            server.on_read(unreadable, self._measurand_error)
         for reference in self._points.controls:
             server.on_operate(reference, self._operated)
         if self._values:
             server.update_many(self._values)
         return server
 
-    def _make_texts(self, request: FileRequest) -> FileAnswer:
+    def _measurand_error(self) -> DataAccessError | None:
+        error = self._misbehaviour_state.number(Kind.UNREADABLE_MEASURAND)
+        return None if error is None else DataAccessError(int(error))
+
+    def _asked_for_file(self, request: FileRequest) -> FileAnswer:
+        if self._misbehaviour_state.is_on(Kind.FILES_BUSY):
+            return FileAnswer.BUSY
+        self._make_texts(request)
+        return FileAnswer.SERVE
+
+    def _make_texts(self, request: FileRequest) -> None:
         """Write the texts that a client lists or opens, with their present content."""
         asked = request.path.relative_to(self._root.resolve()).as_posix()
         for path, make in self._texts.items():
@@ -176,4 +201,14 @@ class RelayServer:
                     made = self._staging / Path(path).name
                     made.write_bytes(make())
                     made.replace(self._root / path)
-        return FileAnswer.SERVE
+
+
+def _with_built_in(misbehaviour_state: MisbehaviourState, points: RelayPoints, model: str) -> str:
+    """Return the model text as the misbehaviours require that a relay is built with."""
+    if points.reports is None:
+        return model
+    block = points.reports.rpartition(".")[2]
+    if Kind.REPORT_WITHOUT_DATA_SET in misbehaviour_state.kinds:
+        model = without_data_set(model, block)
+    fields = misbehaviour_state.built_in(Kind.REPORT_OPTFIELDS_READONLY)
+    return model if fields is None else with_optional_fields(model, block, int(fields))

@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from core.machines.parameters import Motor, Nameplate
-from ied_sim.misbehaviour import PARAMETERS, Kind, Misbehaviour
+from ied_sim.misbehaviour import BUILT_IN, PARAMETERS, Kind, Misbehaviour
 from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import rated_current
@@ -264,6 +264,15 @@ class MisbehaviourTable(Table):
     by_bytes: int | None = None
     offset_s: float | None = None
     sessions: Annotated[int, Field(ge=0)] | None = None
+    error: Annotated[int, Field(ge=0, le=11)] | None = None
+    fields: Annotated[int, Field(ge=0, le=255)] | None = None
+
+    @model_validator(mode="after")
+    def _comes_and_goes_only_if_it_can(self) -> Self:
+        switched = self.at_s is not None or self.switch is not None or self.for_s != inf
+        if self.kind in BUILT_IN and switched:
+            raise ValueError(f"{self.kind} without at_s, for_s and switch: it is there from the start")
+        return self
 
     @model_validator(mode="after")
     def _has_the_number_of_its_kind(self) -> Self:

@@ -51,6 +51,8 @@ ControlHandler = CFUNCTYPE(c_int, c_void_p, c_void_p, c_void_p, c_bool)
 WaitForExecutionHandler = CFUNCTYPE(c_int, c_void_p, c_void_p, c_void_p, c_bool, c_bool)
 # MmsError (parameter, connection, service, local file name, other file name)
 FileAccessHandler = CFUNCTYPE(c_int, c_void_p, c_void_p, c_int, c_char_p, c_char_p)
+# MmsDataAccessError (logical device, logical node, data object, constraint, connection, parameter)
+ReadAccessHandler = CFUNCTYPE(c_int, c_void_p, c_void_p, c_void_p, c_int, c_void_p, c_void_p)
 
 # void (parameter, level, code, message, TLS connection)
 TlsEventHandler = CFUNCTYPE(None, c_void_p, c_int, c_int, c_char_p, c_void_p)
@@ -213,12 +215,18 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "IedServerConfig_enableFileService": (None, [c_void_p, c_bool]),
     "IedServerConfig_setFileServiceBasePath": (None, [c_void_p, c_char_p]),
     "IedServerConfig_enableDynamicDataSetService": (None, [c_void_p, c_bool]),
+    "IedServerConfig_setMaxDomainSpecificDataSets": (None, [c_void_p, c_int]),
+    "IedServerConfig_setMaxAssociationSpecificDataSets": (None, [c_void_p, c_int]),
+    "IedServerConfig_setMaxDataSetEntries": (None, [c_void_p, c_int]),
+    "IedServerConfig_setReportSetting": (None, [c_void_p, c_uint8, c_bool]),
     "IedServerConfig_enableLogService": (None, [c_void_p, c_bool]),
     "IedServerConfig_useIntegratedGoosePublisher": (None, [c_void_p, c_bool]),
     "IedServer_createWithConfig": (c_void_p, [c_void_p, c_void_p, c_void_p]),
     "IedServer_destroy": (None, [c_void_p]),
     "IedServer_setAuthenticator": (None, [c_void_p, Authenticator, c_void_p]),
     "IedServer_setLocalIpAddress": (None, [c_void_p, c_char_p]),
+    "IedServer_setServerIdentity": (None, [c_void_p, c_char_p, c_char_p, c_char_p]),
+    "IedServer_setReadAccessHandler": (None, [c_void_p, ReadAccessHandler, c_void_p]),
     "IedServer_setWriteAccessPolicy": (None, [c_void_p, c_int, c_int]),
     "IedServer_startThreadless": (None, [c_void_p, c_int]),
     "IedServer_stopThreadless": (None, [c_void_p]),

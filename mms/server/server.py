@@ -17,20 +17,18 @@ from mms.binding.library import library
 from mms.binding.value_conversion import decode
 from mms.control_model import AddCause, ControlModel
 from mms.errors import ModelError, ServerStartFailed
-from mms.references import FunctionalConstraint
 from mms.security.passwords import make_authenticator
 from mms.security.tls import TlsConfiguration, TlsContext
 from mms.server.controls import ControlAction, OperateHandler, install_operate_handler
 from mms.server.file_access import FileGuard, FileHook, install_file_guard
 from mms.server.model import Model, Node
 from mms.server.pump import ServerPump
+from mms.server.read_access import ReadHandler, install_read_handlers
+from mms.server.services import MOST_CONNECTIONS, Identity, Services, create_server
 from mms.values import Quality, Value
 
-_DENY: Final = 1  # AccessPolicy
 _TURN_DELAY_AFTER_REQUEST_S: Final = 0.01
 """A request makes reports only if it enables a block or asks for a general interrogation."""
-MOST_CONNECTIONS: Final = 5
-"""Most clients of one server: a limit compiled into the wheel's library."""
 
 
 class _State(Enum):
@@ -73,6 +71,12 @@ class Server:
         Accepted passwords. Without any, no password is required.
     tls_handshake_timeout_s : float
         Longest TLS handshake, during which nobody else is served [s].
+    identity : Identity, optional
+        What the Identify service answers. The library's own name by default.
+    dynamic_data_sets : int
+        Most data sets that clients may create in a logical device. 0 for no such service.
+    optional_fields_writable : bool
+        Whether clients may choose the optional fields of reports (OptFlds).
 
     Raises
     ------
@@ -89,12 +93,14 @@ class Server:
         file_root: Path | None = None, max_connections: int = MOST_CONNECTIONS,
         report_buffer_bytes: int = 65_536, on_file_request: FileHook | None = None,
         tls: TlsConfiguration | None = None, passwords: Iterable[str] = (),
-        tls_handshake_timeout_s: float = 5.0,
+        tls_handshake_timeout_s: float = 5.0, identity: Identity | None = None, dynamic_data_sets: int = 0,
+        optional_fields_writable: bool = True,
     ) -> None:  # fmt: skip
         if not 0 < port < 65536:
             raise ValueError(f"not a TCP port: {port} (the library cannot choose one)")
-        if not 0 < max_connections <= MOST_CONNECTIONS:
-            raise ValueError(f"max_connections is {max_connections}: expected 1 to {MOST_CONNECTIONS}")
+        services = Services(
+            file_root, max_connections, report_buffer_bytes, dynamic_data_sets, optional_fields_writable
+        )
         self.address: Final = address
         self.port: Final = port
         self._lib: Final = library()
@@ -106,46 +112,30 @@ class Server:
         self._handlers: list[object] = []
         self._pump: ServerPump | None = None
         authenticate = make_authenticator(self._lib, passwords)
+        self._readable: dict[int, ReadHandler] = {}
         self._tls = None if tls is None else TlsContext(self._lib, tls)
         try:
             self._model = Model(self._lib, model_text, ied_name)
-            self._server = self._build_server(file_root, max_connections, report_buffer_bytes)
+            try:
+                tls_pointer = None if self._tls is None else self._tls.pointer
+                self._server = create_server(self._lib, self._model.pointer, tls_pointer, services)
+            except ModelError:
+                self._model.destroy()
+                raise
         except BaseException:
             self._destroy_tls()
             raise
+        self._lib.IedServer_setLocalIpAddress(self._server, address.encode("ascii"))
+        if identity is not None:
+            names = (identity.vendor, identity.model, identity.revision)
+            encoded = (name.encode("ascii", "replace") for name in names)
+            self._lib.IedServer_setServerIdentity(self._server, *encoded)
         if authenticate is not None:
             self._handlers.append(authenticate)
             self._lib.IedServer_setAuthenticator(self._server, authenticate, None)
-        self._refuse_writes()
         if file_root is not None:
             guard = FileGuard(file_root, on_file_request)
             self._handlers.append(install_file_guard(self._lib, self._server, guard))
-
-    def _build_server(self, file_root: Path | None, max_connections: int, report_buffer_bytes: int) -> int:
-        lib = self._lib
-        config = lib.IedServerConfig_create()
-        lib.IedServerConfig_setMaxMmsConnections(config, max_connections)
-        lib.IedServerConfig_setReportBufferSize(config, report_buffer_bytes)
-        lib.IedServerConfig_setReportBufferSizeForURCBs(config, report_buffer_bytes)
-        lib.IedServerConfig_enableFileService(config, file_root is not None)
-        if file_root is not None:
-            lib.IedServerConfig_setFileServiceBasePath(config, f"{file_root.resolve()}/".encode())
-        off, on = False, True
-        lib.IedServerConfig_enableDynamicDataSetService(config, off)
-        lib.IedServerConfig_enableLogService(config, on)  # log control blocks are listed; no logs are kept
-        lib.IedServerConfig_useIntegratedGoosePublisher(config, off)
-        tls = None if self._tls is None else self._tls.pointer
-        server = lib.IedServer_createWithConfig(self._model.pointer, tls, config)
-        lib.IedServerConfig_destroy(config)
-        if not server:
-            self._model.destroy()
-            raise ModelError("the model text", "a model the MMS library can serve", "it refuses the model")
-        lib.IedServer_setLocalIpAddress(server, self.address.encode("ascii"))
-        return int(server)
-
-    def _refuse_writes(self) -> None:
-        for constraint in (FunctionalConstraint.SP, FunctionalConstraint.SV, FunctionalConstraint.SE):
-            self._lib.IedServer_setWriteAccessPolicy(self._server, int(constraint), _DENY)
 
     # Lifetime
 
@@ -306,6 +296,23 @@ class Server:
             self._handlers.append(
                 install_operate_handler(self._lib, self._server, node, reference, operated, enhanced=enhanced)
             )
+
+    def on_read(self, reference: str, handler: ReadHandler) -> None:
+        """Set the handler that is asked before a client reads a data object or a part of it.
+
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO".
+        handler : callable
+            Called without arguments. It returns None, or the DataAccessError that the client gets instead of
+            the value.
+        """
+        with self._lock:
+            self._require_alive("on_read")
+            if not self._readable:
+                self._handlers.append(install_read_handlers(self._lib, self._server, self._readable))
+            self._readable[self._model.node(reference, Node.DATA_OBJECT)] = handler
 
     # Called by the pump
 
