@@ -1,8 +1,12 @@
 """Averages measured values while they are fresh, and deletes them when they are old."""
 
+from functools import partial
+from threading import Event
+
 from core.units import NANOSECONDS_PER_DAY
 from service.configuration.settings import Settings
 from service.plant import AveragingStep
+from service.retention.batches import Batches
 from service.storage import Repository
 from service.timing.wall_clock import WallClock
 
@@ -17,7 +21,9 @@ class Housekeeping:
     Neither loses anything by waiting.
     """
 
-    def __init__(self, settings: Settings, repository: Repository) -> None:
+    def __init__(self, settings: Settings, repository: Repository, stopping: Event | None = None) -> None:
+        """stopping: set when deleting should end, though there is more to delete."""
+        self._stopping = stopping or Event()
         self._repository = repository
         self._kept_days = {
             AveragingStep.AS_SAMPLED: settings.metering_sample_days,
@@ -34,7 +40,7 @@ class Housekeeping:
         self._repository.average_measurements(now_ns=now_ns)
         if not self._clock.is_settled:
             return
+        batches = Batches(stop=self._stopping)
         for step, days in self._kept_days.items():
-            self._repository.forget_measurements(
-                step.value, before_ns=now_ns - round(days * NANOSECONDS_PER_DAY)
-            )
+            before_ns = now_ns - round(days * NANOSECONDS_PER_DAY)
+            batches.run(partial(self._repository.forget_measurements, step.value, before_ns=before_ns))

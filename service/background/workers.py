@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from threading import Event
 
 from service.background import housekeeping, orphaned_requests, scheduling
 from service.background.housekeeping import Housekeeping
@@ -41,7 +42,8 @@ def background_workers(
     pause before a gateway that ended is started again.
     """
     scheduler = Scheduler(plant.motors, repository)
-    keeper = Housekeeping(settings, repository)
+    stopping = Event()
+    keeper = Housekeeping(settings, repository, stopping)
     ender = OrphanedRequestEnder(
         settings, repository, gateway_problem=gateway_problem, restart_delay_s=restart_delay_s
     )
@@ -54,6 +56,7 @@ def background_workers(
             lambda: keeper.average_and_delete(time.time_ns(), time.monotonic_ns()),
             period_s=periods.housekeeping_s,
             at_once=True,
+            stopping=stopping,
         ),
         "orphaned_requests": PeriodicWorker(
             "ending of orphaned requests",

@@ -19,6 +19,9 @@ BUSY_TIMEOUT_S = 30.0
 LOOK_S = 0.003
 """A waiting writer looks this often whether SQLite's write lock is free."""
 
+LARGEST_LOG_BYTES = 64 * 1024**2
+"""SQLite cuts its write-ahead log to this size when it begins it anew."""
+
 WRITES = "statorwatch_writes"
 """This execution option marks connections that will write."""
 
@@ -87,7 +90,9 @@ def _prepare_sqlite(connection: DBAPIConnection, entry: ConnectionPoolEntry) -> 
     # WAL: readers do not wait for the writer of the other process.
     # synchronous=FULL: a request answered with 202 and a record whose EntryID the relay may forget
     # survive a power cut; NORMAL could lose the last commits. Few commits a second can afford an fsync each.
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+    # journal_size_limit: the log that one long transaction has made large does not stay so for ever.
+    journal_size_limit = f"journal_size_limit={LARGEST_LOG_BYTES}"
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", journal_size_limit):
         cursor.execute(f"PRAGMA {pragma}")
     cursor.close()
 

@@ -30,10 +30,12 @@ class PeriodicWorker:
         period_s: float,
         at_once: bool = False,
         once_more: bool = False,
+        stopping: Event | None = None,
     ) -> None:
         """
         at_once: begin with the work, not with a pause.
         once_more: do the work a last time after `stop`.
+        stopping: set by `stop`, for work that may take long and should then end.
         """
         self._name = name
         self._work = work
@@ -42,7 +44,7 @@ class PeriodicWorker:
         self._once_more = once_more
         self._backoff = Backoff(period_s, max(period_s, LONGEST_PAUSE_S))
         self._unforeseen = 0
-        self._stopping = Event()
+        self._stopping = stopping or Event()
         self._due = Event()
         self._thread = Thread(target=self._run, name=name, daemon=True)
         self._started = False

@@ -1,5 +1,6 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
+from service.storage.records.deletions import DeletedRows
 from service.storage.records.diagnoses import (
     ClaimedJob,
     Counts,
@@ -33,6 +34,7 @@ __all__ = [
     "ClockReading",
     "Counts",
     "Cursor",
+    "DeletedRows",
     "DiagnosisEntry",
     "GatewayEntry",
     "IedEntry",

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from itertools import pairwise
+from time import monotonic
 from typing import Any
 
 from sqlalchemy import ColumnElement, bindparam, case, delete, func, insert, literal, select
@@ -11,7 +12,7 @@ from core.units import NANOSECONDS_PER_SECOND
 from service.plant import AveragingStep, MeteredQuantity
 from service.storage.engine import one_at_a_time
 from service.storage.models import MeasurementRow, MotorRow
-from service.storage.records import Cursor, Measurement, Page, Sample
+from service.storage.records import Cursor, DeletedRows, Measurement, Page, Sample
 from service.storage.repository.sessions import Order, Sessions, found, page_of
 
 LATENESS_NS = 120 * NANOSECONDS_PER_SECOND
@@ -70,14 +71,23 @@ class MeasurementRows(Sessions):
                 from_ns = 0 if latest is None else latest + step_ns
                 _average(session, finer, step_s, from_ns, to_ns)
 
-    def forget_measurements(self, step_s: int, *, before_ns: int) -> None:
-        """Delete the measurements of one step from before a time."""
+    def forget_measurements(self, step_s: int, rows: int, *, before_ns: int) -> DeletedRows:
+        """Delete the oldest measurements of one step from before a time.
+
+        rows: about how many at most. Those of one time go together, so it may be one more for each motor.
+        """
+        old = (MeasurementRow.step_s == step_s, MeasurementRow.time_ns < before_ns)
+        in_order = select(MeasurementRow.time_ns).where(*old).order_by(MeasurementRow.time_ns)
+        with self._read() as session:
+            # Where the batch ends is looked up before it begins, while others may write.
+            end_ns = session.scalar(in_order.offset(rows - 1).limit(1))
+        if end_ns is None:
+            end_ns = before_ns - 1
         with self._write() as session:
-            session.execute(
-                delete(MeasurementRow).where(
-                    MeasurementRow.step_s == step_s, MeasurementRow.time_ns < before_ns
-                )
-            )
+            connection = session.connection()
+            began_s = monotonic()
+            deleted = connection.execute(delete(MeasurementRow).where(*old, MeasurementRow.time_ns <= end_ns))
+        return DeletedRows(deleted.rowcount, monotonic() - began_s)
 
     def measurements(
         self,

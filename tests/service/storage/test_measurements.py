@@ -114,3 +114,14 @@ def test_the_same_sample_twice_is_one(repository: Repository) -> None:
     assert measured(repository, 0, "FAN-A2") == []
     with pytest.raises(NotFoundError):
         measured(repository, 0, "NOPE")
+
+
+def test_forgetting_ends_with_a_batch(repository: Repository) -> None:
+    for number in range(10):
+        for motor in ("PUMP-A1", "FAN-A2"):
+            repository.add_samples([Sample(motor, BEGIN_NS + number * SECOND_NS, {"ia_A": 1.0})])
+    before_ns = BEGIN_NS + 8 * SECOND_NS
+    numbers = [repository.forget_measurements(0, 5, before_ns=before_ns).rows for _ in range(4)]
+    assert numbers == [6, 6, 4, 0], "those of one time go together"
+    assert [each.time_ns for each in measured(repository, 0)] == [before_ns, before_ns + SECOND_NS]
+    assert repository.forget_measurements(60, 5, before_ns=before_ns).rows == 0

@@ -1,0 +1,17 @@
+from tests.service.storage.conftest import (
+    database_url,
+    engine,
+    repository,
+    sqlite_database_url,
+    store,
+    the_state_counts_are_right,
+)
+
+__all__ = [
+    "database_url",
+    "engine",
+    "repository",
+    "sqlite_database_url",
+    "store",
+    "the_state_counts_are_right",
+]

@@ -1,0 +1,97 @@
+"""However much there is to forget, others write beside it."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from threading import Event, Thread
+
+import pytest
+from sqlalchemy import Engine
+
+from benchmarks.storage.forgetting import MOTORS, Waits, fill, plant
+from core.units import NANOSECONDS_PER_DAY as DAY_NS
+from service.background.housekeeping import Housekeeping
+from service.configuration.settings import Settings
+from service.retention.batches import Batches, Pace
+from service.storage import Repository, connect
+from service.storage.records import DeletedRows
+from service.timing.wall_clock import SETTLING_S
+from testing.service.plants import NOW_NS, SECOND_NS
+
+RELAYS = [one.name for one in plant().relays]
+HOUR_NS = round(SETTLING_S * SECOND_NS)
+
+
+@contextmanager
+def renewing(url: str, period_s: float) -> Iterator[Waits]:
+    """Renew the lease of a gateway, which has a repository of its own, and note how long each takes."""
+    engine = connect(url)
+    gateways = Repository(engine)
+    gateways.register_gateway("measured", host="here", process_id=1, now_ns=NOW_NS)
+    waits, end = Waits(), Event()
+
+    def renew() -> None:
+        gateways.share_relays("measured", RELAYS, most=MOTORS, problem=None)
+
+    thread = Thread(target=waits.repeat, args=(renew, end.wait, period_s))
+    thread.start()
+    try:
+        yield waits
+    finally:
+        end.set()
+        thread.join()
+        engine.dispose()
+
+
+def test_a_lease_is_renewed_between_the_batches(
+    database_url: str, engine: Engine, repository: Repository
+) -> None:
+    repository.sync_plant(plant())
+    fill(engine, 10_000)
+    batches = Batches(Pace(most_rows=300))
+    with renewing(database_url, 0.002) as waits:
+        number = batches.run(partial(repository.forget_measurements, 0, before_ns=NOW_NS))
+        renewals = len(waits.each_s)
+    assert number >= 10_000
+    assert renewals > 20, "there were at least 30 batches"
+
+
+@pytest.mark.campaign
+def test_no_renewal_waits_for_long(
+    database_url: str, engine: Engine, repository: Repository, tmp_path: Path
+) -> None:
+    """The shortest lease is one second, and a gateway ends itself after four fifths of it."""
+    repository.sync_plant(plant())
+    fill(engine, 300_000)
+    housekeeping = Housekeeping(Settings(data_directory=tmp_path, metering_sample_days=1), repository)
+    housekeeping.average_and_delete(NOW_NS + 2 * DAY_NS, 0)  # the means; the clock is not trusted yet
+    with renewing(database_url, 0.1) as waits:
+        housekeeping.average_and_delete(NOW_NS + 2 * DAY_NS + HOUR_NS, HOUR_NS)
+    assert repository.measurements("MOTOR-000", 0, limit=1).items == ()
+    assert repository.measurements("MOTOR-000", 60, limit=1).items != ()
+    assert len(waits.each_s) > 10
+    assert max(waits.each_s) < 0.5, waits.text()
+
+
+def test_a_batch_takes_about_the_time_it_may() -> None:
+    left = 10_000
+
+    def delete(rows: int) -> DeletedRows:
+        nonlocal left
+        deleted = min(rows, left)
+        left -= deleted
+        return DeletedRows(deleted, deleted * 1e-4)
+
+    batches = Batches(Pace(batch_s=0.05, rest=0.01))
+    assert batches.run(delete) == 10_000
+    assert batches.largest_s == pytest.approx(0.05)
+
+
+def test_a_round_ends_and_so_does_a_service_that_stops() -> None:
+    assert Batches(Pace(round_s=0.05, rest=0.0)).run(lambda rows: DeletedRows(rows, 1e-3)) > 0, (
+        "though there was always more"
+    )
+    stop = Event()
+    stop.set()
+    assert Batches(stop=stop).run(lambda rows: DeletedRows(rows, 1e-3)) == 0
