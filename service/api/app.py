@@ -1,5 +1,6 @@
 """Puts the API together."""
 
+from collections.abc import Mapping
 from importlib.metadata import version
 
 from fastapi import APIRouter, FastAPI
@@ -16,6 +17,7 @@ from service.api import (
     recordings,
     relays,
 )
+from service.api.body_limits import BodyLimits, Route, document
 from service.api.context import ApiContext
 from service.api.host_guard import HostGuard
 
@@ -43,17 +45,17 @@ def create_app(context: ApiContext) -> FastAPI:
     app.include_router(api)
     app.include_router(probes.router)
     problems.install(app)
-    app.add_middleware(
-        HostGuard,
-        hosts=[str(context.settings.bind_address), *context.settings.allowed_hosts],
-        max_body_bytes=context.settings.max_upload_bytes,
-    )
-    _document_problems(app)
+    max_upload_bytes = context.settings.max_upload_bytes
+    uploads = frozenset((method, PREFIX + path) for method, path in recordings.UPLOAD_ROUTES)
+    app.add_middleware(BodyLimits, upload_routes=uploads, max_upload_bytes=max_upload_bytes)
+    hosts = [str(context.settings.bind_address), *context.settings.allowed_hosts]
+    app.add_middleware(HostGuard, hosts=hosts)
+    _complete_document(app, dict.fromkeys(uploads, max_upload_bytes))
     return app
 
 
-def _document_problems(app: FastAPI) -> None:
-    """Add the schema that the routes' error responses point to."""
+def _complete_document(app: FastAPI, limits: Mapping[Route, int]) -> None:
+    """Add the schema that the routes' error responses point to, and the largest body of each route."""
 
     def openapi() -> dict[str, object]:
         if not app.openapi_schema:
@@ -64,6 +66,7 @@ def _document_problems(app: FastAPI) -> None:
             schemas = schema.setdefault("components", {}).setdefault("schemas", {})
             schemas.update(problem.pop("$defs", {}))
             schemas["Problem"] = problem
+            document(schema["paths"], limits)
             app.openapi_schema = schema
         return app.openapi_schema
 

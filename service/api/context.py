@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
+from service.api.admission import Admission
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository
@@ -20,13 +21,18 @@ def _nothing() -> None:
 
 @dataclass(frozen=True, slots=True)
 class ApiContext:
-    """readiness: a check for each part besides the database. on_new_job: tells the runner not to wait."""
+    """readiness: a check for each part besides the database. on_new_job: tells the runner not to wait.
+
+    waveforms_read: one at a time, because each may have much to read. waveforms_sent: to slow clients, too.
+    """
 
     settings: Settings
     repository: Repository
     store: RecordingStore
     readiness: Mapping[str, Problem] = field(default_factory=dict)
     on_new_job: Callable[[], None] = _nothing
+    waveforms_read: Admission = field(default_factory=lambda: Admission("waveforms", 1, wait_s=10.0))
+    waveforms_sent: Admission = field(default_factory=lambda: Admission("waveforms", 16, wait_s=10.0))
 
 
 def _context_of(request: Request) -> ApiContext:

@@ -1,8 +1,8 @@
 """What the documents of the API have in common. Fields that are null are not known (yet)."""
 
-from typing import Annotated
+from typing import Annotated, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, StringConstraints
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
 
 from core.units import NANOSECONDS_PER_SECOND
 
@@ -16,6 +16,19 @@ def _seconds(value: object) -> object:
 
 Seconds = Annotated[float, BeforeValidator(_seconds)]
 """Seconds are made from an integer of nanoseconds."""
+
+
+LONGEST_LIST = 1000
+"""No list of an answer is longer; those that could be are cut off there, or come in pages."""
+
+
+def _begin(found: object) -> object:
+    return found[:LONGEST_LIST] if isinstance(found, list | tuple) else found
+
+
+Item = TypeVar("Item")
+Listed = Annotated[list[Item], BeforeValidator(_begin), Field(max_length=LONGEST_LIST)]
+"""This is a list in an answer."""
 
 
 class Document(BaseModel):

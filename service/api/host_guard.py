@@ -1,4 +1,4 @@
-"""Keeps out what comes by way of somebody's web browser, and what is too large.
+"""Keeps out what comes by way of somebody's web browser.
 
 The API has no passwords: it trusts those who can reach its address, by default programs on this computer. A
 web page in a browser there could reach it too. A browser tells on it: a page of another site sends its
@@ -10,8 +10,7 @@ from http import HTTPStatus
 from urllib.parse import urlsplit
 
 from starlette.datastructures import Headers
-from starlette.exceptions import HTTPException
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.types import ASGIApp, Receive, Scope, Send
 
 from service.api.problems import problem_response
 
@@ -19,10 +18,9 @@ from service.api.problems import problem_response
 class HostGuard:
     """ASGI middleware. `hosts`: names this service goes by; "*" for any."""
 
-    def __init__(self, app: ASGIApp, *, hosts: Collection[str], max_body_bytes: int) -> None:
+    def __init__(self, app: ASGIApp, *, hosts: Collection[str]) -> None:
         self._app = app
         self._hosts = {host.lower() for host in hosts}
-        self._max_body_bytes = max_body_bytes
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -30,7 +28,7 @@ class HostGuard:
             return
         refusal = self._refusal(Headers(scope=scope))
         if refusal is None:
-            await self._app(scope, self._limited(receive), send)
+            await self._app(scope, receive, send)
             return
         status, detail = refusal
         await problem_response(scope["path"], status, detail)(scope, receive, send)
@@ -46,9 +44,6 @@ class HostGuard:
         origin = headers.get("origin")
         if origin is not None and _network_location(origin) != host.lower():
             return HTTPStatus.FORBIDDEN, f"requests from web pages of {origin[:100]!r} are refused"
-        length = headers.get("content-length", "0")
-        if length.isdecimal() and int(length) > self._max_body_bytes:
-            return HTTPStatus.REQUEST_ENTITY_TOO_LARGE, self._too_large()
         return None
 
     def _is_ours(self, host: str) -> bool:
@@ -58,26 +53,6 @@ class HostGuard:
             return (urlsplit(f"//{host}").hostname or "") in self._hosts
         except ValueError:
             return False
-
-    def _limited(self, receive: Receive) -> Receive:
-        """Return a `receive` that counts the bytes of a body, and refuses it beyond the limit."""
-        received = 0
-
-        async def limited() -> Message:
-            nonlocal received
-            message = await receive()
-            received += len(message.get("body", b""))
-            if received > self._max_body_bytes:
-                raise HTTPException(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, self._too_large())
-            return message
-
-        return limited
-
-    def _too_large(self) -> str:
-        return (
-            f"expected at most {self._max_body_bytes} bytes; "
-            "see max_upload_bytes in docs/reference/settings.md"
-        )
 
 
 def _network_location(origin: str) -> str:

@@ -7,8 +7,9 @@ from http import HTTPStatus
 from typing import Annotated, Generic, TypeVar
 
 from fastapi import Query
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 
+from service.api.document import LONGEST_LIST
 from service.api.problems import FieldError, ProblemError
 from service.api.times import MAX_NS
 from service.storage.records import Cursor
@@ -17,7 +18,7 @@ from service.storage.records import Page as StoredPage
 Item = TypeVar("Item")
 Stored = TypeVar("Stored")
 
-Limit = Annotated[int, Query(ge=1, le=1000, description="Most items of this page.")]
+Limit = Annotated[int, Query(ge=1, le=LONGEST_LIST, description="Most items of this page.")]
 CursorText = Annotated[
     str | None,
     Query(max_length=1000, description="`next_cursor` of the page before; without: the first page."),
@@ -28,7 +29,7 @@ DEFAULT_LIMIT = 100
 class Page(BaseModel, Generic[Item]):
     """Some items of a list; `next_cursor` leads to the next page and is null on the last one."""
 
-    items: list[Item]
+    items: Annotated[list[Item], Field(max_length=LONGEST_LIST)]
     next_cursor: str | None
 
 

@@ -1,18 +1,20 @@
 """Every error is a problem document (RFC 9457, application/problem+json), whoever raised it."""
 
 import sqlite3
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from http import HTTPStatus
+from typing import Annotated
 
 import structlog
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
-from pydantic import BaseModel
+from pydantic import BaseModel, Field
 from sqlalchemy.exc import DataError, OperationalError, TimeoutError  # noqa: A004 - that of the database
 from starlette.exceptions import HTTPException
 from structlog.typing import FilteringBoundLogger
 
+from service.api.admission import BusyError
 from service.recording_store.store import RecordingStoreError
 from service.storage.errors import NotFoundError, OutOfServiceError, StateConflictError, UnusableBaselineError
 
@@ -34,6 +36,12 @@ RETRY_AFTER_S = 5
 OF_ALL = (HTTPStatus.UNPROCESSABLE_ENTITY, HTTPStatus.SERVICE_UNAVAILABLE)
 
 
+MAX_ERRORS = 100
+"""An answer names so many faults of a request."""
+
+MAX_LOCATION_LENGTH = 200
+
+
 class FieldError(BaseModel):
     """What is wrong with one part of a request; `location` is the way to it, "query.limit"."""
 
@@ -49,7 +57,7 @@ class Problem(BaseModel):
     status: int
     detail: str
     instance: str
-    errors: list[FieldError] | None = None
+    errors: Annotated[list[FieldError], Field(max_length=MAX_ERRORS)] | None = None
     parts: dict[str, str] | None = None
 
 
@@ -99,6 +107,16 @@ def problem_response(
     )
 
 
+def busy_response(path: str, reason: str) -> JSONResponse:
+    """Return the answer to what would be more work at once than the service takes on."""
+    return problem_response(
+        path,
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        f"{reason}; nothing was changed, try again",
+        headers={"Retry-After": str(RETRY_AFTER_S)},
+    )
+
+
 def _with_status(status: HTTPStatus) -> Callable[[Request, Exception], JSONResponse]:
     def answer(request: Request, error: Exception) -> JSONResponse:
         return problem_response(request.url.path, status, str(error))
@@ -110,6 +128,16 @@ def _unstorable(request: Request, error: Exception) -> JSONResponse:
     """Return the answer to a value that cannot be stored, e.g. a NUL, which PostgreSQL cannot hold."""
     detail = f"the database cannot hold a value of this request: {getattr(error, 'orig', error)}"
     return problem_response(request.url.path, HTTPStatus.UNPROCESSABLE_ENTITY, detail)
+
+
+def _busy(request: Request, error: Exception) -> JSONResponse:
+    return busy_response(request.url.path, str(error))
+
+
+def _location(way: Iterable[str | int]) -> str:
+    """Return the way to a fault; names in it come from the client, and may be long or no proper text."""
+    text = ".".join(str(part)[:MAX_LOCATION_LENGTH] for part in way)[:MAX_LOCATION_LENGTH]
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def install(app: FastAPI) -> None:
@@ -131,6 +159,7 @@ def install(app: FastAPI) -> None:
     for error_type, status in STATUS_OF.items():
         app.add_exception_handler(error_type, _with_status(status))
     app.add_exception_handler(DataError, _unstorable)
+    app.add_exception_handler(BusyError, _busy)
 
     @app.exception_handler(RecordingStoreError)
     def _damaged(request: Request, error: RecordingStoreError) -> JSONResponse:
@@ -157,12 +186,12 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(RequestValidationError)
     def _validation(request: Request, error: RequestValidationError) -> JSONResponse:
         errors = [
-            FieldError(location=".".join(str(part) for part in found["loc"]), message=found["msg"])
-            for found in error.errors()
+            FieldError(location=_location(found["loc"]), message=found["msg"])
+            for found in error.errors()[:MAX_ERRORS]
         ]
         detail = "; ".join(f"{found.location}: {found.message}" for found in errors[:3])
         return problem_response(
-            request.url.path, HTTPStatus.UNPROCESSABLE_ENTITY, detail[:1000], errors=errors[:100]
+            request.url.path, HTTPStatus.UNPROCESSABLE_ENTITY, detail[:1000], errors=errors
         )
 
     @app.exception_handler(Exception)

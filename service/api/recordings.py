@@ -4,21 +4,22 @@ import shutil
 import tempfile
 import time
 import zipfile
-from collections.abc import Iterator
+from collections.abc import AsyncIterator, Iterator
 from http import HTTPStatus
 from pathlib import PurePosixPath
 from typing import Annotated, BinaryIO
 from uuid import UUID
 
-from fastapi import APIRouter, File, Form, Query, Request, Response, UploadFile
+from fastapi import APIRouter, Depends, File, Form, Query, Request, Response, UploadFile
+from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
 from core.recordings import RecordingError, read
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import FieldError, ProblemError, problems
-from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile, Waveform
-from service.api.waveform import waveform_of
+from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile
+from service.api.waveform import MAX_POINTS, Envelope, Waveform, WaveformResponse, envelope_of
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
 from service.storage.records import RecordingEntry
 from service.storage.states import RecordingState
@@ -27,6 +28,9 @@ router = APIRouter(tags=["recordings"])
 
 UPLOAD_SUFFIXES = {*WAVEFORM_SUFFIXES, ".HDR", ".INF"}
 MAX_UPLOAD_FILES = 4
+UPLOAD_ROUTES = frozenset({("POST", "/recordings")})
+"""Routes that take files; bodies of others are small."""
+
 CHUNK_BYTES = 1 << 16
 
 
@@ -48,6 +52,8 @@ def list_recordings(
 @router.post(
     "/recordings",
     status_code=HTTPStatus.CREATED,
+    # Beyond these the parser gives up; up to them the route says which field is wrong.
+    form_limits={"max_files": 2 * MAX_UPLOAD_FILES, "max_fields": 4, "max_part_size": 4096},
     responses=problems(400, 404, 413)
     | {
         200: {
@@ -62,7 +68,13 @@ def upload_recording(
     request: Request,
     response: Response,
     motor: Annotated[str, Form(min_length=1, max_length=200, description="Name of the motor recorded.")],
-    files: Annotated[list[UploadFile], File(description="COMTRADE: .CFG and .DAT, or .CFF; or a .CEV.")],
+    files: Annotated[
+        list[UploadFile],
+        File(
+            description="COMTRADE: .CFG and .DAT, or .CFF; or a .CEV.",
+            json_schema_extra={"maxItems": MAX_UPLOAD_FILES},
+        ),
+    ],
 ) -> RecordingDetails:
     """Store the files of one recording and queue its diagnosis; one the motor has stays as it is."""
     context.repository.motor(motor)
@@ -81,19 +93,30 @@ def get_recording(context: Context, recording_id: UUID) -> RecordingDetails:
     return _details(context, context.repository.recording(str(recording_id)))
 
 
-@router.get("/recordings/{recording_id}/waveform", responses=problems(404, 409))
-def get_waveform(
+async def _sending_turn(context: Context) -> AsyncIterator[None]:
+    """Hold one of the places for waveforms until the answer has been sent."""
+    async with context.waveforms_sent.admitted():
+        yield
+
+
+@router.get(
+    "/recordings/{recording_id}/waveform",
+    response_model=Waveform,
+    dependencies=[Depends(_sending_turn)],
+    responses=problems(404, 409),
+)
+async def get_waveform(
     context: Context,
     recording_id: UUID,
-    points: Annotated[int, Query(ge=2, le=20_000, description="Most intervals a channel.")] = 2000,
-) -> Waveform:
-    """Return the samples of a recording as the smallest and largest value of up to `points` intervals."""
-    entry = context.repository.recording(str(recording_id))
-    path = context.store.entry(_digest(entry))
-    try:
-        return waveform_of(entry.id, read(path), points)
-    except RecordingError as error:
-        raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
+    points: Annotated[int, Query(ge=2, le=MAX_POINTS, description="Most intervals a channel.")] = 2000,
+) -> WaveformResponse:
+    """Return the samples of a recording as the smallest and largest value of up to `points` intervals.
+
+    Records of many channels have fewer intervals (setting max_waveform_values).
+    """
+    async with context.waveforms_read.admitted():
+        envelope = await run_in_threadpool(_envelope, context, str(recording_id), points)
+    return WaveformResponse(str(recording_id), envelope)
 
 
 @router.get(
@@ -111,6 +134,15 @@ def download_recording(context: Context, recording_id: UUID) -> StreamingRespons
         media_type="application/zip",
         headers={"Content-Disposition": f'attachment; filename="{stored.name}.zip"'},
     )
+
+
+def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
+    entry = context.repository.recording(recording_id)
+    path = context.store.entry(_digest(entry))
+    try:
+        return envelope_of(read(path), points, context.settings.max_waveform_values)
+    except RecordingError as error:
+        raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
 
 
 def _digest(entry: RecordingEntry) -> str:

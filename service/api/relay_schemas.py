@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from service.api.document import Document, Seconds
+from service.api.document import Document, Listed, Seconds
 from service.api.times import Time
 from service.plant.differences import DifferenceKind
 from service.plant.overrides import TriggerAction
@@ -125,8 +125,8 @@ class Acquisition(Document):
     records_told_by: Literal["buffered-report", "unbuffered-report", "polling"]
     report_control: str | None
     events_directory: str | None
-    overridden: list[str]
-    remarks: list[str]
+    overridden: Listed[str]
+    remarks: Listed[str]
 
 
 class Difference(Document):
@@ -154,10 +154,10 @@ class IedDetails(Ied):
 
     gateway: str | None
     figures: LinkFigures
-    changes: list[LinkChange]
+    changes: Listed[LinkChange]
     quarantine: Quarantine | None
-    alarms: list[Alarm]
+    alarms: Listed[Alarm]
     acquisition: Acquisition | None
-    differences: list[Difference]
-    ignored_files: list[IgnoredFile]
+    differences: Listed[Difference]
+    ignored_files: Listed[IgnoredFile]
     ignored_files_in_all: int

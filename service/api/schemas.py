@@ -4,13 +4,12 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Annotated, Literal
 from uuid import UUID
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model
+from pydantic import AfterValidator, BaseModel, ConfigDict, FailFast, Field, StringConstraints, create_model
 
 from core.diagnosis import methods
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
-from core.recordings import Quantity
-from service.api.document import Document
+from service.api.document import Document, Listed
 from service.api.relay_schemas import RelayClock
 from service.api.times import Time
 from service.plant import MeteredQuantity
@@ -36,8 +35,9 @@ def _one_of(known: Iterable[str]) -> AfterValidator:
     return AfterValidator(check)
 
 
-Method = Annotated[str, _one_of(methods.Method), Field(json_schema_extra={"enum": [*methods.Method]})]
-Model = Annotated[str, _one_of(methods.Model), Field(json_schema_extra={"enum": [*methods.Model]})]
+Choice = Annotated[str, StringConstraints(max_length=50)]
+Method = Annotated[Choice, _one_of(methods.Method), Field(json_schema_extra={"enum": [*methods.Method]})]
+Model = Annotated[Choice, _one_of(methods.Model), Field(json_schema_extra={"enum": [*methods.Model]})]
 
 
 class Site(Document):
@@ -96,8 +96,8 @@ class Diagnosis(Document):
     residual_rms_A: float | None
     evaluations: int
     compute_seconds: float
-    quality: list[QualityFinding]
-    reasons: list[str]
+    quality: Listed[QualityFinding]
+    reasons: Listed[str]
     model: str
     method: str
     load_level_ci95: tuple[float, float] | None = None
@@ -151,13 +151,13 @@ class Recording(RelayClock):
 class BaselineRequest(BaseModel):
     """The recordings that stand for a motor's healthy condition."""
 
-    recording_ids: set[UUID] = Field(min_length=3, max_length=100)
+    recording_ids: Annotated[set[UUID], Field(min_length=3, max_length=100), FailFast()]
 
 
 class Baseline(Document):
     """The motor's healthy recordings; empty where it has no baseline."""
 
-    recordings: list[Recording]
+    recordings: Listed[Recording]
 
 
 class RecordingFile(Document):
@@ -169,7 +169,7 @@ class RecordingFile(Document):
 class RecordingDetails(Recording):
     """A recording with its files and its latest diagnosis."""
 
-    files: list[RecordingFile]
+    files: Listed[RecordingFile]
     diagnosis: Diagnosis | None
 
 
@@ -215,7 +215,7 @@ class Health(Document):
     mu_f_ci95: tuple[float, float] | None
     phase: Literal["a", "b", "c"] | None
     load_level: float | None
-    reasons: list[str]
+    reasons: Listed[str]
     recording_id: str | None
     recorded_time: Time | None
     link_state: LinkState
@@ -259,29 +259,6 @@ else:
 
 class Measurement(_Measurement):
     """What the relay measured: at `time`, or means of `samples` values from then on."""
-
-
-class WaveformChannel(Document):
-    """Smallest and largest sample of each interval, in `unit`; null where the recorder missed them all."""
-
-    name: str
-    quantity: Quantity
-    phase: str | None
-    unit: str
-    minimum: list[float | None]
-    maximum: list[float | None]
-
-
-class Waveform(Document):
-    """Channels over time; `time_s` is where each interval begins, in seconds after `start_time`."""
-
-    recording_id: str
-    start_time: Time
-    trigger_time: Time
-    sample_rate_hz: float
-    samples: int
-    time_s: list[float]
-    channels: list[WaveformChannel]
 
 
 class Status(BaseModel):

@@ -1,42 +1,138 @@
 """A recording for the screen: as many intervals as there are points to draw, no peak lost."""
 
-from math import isfinite
+import asyncio
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+import structlog
+from fastapi.responses import StreamingResponse
 from numpy.typing import NDArray
+from pydantic import Field
+from starlette.types import Send
+from structlog.typing import FilteringBoundLogger
 
-from core.recordings import Recording
-from service.api.schemas import Waveform, WaveformChannel
-from service.api.times import rfc3339
+from core.recordings import Channel, Quantity, Recording
+from service.api.document import Document
+from service.api.times import Time, rfc3339
+
+log: FilteringBoundLogger = structlog.get_logger(__name__)
+
+MAX_POINTS = 20_000
+MAX_CHANNELS = 20_000
+"""A record may have so many (core.recordings)."""
+
+SENDING_LIMIT_S = 60.0
+"""A client that has not taken its answer by then loses it: its figures are held in memory meanwhile."""
+
+Figures = Annotated[list[float | None], Field(max_length=MAX_POINTS)]
 
 
-def waveform_of(recording_id: str, recording: Recording, points: int) -> Waveform:
-    """Return the smallest and largest sample of up to `points` intervals of equal length, within a sample."""
-    count = recording.samples.shape[1]
-    starts = np.unique(np.linspace(0, count, num=min(points, count), endpoint=False).astype(np.int64))
-    lowest, highest = _envelope(recording.samples, starts)
-    return Waveform(
-        recording_id=recording_id,
-        start_time=rfc3339(recording.start_time_ns),
-        trigger_time=rfc3339(recording.trigger_time_ns),
+class WaveformChannel(Document):
+    """Smallest and largest sample of each interval, in `unit`; null where the recorder missed them all.
+
+    Figures have seven digits.
+    """
+
+    name: str
+    quantity: Quantity
+    phase: str | None
+    unit: str
+    minimum: Figures
+    maximum: Figures
+
+
+class Waveform(Document):
+    """Channels over time; `time_s` is where each interval begins, in seconds after `start_time`."""
+
+    recording_id: str
+    start_time: Time
+    trigger_time: Time
+    sample_rate_hz: float
+    samples: int
+    time_s: Annotated[list[float], Field(max_length=MAX_POINTS)]
+    channels: Annotated[list[WaveformChannel], Field(max_length=MAX_CHANNELS)]
+
+
+@dataclass(frozen=True, slots=True)
+class Envelope:
+    """The smallest and largest samples of a recording's intervals, and what else a waveform tells.
+
+    lowest, highest: shape (channels, intervals). times_s: where each interval begins, shape (intervals,).
+    """
+
+    channels: tuple[Channel, ...]
+    lowest: NDArray[np.float32]
+    highest: NDArray[np.float32]
+    times_s: NDArray[np.float64]
+    start_time_ns: int
+    trigger_time_ns: int
+    sample_rate_hz: float
+    samples: int
+
+
+def envelope_of(recording: Recording, points: int, most_values: int) -> Envelope:
+    """Return the envelope of a recording in up to `points` intervals of equal length, within a sample.
+
+    There are fewer where all channels together would have more than `most_values` intervals.
+    """
+    channels, count = recording.samples.shape
+    intervals = min(points, count, max(2, most_values // max(1, channels)))
+    starts = np.unique(np.linspace(0, count, num=intervals, endpoint=False).astype(np.int64))
+    lowest, highest = _extremes(recording.samples, starts)
+    return Envelope(
+        channels=recording.channels,
+        lowest=lowest.astype(np.float32),
+        highest=highest.astype(np.float32),
+        times_s=recording.time_s[starts],
+        start_time_ns=recording.start_time_ns,
+        trigger_time_ns=recording.trigger_time_ns,
         sample_rate_hz=recording.sample_rate_hz,
         samples=count,
-        time_s=recording.time_s[starts].tolist(),
-        channels=[
-            WaveformChannel(
-                name=channel.name,
-                quantity=channel.quantity,
-                phase=channel.phase,
-                unit=channel.unit,
-                minimum=_numbers(lowest[row]),
-                maximum=_numbers(highest[row]),
-            )
-            for row, channel in enumerate(recording.channels)
-        ],
     )
 
 
-def _envelope(
+def waveform_json(recording_id: str, envelope: Envelope) -> Iterator[bytes]:
+    """Return the document `Waveform` piece by piece, one a channel: the whole of it is never in memory."""
+    head = {
+        "recording_id": recording_id,
+        "start_time": rfc3339(envelope.start_time_ns),
+        "trigger_time": rfc3339(envelope.trigger_time_ns),
+        "sample_rate_hz": envelope.sample_rate_hz,
+        "samples": envelope.samples,
+        "time_s": envelope.times_s.tolist(),
+    }
+    yield _compact(head).removesuffix("}").encode() + b',"channels":['
+    for row, channel in enumerate(envelope.channels):
+        about = {
+            "name": channel.name,
+            "quantity": channel.quantity,
+            "phase": channel.phase,
+            "unit": channel.unit,
+        }
+        lowest, highest = _figures(envelope.lowest[row]), _figures(envelope.highest[row])
+        text = f'{_compact(about).removesuffix("}")},"minimum":[{lowest}],"maximum":[{highest}]}}'
+        yield (text if row == 0 else f",{text}").encode()
+    yield b"]}"
+
+
+class WaveformResponse(StreamingResponse):
+    """A waveform on its way to a client that may be slow, but not for ever."""
+
+    def __init__(self, recording_id: str, envelope: Envelope) -> None:
+        super().__init__(waveform_json(recording_id, envelope), media_type="application/json")
+
+    async def stream_response(self, send: Send) -> None:
+        try:
+            async with asyncio.timeout(SENDING_LIMIT_S):
+                await super().stream_response(send)
+        except TimeoutError:
+            log.warning("a client was too slow to take its waveform", limit_s=SENDING_LIMIT_S)
+
+
+def _extremes(
     samples: NDArray[np.float64], starts: NDArray[np.int64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if starts.size == 0:
@@ -45,6 +141,10 @@ def _envelope(
     return np.fmin.reduceat(samples, starts, axis=1), np.fmax.reduceat(samples, starts, axis=1)
 
 
-def _numbers(values: NDArray[np.float64]) -> list[float | None]:
-    """Return the values as a list, with None for NaN, which JSON does not know."""
-    return [value if isfinite(value) else None for value in values.tolist()]
+def _compact(part: Mapping[str, object]) -> str:
+    return json.dumps(part, separators=(",", ":"), allow_nan=False)
+
+
+def _figures(values: NDArray[np.float32]) -> str:
+    """Return the values as the inside of a JSON list, with null for NaN, which JSON does not know."""
+    return ",".join(map("{:.7g}".format, values.tolist())).replace("nan", "null")

@@ -1,0 +1,123 @@
+"""Bounds the body of every request before anything is read of it.
+
+Routes that take files have the limit of the settings (max_upload_bytes), and few of them at once, because the
+files lie in the temporary folder meanwhile. All others take small JSON documents, or nothing.
+"""
+
+from collections.abc import Mapping
+from http import HTTPStatus
+
+import anyio
+from starlette.datastructures import Headers
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.api.admission import Admission, BusyError
+from service.api.problems import busy_response, problem_response
+
+MAX_JSON_BYTES = 16 * 1024
+"""Four times the largest document that a route takes, a baseline of a hundred recordings."""
+
+UPLOADS_AT_ONCE = 3
+UPLOAD_WAIT_S = 10.0
+
+DISCARDED_BYTES = 1 << 20
+DISCARDING_S = 1.0
+"""So much of a refused body is thrown away, so that a client that still sends it gets to see the answer."""
+
+Route = tuple[str, str]
+"""Method and path."""
+
+
+class BodyLimits:
+    """ASGI middleware. `upload_routes`: those that take files of up to `max_upload_bytes`."""
+
+    def __init__(self, app: ASGIApp, *, upload_routes: frozenset[Route], max_upload_bytes: int) -> None:
+        self._app = app
+        self._upload_routes = upload_routes
+        self._max_upload_bytes = max_upload_bytes
+        self._uploads = Admission("uploads", UPLOADS_AT_ONCE, wait_s=UPLOAD_WAIT_S)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        is_upload = (scope["method"], scope["path"]) in self._upload_routes
+        exchange = _Exchange(receive, send, *self._limit(is_upload=is_upload))
+        if exchange.is_too_long(Headers(scope=scope)):
+            refusal = problem_response(
+                scope["path"],
+                HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+                exchange.refusal,
+                headers={"Connection": "close"},
+            )
+            await refusal(scope, exchange.receive, exchange.send)
+        elif is_upload:
+            await self._upload(scope, exchange)
+        else:
+            await self._app(scope, exchange.receive, exchange.send)
+
+    async def _upload(self, scope: Scope, exchange: "_Exchange") -> None:
+        try:
+            async with self._uploads.admitted():
+                await self._app(scope, exchange.receive, exchange.send)
+        except BusyError as error:
+            await busy_response(scope["path"], str(error))(scope, exchange.receive, exchange.send)
+
+    def _limit(self, *, is_upload: bool) -> tuple[int, str]:
+        if is_upload:
+            return self._max_upload_bytes, "; see max_upload_bytes in docs/reference/settings.md"
+        return MAX_JSON_BYTES, ""
+
+
+def document(operations: Mapping[str, Mapping[str, dict[str, object]]], limits: Mapping[Route, int]) -> None:
+    """Write the limit into each operation of an OpenAPI document (path, method) that has a body."""
+    for path, methods in operations.items():
+        for method, operation in methods.items():
+            if "requestBody" in operation:
+                operation["x-max-body-bytes"] = limits.get((method.upper(), path), MAX_JSON_BYTES)
+
+
+class _Exchange:
+    """The messages of one request, of which no more than `limit` bytes of body are let through."""
+
+    def __init__(self, receive: Receive, send: Send, limit: int, advice: str) -> None:
+        self._receive = receive
+        self._send = send
+        self._limit = limit
+        self._received = 0
+        self._refused = False
+        self.refusal = f"expected at most {limit} bytes{advice}"
+
+    def is_too_long(self, headers: Headers) -> bool:
+        """Whether the body says of itself that it is too long; then its answer is a refusal."""
+        length = headers.get("content-length", "0")
+        self._refused = length.isdecimal() and int(length) > self._limit
+        return self._refused
+
+    async def receive(self) -> Message:
+        message = await self._receive()
+        self._received += len(message.get("body", b""))
+        if self._received > self._limit:
+            self._refused = True
+            raise HTTPException(
+                HTTPStatus.REQUEST_ENTITY_TOO_LARGE, self.refusal, headers={"Connection": "close"}
+            )
+        return message
+
+    async def send(self, message: Message) -> None:
+        if not self._refused or message["type"] != "http.response.body" or message.get("more_body", False):
+            await self._send(message)
+            return
+        await self._send({**message, "more_body": True})
+        await self._discard()
+        await self._send({"type": "http.response.body", "body": b""})
+
+    async def _discard(self) -> None:
+        discarded = 0
+        with anyio.move_on_after(DISCARDING_S):
+            while discarded <= DISCARDED_BYTES:
+                message = await self._receive()
+                discarded += len(message.get("body", b""))
+                if not message.get("more_body", False):
+                    return

@@ -1,0 +1,191 @@
+"""No request is larger than its route takes, and no list or text of a document is without a bound."""
+
+import json
+import socket
+import threading
+from collections.abc import Iterator
+from typing import Any
+from urllib.parse import urlsplit
+
+import httpx
+import pytest
+
+from service.api import ApiContext, create_app
+from service.api.body_limits import MAX_JSON_BYTES, UPLOADS_AT_ONCE
+from service.api.problems import MAX_ERRORS
+from testing.waiting import wait_until
+from tests.service.api.serving import serving
+
+NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
+BASELINE = "/api/v1/motors/PUMP-A1/baseline"
+DIAGNOSES = f"/api/v1/recordings/{NO_SUCH_ID}/diagnoses"
+IDS = ("recording_id", "diagnosis_id", "report_id")
+BEGINNING = b'--b\r\nContent-Disposition: form-data; name="files"; filename="E.CFF"\r\n\r\n'
+METHODS = ("get", "put", "post", "patch", "delete")
+
+
+def operations(document: dict[str, Any]) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    for path, methods in document["paths"].items():
+        for method, operation in methods.items():
+            if method in METHODS:
+                yield method.upper(), path, operation
+
+
+def schemas_in(part: object, document: dict[str, Any], way: str = "") -> Iterator[tuple[str, dict[str, Any]]]:
+    """Every schema below a part of the document, with the way to it; references are followed once."""
+    seen: set[str] = set()
+
+    def walk(part: object, way: str) -> Iterator[tuple[str, dict[str, Any]]]:
+        if isinstance(part, list):
+            for one in part:
+                yield from walk(one, way)
+        elif isinstance(part, dict):
+            reference = part.get("$ref")
+            if isinstance(reference, str):
+                name = reference.rpartition("/")[2]
+                if name not in seen:
+                    seen.add(name)
+                    yield from walk(document["components"]["schemas"][name], f"{way}/{name}")
+                return
+            yield way, part
+            for key, value in part.items():
+                yield from walk(value, f"{way}/{key}")
+
+    yield from walk(part, way)
+
+
+@pytest.fixture
+def document(client: httpx.Client) -> dict[str, Any]:
+    found = client.get("/api/v1/openapi.json").json()
+    assert isinstance(found, dict)
+    return found
+
+
+def test_every_list_has_a_maximum(document: dict[str, Any]) -> None:
+    unbounded = [
+        way
+        for method, path, operation in operations(document)
+        for way, schema in schemas_in(operation, document, f"{method} {path}")
+        if schema.get("type") == "array" and "maxItems" not in schema
+    ]
+    assert unbounded == []
+
+
+def test_every_text_of_a_request_has_a_maximum(document: dict[str, Any]) -> None:
+    def is_bounded(schema: dict[str, Any]) -> bool:
+        known = {"maxLength", "enum", "const"} & schema.keys() or schema.get("format") == "uuid"
+        return bool(known) or schema.get("contentMediaType") == "application/octet-stream"
+
+    unbounded = [
+        way
+        for method, path, operation in operations(document)
+        for part in ("parameters", "requestBody")
+        for way, schema in schemas_in(operation.get(part, []), document, f"{method} {path} {part}")
+        if schema.get("type") == "string" and not is_bounded(schema)
+    ]
+    assert unbounded == []
+
+
+def test_every_route_refuses_a_body_beyond_its_limit(
+    client: httpx.Client, context: ApiContext, document: dict[str, Any]
+) -> None:
+    with_files = []
+    for method, path, operation in operations(document):
+        limit = operation.get("x-max-body-bytes", MAX_JSON_BYTES)
+        if "requestBody" in operation:
+            assert "x-max-body-bytes" in operation, path
+            assert "413" in operation["responses"], path
+        if limit != MAX_JSON_BYTES:
+            assert limit == context.settings.max_upload_bytes
+            with_files.append((method, path))
+        url = path.format(name="PUMP-A1", **dict.fromkeys(IDS, NO_SUCH_ID))
+        (kind,) = operation.get("requestBody", {}).get("content", {"application/json": None})
+        bodies: list[bytes | Iterator[bytes]] = [b"x" * (limit + 1)]
+        if "requestBody" in operation:  # in chunks
+            bodies.append(iter([BEGINNING if "form" in kind else b"", b"x" * limit, b"x"]))
+        for body in bodies:
+            refused = client.request(
+                method, url, content=body, headers={"Content-Type": f"{kind}; boundary=b"}
+            )
+            assert refused.status_code == 413, (method, path)
+            assert refused.headers["content-type"] == "application/problem+json"
+            assert str(limit) in refused.json()["detail"]
+    assert with_files == [("POST", "/api/v1/recordings")]
+
+
+def test_a_body_that_says_it_is_too_large_is_refused_before_it_comes(client: httpx.Client) -> None:
+    address = urlsplit(str(client.base_url))
+    with socket.create_connection((address.hostname or "", address.port or 0), timeout=10) as connection:
+        request = f"PUT {BASELINE} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 66000000\r\n\r\n"
+        connection.sendall(request.encode())
+        answer = b""
+        while piece := connection.recv(4096):
+            answer += piece
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 413 ")
+    assert json.loads(body)["status"] == 413
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "body", "status"),
+    [
+        ("PUT", BASELINE, b'{"recording_ids":[' + b"{}," * 4000 + b"{}]}", 422),
+        ("PUT", BASELINE, b"[" + b"{}," * 4000 + b"{}]", 422),
+        ("PUT", BASELINE, b'{"recording_ids":' + b"[" * 8000 + b"]" * 8000 + b"}", 400),
+        ("PUT", BASELINE, b'{"recording_ids":[' + b"9" * 400 + b"]}", 422),
+        ("PUT", BASELINE, b'{"recording_ids":[' + b"9" * 10_000 + b"]}", 400),
+        ("PUT", BASELINE, b'{"recording_ids":["' + b"x" * 10_000 + b'"]}', 422),
+        ("POST", DIAGNOSES, b"{" + b",".join(b'"%d":1' % key for key in range(1500)) + b"}", 422),
+        ("POST", DIAGNOSES, b'{"' + b"x" * 10_000 + b'":1}', 422),
+        ("POST", DIAGNOSES, b'{"\\ud800":1}', 422),
+        ("POST", DIAGNOSES, b'{"method":"' + b"x" * 10_000 + b'"}', 422),
+    ],
+)
+def test_a_hostile_document_has_a_short_answer(
+    client: httpx.Client, method: str, path: str, body: bytes, status: int
+) -> None:
+    response = client.request(method, path, content=body, headers={"Content-Type": "application/json"})
+    assert response.status_code == status
+    assert response.headers["content-type"] == "application/problem+json"
+    assert len(response.content) < 200 * MAX_ERRORS
+    assert len(response.json().get("errors", [])) <= MAX_ERRORS
+
+
+def test_validation_of_a_list_stops_at_the_first_fault(client: httpx.Client) -> None:
+    body = {"recording_ids": ["x"] * 300}
+    errors = client.put(BASELINE, json=body).json()["errors"]
+    assert [error["location"] for error in errors] == ["body.recording_ids.0"]
+
+
+def test_uploads_wait_for_one_another(context: ApiContext, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.api.body_limits.UPLOAD_WAIT_S", 0.2)
+    begun, end = threading.Semaphore(0), threading.Event()
+
+    def slow() -> Iterator[bytes]:
+        yield b"--b\r\n"
+        begun.release()
+        end.wait(10)
+        yield b"--b--\r\n"
+
+    headers = {"Content-Type": "multipart/form-data; boundary=b"}
+    with serving(create_app(context)) as client:
+        uploads = [
+            threading.Thread(
+                target=client.post,
+                args=["/api/v1/recordings"],
+                kwargs={"content": slow(), "headers": headers},
+            )
+            for _ in range(UPLOADS_AT_ONCE)
+        ]
+        for upload in uploads:
+            upload.start()
+            begun.acquire()
+        wait_until(lambda: client.post("/api/v1/recordings", content=b"", headers=headers).status_code == 503)
+        refused = client.post("/api/v1/recordings", content=b"", headers=headers)
+        assert refused.headers["content-type"] == "application/problem+json"
+        assert int(refused.headers["retry-after"]) > 0
+        assert client.get("/api/v1/motors").status_code == 200
+        end.set()
+        for upload in uploads:
+            upload.join(10)
+        assert client.post("/api/v1/recordings", content=b"", headers=headers).status_code == 422
