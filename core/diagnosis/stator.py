@@ -16,7 +16,7 @@ from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
 from core.diagnosis.search import METHODS, search
 from core.diagnosis.tolerance import systematic
-from core.diagnosis.verdict import Diagnosis, Verdict
+from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
 from core.machines.base import StatorModel
 from core.machines.parameters import Motor
 from core.machines.playback import Playback, electrical_to_rpm
@@ -24,7 +24,7 @@ from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.quality import examine
 from core.quality.assumed_supply import SUPPLY_UNBALANCE
-from core.quality.finding import QualityFinding
+from core.quality.finding import QualityFinding, finding
 from core.recordings import Quantity, Recording, RecordingError
 from core.signals.terminals import terminals
 
@@ -73,6 +73,28 @@ def diagnose(
     """
     begun = perf_counter()
     _check_known(method, model)
+    try:
+        result = _diagnosed(recording, motor, method, model, baseline, begun, currents_only=currents_only)
+        impossible = not_finite(result.as_dict())
+    except (np.linalg.LinAlgError, ArithmeticError) as error:
+        impossible = str(error)
+    if impossible is None:
+        return result
+    refusal = _not_computable(impossible)
+    return _refused([refusal], perf_counter() - begun, model, method, currents_only=currents_only)
+
+
+def _diagnosed(
+    recording: Recording,
+    motor: Motor,
+    method: str,
+    model: str,
+    baseline: Baseline | None,
+    begun: float,
+    *,
+    currents_only: bool,
+) -> Diagnosis:
+    """Diagnose; figures may not be finite. Raises numpy.linalg.LinAlgError, ArithmeticError too."""
     case, quality, assumed = _accept(recording, motor, currents_only=currents_only)
     if case is None:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
@@ -158,7 +180,13 @@ def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_on
             failed = ", ".join(finding.name for finding in quality if not finding.passed)
             raise DiagnosisError(f"{recording.source or 'recording'}: not fit for a baseline: {failed}")
         model = SplitWinding()
-        seen.append(standing(explain(case, model, search(case, model, DEFAULT_METHOD))))
+        try:
+            seen.append(standing(explain(case, model, search(case, model, DEFAULT_METHOD))))
+        except (np.linalg.LinAlgError, ArithmeticError) as error:
+            what = _not_computable(str(error)).message
+            raise DiagnosisError(
+                f"{recording.source or 'recording'}: not fit for a baseline: {what}"
+            ) from error
     return baseline_of(seen)
 
 
@@ -198,6 +226,14 @@ def _accept(
     rate, frequency = measured.sample_rate_hz, passed.frequency_hz
     case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
     return replace(case, voltages_assumed=assumed), quality, assumed
+
+
+def _not_computable(what: str) -> QualityFinding:
+    return finding(
+        "computability", 1, 0, "figures", passed=False,
+        message=f"the motor's equations give no finite figures ({what}): nameplate and parameters, or the "
+        "recording, are not those of a motor",
+    )  # fmt: skip
 
 
 def _currents_of(recording: Recording) -> Recording:

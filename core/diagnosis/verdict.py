@@ -1,7 +1,9 @@
 """What the diagnosis says of one recording; the shape of `mcc diagnose --json`."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from math import isfinite
 from typing import Literal
 
 from core.quality.finding import QualityFinding
@@ -152,3 +154,36 @@ class Diagnosis:
             "indicators": None if self.indicators is None else self.indicators.as_dict(),
             "currents_only": self.currents_only,
         }
+
+
+def not_finite(document: object) -> str | None:
+    """Return the way to the first number of a document that is infinite, no number, or too large for a float.
+
+    Parameters
+    ----------
+    document : object
+        Mappings, lists, numbers and texts, as JSON takes them.
+
+    Returns
+    -------
+    str or None
+        Keys and indices with dots between, such as "indicators.current_unbalance"; None where all numbers are
+        finite.
+    """
+    left: list[tuple[str, object]] = [("", document)]
+    while left:
+        way, value = left.pop()
+        if isinstance(value, Mapping):
+            left += [(f"{way}.{key}", one) for key, one in value.items()]
+        elif isinstance(value, list | tuple):
+            left += [(f"{way}.{number}", one) for number, one in enumerate(value)]
+        elif isinstance(value, int | float) and not _is_finite(value):
+            return way.removeprefix(".") or "the document"
+    return None
+
+
+def _is_finite(value: float) -> bool:
+    try:
+        return isfinite(value)
+    except OverflowError:  # an integer without a float
+        return False

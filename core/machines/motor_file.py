@@ -3,15 +3,19 @@
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from math import inf, isfinite
+from math import inf
 from pathlib import Path
 
+from core.machines import plausibility
 from core.machines.parameters import ChannelNames, Connection, Limits, MachineParameters, Motor, Nameplate
 
 TABLES = ("nameplate", "parameters", "intervals", "channels", "limits")
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))
-HIGHEST_FAULT_LIMIT = 0.2
-"""Upper end of the search. A higher limit would never be reached and would switch the alarm off."""
+FAULT_LEVELS = (0.0, 0.2)
+"""To the upper end of the search. A higher limit would never be reached and would switch the alarm off."""
+
+MOST_SHOWN = 60
+"""Of a value that is refused, so many characters are shown."""
 
 
 class MotorFileError(ValueError):
@@ -145,7 +149,7 @@ def _table_of(path: Path) -> dict[str, object]:
         raise MotorFileError(
             path, "file", expected="a readable TOML file", found=f"none ({error.strerror})"
         ) from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (ValueError, RecursionError) as error:  # also of tables or numbers that Python has no room for
         raise MotorFileError(
             path, "file", expected="valid TOML in UTF-8", found=f"an error: {error}"
         ) from error
@@ -166,25 +170,23 @@ def _plate_from_table(table: Mapping[str, object], *, name: str, source: Path | 
     intervals = _Table(table, "intervals", source, optional=True)
     limits = _Table(table, "limits", source, optional=True)
     channels = _Table(table, "channels", source, optional=True)
+    rated = _nameplate(nameplate)
     plate = Plate(
         name=name,
-        nameplate=Nameplate(
-            rated_power_W=nameplate.positive("rated_power_W"),
-            rated_voltage_V=nameplate.positive("rated_voltage_V"),
-            rated_frequency_Hz=nameplate.positive("rated_frequency_Hz"),
-            pole_pairs=nameplate.count("pole_pairs"),
-            connection=nameplate.connection("connection"),
-        ),
-        parameters=None
-        if machine is None
-        else MachineParameters(**{parameter: machine.positive(parameter) for parameter in PARAMETERS}),
+        nameplate=rated,
+        parameters=None if machine is None else _parameters(machine, rated),
         channels=ChannelNames(
             currents=channels.names("ia", "ib", "ic"),
             phase_voltages=channels.names("va", "vb", "vc"),
             line_voltages=channels.names("vab", "vbc", "vca"),
         ),
         limits=Limits(
-            fault_level=limits.positive("fault_level", default=Limits().fault_level, most=HIGHEST_FAULT_LIMIT)
+            fault_level=limits.number(
+                "fault_level",
+                FAULT_LEVELS,
+                f"a fraction of at most {FAULT_LEVELS[1]:g} (0.005 means 0.5 %)",
+                default=Limits().fault_level,
+            )
         ),
     )
     for parameter in PARAMETERS:
@@ -194,6 +196,27 @@ def _plate_from_table(table: Mapping[str, object], *, name: str, source: Path | 
         if section is not None:
             section.reject_unknown()
     return plate
+
+
+def _nameplate(table: "_Table") -> Nameplate:
+    voltage_V = table.number("rated_voltage_V", plausibility.RATED_VOLTAGE_V, unit="V")
+    power = plausibility.plausible_power(voltage_V)
+    return Nameplate(
+        rated_power_W=table.number("rated_power_W", (power.least, power.most), str(power)),
+        rated_voltage_V=voltage_V,
+        rated_frequency_Hz=table.number("rated_frequency_Hz", plausibility.RATED_FREQUENCY_HZ, unit="Hz"),
+        pole_pairs=table.count("pole_pairs", plausibility.MOST_POLE_PAIRS),
+        connection=table.connection("connection"),
+    )
+
+
+def _parameters(table: "_Table", nameplate: Nameplate) -> MachineParameters:
+    return MachineParameters(
+        **{
+            one.field: table.number(one.field, (one.least, one.most), str(one))
+            for one in plausibility.plausible_parameters(nameplate)
+        }
+    )
 
 
 class _Table:
@@ -209,12 +232,23 @@ class _Table:
         self._values, self._name, self._source = values, name, source
         self._known: set[str] = set()
 
-    def positive(self, key: str, *, default: float | None = None, most: float = inf) -> float:
+    def number(
+        self,
+        key: str,
+        ends: tuple[float, float],
+        expected: str = "",
+        *,
+        unit: str = "",
+        default: float | None = None,
+    ) -> float:
+        """Return a number above zero between the ends, which belong to it. `expected`: those in words."""
         value = self._take(key, default)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value) or value <= 0:
-            raise self._error(key, "a number above zero", value)
-        if value > most:
-            raise self._error(key, f"a fraction of at most {most:g} (0.005 means 0.5 %)", value)
+        low, high = ends
+        expected = expected or f"{low:g} to {high:g} {unit}"
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:
+            raise self._error(key, f"a number above zero, {expected}", value)
+        if not low <= value <= high:
+            raise self._error(key, expected, value)
         return float(value)
 
     def interval(self, key: str) -> tuple[float, float] | None:
@@ -228,12 +262,15 @@ class _Table:
             or not 0.0 < value[0] <= value[1] < inf
         ):
             raise self._error(key, "[low, high], two numbers above zero", value)
-        return float(value[0]), float(value[1])
+        try:
+            return float(value[0]), float(value[1])
+        except OverflowError:
+            raise self._error(key, "numbers that a computer can hold", value) from None
 
-    def count(self, key: str) -> int:
+    def count(self, key: str, most: int) -> int:
         value = self._take(key, None)
-        if isinstance(value, bool) or not isinstance(value, int) or value < 1:
-            raise self._error(key, "a whole number of at least 1", value)
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+            raise self._error(key, f"a whole number of 1 to {most}", value)
         return value
 
     def connection(self, key: str) -> Connection:
@@ -272,5 +309,14 @@ class _Table:
         return self._values.get(key, default)
 
     def _error(self, key: str, expected: str, found: object) -> MotorFileError:
-        shown = "nothing" if found is None else repr(found)
+        shown = "nothing" if found is None else _shown(found)
         return MotorFileError(self._source, f"[{self._name}] {key}", expected=expected, found=shown)
+
+
+def _shown(value: object) -> str:
+    """Return a value for a message; TOML has integers of any length, of which Python prints only some."""
+    try:
+        text = repr(value)
+    except ValueError:
+        return "a number of thousands of digits"
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."

@@ -1,11 +1,12 @@
 """Writer of MOTOR.toml, with the 95 % intervals of what was estimated and remarks on what was not."""
 
 import json
+import tomllib
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
-from core.machines.motor_file import MotorFileError
+from core.machines.motor_file import MotorFileError, motor_from_table
 from core.machines.parameters import ChannelNames, Limits, Motor
 
 Interval = tuple[float, float]
@@ -42,9 +43,10 @@ def write_motor(
     Raises
     ------
     MotorFileError
-        If the file cannot be written.
+        If the file cannot be written, or could not be read again: a figure is not plausible.
     """
     text = motor_text(motor, intervals=intervals or {}, remarks=remarks or {}, heading=heading)
+    motor_from_table(tomllib.loads(text), name=motor.name, source=path)
     partial = path.with_name(path.name + ".part")
     try:
         partial.write_text(text, encoding="utf-8")

@@ -1,5 +1,6 @@
 """MOTOR.toml: what it accepts, and how it says what it refuses."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,8 +15,9 @@ from core.machines.parameters import (
     Limits,
     MachineParameters,
     Motor,
-    Nameplate,
 )
+from testing.machines.motors import REFERENCE
+from testing.machines.plausible_motors import plausible_motors
 
 COMPLETE = """
 [nameplate]
@@ -92,6 +94,44 @@ def test_reads_every_field(tmp_path: Path) -> None:
             "[channels] foo",
             "one of ia, ib, ic, va, vab, vb, vbc, vc, vca",
         ),
+        ("= 0.0229", "= 1e-6", "[parameters] inertia_kgm2", "0.000195 to 32.4 kg m^2 (0.003 to 500 s of"),
+        ("= 0.0229", "= 1" + "0" * 399, "[parameters] inertia_kgm2", "0.000195 to 32.4 kg m^2"),
+        ("= 0.0229", "= 1" + "0" * 4999, "file", "valid TOML in UTF-8"),
+        (
+            "= 0.4377",
+            "= 1e300",
+            "[parameters] stator_self_inductance_H",
+            "0.115 to 34.5 H (0.1 to 30 per unit",
+        ),
+        (
+            "= 0.4377",
+            "= inf",
+            "[parameters] stator_self_inductance_H",
+            "a number above zero, 0.115 to 34.5 H",
+        ),
+        (
+            "= 8.4",
+            "= 8.4e3",
+            "[parameters] stator_resistance_ohm",
+            "0.271 to 271 ohm (0.0005 to 0.5 per unit",
+        ),
+        (
+            "rotor_leakage_H = 0.0328",
+            "rotor_leakage_H = 32.8",
+            "[parameters] rotor_leakage_H",
+            " H (0.005 to 1 ",
+        ),
+        ("= 800", "= 0.8", "[nameplate] rated_power_W", "10 to 6.58e+06 W (0.01 to 10000 A at 380 V)"),
+        ("= 380", "= 3.8e5", "[nameplate] rated_voltage_V", "10 to 50000 V"),
+        ("= 50", "= 5", "[nameplate] rated_frequency_Hz", "10 to 400 Hz"),
+        (
+            "pole_pairs = 2",
+            "pole_pairs = 1" + "0" * 399,
+            "[nameplate] pole_pairs",
+            "a whole number of 1 to 100",
+        ),
+        ("[8.3, 8.5]", "[8.3, 1" + "0" * 399 + "]", "[intervals] stator_resistance_ohm", "computer can hold"),
+        ('"I1"', "[" * 20_000, "file", "valid TOML"),
         ("[parameters]", "[[parameters]]", "[parameters]", "a table"),
         ("[parameters]", "[parameters", "file", "valid TOML"),
     ],
@@ -105,6 +145,7 @@ def test_refusal_names_file_field_and_expectation(
     assert refusal.value.field == field
     assert expected in refusal.value.expected
     assert "PUMP-7.toml" in str(refusal.value)
+    assert len(str(refusal.value)) < 500
 
 
 def test_a_missing_file_and_a_missing_table_are_named(tmp_path: Path) -> None:
@@ -126,39 +167,38 @@ def test_a_plate_may_do_without_parameters(tmp_path: Path) -> None:
         read_motor(written(tmp_path, bare))
 
 
-above_zero = st.floats(min_value=1e-9, max_value=1e9)
 names = st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() or text == "\x7f")
 
 
 @given(
-    values=st.lists(above_zero, min_size=10, max_size=10),
-    connection=st.sampled_from(Connection),
+    plausible=plausible_motors(),
     currents=st.one_of(st.none(), st.tuples(names, names, names)),
 )
 def test_what_is_written_is_read_again(
     tmp_path_factory: pytest.TempPathFactory,
-    values: list[float],
-    connection: Connection,
+    plausible: Motor,
     currents: tuple[str, str, str] | None,
 ) -> None:
-    motor = Motor(
-        "PUMP-7",
-        Nameplate(values[0], values[1], values[2], 3, connection),
-        MachineParameters(*values[3:9]),
-        ChannelNames(currents=currents),
-        Limits(0.02),
-    )
+    motor = replace(plausible, channels=ChannelNames(currents=currents), limits=Limits(0.02))
+    inertia = motor.parameters.inertia_kgm2
     path = tmp_path_factory.mktemp("motor") / "PUMP-7.toml"
     write_motor(
         path,
         motor,
-        intervals={"inertia_kgm2": (values[8] * 0.9, values[8] * 1.1)},
+        intervals={"inertia_kgm2": (inertia * 0.9, inertia * 1.1)},
         remarks={"rotor_leakage_H": "fixed\nand said"},
         heading="two\nlines",
     )
     again = read_motor(path)
     assert again.channels == motor.channels
-    assert again.nameplate.connection is connection
+    assert again.nameplate.connection is motor.nameplate.connection
     assert again.limits == motor.limits
     for name in MachineParameters.__slots__:
         assert getattr(again.parameters, name) == pytest.approx(getattr(motor.parameters, name), rel=1e-6)
+
+
+def test_a_motor_that_could_not_be_read_again_is_not_written(tmp_path: Path) -> None:
+    heavy = replace(REFERENCE, parameters=replace(REFERENCE.parameters, inertia_kgm2=1e6))
+    with pytest.raises(MotorFileError, match=r"\[parameters\] inertia_kgm2: expected .* found 1000000"):
+        write_motor(tmp_path / "PUMP-7.toml", heavy)
+    assert list(tmp_path.iterdir()) == []

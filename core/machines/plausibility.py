@@ -1,0 +1,112 @@
+"""Ranges in which the figures of a real induction motor lie, whatever its size.
+
+They are wide: no motor from 100 W to 20 MW is near an end. A figure outside is in another unit, belongs to
+another field, or has a digit too many.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import sqrt
+
+from core.machines.parameters import Connection, Nameplate
+
+RATED_POWER_W = (10.0, 100e6)
+RATED_VOLTAGE_V = (10.0, 50e3)
+RATED_FREQUENCY_HZ = (10.0, 400.0)
+MOST_POLE_PAIRS = 100
+RATED_CURRENT_A = (0.01, 10e3)
+"""Rated power over sqrt(3) times rated voltage [A]."""
+
+RESISTANCE_PU = (0.0005, 0.5)
+LEAKAGE_REACTANCE_PU = (0.005, 1.0)
+MAGNETISING_REACTANCE_PU = (0.1, 30.0)
+INERTIA_CONSTANT_S = (0.003, 500.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Plausible:
+    """The range of one field, and what it comes from.
+
+    Parameters
+    ----------
+    field : str
+        Name of the field in the nameplate or the parameters.
+    least : float
+        Smallest value, in the field's unit.
+    most : float
+        Largest value, in the field's unit.
+    unit : str
+        Unit of the field.
+    because : str
+        What the range stands for, in words.
+    """
+
+    field: str
+    least: float
+    most: float
+    unit: str
+    because: str
+
+    def __str__(self) -> str:
+        """Return the range in words."""
+        return f"{self.least:.3g} to {self.most:.3g} {self.unit} ({self.because})"
+
+
+def plausible_power(rated_voltage_V: float) -> Plausible:
+    """Return the range of the rated power of a motor for this voltage.
+
+    Parameters
+    ----------
+    rated_voltage_V : float
+        Voltage line to line, rms [V].
+
+    Returns
+    -------
+    Plausible
+        Range of `rated_power_W`.
+    """
+    least, most = (sqrt(3.0) * rated_voltage_V * current for current in RATED_CURRENT_A)
+    return Plausible(
+        "rated_power_W",
+        max(RATED_POWER_W[0], least),
+        min(RATED_POWER_W[1], most),
+        "W",
+        f"{RATED_CURRENT_A[0]:g} to {RATED_CURRENT_A[1]:g} A at {rated_voltage_V:g} V",
+    )
+
+
+def plausible_parameters(nameplate: Nameplate) -> Iterator[Plausible]:
+    """Yield the range of each parameter of a motor with this nameplate.
+
+    The base of the impedance is that of a phase winding: V^2 / P in star, 3 V^2 / P in delta. The base of the
+    inertia is the energy that gives an inertia constant H = J w_m^2 / (2 P) at synchronous speed.
+
+    Parameters
+    ----------
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Yields
+    ------
+    Plausible
+        Range of a field of `MachineParameters`.
+    """
+    base_ohm = nameplate.rated_voltage_V**2 / nameplate.rated_power_W
+    if nameplate.connection is Connection.DELTA:
+        base_ohm *= 3.0
+    w_b = nameplate.rated_angular_frequency
+    base_H = base_ohm / w_b
+    base_kgm2 = 2.0 * nameplate.rated_power_W / (w_b / nameplate.pole_pairs) ** 2
+    of_rating = "per unit of the nameplate"
+    for field in ("stator_resistance_ohm", "rotor_resistance_ohm"):
+        yield _scaled(field, RESISTANCE_PU, base_ohm, "ohm", of_rating)
+    for field in ("stator_leakage_H", "rotor_leakage_H"):
+        yield _scaled(field, LEAKAGE_REACTANCE_PU, base_H, "H", of_rating)
+    # The magnetising inductance is 1.5 times the self-inductance.
+    yield _scaled("stator_self_inductance_H", MAGNETISING_REACTANCE_PU, base_H / 1.5, "H", of_rating)
+    yield _scaled("inertia_kgm2", INERTIA_CONSTANT_S, base_kgm2, "kg m^2", "s of inertia constant")
+
+
+def _scaled(field: str, ends: tuple[float, float], base: float, unit: str, of: str) -> Plausible:
+    least, most = ends
+    return Plausible(field, least * base, most * base, unit, f"{least:g} to {most:g} {of}")
