@@ -12,7 +12,14 @@ from sqlalchemy.orm import Session
 from service.configuration.settings import sqlite_url
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
-from service.storage.models import JobRow, RecordingRequestRow, RecordingRow, StateCountRow
+from service.storage.models import (
+    AlarmRow,
+    JobRow,
+    RecordingRequestRow,
+    RecordingRow,
+    StandingAlarmCountRow,
+    StateCountRow,
+)
 from testing.service.job_runner import register_runner
 from testing.service.plants import two_motor_plant
 from testing.service.postgresql import INSTALLED, PostgresServer, binaries, serving_postgresql
@@ -84,6 +91,25 @@ def state_counts(engine: Engine) -> tuple[dict[tuple[str, str], int], dict[tuple
             (table.__tablename__, str(state)): number
             for table in (RecordingRow, RecordingRequestRow, JobRow)
             for state, number in session.execute(select(table.state, func.count()).group_by(table.state))
+        }
+    return kept, counted
+
+
+AlarmCounts = dict[tuple[str, str], int]
+
+
+def standing_alarm_counts(engine: Engine) -> tuple[AlarmCounts, AlarmCounts]:
+    """How many alarms of each kind stand at each relay: as the service keeps it, and counted."""
+    with Session(engine) as session:
+        kept = {
+            (row.ied, str(row.kind)): row.number
+            for row in session.scalars(select(StandingAlarmCountRow))
+            if row.number
+        }
+        standing = select(AlarmRow.ied, AlarmRow.kind, func.count()).where(AlarmRow.cleared_ns.is_(None))
+        counted = {
+            (ied, str(kind)): number
+            for ied, kind, number in session.execute(standing.group_by(AlarmRow.ied, AlarmRow.kind))
         }
     return kept, counted
 

@@ -4,7 +4,7 @@ The code says relay; the tables, their columns and the REST API say IED, as IEC 
 """
 
 from service.storage.models.base import Base
-from service.storage.models.counts import StateCountRow
+from service.storage.models.counts import StandingAlarmCountRow, StateCountRow
 from service.storage.models.diagnoses import DiagnosisRow, JobRow, JobRunnerRow
 from service.storage.models.measurements import MeasurementRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
@@ -46,5 +46,6 @@ __all__ = [
     "RelayFindingsRow",
     "RemoteRecordRow",
     "SiteRow",
+    "StandingAlarmCountRow",
     "StateCountRow",
 ]

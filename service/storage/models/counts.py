@@ -1,8 +1,10 @@
-"""The table of how many rows there are in each state."""
+"""Tables of numbers that are kept, because to count would take longer every year."""
 
+from sqlalchemy import ForeignKey
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.models.base import Base
+from service.storage.states import AlarmKind
 
 
 class StateCountRow(Base):
@@ -12,4 +14,14 @@ class StateCountRow(Base):
 
     counted_table: Mapped[str] = mapped_column(primary_key=True)
     state: Mapped[str] = mapped_column(primary_key=True)
+    number: Mapped[int]
+
+
+class StandingAlarmCountRow(Base):
+    """How many alarms of a kind stand at a relay; without a row, none ever stood."""
+
+    __tablename__ = "standing_alarm_counts"
+
+    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), primary_key=True)
+    kind: Mapped[AlarmKind] = mapped_column(primary_key=True)
     number: Mapped[int]

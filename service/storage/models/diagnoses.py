@@ -73,5 +73,19 @@ class DiagnosisRow(Base):
     document: Mapped[Mapping[str, object]]
 
     __table_args__ = (
-        Index("ix_diagnoses_motor_current_recorded_ns_id", "motor", "current", "recorded_ns", "id"),
+        # All that a point of the trend needs: a row with its document lies on pages of its own.
+        Index(
+            "ix_diagnoses_trend",
+            "motor",
+            "current",
+            "recorded_ns",
+            "id",
+            "recording_id",
+            "verdict",
+            "mu_f",
+            "mu_f_ci95_low",
+            "mu_f_ci95_high",
+            "theta_f",
+            "load_level",
+        ),
     )

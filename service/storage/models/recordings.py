@@ -49,6 +49,8 @@ class RecordingRow(Base):
         ),
         Index("ix_recordings_announced_ns_id", "announced_ns", "id"),
         Index("ix_recordings_motor_announced_ns_id", "motor", "announced_ns", "id"),
+        Index("ix_recordings_state_announced_ns_id", "state", "announced_ns", "id"),
+        Index("ix_recordings_motor_state_announced_ns_id", "motor", "state", "announced_ns", "id"),
         Index("ix_recordings_digest", "digest"),
         Index("ix_recordings_motor_recorded_ns_id", "motor", "recorded_ns", "id"),
         Index(
@@ -115,4 +117,5 @@ class RecordingRequestRow(Base):
         Index("ux_recording_requests_key", "motor", "origin", "idempotency_key", unique=True),
         Index("ix_recording_requests_ied_state_requested_ns", "ied", "state", "requested_ns"),
         Index("ix_recording_requests_requested_ns_id", "requested_ns", "id"),
+        Index("ix_recording_requests_motor_requested_ns_id", "motor", "requested_ns", "id"),
     )

@@ -2,11 +2,19 @@
 
 from collections.abc import Mapping
 
-from sqlalchemy import ForeignKey, Index, String, text
+from sqlalchemy import ForeignKey, Index, String, TextClause, text
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.models.base import Base
 from service.storage.states import AlarmKind, LinkState
+
+STANDING = text("cleared_ns IS NULL")
+CLEARED = text("cleared_ns IS NOT NULL")
+
+
+def _of_alarms(name: str, condition: TextClause, *columns: str) -> Index:
+    """Return an index of those alarms that meet a condition."""
+    return Index(name, *columns, sqlite_where=condition, postgresql_where=condition)
 
 
 class GatewayRow(Base):
@@ -91,13 +99,13 @@ class AlarmRow(Base):
     __table_args__ = (
         Index("ix_alarms_ied_cleared_ns", "ied", "cleared_ns"),
         Index("ix_alarms_raised_ns_id", "raised_ns", "id"),
-        Index(
-            "ix_alarms_standing",
-            "ied",
-            "kind",
-            sqlite_where=text("cleared_ns IS NULL"),
-            postgresql_where=text("cleared_ns IS NULL"),
-        ),
+        Index("ix_alarms_ied_raised_ns_id", "ied", "raised_ns", "id"),
+        # A list of those that stand reads none of the many that are cleared, and the other way round.
+        _of_alarms("ix_alarms_standing", STANDING, "ied", "kind", "subject"),
+        _of_alarms("ix_alarms_standing_raised_ns_id", STANDING, "raised_ns", "id"),
+        _of_alarms("ix_alarms_standing_ied_raised_ns_id", STANDING, "ied", "raised_ns", "id"),
+        _of_alarms("ix_alarms_cleared_raised_ns_id", CLEARED, "raised_ns", "id"),
+        _of_alarms("ix_alarms_cleared_ied_raised_ns_id", CLEARED, "ied", "raised_ns", "id"),
     )
 
 

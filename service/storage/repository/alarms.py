@@ -3,12 +3,13 @@
 import uuid
 from collections.abc import Collection
 
-from sqlalchemy import delete, select, update
+from sqlalchemy import ColumnElement, delete, select, update
 from sqlalchemy.orm import Session
 
 from service.storage.models import AlarmRow, IedRow
 from service.storage.records import Alarm, Cursor, Page
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
+from service.storage.repository.standing_alarm_counts import count_cleared, count_raised
 from service.storage.states import AlarmKind
 
 MOST_CLEARED = 1000
@@ -28,11 +29,7 @@ class AlarmRows(Sessions):
     def clear_alarms(self, relay: str, alarm_ids: Collection[str], *, now_ns: int) -> None:
         """Clear alarms; those that were cleared before stay as they are."""
         with self._write() as session:
-            session.execute(
-                update(AlarmRow)
-                .where(AlarmRow.id.in_(alarm_ids), AlarmRow.cleared_ns.is_(None))
-                .values(cleared_ns=now_ns)
-            )
+            _clear(session, now_ns, AlarmRow.id.in_(alarm_ids))
             cleared = select(AlarmRow.id).where(AlarmRow.ied == relay, AlarmRow.cleared_ns.is_not(None))
             too_old = cleared.order_by(AlarmRow.cleared_ns.desc(), AlarmRow.id.desc()).offset(MOST_CLEARED)
             session.execute(delete(AlarmRow).where(AlarmRow.id.in_(session.scalars(too_old).all())))
@@ -82,8 +79,11 @@ def raised(session: Session, relay: str, kind: AlarmKind, subject: str, reason: 
     )
     row = only(session, standing)
     if row is None:
-        row = AlarmRow(id=str(uuid.uuid4()), ied=relay, kind=kind, subject=subject, raised_ns=now_ns)
+        row = AlarmRow(
+            id=str(uuid.uuid4()), ied=relay, kind=kind, subject=subject, reason=reason, raised_ns=now_ns
+        )
         session.add(row)
+        count_raised(session, relay, kind)
     row.reason = reason
     session.flush()
     return row
@@ -91,11 +91,17 @@ def raised(session: Session, relay: str, kind: AlarmKind, subject: str, reason: 
 
 def clear_standing(session: Session, relay: str, kind: AlarmKind, now_ns: int) -> None:
     """Clear a relay's standing alarms of a kind."""
-    session.execute(
+    _clear(session, now_ns, AlarmRow.ied == relay, AlarmRow.kind == kind)
+
+
+def _clear(session: Session, now_ns: int, *which: ColumnElement[bool]) -> None:
+    cleared = session.execute(
         update(AlarmRow)
-        .where(AlarmRow.ied == relay, AlarmRow.kind == kind, AlarmRow.cleared_ns.is_(None))
+        .where(*which, AlarmRow.cleared_ns.is_(None))
         .values(cleared_ns=now_ns)
+        .returning(AlarmRow.ied, AlarmRow.kind)
     )
+    count_cleared(session, [(ied, kind) for ied, kind in cleared])
 
 
 def alarm(row: AlarmRow) -> Alarm:

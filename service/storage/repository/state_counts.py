@@ -7,12 +7,12 @@ from typing import TypeVar
 from sqlalchemy import func, select
 
 from service.storage.models import (
-    AlarmRow,
     Base,
     IedRow,
     JobRow,
     RecordingRequestRow,
     RecordingRow,
+    StandingAlarmCountRow,
     StateCountRow,
 )
 from service.storage.records import Counts
@@ -27,10 +27,10 @@ class StateCounts(Sessions):
         """Count what there is now; of relays and their alarms, those in service only."""
         links = select(IedRow.link_state, func.count()).where(IedRow.in_service).group_by(IedRow.link_state)
         alarms = (
-            select(AlarmRow.kind, func.count())
-            .join(IedRow, IedRow.name == AlarmRow.ied)
-            .where(IedRow.in_service, AlarmRow.cleared_ns.is_(None))
-            .group_by(AlarmRow.kind)
+            select(StandingAlarmCountRow.kind, func.sum(StandingAlarmCountRow.number))
+            .join(IedRow, IedRow.name == StandingAlarmCountRow.ied)
+            .where(IedRow.in_service)
+            .group_by(StandingAlarmCountRow.kind)
         )
         with self._read() as session:
             numbers = {
@@ -38,7 +38,7 @@ class StateCounts(Sessions):
             }
             return Counts(
                 links=dict(session.execute(links).all()),
-                alarms=dict(session.execute(alarms).all()),
+                alarms={kind: int(number) for kind, number in session.execute(alarms) if number},
                 recording_requests=_of(RecordingRequestRow, RecordingRequestState, numbers),
                 recordings=_of(RecordingRow, RecordingState, numbers),
                 jobs=_of(JobRow, JobState, numbers),

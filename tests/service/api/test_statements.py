@@ -52,7 +52,7 @@ def test_the_metrics_read_no_table_that_grows(
 ) -> None:
     diagnose(repository)
     statements = asked("/metrics")
-    for table in ("recordings", "recording_requests", "jobs", "diagnoses"):
+    for table in ("recordings", "recording_requests", "jobs", "diagnoses", "alarms"):
         assert not [statement for statement in statements if f"FROM {table}" in statement]
     figures = client.get("/metrics").text
     assert 'mcc_recordings{state="diagnosed"} 1.0' in figures

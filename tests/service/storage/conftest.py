@@ -6,7 +6,7 @@ import pytest
 
 from service.storage.states import JobState, RecordingRequestState, RecordingState
 from tests.service.fixtures import database_url as sqlite_database_url
-from tests.service.fixtures import engine, repository, state_counts, store
+from tests.service.fixtures import engine, repository, standing_alarm_counts, state_counts, store
 
 __all__ = ["engine", "repository", "sqlite_database_url", "store"]
 
@@ -28,6 +28,8 @@ def the_state_counts_are_right(request: pytest.FixtureRequest) -> Iterator[None]
     yield
     kept, counted = state_counts(engine)
     assert kept == counted
+    kept_alarms, standing_alarms = standing_alarm_counts(engine)
+    assert kept_alarms == standing_alarms
     assert set(kept) == {
         *(("recordings", state.value) for state in RecordingState),
         *(("recording_requests", state.value) for state in RecordingRequestState),

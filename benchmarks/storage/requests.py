@@ -1,0 +1,173 @@
+"""What is asked of the API: every route that reads, with each filter, at the beginning and far down."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from string import Formatter
+from typing import Any
+from urllib.parse import parse_qsl, urlsplit
+
+from fastapi import FastAPI
+
+from benchmarks.storage import rows
+from benchmarks.storage.plant import BUSY, IDLE, QUIET, motor_name, relay_name
+from service.api.pages import encode
+from service.api.times import rfc3339
+
+LIST_GOAL_S = 0.050
+GOALS_S = {"/api/v1/motors/{name}/trend": 0.030, "/metrics": 0.100}
+"""How long a route may take, of a hundred requests the 95th; all others LIST_GOAL_S."""
+
+UNTIMED = {
+    "/api/v1/recordings/{recording_id}/waveform": "reads one record from the recording store",
+    "/api/v1/recordings/{recording_id}/file": "reads one record from the recording store",
+    "/healthz": "asks the database nothing",
+}
+"""Routes that read, and why they are not timed."""
+
+_MOTOR = ("{busy}", "{quiet}", "{idle}", "{some}")
+_RELAY = ("{busy_relay}", "{some_relay}")
+
+TIMED: Mapping[str, tuple[str, ...]] = {
+    "/api/v1/sites": ("", "?limit=2&cursor={name}"),
+    "/api/v1/motors": ("", "?limit=1000", "?health=true", "?health=true&cursor={name}", "?cursor={name}"),
+    "/api/v1/motors/{name}": ("{some}",),
+    "/api/v1/motors/{name}/health": _MOTOR,
+    "/api/v1/motors/{name}/trend": (
+        *_MOTOR,
+        *(f"{motor}?limit=1000" for motor in _MOTOR),
+        "{busy}?limit=1000&cursor={deep}",
+        "{busy}?limit=1000&quantity=load_level",
+        "{busy}?limit=1000&quantity=theta_f&from={from}",
+        "{busy}?limit=1000&to={to}",
+        "{busy}?limit=1000&from={from}&to={to}&cursor={deep}",
+    ),
+    "/api/v1/motors/{name}/recordings": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
+    "/api/v1/motors/{name}/baseline": ("{busy}",),
+    "/api/v1/motors/{name}/measurements": (
+        *_MOTOR,
+        "{busy}?limit=1000",
+        "{busy}?step=60",
+        "{busy}?step=900&from={from}",
+        "{busy}?step=60&to={to}&cursor={deep_time}",
+        "{some}?from={from}&to={to}",
+    ),
+    "/api/v1/ieds": ("", "?limit=1000", "?cursor={relay}"),
+    "/api/v1/ieds/{name}": _RELAY,
+    "/api/v1/ieds/{name}/link-changes": (*_RELAY, "{busy_relay}?limit=1000", "{some_relay}?cursor={deep}"),
+    "/api/v1/gateways": ("",),
+    "/api/v1/alarms": (
+        "",
+        "?limit=1000",
+        "?cursor={deep}",
+        "?standing=true",
+        "?standing=true&cursor={bad}",
+        "?standing=false&cursor={deep}",
+        "?ied={some_relay}",
+        "?ied={some_relay}&cursor={deep}",
+        "?ied={some_relay}&standing=true",
+        "?ied={some_relay}&standing=false&cursor={deep}",
+    ),
+    "/api/v1/event-reports": (
+        "",
+        "?limit=1000",
+        "?cursor={deep}",
+        *(f"?motor={motor}" for motor in _MOTOR),
+        "?motor={busy}&cursor={deep}",
+        "?motor={some}&cursor={deep}",
+    ),
+    "/api/v1/event-reports/{report_id}": ("{report}",),
+    "/api/v1/recordings": (
+        "",
+        "?limit=1000",
+        "?cursor={deep}",
+        *(f"?state={state}" for state in ("announced", "fetched", "diagnosed", "rejected", "failed")),
+        "?state=failed&limit=1000",
+        "?state=failed&cursor={bad}",
+        "?state=diagnosed&cursor={deep}",
+        *(f"?motor={motor}" for motor in _MOTOR),
+        "?motor={busy}&cursor={deep}",
+        *(f"?motor={motor}&state=failed" for motor in _MOTOR),
+        "?motor={busy}&state=rejected&cursor={deep}",
+        "?motor={some}&state=announced",
+    ),
+    "/api/v1/recordings/{recording_id}": ("{recording}",),
+    "/api/v1/recordings/{recording_id}/diagnoses": ("{recording}", "{recording}?limit=1&cursor={deep}"),
+    "/api/v1/recordings/{recording_id}/diagnoses/{diagnosis_id}": ("{recording} {job}",),
+    "/readyz": ("",),
+    "/metrics": ("",),
+}
+"""The requests of each route: what takes the places of its path, and the query behind it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ask:
+    """A request whose places are filled anew each time, and how long it may take [s]."""
+
+    route: str
+    label: str
+    path: str
+    goal_s: float
+
+    def at(self, position: float, amounts: rows.Amounts) -> str:
+        """Return its path with what lies at a position of the years, from 0 to 1."""
+        return self.path.format_map(_places(position, amounts))
+
+
+def asks(app: FastAPI) -> Iterator[Ask]:
+    """Yield all that is asked. Raises LookupError for a route or a filter that nobody has thought of."""
+    found = {path: methods["get"] for path, methods in app.openapi()["paths"].items() if "get" in methods}
+    forgotten = sorted(set(found) - set(TIMED) - set(UNTIMED))
+    gone = sorted((set(TIMED) | set(UNTIMED)) - set(found))
+    if forgotten or gone:
+        raise LookupError(f"routes neither timed nor excused: {forgotten}; routes that are no more: {gone}")
+    for route, requests in TIMED.items():
+        unused = _parameters(found[route]) - {name for one in requests for name, _ in _query(one)}
+        if unused:
+            raise LookupError(f"{route}: no request uses {sorted(unused)}")
+        for request in requests:
+            yield _ask(route, request)
+
+
+def _ask(route: str, request: str) -> Ask:
+    values, mark, query = request.partition("?")
+    path = route
+    for (_, place, _, _), value in zip(
+        [part for part in Formatter().parse(route) if part[1]], values.split(), strict=True
+    ):
+        path = path.replace(f"{{{place}}}", value)
+    path = f"{path}{mark}{query}"
+    return Ask(route, path.removeprefix("/api/v1"), path, GOALS_S.get(route, LIST_GOAL_S))
+
+
+def _parameters(operation: Mapping[str, Any]) -> set[str]:
+    return {one["name"] for one in operation.get("parameters", ()) if one["in"] == "query"}
+
+
+def _query(request: str) -> list[tuple[str, str]]:
+    return parse_qsl(urlsplit(request).query)
+
+
+def _places(position: float, amounts: rows.Amounts) -> Mapping[str, str]:
+    """Return what takes the places of a path."""
+    time_ns = rows.BEGIN_NS + int(position * rows.SPAN_NS)
+    bad_ns = rows.BEGIN_NS + int(position * rows.SPAN_NS) // rows.BAD_MONTH
+    some = IDLE + 1 + int(position * (amounts.motors - IDLE - 1))
+    diagnosed = int(position * amounts.recordings * 0.9) // rows.REDIAGNOSED * rows.REDIAGNOSED
+    return {
+        "busy": motor_name(BUSY),
+        "quiet": motor_name(QUIET),
+        "idle": motor_name(IDLE),
+        "some": motor_name(some),
+        "name": encode((motor_name(some),)),
+        "busy_relay": relay_name(BUSY),
+        "some_relay": relay_name(some),
+        "relay": encode((relay_name(some),)),
+        "deep": encode((time_ns, "8")),
+        "deep_time": encode((time_ns,)),
+        "bad": encode((bad_ns, "8")),
+        "from": rfc3339(time_ns),
+        "to": rfc3339(time_ns + rows.SPAN_NS // 4),
+        "recording": rows.id_of(rows.RECORDING, diagnosed),
+        "job": rows.id_of(rows.JOB, diagnosed),
+        "report": rows.id_of(rows.REQUEST, int(position * amounts.recording_requests)),
+    }
