@@ -17,6 +17,7 @@ from ied_sim.motor.contactor import Closure
 from ied_sim.motor.plant import rated_current
 from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.configuration import RelayConfiguration
+from ied_sim.relay.controls import RelayControls
 from ied_sim.relay.event_files import EventFiles
 from ied_sim.relay.event_recorder import Capture, EventRecorder
 from ied_sim.relay.misbehaviour import RelayMisbehaviour
@@ -27,7 +28,7 @@ from ied_sim.relay.server import RelayServer
 from ied_sim.relay.settings import relay_settings
 from ied_sim.relay.values import RelayValues
 from ied_sim.texts import RelaySnapshot, TextMaker, texts
-from mms import MOST_CONNECTIONS, AddCause, ControlAction, Identity, Server
+from mms import MOST_CONNECTIONS, Identity, Server
 from scl import Address, Scl
 from scl.model_text import model_text
 
@@ -39,6 +40,7 @@ FREQUENT_UPDATE_PERIOD_S = 0.1
 OPENING_NS = 40_000_000
 """Time from the command to open until the contactor's current has ended."""
 
+_PULSE_CYCLES = 0.25
 _STAGING = ".staging"
 _TRIP_BITS = {"overcurrent": "50P1T", "thermal": "49T", "unbalance": "46UBT"}
 _TRIP_KINDS = {"overcurrent": "PHASE 50 TRIP", "thermal": "THERMAL TRIP", "unbalance": "UNBALANCE TRIP"}
@@ -93,10 +95,21 @@ class Relay:
         self.misbehaviour_state = MisbehaviourState(
             configuration.misbehaviour, lambda: self._seconds(RelayClock.now_ns())
         )
-        self._check_switches()
         self._clock = RelayClock(self.misbehaviour_state)
         self._word = RelayWord()
-        self._bits = dict.fromkeys(self._points.controls, False)
+        self._acting = threading.Lock()
+        """Held while a control or a trip does its work: one at a time, whichever thread it is on."""
+        self._controls = RelayControls(
+            ied_name,
+            self._points,
+            self._word,
+            self.misbehaviour_state,
+            publish=lambda values, time_ns: self._values.publish_controls(values, time_ns),
+            on_rise=self._on_rise,
+            pulse_s=lambda now_ns: (
+                _PULSE_CYCLES / configuration.plant.supply.frequency(self._seconds(now_ns))
+            ),
+        )
         self._journal = Journal(
             configuration.recorder.capacity, since_ns=epoch_ns, profile_every_s=configuration.load_profile_s
         )
@@ -108,7 +121,6 @@ class Relay:
         self._updated_ns = epoch_ns
         self.needs_update_soon = False
         """Something has happened that the next look should not be late for."""
-        self._timers: list[threading.Timer] = []
         self._settings = relay_settings(ied_name, configuration)
         self._offered: dict[str, TextMaker] = {}
         root, staging = files / ied_name, files / _STAGING / ied_name
@@ -131,7 +143,7 @@ class Relay:
             address=self._listening_at(address, proxies),
             root=root,
             staging=staging,
-            operated=self._operate,
+            operated=self._controls.operate,
             texts={path: self._text(maker) for path, maker in self._offered.items()},
             access=configuration.access,
             identity=Identity(ied.manufacturer, ied.type, profile.firmware),
@@ -148,6 +160,7 @@ class Relay:
             self.misbehaviour_state, self._relay_server, self._points, profile.report_buffer_bytes
         )
         self._publish_initial_values(RelayClock.now_ns())
+        self._relay_server.check_published()
 
     @property
     def server(self) -> Server:
@@ -164,14 +177,12 @@ class Relay:
 
     def stop(self) -> None:
         """Abandon a capture under way. The server itself belongs to its pump."""
-        for timer in self._timers:
-            timer.cancel()
-            timer.join()
+        self._controls.stop()
         if self._event_files is not None:
             self._event_files.stop()
         self._recorder.stop()
         self._misbehaviour.stop()
-        self._relay_server.close_overflow_server()
+        self._relay_server.close()
 
     def update(self, time_ns: int) -> float:
         """Update the relay at UTC `time_ns`: meter, protect, keep the journal. Used by one thread.
@@ -194,7 +205,8 @@ class Relay:
         self._updated_ns = time_ns
         tripped = self._protection.update(metering, time_s)
         if closure is not None and tripped:
-            self._trip(tripped, time_ns)
+            with self._acting:
+                self._trip(tripped, time_ns)
         self._journal.add_load_row(time_ns, metering, self._protection.thermal_capacity)
         self._check_load_trigger(metering, time_ns)
         if self._start_noted and not self._needs_frequent_updates:
@@ -215,37 +227,12 @@ class Relay:
 
     # Events
 
-    def _operate(self, action: ControlAction) -> bool | AddCause:
-        """Set or clear a control, unless it is only a test; runs in the pump's thread."""
-        switches = self._switches.get(action.reference)
-        if self.misbehaviour_state.is_on(Kind.REFUSED_CONTROL) and switches is None:
-            return AddCause.BLOCKED_BY_INTERLOCKING
-        if action.test:
-            return True
-        now_ns = RelayClock.now_ns()
-        value = bool(action.value)
-        rises = value and not self._bits[action.reference]
-        self._set_control(action.reference, now_ns, value=value)
-        if switches is not None:
-            self.misbehaviour_state.switch(switches, on=value)
-        if rises:
-            self._on_rise(action.reference, now_ns)
-            if action.reference in self._points.pulsed:
-                quarter_s = 0.25 / self._configuration.plant.supply.frequency(self._seconds(now_ns))
-                self._after(
-                    quarter_s, lambda: self._set_control(action.reference, RelayClock.now_ns(), value=False)
-                )
-        return True
-
-    def _set_control(self, reference: str, time_ns: int, *, value: bool) -> None:
-        self._bits[reference] = value
-        number = self._points.remote_bit(reference)
-        if number is not None:
-            together = (each for each in self._bits if self._points.remote_bit(each) == number)
-            self._word.set(f"RB{number}", any(self._bits[each] for each in together), time_ns)
-        self._values.publish_controls({reference: value}, time_ns)
-
     def _on_rise(self, reference: str, now_ns: int) -> None:
+        """Do what a control is for; runs in a pump's thread."""
+        with self._acting:
+            self._act(reference, now_ns)
+
+    def _act(self, reference: str, now_ns: int) -> None:
         if reference in self._points.triggers:
             number = self._points.remote_bit(reference)
             self._trigger(now_ns, "ER TRIG (RCDTRG)" if number is None else f"ER TRIG (RB{number})")
@@ -331,15 +318,9 @@ class Relay:
             {"record_number": number, "record_made": True, "record_started": False}, RelayClock.now_ns()
         )
 
-    def _after(self, delay_s: float, action: Callable[[], None]) -> None:
-        timer = threading.Timer(delay_s, action)
-        timer.daemon = True
-        self._timers = [each for each in self._timers if each.is_alive()] + [timer]
-        timer.start()
-
     def _publish_initial_values(self, now_ns: int) -> None:
         """Publish what clients see before anything has happened; the first update measures."""
-        self._values.publish_controls(self._bits, now_ns)
+        self._controls.publish_all(now_ns)
         fallen = dict.fromkeys(("record_made", "record_started", "trip", *_TRIP_BITS), False)
         self._values.publish_status({**fallen, "record_number": self._archive.last_number or 0}, now_ns)
         self._closure = self._monitor.closure(self._seconds(now_ns))
@@ -407,16 +388,3 @@ class Relay:
             now_ns=now_ns,
             offset_ns=self._clock.written(now_ns) - now_ns,
         )
-
-    def _check_switches(self) -> None:
-        self._switches = {self._points.reference(each): each for each in self.misbehaviour_state.switches()}
-        for unknown in sorted(self._switches.keys() - set(self._points.controls)):
-            raise SimulatorError(
-                f"{self.name}: the misbehaviour's switch {unknown} is no control of this relay"
-            )
-        own = self._points.triggers | {self._points.control(key) for key in ("start", "stop", "clear")}
-        for meant in sorted(self._switches.keys() & own):
-            raise SimulatorError(
-                f"{self.name}: the misbehaviour's switch {meant} has a meaning of its own (points of its "
-                "profile): choose a free control"
-            )

@@ -80,17 +80,24 @@ class RelayServer:
         self._misbehaviour_state = misbehaviour_state
         self._values: dict[str, Value | Quality] = {}
         self._stamps: dict[str, tuple[str | None, str | None]] = {}
-        self._lock = threading.Lock()
+        self._switching = threading.Lock()
+        self._publishing = threading.Lock()
+        self._writing_texts = threading.Lock()
+        self._published_to: tuple[Server, ...] = ()
         self._down = False
-        self._changes = 0
         self._overflow_server: Server | None = None
         self._overflow_address: ReservedAddress | None = None
         for folder in {Path(path).parent for path in texts}:
             (root / folder).mkdir(parents=True, exist_ok=True)
         self.server = self._build(address, min(profile.sessions, MOST_CONNECTIONS))
+        self._publish_to(self.server)
 
     def publish(self, values: Mapping[str, Value], time_ns: int, quality: Quality = GOOD) -> None:
-        """Update attributes as one change, with quality and time of their data objects."""
+        """Update attributes as one change, with quality and time of their data objects.
+
+        Any thread may call this, and none waits for a server: a handler of one server may publish while
+        another server is served.
+        """
         changes: dict[str, Value | Quality] = dict(values)
         stamp = Timestamp(self._clock.stamped(time_ns))
         for reference in values:
@@ -101,53 +108,65 @@ class RelayServer:
                 changes[of_quality] = quality
             if of_time is not None:
                 changes[of_time] = stamp
-        self._values |= changes
-        self._changes += 1
-        if self._down:
-            return
-        overflow_server = self._overflow_server
-        for server in (self.server,) if overflow_server is None else (self.server, overflow_server):
-            try:
-                server.update_many(changes)
-            except RuntimeError:
-                # The server may have gone down meanwhile. A lock here could be one that a handler wants.
-                if not self._down and server in (self.server, self._overflow_server):
-                    raise
+        with self._publishing:
+            self._values |= changes
+            for server in self._published_to:
+                server.post(changes)
+
+    def check_published(self) -> None:
+        """Apply what was published before the server listens. Raises ModelError where it does not fit."""
+        self.server.apply_posted()
 
     def go_down(self) -> None:
         """End every connection. What clients had not yet received is forgotten."""
-        self._down = True
-        self.server.stop()
-        self.close_overflow_server()
+        with self._switching:
+            self._down = True
+            self._publish_to()
+            self.server.stop()
+            self._stop_overflow_server()
 
     def come_up(self) -> None:
         """Serve again, with the values as they are, on a thread of its own. Raises ServerStartFailed."""
-        self.server = self._build(self._address, min(self._profile.sessions, MOST_CONNECTIONS))
-        self.server.start()
-        self._down = False
+        with self._switching:
+            self.server = self._build(self._address, min(self._profile.sessions, MOST_CONNECTIONS))
+            self._publish_to(self.server)
+            self.server.start()
+            self._down = False
 
     def open_overflow_server(self) -> Address | None:
         """Return where clients are served for whom the server has no session left; None while it is down.
 
-        Raises ServerStartFailed. Used by one thread at a time.
+        Raises ServerStartFailed.
         """
-        if self._down:
-            return None
-        if self._overflow_server is None:
-            self._overflow_address = self._overflow_address or ReservedAddress()
-            overflow_server = self._build(
-                self._overflow_address.address, self._profile.sessions - MOST_CONNECTIONS
-            )
-            self._overflow_server = overflow_server
-            known = -1
-            while known != self._changes:  # a value published meanwhile may have been overtaken
-                known = self._changes
-                overflow_server.update_many(dict(self._values))
-            overflow_server.start()
-        return Address(self._overflow_server.address, self._overflow_server.port)
+        with self._switching:
+            if self._down:
+                return None
+            if self._overflow_server is None:
+                self._overflow_address = self._overflow_address or ReservedAddress()
+                overflow_server = self._build(
+                    self._overflow_address.address, self._profile.sessions - MOST_CONNECTIONS
+                )
+                self._publish_to(self.server, overflow_server)
+                overflow_server.start()
+                self._overflow_server = overflow_server
+            return Address(self._overflow_server.address, self._overflow_server.port)
 
-    def close_overflow_server(self) -> None:
-        """Stop the overflow server where there is one."""
+    def close(self) -> None:
+        """Stop the overflow server where there is one, and open none any more."""
+        with self._switching:
+            self._down = True
+            self._publish_to(self.server)
+            self._stop_overflow_server()
+
+    def _publish_to(self, *servers: Server) -> None:
+        """Publish to these servers from now on. One that is new gets all values first."""
+        with self._publishing:
+            for server in servers:
+                if server not in self._published_to and self._values:
+                    server.post(dict(self._values))
+            self._published_to = servers
+
+    def _stop_overflow_server(self) -> None:
         overflow_server, self._overflow_server = self._overflow_server, None
         if overflow_server is not None:
             overflow_server.stop()
@@ -177,8 +196,6 @@ class RelayServer:
             server.on_read(unreadable, self._measurand_error)
         for reference in self._points.controls:
             server.on_operate(reference, self._operated)
-        if self._values:
-            server.update_many(self._values)
         return server
 
     def _measurand_error(self) -> DataAccessError | None:
@@ -197,7 +214,7 @@ class RelayServer:
         for path, make in self._texts.items():
             listed = request.operation is FileOperation.LIST and asked in (".", Path(path).parent.as_posix())
             if listed or asked == path:
-                with self._lock:
+                with self._writing_texts:
                     made = self._staging / Path(path).name
                     made.write_bytes(make())
                     made.replace(self._root / path)

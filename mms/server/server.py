@@ -14,16 +14,16 @@ from typing import Final, Self
 
 from mms.binding.connection_deadline import connections_between, end_connections_after
 from mms.binding.library import library
-from mms.binding.value_conversion import decode
-from mms.control_model import AddCause, ControlModel
 from mms.errors import ModelError, ServerStartFailed
 from mms.security.passwords import make_authenticator
 from mms.security.tls import TlsConfiguration, TlsContext
-from mms.server.controls import ControlAction, OperateHandler, install_operate_handler
-from mms.server.file_access import FileGuard, FileHook, install_file_guard
-from mms.server.model import Model, Node
+from mms.server.attributes import Attributes
+from mms.server.controls import OperateHandler
+from mms.server.file_access import FileGuard, FileHook
+from mms.server.handlers import Handlers
+from mms.server.model import Model
 from mms.server.pump import ServerPump
-from mms.server.read_access import ReadHandler, install_read_handlers
+from mms.server.read_access import ReadHandler
 from mms.server.services import MOST_CONNECTIONS, Identity, Services, create_server
 from mms.values import Quality, Value
 
@@ -40,9 +40,10 @@ class _State(Enum):
 class Server:
     """One simulated IED; a context manager that serves while it is entered.
 
-    Handlers run on the pump's thread, one at a time, with the server locked. They may update this server,
-    should return at once, and must not take a lock that another thread holds while it updates. A handler that
-    raises is logged and counts as a refusal.
+    Handlers run on the pump's thread, one at a time, with the server locked. They should return at once. They
+    may update this server, and post to any server. They must not update or read another server, nor take a
+    lock that another thread holds while it updates or reads this one. A handler that raises is logged and
+    counts as a refusal.
 
     `start` or a ServerPump makes the server listen. Replace served files by renaming: a file that shrinks
     while it is sent is filled up with whatever the memory holds.
@@ -108,11 +109,8 @@ class Server:
         self._state = _State.CREATED
         self._turn_delay_s = 0.0
         self._tls_handshake_timeout_s = tls_handshake_timeout_s
-        self._library_holds_model = False
-        self._handlers: list[object] = []
         self._pump: ServerPump | None = None
         authenticate = make_authenticator(self._lib, passwords)
-        self._readable: dict[int, ReadHandler] = {}
         self._tls = None if tls is None else TlsContext(self._lib, tls)
         try:
             self._model = Model(self._lib, model_text, ied_name)
@@ -125,17 +123,17 @@ class Server:
         except BaseException:
             self._destroy_tls()
             raise
+        self._attributes = Attributes(self._lib, self._model, self._server)
         self._lib.IedServer_setLocalIpAddress(self._server, address.encode("ascii"))
         if identity is not None:
             names = (identity.vendor, identity.model, identity.revision)
             encoded = (name.encode("ascii", "replace") for name in names)
             self._lib.IedServer_setServerIdentity(self._server, *encoded)
+        self._handlers = Handlers(self._lib, self._model, self._server, self._attributes)
         if authenticate is not None:
-            self._handlers.append(authenticate)
-            self._lib.IedServer_setAuthenticator(self._server, authenticate, None)
+            self._handlers.authenticate(authenticate)
         if file_root is not None:
-            guard = FileGuard(file_root, on_file_request)
-            self._handlers.append(install_file_guard(self._lib, self._server, guard))
+            self._handlers.guard_files(FileGuard(file_root, on_file_request))
 
     # Lifetime
 
@@ -213,31 +211,38 @@ class Server:
         ModelError
             There is no such attribute, or a value does not fit its type.
         """
-        lib = self._lib
         with self._lock:
             self._require_alive("update")
-            prepared: list[tuple[int, int]] = []
-            try:
-                for reference in sorted(values, key=lambda name: not name.endswith(".t")):
-                    node = self._model.node(reference, Node.DATA_ATTRIBUTE)
-                    new = lib.MmsValue_clone(lib.IedServer_getAttributeValue(self._server, node))
-                    prepared.append((node, new))
-                    self._model.assign(reference, node, new, values[reference])
-                self._apply(prepared)
-            finally:
-                for _, new in prepared:
-                    lib.MmsValue_delete(new)
+            self._attributes.apply_posted_or_log()
+            self._attributes.update(values)
+            self._turn_delay_s = 0.0
 
-    def _apply(self, prepared: list[tuple[int, int]]) -> None:
-        lib = self._lib
-        lock_model = not self._library_holds_model
-        if lock_model:
-            lib.IedServer_lockDataModel(self._server)
-        for node, new in prepared:
-            lib.IedServer_updateAttributeValue(self._server, node, new)
-        if lock_model:
-            lib.IedServer_unlockDataModel(self._server)
+    def post(self, values: Mapping[str, Value | Quality]) -> None:
+        """Set several attributes as one change, soon: before the next request of a client is answered.
+
+        Any thread may call this, with any lock held, because it does not wait for the server's. A change
+        that a handler posts is made when the handler returns. Changes are made in the order they were posted;
+        one that does not fit the model is logged. A stopped server makes none.
+
+        Parameters
+        ----------
+        values : mapping of str to Value or Quality
+            New values by reference, not changed by the caller afterwards.
+        """
+        self._attributes.post(values)
         self._turn_delay_s = 0.0
+
+    def apply_posted(self) -> None:
+        """Make the posted changes now.
+
+        Raises
+        ------
+        ModelError
+            A change does not fit the model. Those after it stay posted.
+        """
+        with self._lock:
+            self._require_alive("apply_posted")
+            self._attributes.apply_posted()
 
     def read(self, reference: str) -> Value:
         """Read one of this server's own data attributes.
@@ -259,8 +264,8 @@ class Server:
         """
         with self._lock:
             self._require_alive("read")
-            node = self._model.node(reference, Node.DATA_ATTRIBUTE)
-            return decode(self._lib, self._lib.IedServer_getAttributeValue(self._server, node))
+            self._attributes.apply_posted_or_log()
+            return self._attributes.read(reference)
 
     # Controls
 
@@ -280,22 +285,9 @@ class Server:
         ----------
         IEC 61850-7-2 clause 20, control.
         """
-
-        def operated(action: ControlAction) -> bool | AddCause:
-            self._library_holds_model = True
-            try:
-                return handler(action)
-            finally:
-                self._library_holds_model = False
-
         with self._lock:
             self._require_alive("on_operate")
-            node = self._model.node(reference, Node.DATA_OBJECT)
-            model = self.read(f"{reference}.ctlModel")
-            enhanced = model in (ControlModel.DIRECT_ENHANCED, ControlModel.SBO_ENHANCED)
-            self._handlers.append(
-                install_operate_handler(self._lib, self._server, node, reference, operated, enhanced=enhanced)
-            )
+            self._handlers.on_operate(reference, handler)
 
     def on_read(self, reference: str, handler: ReadHandler) -> None:
         """Set the handler that is asked before a client reads a data object or a part of it.
@@ -310,9 +302,7 @@ class Server:
         """
         with self._lock:
             self._require_alive("on_read")
-            if not self._readable:
-                self._handlers.append(install_read_handlers(self._lib, self._server, self._readable))
-            self._readable[self._model.node(reference, Node.DATA_OBJECT)] = handler
+            self._handlers.on_read(reference, handler)
 
     # Called by the pump
 
@@ -334,6 +324,7 @@ class Server:
                 self._lib.IedServer_stopThreadless(self._server)
                 reason = "cannot listen there: the port is taken, or the address is not this machine's"
                 raise ServerStartFailed(where, "start the server", 0, reason)
+            self._attributes.apply_posted_or_log()
             self._state = _State.RUNNING
 
     def serve_pending(self) -> bool:
@@ -347,6 +338,7 @@ class Server:
         with self._lock:
             if self._state is not _State.RUNNING or self._lib.IedServer_waitReady(self._server, 0) <= 0:
                 return False
+            self._attributes.apply_posted_or_log()
             self._process_incoming()
             self._lib.IedServer_performPeriodicTasks(self._server)
             self._turn_delay_s = min(self._turn_delay_s, _TURN_DELAY_AFTER_REQUEST_S)
@@ -366,6 +358,7 @@ class Server:
             self._turn_delay_s = math.inf
             if self._state is not _State.RUNNING:
                 return False
+            self._attributes.apply_posted_or_log()
             self._lib.IedServer_performPeriodicTasks(self._server)
             if self._lib.IedServer_getNumberOfOpenConnections(self._server) == 0:
                 return False

@@ -1,0 +1,130 @@
+"""Data attributes of one server: read, updated, and updates of other threads that wait to be applied."""
+
+import ctypes
+from collections import deque
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from typing import Final
+
+from mms.binding.callbacks import log
+from mms.binding.value_conversion import decode
+from mms.errors import ModelError
+from mms.server.model import Model, Node
+from mms.values import Quality, Value
+
+
+class Attributes:
+    """Data attributes of one server. All but `post` is called with the server locked.
+
+    Parameters
+    ----------
+    lib : ctypes.CDLL
+        The library.
+    model : Model
+        The server's data model.
+    server : int
+        Pointer to the IedServer.
+    """
+
+    def __init__(self, lib: ctypes.CDLL, model: Model, server: int) -> None:
+        self._lib: Final = lib
+        self._model: Final = model
+        self._server: Final = server
+        self._posted: Final[deque[Mapping[str, Value | Quality]]] = deque()
+        self._library_holds_model = False
+
+    def read(self, reference: str) -> Value:
+        """Read an attribute.
+
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO.DA".
+
+        Returns
+        -------
+        Value
+            The present value.
+
+        Raises
+        ------
+        ModelError
+            There is no such attribute.
+        """
+        node = self._model.node(reference, Node.DATA_ATTRIBUTE)
+        return decode(self._lib, self._lib.IedServer_getAttributeValue(self._server, node))
+
+    def update(self, values: Mapping[str, Value | Quality]) -> None:
+        """Set attributes as one change. Times are set first, so that an event carries its own.
+
+        Parameters
+        ----------
+        values : mapping of str to Value or Quality
+            New values by reference.
+
+        Raises
+        ------
+        ModelError
+            There is no such attribute, or a value does not fit its type. Nothing is changed then.
+        """
+        lib = self._lib
+        prepared: list[tuple[int, int]] = []
+        try:
+            for reference in sorted(values, key=lambda name: not name.endswith(".t")):
+                node = self._model.node(reference, Node.DATA_ATTRIBUTE)
+                new = lib.MmsValue_clone(lib.IedServer_getAttributeValue(self._server, node))
+                prepared.append((node, new))
+                self._model.assign(reference, node, new, values[reference])
+            self._apply(prepared)
+        finally:
+            for _, new in prepared:
+                lib.MmsValue_delete(new)
+
+    def _apply(self, prepared: list[tuple[int, int]]) -> None:
+        lib = self._lib
+        lock_model = not self._library_holds_model
+        if lock_model:
+            lib.IedServer_lockDataModel(self._server)
+        for node, new in prepared:
+            lib.IedServer_updateAttributeValue(self._server, node, new)
+        if lock_model:
+            lib.IedServer_unlockDataModel(self._server)
+
+    def post(self, values: Mapping[str, Value | Quality]) -> None:
+        """Queue one change. Any thread may call this, and none waits.
+
+        Parameters
+        ----------
+        values : mapping of str to Value or Quality
+            New values by reference.
+        """
+        self._posted.append(values)
+
+    def apply_posted(self) -> None:
+        """Apply the queued changes in their order.
+
+        Raises
+        ------
+        ModelError
+            A change does not fit the model. Those after it stay queued.
+        """
+        while self._posted:
+            self.update(self._posted.popleft())
+
+    def apply_posted_or_log(self) -> None:
+        """Apply the queued changes in their order; log those that do not fit the model."""
+        while self._posted:
+            try:
+                self.apply_posted()
+            except ModelError:
+                log.exception("a posted change does not fit the model")
+
+    @contextmanager
+    def held_by_library(self) -> Iterator[None]:
+        """Mark that the library has locked its model. What is posted meanwhile is applied at the end."""
+        self._library_holds_model = True
+        try:
+            yield
+            self.apply_posted_or_log()
+        finally:
+            self._library_holds_model = False
