@@ -174,9 +174,9 @@ def not_finite(document: object) -> str | None:
     while left:
         way, value = left.pop()
         if isinstance(value, Mapping):
-            left += [(f"{way}.{key}", one) for key, one in value.items()]
+            left += [(f"{way}.{key}", one) for key, one in reversed([*value.items()])]
         elif isinstance(value, list | tuple):
-            left += [(f"{way}.{number}", one) for number, one in enumerate(value)]
+            left += [(f"{way}.{number}", value[number]) for number in reversed(range(len(value)))]
         elif isinstance(value, int | float) and not _is_finite(value):
             return way.removeprefix(".") or "the document"
     return None

@@ -5,6 +5,7 @@ import uuid
 from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor, Future
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 
@@ -18,9 +19,11 @@ from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore, RecordingStoreError
-from service.storage.errors import RunnerEndedError, UnstorableDiagnosisError
+from service.storage.engine import NO_ANSWER
+from service.storage.errors import NotFoundError, RunnerEndedError, UnstorableDiagnosisError
 from service.storage.records import ClaimedJob
 from service.storage.repository import Repository
+from service.storage.texts import storable
 from service.timing.backoff import Backoff
 from service.timing.boot_clock import boot_time_s
 from service.timing.peer_liveness import PeerLiveness
@@ -151,8 +154,12 @@ class JobRunner:
     def _give_back(self) -> None:
         """Put the jobs under way back into the queue as if they had not been claimed."""
         for job_id in list(self._in_flight):
-            self._repository.release_job(job_id, runner=self._id)
+            self._release(job_id)
             del self._in_flight[job_id]
+
+    def _release(self, job_id: str) -> None:
+        with suppress(NotFoundError):  # its recording was deleted meanwhile
+            self._repository.release_job(job_id, runner=self._id)
 
     def _claim(self) -> bool:
         """Claim the next job and give it to a worker. Returns False where there is none to do."""
@@ -171,11 +178,14 @@ class JobRunner:
         except RecordingStoreError as error:
             self._repository.reject_recording(job.id, str(error), now_ns=time.time_ns(), runner=self._id)
             return True
+        except OSError as error:  # the store's disk or its permissions, which somebody may mend
+            self._retry(claimed, str(error))
+            return True
         task = DiagnosisTask(entry, motor, job.method, job.model, baseline)
         try:
             future = self._pool.schedule(self._task, task, self._limits.job_timeout_s)
         except NoWorkersError:
-            self._repository.release_job(job.id, runner=self._id)
+            self._release(job.id)
             return False
         self._in_flight[job.id] = future
         future.add_done_callback(partial(self._done, claimed))
@@ -187,13 +197,29 @@ class JobRunner:
         self._worker.wake()
 
     def _settle(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
-        """Write a result back. Raises SQLAlchemyError: try again."""
+        """Write a result back, whatever it holds. Raises SQLAlchemyError: try again.
+
+        A result that the database refuses costs its own job an attempt, and holds up none of the others.
+        """
         job_id = claimed.job.id
         if self._in_flight.get(job_id) is not future:  # late word of workers whose jobs were given back
             return
+        try:
+            self._write_back(claimed, future)
+        except NO_ANSWER:
+            raise
+        except NotFoundError:
+            log.warning("a diagnosis came whose recording is gone", recording=claimed.job.recording_id)
+        except Exception as error:
+            log.exception("a result cannot be stored", recording=claimed.job.recording_id)
+            self._retry(claimed, f"the result cannot be stored: {type(error).__name__}: {error}")
+        self._in_flight.pop(job_id, None)
+
+    def _write_back(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
+        """Write back what became of a job. Raises SQLAlchemyError, NotFoundError."""
         error = None if future.cancelled() else future.exception()
         if future.cancelled() or isinstance(error, BrokenExecutor):  # the pool's end, not the job's fault
-            self._repository.release_job(job_id, runner=self._id)
+            self._repository.release_job(claimed.job.id, runner=self._id)
         elif error is None:
             self._keep(claimed, future.result())
         elif isinstance(error, TimeoutError):
@@ -202,7 +228,6 @@ class JobRunner:
             self._retry(claimed, f"the worker process died (exit code {error.exitcode})")
         else:
             self._retry(claimed, f"{type(error).__name__}: {error}")
-        self._in_flight.pop(job_id, None)
 
     def _keep(self, claimed: ClaimedJob, outcome: Outcome) -> None:
         """Write back what a worker returned. Raises SQLAlchemyError."""
@@ -210,7 +235,7 @@ class JobRunner:
         match outcome:
             case Rejected(reason):
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
-                log.warning("recording rejected", recording=job.recording_id, reason=reason)
+                log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
             case Diagnosed(diagnosis, recorded_ns):
                 try:
                     kept = self._repository.finish_job(
@@ -235,6 +260,7 @@ class JobRunner:
 
     def _retry(self, claimed: ClaimedJob, error: str) -> None:
         """Queue a job again, or give it up after its last attempt. Raises SQLAlchemyError."""
+        error = storable(error)
         state = self._repository.retry_or_fail_job(
             claimed.job.id,
             error,
@@ -252,7 +278,7 @@ class JobRunner:
             while self._results:
                 self._settle(*self._results.popleft())
             for job_id in self._in_flight:
-                self._repository.release_job(job_id, runner=self._id)
+                self._release(job_id)
             self._repository.end_runner(self._id, now_ns=time.time_ns(), max_attempts=self._limits.attempts)
         except SQLAlchemyError:
             log.exception("jobs were not put back; the next start queues them again")

@@ -34,7 +34,7 @@ class UnusableBaselineError(StorageError):
 
 
 class UnstorableDiagnosisError(StorageError):
-    """A diagnosis with a figure that is no number: no JSON document can hold it."""
+    """A diagnosis that no database can hold: a figure that is no number, or more text than people read."""
 
 
 class RunnerEndedError(StorageError):

@@ -8,9 +8,10 @@ from collections.abc import Callable, Sequence
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
-from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, TimeoutError  # noqa: A004 - of the database
+from sqlalchemy.exc import DBAPIError
 
 from service.storage import Repository
+from service.storage.engine import NO_ANSWER
 from service.storage.records import LinkNote, Sample
 from service.timing.periodic_worker import PeriodicWorker
 
@@ -21,9 +22,6 @@ PERIOD_S = 1.0
 
 MOST_UNWRITTEN = 100_000
 """So many items of a kind are kept while the database does not answer; beyond that the oldest are dropped."""
-
-NO_ANSWER = (OperationalError, InterfaceError, TimeoutError)
-"""Errors of a database that is locked, full or away."""
 
 
 class BatchRefusedError(RuntimeError):

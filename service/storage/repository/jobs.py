@@ -8,7 +8,7 @@ from sqlalchemy import Select, func, or_, select, update
 from sqlalchemy.orm import Session, joinedload
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
-from core.diagnosis.verdict import Diagnosis
+from core.diagnosis.verdict import Diagnosis, not_finite
 from core.units import NANOSECONDS_PER_SECOND
 from service.storage.errors import (
     NotFoundError,
@@ -24,7 +24,14 @@ from service.storage.repository.recording_requests import diagnose_rows, fail_ro
 from service.storage.repository.recordings import new_job
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobPriority, JobState, RecordingState
+from service.storage.texts import storable
 from service.timing.backoff import Backoff
+
+MOST_DOCUMENT_BYTES = 256 * 1024
+"""A diagnosis takes some 10 kB. A larger document says nothing that anybody could read."""
+
+LATEST_NS = 2**63 - 1
+"""Times are integers of 64 bits in the database."""
 
 
 class JobRows(Sessions):
@@ -180,7 +187,7 @@ class JobRows(Sessions):
 
 def _end(row: JobRow, state: JobState, error: str | None, now_ns: int) -> None:
     row.state = state
-    row.error = error
+    row.error = None if error is None else storable(error)
     row.finished_ns = now_ns
 
 
@@ -190,7 +197,7 @@ def _give_up(session: Session, row: JobRow, state: RecordingState, reason: str, 
     recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
     if recording.state is not RecordingState.DIAGNOSED:
         recording.state = state
-        recording.reason = reason
+        recording.reason = storable(reason)
     fail_rows(session, recording.id, reason, now_ns)
 
 
@@ -208,7 +215,7 @@ def retry_or_give_up(
         return
     row.state = JobState.QUEUED
     row.runner = None
-    row.error = error
+    row.error = storable(error)
     row.finished_ns = now_ns
     row.not_before_ns = now_ns + round(pause_s * NANOSECONDS_PER_SECOND)
 
@@ -216,6 +223,8 @@ def retry_or_give_up(
 def _diagnosis_row(
     row: JobRow, motor: str, diagnosis: Diagnosis, recorded_ns: int, now_ns: int
 ) -> DiagnosisRow:
+    if abs(recorded_ns) > LATEST_NS:
+        raise UnstorableDiagnosisError(f"the record's time, {recorded_ns:.3g} ns, is beyond the year 2262")
     low, high = diagnosis.mu_f_ci95 or (None, None)
     return DiagnosisRow(
         id=str(uuid.uuid4()),
@@ -238,13 +247,32 @@ def _diagnosis_row(
 
 
 def _document(diagnosis: Diagnosis) -> Mapping[str, object]:
-    """Return the diagnosis as a document. Raises UnstorableDiagnosisError."""
+    """Return the diagnosis as a document that every database and reader can hold.
+
+    Raises UnstorableDiagnosisError.
+    """
     document = diagnosis.as_dict()
+    way = not_finite(document)
+    if way is not None:
+        raise UnstorableDiagnosisError(f"{way} is not JSON compliant: it is no finite number")
     try:
-        json.dumps(document, allow_nan=False)
-    except ValueError as error:
+        text = json.dumps(_with_storable_texts(document), allow_nan=False)
+    except (ValueError, TypeError, RecursionError) as error:
         raise UnstorableDiagnosisError(str(error)) from error
-    return document
+    if len(text) > MOST_DOCUMENT_BYTES:
+        raise UnstorableDiagnosisError(f"expected at most {MOST_DOCUMENT_BYTES} bytes, found {len(text)}")
+    stored: Mapping[str, object] = json.loads(text)
+    return stored
+
+
+def _with_storable_texts(value: object) -> object:
+    if isinstance(value, str):
+        return storable(value)
+    if isinstance(value, Mapping):
+        return {key: _with_storable_texts(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_with_storable_texts(one) for one in value]
+    return value
 
 
 def _with_result(recording_id: str) -> Select[JobRow]:

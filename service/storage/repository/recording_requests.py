@@ -15,6 +15,7 @@ from service.storage.records import Cursor, Page, RecordingRequest
 from service.storage.repository.leases import require_lease
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import IN_THE_RELAY, RecordingRequestOrigin, RecordingRequestState
+from service.storage.texts import storable
 
 OPEN = (RecordingRequestState.REQUESTED, *IN_THE_RELAY)
 ENDED = (RecordingRequestState.DIAGNOSED, RecordingRequestState.FAILED)
@@ -217,7 +218,7 @@ def fail_rows(session: Session, recording_id: str, reason: str, now_ns: int) -> 
 def fail_row(row: RecordingRequestRow, reason: str, now_ns: int) -> None:
     before = set(RecordingRequestState) - set(ENDED)
     if _advances(row, before, RecordingRequestState.FAILED):
-        row.reason = reason
+        row.reason = storable(reason)
         row.failed_ns = now_ns
 
 

@@ -8,11 +8,29 @@ from pathlib import Path
 
 from service.jobs import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
-from testing.service.plants import NOW_NS, fault
+from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.waiting import wait_until
 
 GO = "STAND_IN_GO"
 """Environment variable with the path of the file that lets a worker go on."""
+
+STRANGE = "channel IA\0\ud800 "
+"""What a channel may be called in a record: PostgreSQL cannot hold the one, UTF-8 not the other."""
+
+LONG = "x" * 1_000_000
+
+(FINDING,) = fault().quality
+RESULTS = {
+    "not a number": replace(fault(), mu_f=float("nan"), residual_rms_A=float("nan")),
+    "infinite": replace(fault(), mu_f_ci95=(0.0, float("inf"))),
+    "minus infinite": replace(fault(), load_level=float("-inf")),
+    "not a number deep inside": replace(fault(), quality=(FINDING, replace(FINDING, limit=float("nan")))),
+    "huge integer": replace(fault(), evaluations=10**400),
+    "huge winding": replace(fault(), theta_f=10**30),  # type: ignore[arg-type]  # no column holds it
+    "no such thing": replace(fault(), residual_rms_A=object()),  # type: ignore[arg-type]
+    "strange text": replace(fault(), reasons=(STRANGE,)),
+    "far too much text": replace(fault(), reasons=(LONG[:3000],) * 200),
+}
 
 
 def act_as_told(task: DiagnosisTask) -> Outcome:
@@ -22,8 +40,14 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
         return Rejected("E.CFF: line 1: expected a FID, found nothing")
     if told == "raise":
         raise ArithmeticError("no such number")
-    if told == "not a number":
-        return Diagnosed(replace(fault(), mu_f=float("nan"), residual_rms_A=float("nan")), NOW_NS)
+    if told == "raise strange text":
+        raise ArithmeticError(STRANGE + LONG)
+    if told == "reject strange text":
+        return Rejected(STRANGE + LONG)
+    if told in RESULTS:
+        return Diagnosed(RESULTS[told], NOW_NS)
+    if told == "year 9999":
+        return Diagnosed(fault(), 253_402_300_799 * SECOND_NS)
     if told == "die" or (told == "die once" and not first_time.exists()):
         first_time.touch()
         os.kill(os.getpid(), signal.SIGKILL)

@@ -24,7 +24,7 @@ from service.storage.states import JobState, RecordingRequestState, RecordingSta
 from service.timing.backoff import Backoff
 from testing.service.plants import motor
 from testing.waiting import wait_until
-from tests.service.jobs.stand_ins import GO, act_as_told, fail_to_start, prepare_when_told
+from tests.service.jobs.stand_ins import GO, RESULTS, STRANGE, act_as_told, fail_to_start, prepare_when_told
 
 LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, backoff=Backoff(0.01, 0.1), lease_s=30.0)
 LEASE_S = 1.5
@@ -70,7 +70,7 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     repository: Repository, store: RecordingStore
 ) -> None:
     """One run for all of it: worker processes take a second to start."""
-    told = ("fine", "reject", "raise", "not a number", "die", "die once")
+    told = ("fine", "reject", "raise", "die", "die once")
     ids = {what: add(repository, store, what) for what in told}
     ids["foreign"] = add(repository, store, "fine too", "FAN-A2")
     ids["lost"] = add(repository, store, "lost")
@@ -85,7 +85,6 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
         "fine": "diagnosed",
         "reject": "rejected",
         "raise": "failed",
-        "not a number": "failed",
         "die": "failed",
         "die once": "diagnosed",
         "foreign": "rejected",
@@ -94,10 +93,49 @@ def test_every_recording_comes_to_its_end_whatever_the_workers_do(
     reasons = {what: recording.reason or "" for what, recording in recordings.items()}
     assert reasons["reject"] == "E.CFF: line 1: expected a FID, found nothing"
     assert reasons["raise"] == "gave up after 2 attempts: ArithmeticError: no such number"
-    assert "not JSON compliant" in reasons["not a number"]
     assert "the worker process died" in reasons["die"]
     assert "FAN-A2 is not in the plant" in reasons["foreign"]
     assert "exactly one file" in reasons["lost"]
+
+
+@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
+def test_whatever_a_result_holds_its_job_alone_fails(
+    repository: Repository, store: RecordingStore, engine: Engine
+) -> None:
+    ids = {
+        what: add(repository, store, what)
+        for what in (*RESULTS, "year 9999", "raise strange text", "reject strange text", "fine")
+    }
+    with running(repository, store, replace(LIMITS, attempts=1)) as runner:
+        wait_until(lambda: ended(repository, *ids.values()), within_s=60)
+        wait_until(lambda: runner.problem() is None)
+    recordings = {what: repository.recording(id_) for what, id_ in ids.items()}
+    assert {what for what, recording in recordings.items() if recording.state == "diagnosed"} == {
+        "fine",
+        "strange text",
+    }
+    reasons = {what: recording.reason or "" for what, recording in recordings.items()}
+    ways = {
+        "not a number": "mu_f",
+        "infinite": "mu_f_ci95.1",
+        "minus infinite": "load_level",
+        "not a number deep inside": "quality.1.limit",
+        "huge integer": "evaluations",
+    }
+    refused = "gave up after 1 attempts: the diagnosis cannot be stored: "
+    for what, way in ways.items():
+        assert reasons[what] == f"{refused}{way} is not JSON compliant: it is no finite number"
+    assert reasons["no such thing"] == f"{refused}Object of type object is not JSON serializable"
+    assert reasons["far too much text"].startswith(f"{refused}expected at most 262144 bytes, found 60")
+    assert reasons["year 9999"] == f"{refused}the record's time, 2.53e+20 ns, is beyond the year 2262"
+    assert reasons["huge winding"].startswith("gave up after 1 attempts: the result cannot be stored: ")
+    readable = STRANGE.replace("\0", "\ufffd").replace("\ud800", "\ufffd")
+    assert readable in reasons["raise strange text"]
+    assert reasons["reject strange text"].startswith(readable)
+    assert max(map(len, reasons.values())) < 5000
+    diagnosis = repository.current_diagnosis(ids["strange text"])
+    assert diagnosis is not None
+    assert diagnosis.document["reasons"] == [readable]
 
 
 def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: RecordingStore) -> None:
