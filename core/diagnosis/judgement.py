@@ -22,7 +22,9 @@ DOUBTFUL_OFFSET_CYCLES = 1 / 24
 twice the true currents need 900 us and more, severe faults with parameters 10 % off up to 660."""
 
 
-def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[Verdict, list[str]]:
+def judge(
+    case: Case, explanation: Explanation, tolerance: Systematic, level_ci95: tuple[float, float]
+) -> tuple[Verdict, list[str]]:
     """Decide on a verdict, with its reasons in words.
 
     Parameters
@@ -33,6 +35,8 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
         The hypothesis that explains the currents best.
     tolerance : Systematic
         Errors that no averaging reduces.
+    level_ci95 : tuple of float
+        95 % interval of the fault level from all causes.
 
     Returns
     -------
@@ -43,17 +47,17 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
     """
     limit = case.motor.limits.fault_level
     fit = explanation.fit
-    low, high = fit.interval(FAULT_LEVEL)
     phase = PHASES[case.terminal_winding(explanation.winding)]
-    level = f"{max(0.0, fit.value(FAULT_LEVEL)):.2%}"
-    if FAULT_LEVEL not in fit.at_bound:
-        level += f" (95 % interval {max(0.0, low):.2%} to {max(0.0, high):.2%})"
+    low, high = (max(0.0, bound) for bound in level_ci95)
+    level = f"{max(0.0, fit.value(FAULT_LEVEL)):.2%} (95 % interval {low:.2%} to {high:.2%})"
+    scatter_low, scatter_high = (max(0.0, bound) for bound in fit.interval(FAULT_LEVEL))
+    detectable = tolerance.detection_limit(fit, limit)
     figures = [
         f"backward-turning current that the supply does not cause is {explanation.asymmetry:.2%} of the "
         f"forward one; shorted turns in phase {phase} leave {explanation.unexplained:.2%}",
         f"sensors and parameters within their tolerances can feign {tolerance.backward:.2%} of it, "
-        f"{tolerance.level:.2%} of the turns (standard deviation); a fault below "
-        f"{tolerance.detection_limit(fit, limit):.2%} could not be seen here for sure",
+        f"{tolerance.level:.2%} of the turns (standard deviation); a fault below {detectable:.2%} could not "
+        f"be seen here for sure; the record's own scatter is {scatter_low:.2%} to {scatter_high:.2%}",
     ]
     figures.append(_unknowns(case, fit))
     offset = fit.value(TIME_OFFSET)
@@ -87,7 +91,7 @@ def judge(case: Case, explanation: Explanation, tolerance: Systematic) -> tuple[
         ]
     if not explained and explanation.unexplained > limit_of_chance(explanation, tolerance):
         return Verdict.WATCH, ["an asymmetry that shorted turns in no phase explain", *figures]
-    if high > limit:
+    if scatter_high > limit:
         return Verdict.WATCH, [
             f"shorted turns in phase {phase} cannot be excluded: {level}, limit {limit:.2%}{bridged}",
             *figures,

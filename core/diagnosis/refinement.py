@@ -124,6 +124,8 @@ class Fit:
         Names of unknowns that ended on their bound and have no standard error.
     evaluations : int
         Number of simulated candidates or evaluated points.
+    response : dict of str to ndarray, shape (4,)
+        Change of each unknown that is not at its bound, by one ampere more of each measured component.
     """
 
     candidate: Candidates
@@ -134,6 +136,7 @@ class Fit:
     degrees_of_freedom: int
     at_bound: tuple[str, ...]
     evaluations: int
+    response: dict[str, Array]
 
     def value(self, name: str) -> float:
         """Return the fitted value of an unknown.
@@ -292,9 +295,11 @@ class Refinement:
             inverse = np.linalg.inv(slopes.T @ slopes)
             filling = slopes[:4].T @ noise @ slopes[:4] + np.outer(slopes[4], slopes[4])
             errors = np.sqrt(np.diag(inverse @ filling @ inverse)).tolist()
+            responses = inverse @ slopes[:4].T @ self._whitening
         except np.linalg.LinAlgError:
             # The record does not identify the unknowns: all their values fit equally well.
             errors = [float("inf")] * len(seen)
+            responses = np.full((len(seen), 4), np.inf)
         balanced = self._running.state(point.candidate).balanced[0]
         return Fit(
             candidate=point.candidate,
@@ -306,6 +311,7 @@ class Refinement:
             degrees_of_freedom=self.record.cycles - 1,
             at_bound=tuple(one.name for one in unknowns if one.name not in seen),
             evaluations=evaluations,
+            response=dict(zip(seen, responses, strict=True)),
         )
 
 

@@ -9,13 +9,14 @@ import numpy as np
 from core.diagnosis.baseline import Baseline, baseline_of, standing
 from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
 from core.diagnosis.errors import DiagnosisError
-from core.diagnosis.hypotheses import explain, is_explained
+from core.diagnosis.hypotheses import Explanation, explain, is_explained
 from core.diagnosis.indicators import indicators
 from core.diagnosis.judgement import identified, judge
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
+from core.diagnosis.propagation import Known, deviation, errors_of, widened
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
 from core.diagnosis.search import METHODS, search
-from core.diagnosis.tolerance import systematic
+from core.diagnosis.tolerance import Systematic, systematic
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
 from core.machines.base import StatorModel
 from core.machines.parameters import Motor
@@ -106,31 +107,26 @@ def _diagnosed(
     quality.append(identified(explanation))
     if not quality[-1].passed:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
-    tolerance = systematic(
-        case,
-        playback,
-        explanation.fit,
-        known_share=0.0 if baseline is None else 1.0 - baseline.remaining,
-        known_unbalance_V=0.0 if baseline is None else baseline.unbalance_V,
-        systematic_error_A=0.0 if baseline is None else baseline.error_A,
-        supply_unbalance=SUPPLY_UNBALANCE if assumed else 0.0,
-    )
-    verdict, reasons = judge(case, explanation, tolerance)
+    known = _known(baseline, SUPPLY_UNBALANCE if assumed else 0.0)
+    fit = explanation.fit
+    tolerance = systematic(case, playback, fit, known)
+    level_ci95 = _level_interval(case, playback, explanation, tolerance, known)
+    verdict, reasons = judge(case, explanation, tolerance, level_ci95)
     if assumed and verdict is Verdict.FAULT:
         verdict = Verdict.WATCH
     if assumed:
         reasons.append("no voltages recorded: a balanced supply is assumed, so this is no better than a hint")
     if baseline is not None:
         reasons.append(f"relative to a baseline of {baseline.recordings} healthy recordings")
-    fit = explanation.fit
     named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and is_explained(explanation, tolerance))
     # Load and speed are those of the accepted hypothesis; an insignificant level would bias them.
     running = fit if named else explanation.healthy
-    low, high = (max(0.0, bound) for bound in fit.interval(FAULT_LEVEL))
+    load_scatter95 = explanation.load_interval if named else running.interval(LOAD_LEVEL)
+    load_errors = errors_of(case, playback.model, explanation.record, running.candidate, known)
     return Diagnosis(
         verdict=verdict,
         mu_f=max(0.0, fit.value(FAULT_LEVEL)),
-        mu_f_ci95=(low, high),
+        mu_f_ci95=_not_below_zero(level_ci95),
         theta_f=case.terminal_winding(explanation.winding) if named else None,
         load_level=running.value(LOAD_LEVEL),
         time_offset_s=running.value(TIME_OFFSET),
@@ -141,7 +137,11 @@ def _diagnosed(
         reasons=tuple(reasons),
         model=str(model),
         method=str(method),
-        load_level_ci95=running.interval(LOAD_LEVEL),
+        mu_f_scatter95=_not_below_zero(fit.interval(FAULT_LEVEL)),
+        load_level_ci95=widened(
+            running.value(LOAD_LEVEL), load_scatter95, deviation(running, LOAD_LEVEL, load_errors)
+        ),
+        load_level_scatter95=running.interval(LOAD_LEVEL),
         speed_rpm=_speed_rpm(case, playback, running),
         detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),
         indicators=indicators(case),
@@ -242,6 +242,28 @@ def _currents_of(recording: Recording) -> Recording:
     return replace(
         recording, samples=recording.samples[kept], channels=tuple(recording.channels[k] for k in kept)
     )
+
+
+def _known(baseline: Baseline | None, supply_unbalance: float) -> Known:
+    if baseline is None:
+        return Known(supply_unbalance=supply_unbalance)
+    return Known(1.0 - baseline.remaining, baseline.unbalance_V, baseline.error_A, supply_unbalance)
+
+
+def _level_interval(
+    case: Case, playback: Playback, explanation: Explanation, tolerance: Systematic, known: Known
+) -> tuple[float, float]:
+    """95 % interval of the fault level from all causes, below zero too."""
+    fit = explanation.fit
+    errors = errors_of(case, playback.model, explanation.record, fit.candidate, known)
+    at_bound = FAULT_LEVEL in fit.at_bound
+    systematic_level = tolerance.level if at_bound else deviation(fit, FAULT_LEVEL, errors)
+    return widened(fit.value(FAULT_LEVEL), explanation.level_interval, systematic_level)
+
+
+def _not_below_zero(interval: tuple[float, float]) -> tuple[float, float]:
+    low, high = interval
+    return max(0.0, low), max(0.0, high)
 
 
 def _speed_rpm(case: Case, playback: Playback, fit: Fit) -> float:

@@ -12,6 +12,7 @@ from statistics import NormalDist
 import numpy as np
 
 from core.diagnosis.case import Case
+from core.diagnosis.propagation import CONFIDENCE_QUANTILE, Known
 from core.diagnosis.refinement import CHANNEL_RATIO, FAULT_LEVEL, Fit
 from core.machines.candidates import Candidates
 from core.machines.playback import Playback
@@ -20,7 +21,6 @@ PARAMETERS = 0.06
 """Standard deviation of the machine's negative-sequence impedance: within 10 %, uniformly. Windings warm up,
 data sheets round off."""
 
-CONFIDENCE_QUANTILE = NormalDist().inv_cdf(0.975)
 FALSE_ALARM_QUANTILE = NormalDist().inv_cdf(1.0 - 0.001 / 3.0)
 """Standard errors that none of three windings' levels exceeds in 999 of 1,000 healthy records."""
 DETECTION_QUANTILE = NormalDist().inv_cdf(0.9)
@@ -30,7 +30,9 @@ PROBE_LEVEL = 0.005
 
 @dataclass(frozen=True, slots=True)
 class Systematic:
-    """Standard deviations that no averaging reduces.
+    """Standard deviations that no averaging reduces, of a healthy motor in the record's operating point.
+
+    They decide what is called a fault. What a fitted level may be off by is in `core.diagnosis.propagation`.
 
     Parameters
     ----------
@@ -82,16 +84,7 @@ class Systematic:
         return hypot(self.level, fit.standard_error.get(FAULT_LEVEL, 0.0))
 
 
-def systematic(
-    case: Case,
-    playback: Playback,
-    fit: Fit,
-    *,
-    known_share: float = 0.0,
-    known_unbalance_V: complex = 0.0,
-    systematic_error_A: float = 0.0,
-    supply_unbalance: float = 0.0,
-) -> Systematic:
+def systematic(case: Case, playback: Playback, fit: Fit, known: Known) -> Systematic:
     """Compute the tolerances of one record from its voltages, its currents and the fitted operating point.
 
     Parameters
@@ -102,15 +95,8 @@ def systematic(
         The record's voltages, for any candidate.
     fit : Fit
         The fit of the fault.
-    known_share : float, default 0.0
-        Share of the sensors' errors that a baseline has taken off. Of the parameters' errors it took what
-        they make of `known_unbalance_V`, since those are proportional to that.
-    known_unbalance_V : complex, default 0.0
-        Backward-turning voltage of the baseline, seen as in `backward_voltage` [V, peak].
-    systematic_error_A : float, default 0.0
-        Standard deviation of what a baseline has taken off [A, peak].
-    supply_unbalance : float, default 0.0
-        Standard deviation of V2 / V1 where the voltages are assumed.
+    known : Known
+        What a baseline has taken off, and how balanced an assumed supply is.
 
     Returns
     -------
@@ -133,15 +119,15 @@ def systematic(
     V_alpha, V_beta = (complex(value) for value in case.supply.phasor)
     V_forward = abs(V_alpha + 1j * V_beta) / 2.0
     V_unknown = backward_voltage(V_alpha + 1j * V_beta, (V_alpha - 1j * V_beta).conjugate()) / 2.0
-    V_unknown -= known_unbalance_V
+    V_unknown -= known.unbalance_V
     impedance = _negative_sequence_impedance(case)
     per_volt = 1.0 / (impedance * forward)
     sensors = hypot(CHANNEL_RATIO / sqrt(3.0), CHANNEL_RATIO / sqrt(3.0) * V_forward * per_volt)
     backward = hypot(
-        (1.0 - known_share) * sensors,
+        (1.0 - known.share) * sensors,
         PARAMETERS * abs(V_unknown) * per_volt,
-        supply_unbalance * V_forward * per_volt,
-        systematic_error_A / forward,
+        known.supply_unbalance * V_forward * per_volt,
+        known.error_A / forward,
     )
     # Only the part of a complex error that lies along the fault's own current looks like a fault.
     return Systematic(backward=backward, level=backward / sqrt(2.0) / per_level)

@@ -67,7 +67,7 @@ class Diagnosis:
     mu_f : float or None
         Equivalent fault level, a fraction of the phase turns.
     mu_f_ci95 : tuple of float or None
-        Its 95 % interval.
+        Its 95 % interval from all causes: noise, sensors, parameters, and paths that the record leaves open.
     theta_f : {0, 1, 2} or None
         Winding with the fault: 0, 1, 2 for the one on terminals a, b, c; None unless shorted turns are found.
     load_level : float or None
@@ -88,8 +88,12 @@ class Diagnosis:
         Fault model that was used.
     method : str
         Search method that was used.
+    mu_f_scatter95 : tuple of float or None, optional
+        95 % interval of the level from the record's own scatter alone: how well it repeats.
     load_level_ci95 : tuple of float or None, optional
-        95 % interval of the load level.
+        95 % interval of the load level from all causes.
+    load_level_scatter95 : tuple of float or None, optional
+        95 % interval of the load level from the record's own scatter alone.
     speed_rpm : float or None, optional
         Speed of the shaft, from the fit [rpm].
     detection_limit : float or None, optional
@@ -113,7 +117,9 @@ class Diagnosis:
     reasons: tuple[str, ...]
     model: str
     method: str
+    mu_f_scatter95: tuple[float, float] | None = None
     load_level_ci95: tuple[float, float] | None = None
+    load_level_scatter95: tuple[float, float] | None = None
     speed_rpm: float | None = None
     detection_limit: float | None = None
     indicators: Indicators | None = None
@@ -136,7 +142,9 @@ class Diagnosis:
         return {
             "verdict": str(self.verdict),
             "mu_f": self.mu_f,
-            "mu_f_ci95": None if self.mu_f_ci95 is None else list(self.mu_f_ci95),
+            "mu_f_ci95": _listed(self.mu_f_ci95),
+            "mu_f_scatter95": _listed(self.mu_f_scatter95),
+            "detection_limit": self.detection_limit,
             "theta_f": self.theta_f,
             "phase": self.phase,
             "load_level": self.load_level,
@@ -148,9 +156,9 @@ class Diagnosis:
             "reasons": list(self.reasons),
             "model": self.model,
             "method": self.method,
-            "load_level_ci95": None if self.load_level_ci95 is None else list(self.load_level_ci95),
+            "load_level_ci95": _listed(self.load_level_ci95),
+            "load_level_scatter95": _listed(self.load_level_scatter95),
             "speed_rpm": self.speed_rpm,
-            "detection_limit": self.detection_limit,
             "indicators": None if self.indicators is None else self.indicators.as_dict(),
             "currents_only": self.currents_only,
         }
@@ -187,3 +195,7 @@ def _is_finite(value: float) -> bool:
         return isfinite(value)
     except OverflowError:  # an integer without a float
         return False
+
+
+def _listed(interval: tuple[float, float] | None) -> list[float] | None:
+    return None if interval is None else list(interval)
