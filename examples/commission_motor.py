@@ -19,6 +19,8 @@ from core.recordings import read
 
 
 def main() -> None:
+    if len(sys.argv) < 4:
+        sys.exit(__doc__)
     plate = read_plate(sys.argv[1])
     recordings = [read(Path(name)) for name in sys.argv[3:]]
     found = commission(recordings, plate)

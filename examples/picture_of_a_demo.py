@@ -17,6 +17,8 @@ COLOURS = {"healthy": "#2a9d5c", "watch": "#e9a23b", "fault": "#d1495b", "undiag
 
 
 def main() -> None:
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
     motors = json.loads(Path(sys.argv[1]).read_text("utf-8"))["motors"]
     figure, (levels, loads) = plt.subplots(
         1,

@@ -101,11 +101,11 @@ def measure_trial(trial: Trial) -> Estimates:
         noise = deviations[:, np.newaxis] * np.random.default_rng(seed).standard_normal(true.shape)
         found = diagnose(record_of(true + noise, trial.sample_rate_hz), REFERENCE, model=trial.model.value)
         first_order.append(limit.first_order_error(noise))
-        if found.mu_f is None or found.mu_f_ci95 is None:
+        if found.mu_f is None or found.mu_f_scatter95 is None:
             errors.append(float("nan"))
             continue
         errors.append(found.mu_f - truth.level)
-        covered += found.mu_f_ci95[0] <= truth.level <= found.mu_f_ci95[1]
+        covered += found.mu_f_scatter95[0] <= truth.level <= found.mu_f_scatter95[1]
         right += found.theta_f == truth.winding
     return Estimates(trial, limit.standard_deviation, tuple(errors), tuple(first_order), covered, right)
 

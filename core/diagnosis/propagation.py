@@ -47,8 +47,8 @@ class Known:
     share : float, default 0.0
         Share of the sensors' asymmetry that a baseline has taken off.
     unbalance_V : complex, default 0.0
-        Backward-turning voltage of the baseline, seen as in `backward_voltage` [V, peak]. What the parameters'
-        errors make of it is taken off, too.
+        Backward-turning voltage of the baseline, seen as in `backward_voltage` [V, peak]. What the errors of
+        the parameters make of it is taken off, too.
     error_A : float, default 0.0
         Standard deviation of what a baseline has taken off [A, peak].
     supply_unbalance : float, default 0.0
@@ -145,10 +145,8 @@ class _Machine:
             value = getattr(motor.parameters, parameter) * (1.0 + PARAMETER)
             motor = replace(motor, parameters=replace(motor.parameters, **{parameter: value}))
         at = replace(self.at, fault_level=np.zeros(1)) if healthy else self.at
-        running = SteadyRunning(
-            self._model, motor, self._case.supply.angular_frequency, axis_phasors(volts)
-        )
-        return components(running.state(at).current)[0]
+        running = SteadyRunning(self._model, motor, self._case.supply.angular_frequency, axis_phasors(volts))
+        return np.asarray(components(running.state(at).current)[0])
 
     def change(self, parameter: str, volts: Array, *, healthy: bool = False) -> Array:
         """Change of the current by one parameter."""
@@ -191,7 +189,7 @@ def _of_parameters(machine: _Machine, known: Known) -> list[Array]:
 
 
 def _channels(values: Array, to_windings: Array, record: Fundamental) -> list[Array]:
-    """Changes of a quantity's components by the gain and by the delay of each of three channels."""
+    """Return how gain and delay of each of three channels change a quantity's components."""
     phasor = axis_phasors(values)
     changes = []
     for axis in AXES:

@@ -81,14 +81,17 @@ class Diagnosis(Document):
     """The result for one recording, as `mcc diagnose --json` prints it.
 
     mu_f: equivalent fault level, fraction of the phase turns. theta_f: 0, 1, 2 = winding on terminals
-    a, b, c. load_level: load torque over rated torque. speed_rpm: of the shaft, from the fit.
+    a, b, c. load_level: load torque over rated torque. ..._ci95: 95 % interval from noise, sensors and
+    parameters. ..._scatter95: from the record's own scatter alone. speed_rpm: of the shaft, from the fit.
     detection_limit: least mu_f this recording would have shown. currents_only: the voltages are assumed.
-    Diagnoses of earlier versions lack some.
+    Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
     verdict: Verdict
     mu_f: float | None
     mu_f_ci95: tuple[float, float] | None
+    mu_f_scatter95: tuple[float, float] | None = None
+    detection_limit: float | None = None
     theta_f: int | None
     phase: Literal["a", "b", "c"] | None
     load_level: float | None
@@ -101,8 +104,8 @@ class Diagnosis(Document):
     model: str
     method: str
     load_level_ci95: tuple[float, float] | None = None
+    load_level_scatter95: tuple[float, float] | None = None
     speed_rpm: float | None = None
-    detection_limit: float | None = None
     indicators: Indicators | None = None
     currents_only: bool = False
 
@@ -204,7 +207,8 @@ class DiagnosisRequest(BaseModel):
 class Health(Document):
     """What is known of a motor now: the diagnosis of its latest recording, its relay's link, its recordings.
 
-    verdict, mu_f, phase and reasons repeat the diagnosis; null and empty before the first one.
+    What is said of verdict, level, phase, load and reasons repeats the diagnosis; null and empty before the
+    first one.
     """
 
     motor: str
@@ -213,8 +217,11 @@ class Health(Document):
     verdict: Verdict | None
     mu_f: float | None
     mu_f_ci95: tuple[float, float] | None
+    mu_f_scatter95: tuple[float, float] | None
+    detection_limit: float | None
     phase: Literal["a", "b", "c"] | None
     load_level: float | None
+    load_level_ci95: tuple[float, float] | None
     reasons: Listed[str]
     recording_id: str | None
     recorded_time: Time | None
@@ -231,11 +238,17 @@ class ListedMotor(Motor):
 
 
 class TrendPoint(Document):
-    """One recording's figure; `value` is null where the recording does not tell it; `ci95` is of mu_f."""
+    """One recording's figure; `value` is null where the recording does not tell it.
+
+    ci95: 95 % interval from noise, sensors and parameters, of mu_f and load_level. Of mu_f only: scatter95, from
+    the record's own scatter alone; detection_limit, the least level that the recording would have shown.
+    """
 
     time: Time = Field(validation_alias="recorded_ns")
     value: float | None
     ci95: tuple[float, float] | None
+    scatter95: tuple[float, float] | None
+    detection_limit: float | None
     verdict: Verdict
     recording_id: str
 

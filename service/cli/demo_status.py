@@ -7,7 +7,7 @@ from rich.text import Text
 import scl
 from service.cli.output import failing_clearly, one_line, print_document, results
 from service.client.rest_client import ServiceClient, ServiceError
-from service.client.verdicts import level, verdict_text
+from service.client.verdicts import level, percent, verdict_text
 from service.demo import SCENARIO
 from service.demo.results import truth_text
 from service.demo.status import MotorStatus, ask_status
@@ -18,17 +18,21 @@ def show_demo(url: str, *, as_json: bool) -> None:
     """Print each motor's verdict and truth. Raises CommandError."""
     with failing_clearly(ServiceError, TruthError), ServiceClient(url) as service:
         motors = ask_status(service, ask_simulator(scl.DEMO_PLANT_SCD, SCENARIO))
-    right = sum(motor.is_right for motor in motors)
+    right = sum(motor.is_right is True for motor in motors)
+    judged = sum(motor.is_right is not None for motor in motors)
     if as_json:
-        print_document({"motors": [motor.as_dict() for motor in motors], "right": right})
+        print_document({"motors": [motor.as_dict() for motor in motors], "right": right, "judged": judged})
         return
     table = Table(box=SIMPLE_HEAD, collapse_padding=True)
-    for heading in ("motor", "truth", "verdict", "level", "link"):
+    for heading in ("motor", "truth", "verdict", "level", "seen from", "link"):
         table.add_column(heading)
     for motor in motors:
         table.add_row(*_row(motor))
     results().print(table)
-    results().print(f"{right} of {len(motors)} verdicts are right")
+    waiting = len(motors) - judged
+    results().print(
+        f"{right} of {judged} verdicts are right" + (f"; {waiting} without one yet" if waiting else "")
+    )
 
 
 def _row(motor: MotorStatus) -> tuple[Text, ...]:
@@ -40,5 +44,6 @@ def _row(motor: MotorStatus) -> tuple[Text, ...]:
         Text(truth_text(motor.truth)),
         Text("-") if verdict is None else verdict_text(str(verdict), health["phase"]),
         Text(level(health["mu_f"], health["mu_f_ci95"])),
+        Text("-" if health["detection_limit"] is None else f"{percent(health['detection_limit'])} %"),
         Text(f"{health['link_state']}{reason}"),
     )

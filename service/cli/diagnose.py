@@ -13,7 +13,7 @@ from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file import MotorFileError, read_motor
 from core.recordings import RecordingError, read
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
-from service.client.verdicts import level, verdict_text
+from service.client.verdicts import detection, interval, level, load, verdict_text
 
 
 def diagnose_recording(
@@ -29,6 +29,8 @@ def diagnose_recording(
 ) -> None:
     """Read a recording, diagnose it and print the result, with what a lenient reader repaired as reasons.
 
+    The result names the motor's file, which may be one found beside the recording.
+
     baseline: healthy recordings of the same motor, whose standing asymmetry is subtracted.
 
     Raises CommandError where the recording or the motor file cannot be used, or the method is not known.
@@ -38,7 +40,8 @@ def diagnose_recording(
         failing_clearly(DiagnosisError, exit_code=WRONG_USE),
     ):
         recording = read(record, lenient=lenient)
-        found = read_motor(motor or _motor_file_beside(record))
+        motor_file = motor or _motor_file_beside(record)
+        found = read_motor(motor_file)
         healthy = [read(one, lenient=lenient) for one in baseline]
         diagnosis = diagnose(
             recording,
@@ -51,9 +54,9 @@ def diagnose_recording(
     repaired = (f"repaired: {note}" for note in recording.repairs)
     diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
     if as_json:
-        print_document(diagnosis.as_dict())
+        print_document({**diagnosis.as_dict(), "motor_file": str(motor_file)})
     else:
-        results().print(_table(record, diagnosis))
+        results().print(_table(record, motor_file, diagnosis))
 
 
 def _motor_file_beside(record: Path) -> Path:
@@ -69,21 +72,27 @@ def _motor_file_beside(record: Path) -> Path:
     )
 
 
-def _table(record: Path, diagnosis: Diagnosis) -> Table:
+def _table(record: Path, motor_file: Path, diagnosis: Diagnosis) -> Table:
     table = Table(title=Text(record.name), title_justify="left", show_header=False)
     table.add_row("verdict", verdict_text(diagnosis.verdict))
     if diagnosis.mu_f is not None:
         table.add_row("equivalent fault level", level(diagnosis.mu_f, diagnosis.mu_f_ci95))
+        table.add_row("detection limit", detection(diagnosis.detection_limit))
     if diagnosis.phase is not None:
         table.add_row("phase", diagnosis.phase)
     if diagnosis.load_level is not None:
-        table.add_row("load level", f"{diagnosis.load_level:.3f}")
+        table.add_row("load level", load(diagnosis.load_level, diagnosis.load_level_ci95))
+    for reason in diagnosis.reasons:
+        table.add_row("reason", Text(reason))
+    if diagnosis.mu_f_scatter95 is not None:
+        table.add_row(
+            "scatter of the level", f"{interval(diagnosis.mu_f_scatter95)} % (95 %, this record's own)"
+        )
     if diagnosis.residual_rms_A is not None:
         table.add_row("residual", f"{diagnosis.residual_rms_A:.4g} A rms")
     table.add_row("model, method", f"{diagnosis.model}, {diagnosis.method}")
     table.add_row("effort", f"{diagnosis.evaluations} evaluations, {diagnosis.compute_seconds:.3f} s")
-    for reason in diagnosis.reasons:
-        table.add_row("reason", Text(reason))
+    table.add_row("motor file", Text(str(motor_file)))
     for finding in diagnosis.quality:
         if not finding.passed and not any(finding.message in reason for reason in diagnosis.reasons):
             table.add_row("quality", Text(finding.message))

@@ -10,7 +10,15 @@ from rich.text import Text
 
 from service.cli.output import CommandError, failing_clearly, one_line, print_document, progress, results
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
-from service.client.verdicts import level, to_the_second, verdict_text
+from service.client.verdicts import (
+    detection,
+    interval,
+    level,
+    load,
+    percent,
+    to_the_second,
+    verdict_text,
+)
 
 ENDED = ("diagnosed", "failed")
 POLL_PERIOD_S = 0.25
@@ -67,7 +75,7 @@ def list_motors(url: str, *, as_json: bool) -> None:
     table.add_column("motor", no_wrap=True)
     for heading in ("site", "relay", "link", "verdict"):
         table.add_column(heading)
-    for heading in ("level %", "phase", "load"):
+    for heading in ("level %", "95 % interval", "seen from %", "phase", "load"):
         table.add_column(heading, justify="right")
     table.add_column("last recording")
     for overview in overviews:
@@ -125,13 +133,13 @@ def _verdict_line(motor: str, diagnosis: Document) -> Text:
     line.append_text(verdict_text(str(diagnosis["verdict"]), _phase(diagnosis)))
     if diagnosis["mu_f"] is not None:
         line.append(f", {level(diagnosis['mu_f'], diagnosis['mu_f_ci95'])}, load {_load(diagnosis)}")
+        line.append(f", seen from {percent(diagnosis['detection_limit'])} %")
     else:
         line.append(one_line(f": {'; '.join(_reasons(diagnosis))}"))
     return line
 
 
 def _overview(health: Document) -> tuple[RenderableType, ...]:
-    mu_f = health["mu_f"]
     last = _last_recording(health)
     return (
         Text(str(health["motor"])),
@@ -139,7 +147,9 @@ def _overview(health: Document) -> tuple[RenderableType, ...]:
         Text(str(health["ied"])),
         _link_with_reason(health),
         Text("-") if health["verdict"] is None else verdict_text(str(health["verdict"])),
-        f"{100 * mu_f:.2f}" if isinstance(mu_f, int | float) else "-",
+        percent(health["mu_f"]),
+        interval(health["mu_f_ci95"]),
+        percent(health["detection_limit"]),
         str(health["phase"] or "-"),
         _load(health),
         Text(NO_RECORDING if last is None else last),
@@ -154,10 +164,11 @@ def _condition(health: Document) -> list[tuple[str, RenderableType]]:
         rows.append(("verdict", verdict_text(str(health["verdict"]))))
         if health["mu_f"] is not None:
             rows.append(("equivalent fault level", level(health["mu_f"], health["mu_f_ci95"])))
+            rows.append(("detection limit", detection(health["detection_limit"])))
         if health["phase"] is not None:
             rows.append(("phase", str(health["phase"])))
         if health["load_level"] is not None:
-            rows.append(("load level", _load(health)))
+            rows.append(("load level", load(health["load_level"], health["load_level_ci95"])))
         rows.extend(("reason", Text(reason)) for reason in _reasons(health))
         diagnosed = to_the_second(health["recorded_time"])
         if diagnosed != last:
@@ -197,8 +208,7 @@ def _phase(diagnosis: Document) -> str:
 
 
 def _load(found: Document) -> str:
-    load_level = found["load_level"]
-    return f"{load_level:.3f}" if isinstance(load_level, int | float) else "-"
+    return load(found["load_level"])
 
 
 def _reasons(found: Document) -> list[str]:

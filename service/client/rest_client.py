@@ -50,6 +50,14 @@ class ServiceClient:
         except httpx.TransportError:
             return False
 
+    def answers(self) -> bool:
+        """Tell whether anything answers at the address, ready or not."""
+        try:
+            self._http.get("/healthz")
+        except httpx.TransportError:
+            return False
+        return True
+
     def get(self, path: str, **query: str) -> Document:
         """Get a document below /api/v1. Raises ServiceError."""
         return _document(self._request("GET", f"{API}{path}", query))

@@ -14,10 +14,34 @@ def level(mu_f: object, ci95: object) -> str:
     """Return a fault level in percent of the phase turns, with its 95 % interval; "-" where there is none."""
     if not isinstance(mu_f, int | float):
         return "-"
-    interval = ""
-    if isinstance(ci95, list | tuple) and len(ci95) == 2:
-        interval = f"  [{100 * ci95[0]:.2f} .. {100 * ci95[1]:.2f}]"
-    return f"{100 * mu_f:.2f} %{interval}"
+    between = interval(ci95)
+    return f"{percent(mu_f)} %" + ("" if between == "-" else f" [{between}]")
+
+
+def interval(ci95: object) -> str:
+    """Return an interval in percent: "4.20..6.00"; "-" where there is none."""
+    if not isinstance(ci95, list | tuple) or len(ci95) != 2:
+        return "-"
+    return "..".join(percent(bound) for bound in ci95)
+
+
+def load(load_level: object, ci95: object = None) -> str:
+    """Return a load over the rated torque, with its 95 % interval; "-" where there is none."""
+    if not isinstance(load_level, int | float):
+        return "-"
+    if not isinstance(ci95, list | tuple) or len(ci95) != 2:
+        return f"{load_level:.3f}"
+    return f"{load_level:.3f} [{ci95[0]:.3f}..{ci95[1]:.3f}]"
+
+
+def percent(share: object) -> str:
+    """Return a share in percent, without the sign: "2.18"; "-" where there is none."""
+    return f"{100 * share:.2f}" if isinstance(share, int | float) else "-"
+
+
+def detection(limit: object) -> str:
+    """Return in words from which level on nine of ten such recordings show a fault."""
+    return "-" if limit is None else f"{percent(limit)} %: nine of ten such recordings show a fault of it"
 
 
 def to_the_second(time: object) -> str:

@@ -15,6 +15,8 @@ from service.demo.addresses import LOOPBACK, addressed_scd, free_port
 from service.demo.processes import Program, ProgramError
 
 START_LIMIT_S = 90.0
+ANSWER_LIMIT_S = 5.0
+"""A service that somebody else runs and that takes longer to answer at all is not there."""
 POLL_PERIOD_S = 0.1
 SERVICE_PORT = 8710
 
@@ -34,12 +36,14 @@ class DemoPlant:
     """A running plant: its files, the service's address, and how to wait for it.
 
     pause: waits some seconds; raises ProgramError when a program of the plant has ended.
+    answer_limit_s: how long nothing may listen at the address [s].
     """
 
     scd: Path
     scenario: Path
     url: str
     pause: Callable[[float], None]
+    answer_limit_s: float = START_LIMIT_S
 
 
 @contextmanager
@@ -114,21 +118,26 @@ def _other_addresses(plant: DemoPlant) -> Iterator[str]:
 
 def plant_elsewhere(url: str, pause: Callable[[float], None]) -> DemoPlant:
     """Return a demo plant that somebody else started, whose service answers at `url`."""
-    return DemoPlant(scl.DEMO_PLANT_SCD, SCENARIO, url, pause)
+    return DemoPlant(scl.DEMO_PLANT_SCD, SCENARIO, url, pause, ANSWER_LIMIT_S)
 
 
 def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> list[str]:
     """Wait until the service and every relay answer; return the relays that do not answer in time.
 
-    Raises ProgramError, ServiceError, NotReadyError when the service is late.
+    Raises ProgramError, ServiceError, NotReadyError when the service is late or nothing listens there.
     """
-    deadline_s = time.monotonic() + START_LIMIT_S
+    begun_s = time.monotonic()
+    deadline_s = begun_s + START_LIMIT_S
     while True:
         plant.pause(POLL_PERIOD_S)
         if service.is_ready():
             down = [str(ied["name"]) for ied in service.items("/ieds") if ied["link_state"] != "up"]
             if not down or time.monotonic() > deadline_s:
                 return down
+        elif time.monotonic() > begun_s + plant.answer_limit_s and not service.answers():
+            raise NotReadyError(
+                f"no service answers at {plant.url}; waited {plant.answer_limit_s:g} s; mcc demo starts one"
+            )
         elif time.monotonic() > deadline_s:
             raise NotReadyError(f"{plant.url}: the service is not ready after {START_LIMIT_S:g} s")
 

@@ -8,10 +8,10 @@ from rich.table import Table
 from rich.text import Text
 
 from service.client.rest_client import Document
-from service.client.verdicts import verdict_text
+from service.client.verdicts import interval, load, percent, verdict_text
 from service.demo.truth import Truth
 
-FOOTNOTE = "the interval is the record's own scatter; see docs/explanation/diagnosis.md"
+FOOTNOTE = "interval: noise, sensors and parameters; see docs/explanation/diagnosis.md"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ def table(motors: Sequence[DemoMotor]) -> Table:
     )
     for heading in ("motor", "truth", "verdict"):
         shown.add_column(heading)  # these wrap on a narrow terminal, so that the figures stay whole
-    for heading in ("mu_f %", "95 % scatter", "load", "trigger to\ndiagnosis s"):
+    for heading in ("mu_f %", "95 %\ninterval", "seen\nfrom %", "load", "trigger to\ndiagnosis s"):
         shown.add_column(heading, justify="right", no_wrap=True)
     for motor in motors:
         for number, diagnosis in enumerate(motor.diagnoses):
@@ -91,16 +91,12 @@ def truth_text(truth: Truth) -> str:
 def _row(diagnosis: DemoDiagnosis) -> tuple[str | Text, ...]:
     found = diagnosis.document
     if found is None:
-        return Text(diagnosis.reason or "failed", style="red"), "", "", "", ""
-    interval = found["mu_f_ci95"]
+        return Text(diagnosis.reason or "failed", style="red"), "", "", "", "", ""
     return (
         verdict_text(str(found["verdict"]), found["phase"]),
-        _percent(found["mu_f"]),
-        "..".join(_percent(bound) for bound in interval) if isinstance(interval, list) else "-",
-        f"{found['load_level']:.3f}" if isinstance(found["load_level"], float) else "-",
+        percent(found["mu_f"]),
+        interval(found["mu_f_ci95"]),
+        percent(found["detection_limit"]),
+        load(found["load_level"]),
         "-" if diagnosis.seconds is None else f"{diagnosis.seconds:.2f}",
     )
-
-
-def _percent(level: object) -> str:
-    return f"{100 * level:.2f}" if isinstance(level, int | float) else "-"

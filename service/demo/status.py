@@ -6,7 +6,10 @@ from dataclasses import dataclass
 from service.client.rest_client import Document, ServiceClient, segment
 from service.demo.truth import Truth, TruthError
 
-CONDITION = ("verdict", "phase", "mu_f", "mu_f_ci95", "load_level", "recorded_time")
+CONDITION = (
+    "verdict", "phase", "mu_f", "mu_f_ci95", "mu_f_scatter95", "detection_limit", "load_level",
+    "recorded_time",
+)  # fmt: skip
 LINK = ("link_state", "link_reason")
 
 
@@ -18,8 +21,10 @@ class MotorStatus:
     truth: Truth
 
     @property
-    def is_right(self) -> bool:
-        """Whether verdict and faulted phase are those of the truth."""
+    def is_right(self) -> bool | None:
+        """Whether verdict and faulted phase are those of the truth; None before the first verdict."""
+        if self.health["verdict"] is None:
+            return None
         return (self.health["verdict"], self.health["phase"]) == (self.truth.verdict, self.truth.phase)
 
     def as_dict(self) -> dict[str, object]:

@@ -51,7 +51,11 @@ def fault(mu_f: float = 0.051) -> Diagnosis:
     return Diagnosis(
         verdict=Verdict.FAULT,
         mu_f=mu_f,
-        mu_f_ci95=(mu_f - 0.001, mu_f + 0.001),
+        mu_f_ci95=(mu_f - 0.004, mu_f + 0.004),
+        mu_f_scatter95=(mu_f - 0.001, mu_f + 0.001),
+        detection_limit=0.021,
+        load_level_ci95=(0.46, 0.5),
+        load_level_scatter95=(0.47, 0.49),
         theta_f=1,
         load_level=0.48,
         time_offset_s=0.0,

@@ -51,7 +51,10 @@ class JobRow(Base):
 
 
 class DiagnosisRow(Base):
-    """The result of one job. `current` marks the latest of a recording: that one is in the trend."""
+    """The result of one job. `current` marks the latest of a recording: that one is in the trend.
+
+    ci95: from all causes; null in rows of versions that knew only the scatter.
+    """
 
     __tablename__ = "diagnoses"
 
@@ -66,8 +69,13 @@ class DiagnosisRow(Base):
     mu_f: Mapped[float | None]
     mu_f_ci95_low: Mapped[float | None]
     mu_f_ci95_high: Mapped[float | None]
+    mu_f_scatter95_low: Mapped[float | None]
+    mu_f_scatter95_high: Mapped[float | None]
+    detection_limit: Mapped[float | None]
     theta_f: Mapped[int | None]
     load_level: Mapped[float | None]
+    load_level_ci95_low: Mapped[float | None]
+    load_level_ci95_high: Mapped[float | None]
     method: Mapped[str]
     model: Mapped[str]
     document: Mapped[Mapping[str, object]]

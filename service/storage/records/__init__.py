@@ -11,6 +11,7 @@ from service.storage.records.diagnoses import (
     MotorHealth,
     Quantity,
     TrendPoint,
+    interval_of,
 )
 from service.storage.records.measurements import Measurement, Sample
 from service.storage.records.pages import Cursor, Page
@@ -59,4 +60,5 @@ __all__ = [
     "Sample",
     "SiteEntry",
     "TrendPoint",
+    "interval_of",
 ]

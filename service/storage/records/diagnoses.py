@@ -63,13 +63,24 @@ class JobResult:
     diagnosis: DiagnosisEntry | None
 
 
+def interval_of(low: float | None, high: float | None) -> tuple[float, float] | None:
+    """Return an interval from its columns; None where the recording does not tell it."""
+    return None if low is None or high is None else (low, high)
+
+
 @dataclass(frozen=True, slots=True)
 class TrendPoint:
-    """One recording's figure. `ci95` only for mu_f; `value` is None where the recording does not tell it."""
+    """One recording's figure; `value` is None where the recording does not tell it.
+
+    ci95: 95 % interval from all causes, of mu_f and load_level.  Of mu_f only: scatter95, from the record's own
+    scatter; detection_limit, the least level that the recording would have shown.
+    """
 
     recorded_ns: int
     value: float | None
     ci95: tuple[float, float] | None
+    scatter95: tuple[float, float] | None
+    detection_limit: float | None
     verdict: Verdict
     recording_id: str
 
@@ -85,16 +96,29 @@ class LatestDiagnosis:
     mu_f: float | None
     mu_f_ci95_low: float | None
     mu_f_ci95_high: float | None
+    mu_f_scatter95_low: float | None
+    mu_f_scatter95_high: float | None
+    detection_limit: float | None
     theta_f: int | None
     load_level: float | None
+    load_level_ci95_low: float | None
+    load_level_ci95_high: float | None
     reasons: Sequence[str]
 
     @property
     def mu_f_ci95(self) -> tuple[float, float] | None:
-        """Return the 95 % interval of mu_f; None where the recording does not tell it."""
-        if self.mu_f_ci95_low is None or self.mu_f_ci95_high is None:
-            return None
-        return self.mu_f_ci95_low, self.mu_f_ci95_high
+        """Return the 95 % interval of mu_f from all causes; None where the recording does not tell it."""
+        return interval_of(self.mu_f_ci95_low, self.mu_f_ci95_high)
+
+    @property
+    def mu_f_scatter95(self) -> tuple[float, float] | None:
+        """Return the 95 % interval of mu_f from the record's own scatter."""
+        return interval_of(self.mu_f_scatter95_low, self.mu_f_scatter95_high)
+
+    @property
+    def load_level_ci95(self) -> tuple[float, float] | None:
+        """Return the 95 % interval of the load from all causes."""
+        return interval_of(self.load_level_ci95_low, self.load_level_ci95_high)
 
     @property
     def phase(self) -> Literal["a", "b", "c"] | None:

@@ -23,7 +23,7 @@ class AlarmRows(Sessions):
         Raises NotFoundError.
         """
         with self._write() as session:
-            found(session, IedRow, relay, "IED", lock=True)
+            found(session, IedRow, relay, "relay", lock=True)
             return alarm(raised(session, relay, kind, subject, reason, now_ns))
 
     def clear_alarms(self, relay: str, alarm_ids: Collection[str], *, now_ns: int) -> None:

@@ -9,7 +9,7 @@ class FindingsRows(Sessions):
     def note_findings(self, findings: RelayFindings) -> None:
         """Replace what was found at a relay before by these findings. Raises NotFoundError."""
         with self._write() as session:
-            found(session, IedRow, findings.ied, "IED")
+            found(session, IedRow, findings.ied, "relay")
             session.merge(
                 RelayFindingsRow(
                     ied=findings.ied,
@@ -24,6 +24,6 @@ class FindingsRows(Sessions):
     def relay_findings(self, relay: str) -> RelayFindings | None:
         """Return what was found at a relay; None before the first visit. Raises NotFoundError."""
         with self._read() as session:
-            found(session, IedRow, relay, "IED")
+            found(session, IedRow, relay, "relay")
             row = session.get(RelayFindingsRow, relay)
             return None if row is None else record_of(RelayFindings, row)

@@ -225,7 +225,10 @@ def _diagnosis_row(
 ) -> DiagnosisRow:
     if abs(recorded_ns) > LATEST_NS:
         raise UnstorableDiagnosisError(f"the record's time, {recorded_ns:.3g} ns, is beyond the year 2262")
-    low, high = diagnosis.mu_f_ci95 or (None, None)
+    unknown = (None, None)
+    level_low, level_high = diagnosis.mu_f_ci95 or unknown
+    level_scatter_low, level_scatter_high = diagnosis.mu_f_scatter95 or unknown
+    load_low, load_high = diagnosis.load_level_ci95 or unknown
     return DiagnosisRow(
         id=str(uuid.uuid4()),
         job_id=row.id,
@@ -236,10 +239,15 @@ def _diagnosis_row(
         recorded_ns=recorded_ns,
         verdict=diagnosis.verdict,
         mu_f=diagnosis.mu_f,
-        mu_f_ci95_low=low,
-        mu_f_ci95_high=high,
+        mu_f_ci95_low=level_low,
+        mu_f_ci95_high=level_high,
+        mu_f_scatter95_low=level_scatter_low,
+        mu_f_scatter95_high=level_scatter_high,
+        detection_limit=diagnosis.detection_limit,
         theta_f=diagnosis.theta_f,
         load_level=diagnosis.load_level,
+        load_level_ci95_low=load_low,
+        load_level_ci95_high=load_high,
         method=diagnosis.method,
         model=diagnosis.model,
         document=_document(diagnosis),

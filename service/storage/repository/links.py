@@ -56,7 +56,7 @@ class LinkRows(Sessions):
         day_bytes: a UTC day (days since 1970) and all that counts against its limit. Raises NotFoundError.
         """
         with self._write() as session:
-            row = found(session, IedRow, relay, "IED", lock=True)
+            row = found(session, IedRow, relay, "relay", lock=True)
             change_link(session, row, state, reason, now_ns)
             if state is LinkState.UP:
                 row.last_success_ns = now_ns
@@ -98,13 +98,13 @@ class LinkRows(Sessions):
         query = select(*columns_of(LinkChange, LinkChangeRow)).where(LinkChangeRow.ied == relay)
         order: Order = [LinkChangeRow.changed_ns, LinkChangeRow.id]
         with self._read() as session:
-            found(session, IedRow, relay, "IED")
+            found(session, IedRow, relay, "relay")
             return page_of(session, query, order, LinkChange, limit=limit, after=after, descending=True)
 
     def link_figures(self, relay: str) -> LinkFigures:
         """Return what went over a relay's link; zeros before anything did. Raises NotFoundError."""
         with self._read() as session:
-            found(session, IedRow, relay, "IED")
+            found(session, IedRow, relay, "relay")
             row = session.get(LinkFiguresRow, relay)
             return LinkFigures(relay) if row is None else record_of(LinkFigures, row)
 

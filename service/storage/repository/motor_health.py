@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from sqlalchemy import Select, func, or_, select
+from sqlalchemy import Select, func, null, or_, select
 from sqlalchemy.orm import Session, aliased
 
 from core.diagnosis.verdict import Verdict
@@ -22,25 +22,34 @@ from service.storage.records import (
     Quantity,
     RecordingEntry,
     TrendPoint,
+    interval_of,
 )
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 from service.storage.states import RecordingState
 
-_INTERVAL = (DiagnosisRow.mu_f_ci95_low, DiagnosisRow.mu_f_ci95_high)
-_FIGURE = {
-    "mu_f": DiagnosisRow.mu_f,
-    "theta_f": DiagnosisRow.theta_f,
-    "load_level": DiagnosisRow.load_level,
+_LEVEL = (
+    DiagnosisRow.mu_f,
+    DiagnosisRow.mu_f_ci95_low,
+    DiagnosisRow.mu_f_ci95_high,
+    DiagnosisRow.mu_f_scatter95_low,
+    DiagnosisRow.mu_f_scatter95_high,
+    DiagnosisRow.detection_limit,
+)
+_LOAD = (DiagnosisRow.load_level, DiagnosisRow.load_level_ci95_low, DiagnosisRow.load_level_ci95_high)
+_FIGURES = {
+    "mu_f": _LEVEL,
+    "theta_f": (DiagnosisRow.theta_f, *(null(),) * 5),
+    "load_level": (*_LOAD, *(null(),) * 3),
 }
+"""A figure, its interval, its scatter and its detection limit; null where there is none."""
 _SAID = (
     DiagnosisRow.motor,
     DiagnosisRow.recording_id,
     DiagnosisRow.recorded_ns,
     DiagnosisRow.verdict,
-    DiagnosisRow.mu_f,
-    *_INTERVAL,
+    *_LEVEL,
     DiagnosisRow.theta_f,
-    DiagnosisRow.load_level,
+    *_LOAD,
     DiagnosisRow.document["reasons"],
 )
 """The columns of a LatestDiagnosis. The database takes the reasons from the document, which is long."""
@@ -78,8 +87,7 @@ class MotorHealthRows(Sessions):
         # All of these columns are in the index: no row with its document is read.
         query = select(
             DiagnosisRow.recorded_ns,
-            _FIGURE[quantity],
-            *_INTERVAL,
+            *_FIGURES[quantity],
             DiagnosisRow.verdict,
             DiagnosisRow.recording_id,
         ).where(DiagnosisRow.motor == motor, DiagnosisRow.current)
@@ -90,8 +98,7 @@ class MotorHealthRows(Sessions):
         order: Order = [DiagnosisRow.recorded_ns, DiagnosisRow.id]
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            to_point = _mu_f_point if quantity == "mu_f" else _point
-            return page_of(session, query, order, to_point, limit=limit, after=after)
+            return page_of(session, query, order, _point, limit=limit, after=after)
 
 
 def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHealth, ...]:
@@ -156,24 +163,23 @@ def _for_each(motors: Sequence[str], latest: Select[str]) -> Select[str]:
     return select(latest.scalar_subquery()).select_from(MotorRow).where(MotorRow.name.in_(motors))
 
 
-def _mu_f_point(
+def _point(
     recorded_ns: int,
     value: float | None,
     low: float | None,
     high: float | None,
+    scatter_low: float | None,
+    scatter_high: float | None,
+    detection_limit: float | None,
     verdict: Verdict,
     recording_id: str,
 ) -> TrendPoint:
-    ci95 = None if low is None or high is None else (low, high)
-    return TrendPoint(recorded_ns, value, ci95, verdict, recording_id)
-
-
-def _point(
-    recorded_ns: int,
-    value: float | None,
-    _low: float | None,
-    _high: float | None,
-    verdict: Verdict,
-    recording_id: str,
-) -> TrendPoint:
-    return TrendPoint(recorded_ns, value, None, verdict, recording_id)
+    return TrendPoint(
+        recorded_ns,
+        value,
+        interval_of(low, high),
+        interval_of(scatter_low, scatter_high),
+        detection_limit,
+        verdict,
+        recording_id,
+    )

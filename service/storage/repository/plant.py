@@ -46,7 +46,7 @@ class PlantRows(Sessions):
     def note_clock(self, relay: str, reading: ClockReading) -> None:
         """Note how far a relay's clock is from ours. Raises NotFoundError."""
         with self._write() as session:
-            row = found(session, IedRow, relay, "IED")
+            row = found(session, IedRow, relay, "relay")
             row.clock_offset_ns, row.clock_uncertainty_ns = reading.offset_ns, reading.uncertainty_ns
             row.clock_quality, row.clock_measured_ns = reading.quality, reading.measured_ns
 
@@ -56,14 +56,14 @@ class PlantRows(Sessions):
         Each block has a buffer of its own. Raises NotFoundError.
         """
         with self._read() as session:
-            row = found(session, IedRow, relay, "IED")
+            row = found(session, IedRow, relay, "relay")
             unknown = report_control is None or row.entry_report_control is None
             return row.entry_id if unknown or row.entry_report_control == report_control else None
 
     def save_entry_id(self, relay: str, entry_id: bytes, report_control: str | None = None) -> None:
         """Save where to resume the buffered report of a block. Raises NotFoundError."""
         with self._write() as session:
-            row = found(session, IedRow, relay, "IED")
+            row = found(session, IedRow, relay, "relay")
             row.entry_id, row.entry_report_control = entry_id, report_control
 
     def sites(self, *, limit: int, after: Cursor | None = None) -> Page[SiteEntry]:
@@ -79,12 +79,12 @@ class PlantRows(Sessions):
     def relay(self, name: str) -> IedEntry:
         """Return a relay by its name. Raises NotFoundError."""
         with self._read() as session:
-            return _relay(found(session, IedRow, name, "IED"))
+            return _relay(found(session, IedRow, name, "relay"))
 
     def is_in_service(self, relay: str) -> bool:
         """Tell whether a relay is in the plant's files. Raises NotFoundError."""
         with self._read() as session:
-            return found(session, IedRow, relay, "IED").in_service
+            return found(session, IedRow, relay, "relay").in_service
 
     def motors(self, *, limit: int, after: Cursor | None = None) -> Page[MotorEntry]:
         with self._read() as session:

@@ -25,7 +25,7 @@ class QuarantineRows(Sessions):
         backoff: the pause after so many quarantines in a row. Raises NotFoundError.
         """
         with self._write() as session:
-            found(session, IedRow, relay, "IED", lock=True)
+            found(session, IedRow, relay, "relay", lock=True)
             times = _times(session, relay) + 1
             row = _put(session, relay, reason, times, now_ns, backoff.pause_s(times))
             raised(session, relay, AlarmKind.QUARANTINED, "", reason, now_ns)
@@ -35,13 +35,13 @@ class QuarantineRows(Sessions):
         """Note relays of which one did harm. Raises NotFoundError."""
         with self._write() as session:
             for relay in sorted(relays):  # in one order, for two who lock them
-                found(session, IedRow, relay, "IED", lock=True)
+                found(session, IedRow, relay, "relay", lock=True)
                 _put(session, relay, reason, _times(session, relay), now_ns, pause_s)
 
     def release(self, relay: str, *, now_ns: int) -> None:
         """Forget whatever was held against a relay; harmless where nothing was. Raises NotFoundError."""
         with self._write() as session:
-            relay_row = found(session, IedRow, relay, "IED", lock=True)
+            relay_row = found(session, IedRow, relay, "relay", lock=True)
             row = session.get(QuarantineRow, relay)
             if row is not None:
                 session.delete(row)
@@ -68,7 +68,7 @@ def _times(session: Session, relay: str) -> int:
 
 
 def _put(session: Session, relay: str, reason: str, times: int, now_ns: int, pause_s: float) -> QuarantineRow:
-    relay_row = found(session, IedRow, relay, "IED")
+    relay_row = found(session, IedRow, relay, "relay")
     row = session.get(QuarantineRow, relay)
     if row is None:
         row = QuarantineRow(ied=relay)

@@ -280,7 +280,7 @@ def _to_fill(session: Session, relay: str, motor: str, remote: RemoteRecord, now
 
 
 def _announce(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
-    found(session, IedRow, relay, "IED")
+    found(session, IedRow, relay, "relay")
     row = RecordingRow(
         id=str(uuid.uuid4()),
         motor=motor,
@@ -347,7 +347,7 @@ def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: 
     row.reason = None
     row.fetched_ns = now_ns
     if row.ied is not None:
-        give_clock(row, found(session, IedRow, row.ied, "IED"))
+        give_clock(row, found(session, IedRow, row.ied, "relay"))
     session.flush()
     _list_files(session, row, stored)
 

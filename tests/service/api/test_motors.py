@@ -64,7 +64,9 @@ def test_trend(client: httpx.Client, diagnosed: list[str]) -> None:
     assert items[0] == {
         "time": FIRST,
         "value": 0.01,
-        "ci95": [pytest.approx(0.009), pytest.approx(0.011)],
+        "ci95": [pytest.approx(0.006), pytest.approx(0.014)],
+        "scatter95": [pytest.approx(0.009), pytest.approx(0.011)],
+        "detection_limit": 0.021,
         "verdict": "fault",
         "recording_id": diagnosed[0],
     }
@@ -76,6 +78,8 @@ def test_trend(client: httpx.Client, diagnosed: list[str]) -> None:
     assert page["items"] + rest["items"] == items
     theta = client.get(url, params={"quantity": "theta_f"}).json()["items"]
     assert [(item["value"], item["ci95"]) for item in theta] == [(1, None), (1, None), (None, None)]
+    load = client.get(url, params={"quantity": "load_level"}).json()["items"][0]
+    assert (load["ci95"], load["scatter95"], load["detection_limit"]) == ([0.46, 0.5], None, None)
 
 
 def test_recordings_of_a_motor_latest_first(client: httpx.Client, diagnosed: list[str]) -> None:

@@ -31,9 +31,10 @@ def test_what_keeps_a_record_from_being_diagnosed_is_said_once(capsys: pytest.Ca
             QualityFinding("duration", 1.0, 0.2, "s", passed=True, message="long enough"),
         ),
     )
-    results().print(_table(Path("HR_1.CFG"), diagnosis))
+    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), diagnosis))
     shown = capsys.readouterr().out
     assert shown.count(CLIPPED) == 1
+    assert "motor.toml" in shown
     (passed,) = [line for line in shown.splitlines() if "checks passed" in line]
     assert passed.split()[-2] == "1"
 

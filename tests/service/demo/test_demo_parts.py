@@ -22,7 +22,10 @@ from service.demo.truth import Truth, TruthError, ask_simulator
 from service.plant.files import plant_of_files
 from testing.waiting import eventually
 
-DIAGNOSIS = {"verdict": "fault", "mu_f": 0.05, "mu_f_ci95": [0.049, 0.051], "phase": "b", "load_level": 0.65}
+DIAGNOSIS = {
+    "verdict": "fault", "mu_f": 0.05, "mu_f_ci95": [0.041, 0.059], "detection_limit": 0.021, "phase": "b",
+    "load_level": 0.65,
+}  # fmt: skip
 
 
 def test_the_demo_plants_files_belong_together() -> None:
@@ -108,9 +111,9 @@ def test_no_figure_is_cut_off_where_there_is_no_terminal(capsys: pytest.CaptureF
     out = capsys.readouterr().out
     (row,) = [line for line in out.splitlines() if "M" in line]
     assert row.split()[0] == "M" * 100
-    assert "95 % scatter" in out
-    assert "the interval is the record's own scatter; see docs/explanation/diagnosis.md" in out
-    assert row.split()[-6:] == ["fault", "b", "5.00", "4.90..5.10", "0.650", "1.50"]
+    assert "scatter" not in out
+    assert "interval: noise, sensors and parameters; see docs/explanation/diagnosis.md" in out
+    assert row.split()[-7:] == ["fault", "b", "5.00", "4.10..5.90", "2.10", "0.650", "1.50"]
 
 
 def test_figures_stay_whole_on_a_narrow_terminal() -> None:
@@ -119,7 +122,7 @@ def test_figures_stay_whole_on_a_narrow_terminal() -> None:
     terminal = Console(file=io.StringIO(), width=60)
     with terminal.capture() as shown:
         terminal.print(table([motor]))
-    assert {"5.00", "4.90..5.10", "0.650", "1.50"} <= set(shown.get().split())
+    assert {"5.00", "4.10..5.90", "2.10", "0.650", "1.50"} <= set(shown.get().split())
 
 
 def test_an_interrupt_waits_for_the_next_pause() -> None:

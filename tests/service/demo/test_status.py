@@ -1,6 +1,8 @@
 """`mcc demo-status` and `mcc demo --url`: a demo plant somebody else runs."""
 
 import json
+import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,6 +11,7 @@ from service.api import ApiContext, create_app
 from service.cli import main
 from service.client.rest_client import Document, ServiceClient
 from service.configuration.settings import Settings
+from service.demo.plant import START_LIMIT_S, NotReadyError, plant_elsewhere, wait_until_ready
 from service.demo.status import MotorStatus, ask_status
 from service.demo.truth import Truth, TruthError
 from service.recording_store.store import RecordingStore
@@ -32,11 +35,11 @@ def health(verdict: str | None, phase: str | None) -> Document:
         (health("fault", "b"), FAULT_B, True),
         (health("fault", "c"), FAULT_B, False),
         (health("watch", "b"), FAULT_B, False),
-        (health(None, None), FAULT_B, False),
+        (health(None, None), FAULT_B, None),
         (health("healthy", None), Truth(mu_f=0.0, theta_f=None, load_level=0.8), True),
     ],
 )
-def test_right_is_verdict_and_phase(found: Document, truth: Truth, right: bool) -> None:
+def test_right_is_verdict_and_phase(found: Document, truth: Truth, right: bool | None) -> None:
     assert MotorStatus(found, truth).is_right is right
 
 
@@ -46,7 +49,9 @@ def test_a_demo_elsewhere_is_played_and_told(tmp_path: Path, capsys: pytest.Capt
         assert main(["demo-status", "--url", service.url, "--json"]) == 0
         before = json.loads(capsys.readouterr().out)
         assert [motor["verdict"] for motor in before["motors"]] == [None] * len(MOTOR_NAMES)
-        assert before["right"] == 0
+        assert (before["right"], before["judged"]) == (0, 0)
+        assert main(["demo-status", "--url", service.url]) == 0
+        assert f"0 of 0 verdicts are right; {len(MOTOR_NAMES)} without one yet" in capsys.readouterr().out
         assert main(["demo", "--once", "--url", service.url]) == 0
         assert "at most" in capsys.readouterr().out
         assert main(["demo-status", "--url", service.url, "--json"]) == 0
@@ -64,6 +69,17 @@ def test_no_service_is_one_line_and_one_document(capsys: pytest.CaptureFixture[s
     output = capsys.readouterr()
     assert "no service answers" in json.loads(output.out)["error"]["message"]
     assert output.err.count("\n") == 1
+
+
+def test_where_nobody_listens_a_demo_does_not_wait_as_for_one_that_starts() -> None:
+    """Elsewhere it gives up after a few seconds, here at once; a plant that starts has a minute and more."""
+    plant = plant_elsewhere("http://127.0.0.1:1", time.sleep)
+    assert plant.answer_limit_s <= 10.0 < START_LIMIT_S
+    with (
+        ServiceClient(plant.url) as service,
+        pytest.raises(NotReadyError, match=r"no service answers at http://127.0.0.1:1; waited 0 s"),
+    ):
+        wait_until_ready(replace(plant, answer_limit_s=0.0), service)
 
 
 def test_data_of_a_demo_elsewhere_is_wrong_use(tmp_path: Path) -> None:

@@ -226,12 +226,14 @@ def test_trend_and_health(repository: Repository, store: RecordingStore) -> None
         (NOW_NS + SECOND_NS, 0.02, "fault"),
         (NOW_NS + 2 * SECOND_NS, None, "undiagnosable"),
     ]
-    assert points[0].ci95 == pytest.approx((0.009, 0.011))
+    assert points[0].ci95 == pytest.approx((0.006, 0.014))
+    assert points[0].scatter95 == pytest.approx((0.009, 0.011))
+    assert [p.detection_limit for p in points] == [0.021, 0.021, None]
     assert [p.value for p in repository.trend("FAN-A2", "theta_f", limit=10).items] == [1, 1, None]
     window = repository.trend(
         "FAN-A2", "load_level", from_ns=NOW_NS + 1, to_ns=NOW_NS + 2 * SECOND_NS, limit=10
     )
-    assert [(p.value, p.ci95) for p in window.items] == [(0.48, None)]
+    assert [(p.value, p.ci95) for p in window.items] == [(0.48, (0.46, 0.5))]
     first = repository.trend("FAN-A2", "mu_f", limit=2)
     rest = repository.trend("FAN-A2", "mu_f", limit=2, after=first.next)
     assert (first.items + rest.items, rest.next) == (points, None)

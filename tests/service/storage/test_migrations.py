@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, StorageError, connect, migrate
 from service.storage.migrations import config
 from service.storage.models import Base
-from testing.service.plants import NOW_NS
+from testing.service.plants import NOW_NS, fault
 
 ON_SQLITE = pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
 
@@ -93,6 +94,42 @@ def test_a_database_of_the_first_version_keeps_what_it_holds(database_url: str) 
     assert repository.counts().recording_requests == {"diagnosed": 1}
     assert repository.link_changes("A1", limit=10).items == ()
     engine.dispose()
+
+
+def test_an_older_diagnosis_keeps_its_scatter_under_that_name(
+    database_url: str, engine: Engine, repository: Repository, store: RecordingStore
+) -> None:
+    """Versions before 0018 called the scatter the 95 % interval; what all causes add is not known of them."""
+    stored = store.store({"EVENT.CFG": b"config", "EVENT.DAT": b"samples"})
+    recording = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS).recording
+    repository.register_runner("runner", installation="here", now_ns=NOW_NS, max_attempts=3)
+    claimed = repository.claim_job(now_ns=NOW_NS, runner="runner")
+    assert claimed is not None
+    repository.finish_job(claimed.job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="runner")
+    with engine.begin() as connection:
+        command.downgrade(config(connection), "0017")
+        before = connection.execute(text("SELECT mu_f_ci95_low, document FROM diagnoses")).one()
+    document = before.document if isinstance(before.document, dict) else json.loads(before.document)
+    assert before.mu_f_ci95_low == pytest.approx(0.049)
+    assert document["mu_f_ci95"] == pytest.approx([0.049, 0.051])
+    assert "mu_f_scatter95" not in document
+
+    migrate(database_url)
+    found = repository.current_diagnosis(recording.id)
+    assert found is not None
+    assert found.document["mu_f_ci95"] is None
+    assert found.document["mu_f_scatter95"] == pytest.approx([0.049, 0.051])
+    assert found.document["load_level_ci95"] is None
+    assert found.document["load_level_scatter95"] == pytest.approx([0.47, 0.49])
+    assert found.document["detection_limit"] == 0.021
+    (level,) = repository.trend("PUMP-A1", "mu_f", limit=1).items
+    assert (level.ci95, level.scatter95, level.detection_limit) == (
+        None,
+        pytest.approx((0.049, 0.051)),
+        0.021,
+    )
+    (load,) = repository.trend("PUMP-A1", "load_level", limit=1).items
+    assert (load.value, load.ci95) == (0.48, None)
 
 
 def test_every_step_leads_back(database_url: str) -> None:
