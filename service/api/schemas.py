@@ -240,8 +240,8 @@ class ListedMotor(Motor):
 class TrendPoint(Document):
     """One recording's figure; `value` is null where the recording does not tell it.
 
-    ci95: 95 % interval from noise, sensors and parameters, of mu_f and load_level. Of mu_f only: scatter95, from
-    the record's own scatter alone; detection_limit, the least level that the recording would have shown.
+    ci95: 95 % interval from noise, sensors and parameters, of mu_f and load_level. Of mu_f only: scatter95,
+    from the record's own scatter alone; detection_limit, the least level that it would have shown.
     """
 
     time: Time = Field(validation_alias="recorded_ns")

@@ -72,8 +72,8 @@ def interval_of(low: float | None, high: float | None) -> tuple[float, float] | 
 class TrendPoint:
     """One recording's figure; `value` is None where the recording does not tell it.
 
-    ci95: 95 % interval from all causes, of mu_f and load_level.  Of mu_f only: scatter95, from the record's own
-    scatter; detection_limit, the least level that the recording would have shown.
+    ci95: 95 % interval from all causes, of mu_f and load_level.  Of mu_f only: scatter95, from the record's
+    own scatter; detection_limit, the least level that the recording would have shown.
     """
 
     recorded_ns: int
