@@ -95,5 +95,10 @@ class DiagnosisRow(Base):
             "mu_f_ci95_high",
             "theta_f",
             "load_level",
+            "mu_f_scatter95_low",
+            "mu_f_scatter95_high",
+            "detection_limit",
+            "load_level_ci95_low",
+            "load_level_ci95_high",
         ),
     )

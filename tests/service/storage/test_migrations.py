@@ -99,7 +99,7 @@ def test_a_database_of_the_first_version_keeps_what_it_holds(database_url: str) 
 def test_an_older_diagnosis_keeps_its_scatter_under_that_name(
     database_url: str, engine: Engine, repository: Repository, store: RecordingStore
 ) -> None:
-    """Versions before 0018 called the scatter the 95 % interval; what all causes add is not known of them."""
+    """Versions before 0019 called the scatter the 95 % interval; what all causes add is not known of them."""
     stored = store.store({"EVENT.CFG": b"config", "EVENT.DAT": b"samples"})
     recording = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS).recording
     repository.register_runner("runner", installation="here", now_ns=NOW_NS, max_attempts=3)
@@ -107,7 +107,7 @@ def test_an_older_diagnosis_keeps_its_scatter_under_that_name(
     assert claimed is not None
     repository.finish_job(claimed.job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="runner")
     with engine.begin() as connection:
-        command.downgrade(config(connection), "0017")
+        command.downgrade(config(connection), "0018")
         before = connection.execute(text("SELECT mu_f_ci95_low, document FROM diagnoses")).one()
     document = before.document if isinstance(before.document, dict) else json.loads(before.document)
     assert before.mu_f_ci95_low == pytest.approx(0.049)

@@ -7,8 +7,8 @@ interval from all causes is not known of them: it is null until the recording is
 import sqlalchemy as sa
 from alembic import op
 
-revision = "0018"
-down_revision = "0017"
+revision = "0019"
+down_revision = "0018"
 branch_labels = None
 depends_on = None
 
@@ -61,16 +61,36 @@ DOWNGRADE = {
 }
 
 
+TREND = "ix_diagnoses_trend"
+TREND_OF_0018 = [
+    "motor",
+    "current",
+    "recorded_ns",
+    "id",
+    "recording_id",
+    "verdict",
+    "mu_f",
+    "mu_f_ci95_low",
+    "mu_f_ci95_high",
+    "theta_f",
+    "load_level",
+]
+
+
 def upgrade() -> None:
+    op.drop_index(TREND, table_name="diagnoses")
     for name in NEW:
         op.add_column("diagnoses", sa.Column(name, sa.Double(), nullable=True))
     op.execute(sa.text(_escaped(UPGRADE[op.get_bind().dialect.name])))
+    op.create_index(TREND, "diagnoses", [*TREND_OF_0018, *NEW])
 
 
 def downgrade() -> None:
+    op.drop_index(TREND, table_name="diagnoses")
     op.execute(sa.text(_escaped(DOWNGRADE[op.get_bind().dialect.name])))
     for name in NEW:
         op.drop_column("diagnoses", name)
+    op.create_index(TREND, "diagnoses", TREND_OF_0018)
 
 
 def _escaped(statement: str) -> str:
