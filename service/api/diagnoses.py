@@ -18,7 +18,7 @@ router = APIRouter(prefix="/recordings/{recording_id}/diagnoses", tags=["recordi
 @router.post(
     "",
     status_code=HTTPStatus.ACCEPTED,
-    responses=problems(400, 404, 409, 413)
+    responses=problems(400, 404, 409, 413, 429)
     | {202: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The diagnosis."}}}},
 )
 def request_diagnosis(
@@ -31,7 +31,11 @@ def request_diagnosis(
     """Queue another diagnosis of a stored recording; when done, it takes the place of the earlier one."""
     wanted = wanted or DiagnosisRequest()
     job = context.repository.request_diagnosis(
-        str(recording_id), method=wanted.method, model=wanted.model, now_ns=time.time_ns()
+        str(recording_id),
+        method=wanted.method,
+        model=wanted.model,
+        now_ns=time.time_ns(),
+        most_queued=context.settings.max_queued_diagnoses,
     )
     context.on_new_job()
     path = request.url_for("get_diagnosis", recording_id=recording_id, diagnosis_id=job.id).path

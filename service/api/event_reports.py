@@ -28,7 +28,7 @@ IdempotencyKey = Annotated[
 @router.post(
     "/motors/{name}/event-reports",
     status_code=HTTPStatus.ACCEPTED,
-    responses=problems(404, 409)
+    responses=problems(404, 409, 429)
     | {
         202: {
             "headers": {"Location": {"schema": {"type": "string"}, "description": "The recording request."}}
@@ -44,7 +44,10 @@ def request_event_report(
 ) -> EventReport:
     """Request a recording from the motor's relay. Follow the request until it is diagnosed or failed."""
     recording_request = context.repository.request_recording(
-        name, now_ns=time.time_ns(), idempotency_key=idempotency_key
+        name,
+        now_ns=time.time_ns(),
+        idempotency_key=idempotency_key,
+        most_open=context.settings.max_open_requests,
     )
     response.headers["Location"] = request.url_for("get_event_report", report_id=recording_request.id).path
     return EventReport.model_validate(recording_request)

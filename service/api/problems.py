@@ -16,7 +16,13 @@ from structlog.typing import FilteringBoundLogger
 
 from service.api.admission import BusyError
 from service.recording_store.store import RecordingStoreError
-from service.storage.errors import NotFoundError, OutOfServiceError, StateConflictError, UnusableBaselineError
+from service.storage.errors import (
+    NotFoundError,
+    OutOfServiceError,
+    StateConflictError,
+    TooManyWaitingError,
+    UnusableBaselineError,
+)
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
@@ -32,6 +38,9 @@ STATUS_OF: dict[type[Exception], HTTPStatus] = {
 
 RETRY_AFTER_S = 5
 """Clients are told to wait this long while the database does not answer (a full disk, a long lock)."""
+
+RETRY_WHEN_FULL_S = 60
+"""Clients are told to wait this long while a motor's queue is full."""
 
 OF_ALL = (HTTPStatus.UNPROCESSABLE_ENTITY, HTTPStatus.SERVICE_UNAVAILABLE)
 
@@ -117,6 +126,15 @@ def busy_response(path: str, reason: str) -> JSONResponse:
     )
 
 
+def _too_many(request: Request, error: Exception) -> JSONResponse:
+    return problem_response(
+        request.url.path,
+        HTTPStatus.TOO_MANY_REQUESTS,
+        str(error),
+        headers={"Retry-After": str(RETRY_WHEN_FULL_S)},
+    )
+
+
 def _with_status(status: HTTPStatus) -> Callable[[Request, Exception], JSONResponse]:
     def answer(request: Request, error: Exception) -> JSONResponse:
         return problem_response(request.url.path, status, str(error))
@@ -159,6 +177,7 @@ def install(app: FastAPI) -> None:
     for error_type, status in STATUS_OF.items():
         app.add_exception_handler(error_type, _with_status(status))
     app.add_exception_handler(DataError, _unstorable)
+    app.add_exception_handler(TooManyWaitingError, _too_many)
     app.add_exception_handler(BusyError, _busy)
 
     @app.exception_handler(RecordingStoreError)

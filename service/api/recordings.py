@@ -54,7 +54,7 @@ def list_recordings(
     status_code=HTTPStatus.CREATED,
     # Beyond these the parser gives up; up to them the route says which field is wrong.
     form_limits={"max_files": 2 * MAX_UPLOAD_FILES, "max_fields": 4, "max_part_size": 4096},
-    responses=problems(400, 404, 413)
+    responses=problems(400, 404, 413, 429)
     | {
         200: {
             "model": RecordingDetails,
@@ -79,7 +79,9 @@ def upload_recording(
     """Store the files of one recording and queue its diagnosis; one the motor has stays as it is."""
     context.repository.motor(motor)
     stored = _store_upload(context, files)
-    added = context.repository.add_recording(stored, motor=motor, now_ns=time.time_ns())
+    added = context.repository.add_recording(
+        stored, motor=motor, now_ns=time.time_ns(), most_queued=context.settings.max_queued_diagnoses
+    )
     context.on_new_job()
     if not added.created:
         response.status_code = HTTPStatus.OK

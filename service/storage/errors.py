@@ -26,6 +26,16 @@ class OutOfServiceError(StorageError):
         )
 
 
+class TooManyWaitingError(StorageError):
+    """A motor has as many requests or diagnoses waiting as it may have."""
+
+    def __init__(self, motor: str, what: str, most: int, setting: str) -> None:
+        super().__init__(
+            f"motor {motor} has {most} {what}, as many as it may have (setting {setting}); nothing was "
+            "changed, ask again when some have ended"
+        )
+
+
 class UnusableBaselineError(StorageError):
     """A recording that cannot stand for a motor's healthy condition."""
 

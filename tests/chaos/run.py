@@ -41,6 +41,8 @@ SETTINGS = {
     "MCC_REQUEST_TIMEOUT_S": "3",
     "MCC_RECORD_TIMEOUT_S": "15",
     "MCC_JOB_ATTEMPTS": "20",
+    "MCC_MAX_OPEN_REQUESTS": "10000",
+    "MCC_MAX_QUEUED_DIAGNOSES": "10000",
     "MCC_JOB_RETRY_DELAY_S": "0.2",
 }
 """Shorter times than usual, for more rounds in the same time; and as many attempts as there may be."""

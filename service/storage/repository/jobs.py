@@ -21,7 +21,7 @@ from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, Job
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
 from service.storage.repository.recording_requests import diagnose_rows, fail_rows
-from service.storage.repository.recordings import new_job
+from service.storage.repository.recordings import new_job, require_room
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
 from service.storage.states import JobPriority, JobState, RecordingState
 from service.storage.texts import storable
@@ -36,15 +36,27 @@ LATEST_NS = 2**63 - 1
 
 class JobRows(Sessions):
     def request_diagnosis(
-        self, recording_id: str, *, now_ns: int, method: str = DEFAULT_METHOD, model: str = DEFAULT_MODEL
+        self,
+        recording_id: str,
+        *,
+        now_ns: int,
+        method: str = DEFAULT_METHOD,
+        model: str = DEFAULT_MODEL,
+        most_queued: int | None = None,
     ) -> Job:
-        """Queue a new diagnosis of a recording. Raises NotFoundError, StateConflictError (not stored)."""
+        """Queue a new diagnosis of a recording.
+
+        most_queued: so many diagnoses of the motor may be queued. Raises NotFoundError,
+        StateConflictError (not stored), TooManyWaitingError.
+        """
         with self._write() as session:
             recording = found(session, RecordingRow, recording_id, "recording")
             if recording.digest is None:
                 raise StateConflictError(
                     "recording", recording_id, present=recording.state, wanted=RecordingState.DIAGNOSED
                 )
+            if most_queued is not None:
+                require_room(session, recording.motor, most_queued)
             row = new_job(recording_id, method, model, JobPriority.REPETITION, now_ns)
             session.add(row)
             session.flush()

@@ -9,11 +9,20 @@ import uuid
 from sqlalchemy import exists, select
 from sqlalchemy.orm import Session
 
-from service.storage.errors import OutOfServiceError, StateConflictError
+from service.storage.errors import OutOfServiceError, StateConflictError, TooManyWaitingError
 from service.storage.models import IedRow, LeaseRow, MotorRow, RecordingRequestRow
 from service.storage.records import Cursor, Page, RecordingRequest
 from service.storage.repository.leases import require_lease
-from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
+from service.storage.repository.sessions import (
+    Order,
+    Sessions,
+    columns_of,
+    found,
+    has_as_many,
+    only,
+    page_of,
+    record_of,
+)
 from service.storage.states import IN_THE_RELAY, RecordingRequestOrigin, RecordingRequestState
 from service.storage.texts import storable
 
@@ -26,11 +35,13 @@ KIND = "event report"
 
 class RecordingRequestRows(Sessions):
     def request_recording(
-        self, motor: str, *, now_ns: int, idempotency_key: str | None = None
+        self, motor: str, *, now_ns: int, idempotency_key: str | None = None, most_open: int | None = None
     ) -> RecordingRequest:
         """Request an event recording of a motor; the same key again gives the first one's request.
 
-        Raises NotFoundError, OutOfServiceError for a motor that left the plant.
+        most_open: so many requests of the motor may wait for their record.
+
+        Raises NotFoundError, OutOfServiceError for a motor that left the plant, TooManyWaitingError.
         """
         with self._write() as session:
             where = found(session, MotorRow, motor, "motor", lock=True)
@@ -40,6 +51,8 @@ class RecordingRequestRows(Sessions):
                     return recording_request(earlier)
             if not where.in_service:
                 raise OutOfServiceError("motor", motor)
+            if most_open is not None:
+                _require_room(session, where, most_open)
             return _request(session, where, RecordingRequestOrigin.REQUEST, idempotency_key, now_ns)
 
     def schedule_recording(self, motor: str, *, due_ns: int, now_ns: int) -> RecordingRequest | None:
@@ -150,6 +163,18 @@ class RecordingRequestRows(Sessions):
             row = found(session, RecordingRequestRow, request_id, KIND, lock=True)
             fail_row(row, reason, now_ns)
             return recording_request(row)
+
+
+def _require_room(session: Session, motor: MotorRow, most_open: int) -> None:
+    """Raise TooManyWaitingError where so many of the motor's requests wait for their record."""
+    is_open = select(RecordingRequestRow.id).where(
+        RecordingRequestRow.ied == motor.ied,
+        RecordingRequestRow.motor == motor.name,
+        RecordingRequestRow.state.in_(OPEN),
+    )
+    if has_as_many(session, is_open, most_open):
+        what = "recording requests that wait for their record"
+        raise TooManyWaitingError(motor.name, what, most_open, "max_open_requests")
 
 
 def _of_key(

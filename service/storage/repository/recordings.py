@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from service.recording_store.store import StoredRecording
+from service.storage.errors import TooManyWaitingError
 from service.storage.models import (
     IedRow,
     JobRow,
@@ -21,7 +22,16 @@ from service.storage.models import (
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
 from service.storage.repository.clocks import give_clock
 from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_row, fail_rows, fetch_row
-from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
+from service.storage.repository.sessions import (
+    Order,
+    Sessions,
+    columns_of,
+    found,
+    has_as_many,
+    only,
+    page_of,
+    record_of,
+)
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
 
 RECORDS_A_QUERY = 500
@@ -153,6 +163,7 @@ class RecordingRows(Sessions):
         recording_request_id: str | None = None,
         method: str = DEFAULT_METHOD,
         model: str = DEFAULT_MODEL,
+        most_queued: int | None = None,
     ) -> AddedRecording:
         """Add a record whose files are stored: its row, its first job and its request, all or nothing.
 
@@ -160,7 +171,10 @@ class RecordingRows(Sessions):
         a relay are the same if their names and waveforms are: a file that only describes the waveform may
         come late and is then added. If one of two recordings of a motor was uploaded, the waveform is enough.
         The request gets what its relay had not sent before: a record that is listed again, under another
-        time, is none that a trigger made. Raises NotFoundError, StateConflictError.
+        time, is none that a trigger made.
+
+        most_queued: so many diagnoses of the motor may be queued; beyond that nothing new is added. Raises
+        NotFoundError, StateConflictError, TooManyWaitingError.
         """
         if (relay is None) != (remote is None):
             raise ValueError("a recording comes from a relay (relay and remote) or is uploaded (neither)")
@@ -170,6 +184,8 @@ class RecordingRows(Sessions):
             created = row is None
             sent_before = row is not None and row.ied is not None
             if row is None:
+                if most_queued is not None:
+                    require_room(session, motor, most_queued)
                 if relay is None or remote is None:
                     row = _uploaded(session, motor, stored.name, now_ns)
                 else:
@@ -216,6 +232,18 @@ class RecordingRows(Sessions):
         order: Order = [RecordingRow.announced_ns, RecordingRow.id]
         with self._read() as session:
             return page_of(session, query, order, RecordingEntry, limit=limit, after=after, descending=True)
+
+
+def require_room(session: Session, motor: str, most_queued: int) -> None:
+    """Raise TooManyWaitingError where so many diagnoses of the motor are queued."""
+    found(session, MotorRow, motor, "motor", lock=True)
+    queued = (
+        select(JobRow.id)
+        .join(RecordingRow, RecordingRow.id == JobRow.recording_id)
+        .where(JobRow.state == JobState.QUEUED, RecordingRow.motor == motor)
+    )
+    if has_as_many(session, queued, most_queued):
+        raise TooManyWaitingError(motor, "queued diagnoses", most_queued, "max_queued_diagnoses")
 
 
 def new_job(recording_id: str, method: str, model: str, priority: JobPriority, now_ns: int) -> JobRow:

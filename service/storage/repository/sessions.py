@@ -6,7 +6,7 @@ from dataclasses import fields
 from threading import Lock
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from sqlalchemy import ColumnElement, Engine, Select, text, tuple_
+from sqlalchemy import ColumnElement, Engine, Select, func, select, text, tuple_
 from sqlalchemy.exc import TimeoutError  # noqa: A004 - that of the database
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
@@ -126,6 +126,12 @@ def page_of(
         items=tuple(to_item(*row[:-width]) for row in rows[:limit]),
         next=None if last is None else tuple(last[-width:]),
     )
+
+
+def has_as_many(session: Session, query: Select[str], most: int) -> bool:
+    """Return whether a query finds at least so many rows; what is beyond is not counted."""
+    number = session.scalar(select(func.count()).select_from(query.limit(most).subquery()))
+    return number is not None and number >= most
 
 
 def only(session: Session, query: Select[Row]) -> Row | None:

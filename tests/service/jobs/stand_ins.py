@@ -44,6 +44,8 @@ def act_as_told(task: DiagnosisTask) -> Outcome:
         raise ArithmeticError(STRANGE + LONG)
     if told == "reject strange text":
         return Rejected(STRANGE + LONG)
+    if told == "slow":
+        time.sleep(0.05)
     if told in RESULTS:
         return Diagnosed(RESULTS[told], NOW_NS)
     if told == "year 9999":

@@ -20,6 +20,7 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
+from service.storage.records import RemoteRecord
 from service.storage.states import JobState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
 from testing.service.plants import motor
@@ -136,6 +137,35 @@ def test_whatever_a_result_holds_its_job_alone_fails(
     diagnosis = repository.current_diagnosis(ids["strange text"])
     assert diagnosis is not None
     assert diagnosis.document["reasons"] == [readable]
+
+
+@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
+def test_a_mass_of_repetitions_delays_no_fresh_record(repository: Repository, store: RecordingStore) -> None:
+    old = add(repository, store, "slow")
+    with running(repository, store, replace(LIMITS, workers=1)):
+        wait_until(lambda: ended(repository, old), within_s=60)
+        for _ in range(60):
+            repository.request_diagnosis(old, now_ns=time.time_ns())
+        wait_until(lambda: len(started(repository, old)) > 1)
+        stored = store.store({"NEW.CFF": b"fine"})
+        remote = RemoteRecord("NEW", 4, time.time_ns())
+        fresh = repository.add_recording(
+            stored, motor="PUMP-A1", relay="A1_SEL710", remote=remote, now_ns=time.time_ns()
+        ).recording.id
+        wait_until(lambda: ended(repository, fresh))
+    ((_, fresh_ns),) = started(repository, fresh)
+    (job,) = repository.jobs(fresh, limit=5).items
+    between = [
+        begun_ns for _, begun_ns in started(repository, old) if job.job.created_ns < begun_ns < fresh_ns
+    ]
+    assert len(between) <= 2, "the one that its worker had just begun, and one that was claimed meanwhile"
+    assert repository.counts().jobs[JobState.QUEUED] > 30
+
+
+def started(repository: Repository, recording_id: str) -> list[tuple[str, int]]:
+    """The recording's jobs that were claimed, with the time of that."""
+    jobs = [one.job for one in repository.jobs(recording_id, limit=100).items]
+    return [(job.id, job.started_ns) for job in jobs if job.started_ns is not None]
 
 
 def test_a_job_that_takes_too_long_is_given_up(repository: Repository, store: RecordingStore) -> None:

@@ -1,0 +1,75 @@
+"""How much may wait for one motor, and how a client is told."""
+
+from pathlib import Path
+
+import httpx
+import pytest
+
+from service.api import ApiContext
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from service.storage.records import RemoteRecord
+from service.storage.states import JobState
+from testing.service.plants import NOW_NS
+
+REQUEST = "/api/v1/motors/PUMP-A1/event-reports"
+
+
+BOTH = pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
+
+
+@pytest.fixture
+def context(repository: Repository, store: RecordingStore, tmp_path: Path) -> ApiContext:
+    settings = Settings(data_directory=tmp_path, max_open_requests=3, max_queued_diagnoses=3)
+    return ApiContext(settings, repository, store)
+
+
+def assert_told_to_wait(refused: httpx.Response, words: str) -> None:
+    assert refused.status_code == 429
+    assert refused.headers["content-type"] == "application/problem+json"
+    assert int(refused.headers["retry-after"]) > 0
+    assert words in refused.json()["detail"]
+    assert "ask again when some have ended" in refused.json()["detail"]
+
+
+@BOTH
+def test_a_motor_has_so_many_open_requests(client: httpx.Client, repository: Repository) -> None:
+    first = client.post(REQUEST, headers={"Idempotency-Key": "a"}).json()
+    for _ in range(2):
+        assert client.post(REQUEST).status_code == 202
+    assert_told_to_wait(
+        client.post(REQUEST), "motor PUMP-A1 has 3 recording requests that wait for their record"
+    )
+    assert client.post(REQUEST, headers={"Idempotency-Key": "a"}).json() == first
+    assert client.post("/api/v1/motors/FAN-A2/event-reports").status_code == 202
+    repository.fail_recording_request(first["id"], "no record", now_ns=NOW_NS)
+    assert client.post(REQUEST).status_code == 202
+
+
+def upload(client: httpx.Client, content: bytes) -> httpx.Response:
+    files = {"files": ("E.CFF", content)}
+    return client.post("/api/v1/recordings", data={"motor": "PUMP-A1"}, files=files)
+
+
+@BOTH
+def test_a_motor_has_so_many_queued_diagnoses(
+    client: httpx.Client, repository: Repository, store: RecordingStore
+) -> None:
+    first = upload(client, b"0").json()
+    path = f"/api/v1/recordings/{first['id']}/diagnoses"
+    for _ in range(2):
+        assert client.post(path).status_code == 202
+    full = "motor PUMP-A1 has 3 queued diagnoses"
+    assert_told_to_wait(client.post(path), full)
+    assert_told_to_wait(upload(client, b"1"), full)
+    assert upload(client, b"0").status_code == 200, "nothing is to be diagnosed"
+    of_the_relay = repository.add_recording(
+        store.store({"R.CFF": b"2"}),
+        motor="PUMP-A1",
+        relay="A1_SEL710",
+        remote=RemoteRecord("R", 1, NOW_NS),
+        now_ns=NOW_NS,
+    )
+    assert of_the_relay.created, "no limit keeps a relay's record out"
+    assert repository.counts().jobs == {JobState.QUEUED: 4}
