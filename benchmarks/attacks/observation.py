@@ -87,7 +87,9 @@ def _observe(process_id: int, target: Target, end: Event, send: Callable[[object
     while True:
         begun = time.monotonic()
         target.ask("GET", "/healthz")
-        seen.probes_s.append(time.monotonic() - begun)
+        took_s = time.monotonic() - begun
+        # One who asks meanwhile waits for the rest of it: a standstill counts for as long as it lasts.
+        seen.probes_s += list(np.arange(took_s, 0.0, -PROBE_PERIOD_S))
         if end.wait(PROBE_PERIOD_S):
             break
     weigher.join()

@@ -29,6 +29,7 @@ from core.recordings.code_pages import decode_text
 from core.recordings.compressed_ascii import Row, checksum, rows
 from core.recordings.comtrade_lines import quoted
 from core.recordings.errors import RecordingError
+from core.recordings.length import check_length
 from core.recordings.repairs import Repairs
 from core.recordings.waveform import Channel, Recording
 from core.units import NANOSECONDS_PER_MILLISECOND, NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
@@ -75,7 +76,7 @@ class _Field:
     text: str
 
 
-def read_cev(path: Path, *, lenient: bool = False) -> Recording:
+def read_cev(path: Path, *, lenient: bool = False, most_values: int | None = None) -> Recording:
     """Read the recording of an event report.
 
     Parameters
@@ -84,6 +85,9 @@ def read_cev(path: Path, *, lenient: bool = False) -> Recording:
         Path of the file.
     lenient : bool, default False
         Mend what can be mended without guessing at values, and say so in the recording's repairs.
+    most_values : int or None, optional
+        Refuse a longer recording before it is held in memory: values of all channels and of VALUES_BESIDE
+        more, which stand for times and states. None for any length.
 
     Returns
     -------
@@ -97,10 +101,10 @@ def read_cev(path: Path, *, lenient: bool = False) -> Recording:
     OSError
         If a file that exists cannot be read.
     """
-    return read_event_report(path, lenient=lenient).recording
+    return read_event_report(path, lenient=lenient, most_values=most_values).recording
 
 
-def read_event_report(path: Path, *, lenient: bool = False) -> EventReport:
+def read_event_report(path: Path, *, lenient: bool = False, most_values: int | None = None) -> EventReport:
     """Read an event report.
 
     Parameters
@@ -109,6 +113,9 @@ def read_event_report(path: Path, *, lenient: bool = False) -> EventReport:
         Path of the file.
     lenient : bool, default False
         Mend what can be mended without guessing at values, and say so in the recording's repairs.
+    most_values : int or None, optional
+        Refuse a longer recording before it is held in memory: values of all channels and of VALUES_BESIDE
+        more, which stand for times and states. None for any length.
 
     Returns
     -------
@@ -137,6 +144,7 @@ def read_event_report(path: Path, *, lenient: bool = False) -> EventReport:
         if row.fields == ("SETTINGS",):
             settings = _settings(row, content, repairs)
             break
+        check_length(path, len(samples.channels), samples.count + 1, most_values)
         samples.add(row)
     recording = _recording(path, head, labels, samples, settings, repairs)
     date = {"FID", *_DATE}

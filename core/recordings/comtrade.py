@@ -20,33 +20,30 @@ the caller asks for a lenient reader, a Recording that says what was mended.
 
 from pathlib import Path
 
-import numpy as np
+from numpy import float64
 from numpy.typing import NDArray
 
 from core.recordings.channel_roles import ChannelRole, channel_roles
-from core.recordings.code_pages import decode_text
-from core.recordings.comtrade_ascii import decode_ascii
-from core.recordings.comtrade_combined import split_combined
-from core.recordings.comtrade_configuration import AnalogChannel, Configuration, parse_configuration
-from core.recordings.comtrade_data import SampleTable, decode_binary
-from core.recordings.comtrade_time import TimeBase, time_base
+from core.recordings.comtrade_channels import channels_of, scale_counts
+from core.recordings.comtrade_configuration import Configuration
+from core.recordings.comtrade_data import SampleTable
+from core.recordings.comtrade_files import decode, open_combined, open_record
+from core.recordings.comtrade_time import TimeBase, time_base, trigger_index
 from core.recordings.comtrade_writer import configuration_text, data_bytes, write
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
+from core.recordings.length import check_length
 from core.recordings.repairs import Repairs
 from core.recordings.skew import even_stretches, without_skew
-from core.recordings.waveform import Channel, Digitals, Quantity, Recording
-from core.units import NANOSECONDS_PER_SECOND
+from core.recordings.waveform import Digitals, Quantity, Recording
 
 __all__ = ["configuration_text", "data_bytes", "read_combined_comtrade", "read_comtrade", "write"]
 
-MAX_CONFIGURATION_BYTES = 4 << 20
-MAX_DATA_BYTES = 1 << 30
 MAX_STRETCHES = 1000
 """Stretches of a record sampled unevenly beyond which skew is not removed piece by piece."""
 
 
-def read_comtrade(path: Path, *, lenient: bool = False) -> Recording:
+def read_comtrade(path: Path, *, lenient: bool = False, most_values: int | None = None) -> Recording:
     """Read a COMTRADE record from its configuration file and the data file beside it.
 
     Parameters
@@ -55,6 +52,9 @@ def read_comtrade(path: Path, *, lenient: bool = False) -> Recording:
         Configuration file; the data file has its name and the suffix .dat in any case.
     lenient : bool, default False
         Mend what can be mended without guessing at values, and say so in the recording's repairs.
+    most_values : int or None, optional
+        Refuse a longer recording before it is held in memory: values of all channels and of VALUES_BESIDE
+        more, which stand for times and states. None for any length.
 
     Returns
     -------
@@ -69,14 +69,10 @@ def read_comtrade(path: Path, *, lenient: bool = False) -> Recording:
         If a file that exists cannot be read.
     """
     repairs = Repairs(lenient=lenient)
-    _check_file(path, MAX_CONFIGURATION_BYTES)
-    configuration = parse_configuration(path, decode_text(path.read_bytes()), repairs)
-    data_path = _data_file(path)
-    size = _check_file(data_path, MAX_DATA_BYTES)
-    return _recording(path, configuration, DataSection(data_path, 0, size), repairs)
+    return _recording(path, *open_record(path, repairs), repairs, most_values)
 
 
-def read_combined_comtrade(path: Path, *, lenient: bool = False) -> Recording:
+def read_combined_comtrade(path: Path, *, lenient: bool = False, most_values: int | None = None) -> Recording:
     """Read a COMTRADE 2013 combined file (.cff), which holds configuration and data.
 
     Parameters
@@ -85,6 +81,9 @@ def read_combined_comtrade(path: Path, *, lenient: bool = False) -> Recording:
         Path of the file.
     lenient : bool, default False
         Mend what can be mended without guessing at values, and say so in the recording's repairs.
+    most_values : int or None, optional
+        Refuse a longer recording before it is held in memory: values of all channels and of VALUES_BESIDE
+        more, which stand for times and states. None for any length.
 
     Returns
     -------
@@ -99,67 +98,24 @@ def read_combined_comtrade(path: Path, *, lenient: bool = False) -> Recording:
         If a file that exists cannot be read.
     """
     repairs = Repairs(lenient=lenient)
-    _check_file(path, MAX_DATA_BYTES)
-    cfg, data, data_format = split_combined(path, repairs)
-    if len(cfg) > MAX_CONFIGURATION_BYTES:
-        raise RecordingError(
-            path,
-            "CFG section",
-            expected=f"at most {MAX_CONFIGURATION_BYTES} bytes",
-            found=f"{len(cfg)} bytes",
-        )
-    configuration = parse_configuration(path, decode_text(cfg), repairs)
-    if data_format != configuration.data_format:
-        raise RecordingError(
-            path, "DAT section", expected=f"format {configuration.data_format}", found=repr(data_format)
-        )
-    return _recording(path, configuration, data, repairs)
+    return _recording(path, *open_combined(path, repairs), repairs, most_values)
 
 
-def _check_file(path: Path, limit: int) -> int:
-    """Size [bytes] of a file that is there and no larger than `limit`."""
-    if not path.is_file():
-        raise RecordingError(path, "file", expected="a file", found="none at this path")
-    size = path.stat().st_size
-    if size > limit:
-        raise RecordingError(path, "size", expected=f"at most {limit} bytes", found=f"{size} bytes")
-    return size
-
-
-def _data_file(path: Path) -> Path:
-    """Return the .dat of a .cfg: spelt in the same case, or the only one that differs in case."""
-    suffix = "DAT" if path.suffix.isupper() else "dat"
-    beside = path.with_suffix(f".{suffix}")
-    if beside.is_file():
-        return beside
-    found = [
-        file
-        for file in path.parent.iterdir()
-        if file.stem.casefold() == path.stem.casefold() and file.suffix.casefold() == ".dat"
-    ]
-    if len(found) != 1:
-        names = ", ".join(sorted(file.name for file in found)) or "none"
-        raise RecordingError(path, "data file", expected=f"one {beside.name} in the same folder", found=names)
-    return found[0]
-
-
-def _recording(path: Path, configuration: Configuration, data: DataSection, repairs: Repairs) -> Recording:
-    decode = decode_ascii if configuration.data_format == "ASCII" else decode_binary
-    table = decode(data, configuration, repairs)
-    _check_counts(data.path, table)
+def _recording(
+    path: Path, configuration: Configuration, data: DataSection, repairs: Repairs, most_values: int | None
+) -> Recording:
+    check_length(path, len(configuration.analog), configuration.sample_count, most_values)
+    table = decode(data, configuration, repairs, SampleTable.empty)
     base = time_base(data.path, table.stamps, configuration, repairs)
     roles = channel_roles([(c.name, c.phase, c.unit) for c in configuration.analog])
-    samples = _scaled(path, configuration, roles, table)
+    samples = scale_counts(path, data.path, configuration, roles, table.counts)
     _remove_skew(path, configuration, roles, samples, base, repairs)
     return Recording(
         samples=samples,
         sample_rate_hz=base.rate_hz,
         start_time_ns=configuration.start_time_ns,
-        channels=tuple(
-            Channel(c.name, role.quantity, role.phase, role.unit, _full_scale(c, role.scale))
-            for c, role in zip(configuration.analog, roles, strict=True)
-        ),
-        trigger_index=_trigger_index(path, configuration, base, samples.shape[1], repairs),
+        channels=channels_of(configuration, roles),
+        trigger_index=trigger_index(path, configuration, base, samples.shape[1], repairs),
         nominal_frequency_hz=configuration.nominal_frequency_hz,
         station=configuration.station,
         device=configuration.device,
@@ -170,53 +126,11 @@ def _recording(path: Path, configuration: Configuration, data: DataSection, repa
     )
 
 
-def _check_counts(path: Path, table: SampleTable) -> None:
-    for channel, counts in enumerate(table.counts, 1):
-        infinite = np.isinf(counts)
-        if infinite.any():
-            sample = int(np.argmax(infinite))
-            raise RecordingError(
-                path,
-                f"sample {sample + 1}, analogue channel {channel}",
-                expected="a finite value",
-                found=str(counts[sample]),
-            )
-
-
-def _scaled(
-    path: Path, configuration: Configuration, roles: tuple[ChannelRole, ...], table: SampleTable
-) -> NDArray[np.float64]:
-    """Turn the counts into primary SI values, in place: a long record is not held twice."""
-    for channel, role, values in zip(configuration.analog, roles, table.counts, strict=True):
-        scale = role.scale * channel.to_primary
-        with np.errstate(over="ignore", invalid="ignore"):
-            values *= scale * channel.gain
-            values += scale * channel.offset
-        finite = np.isfinite([scale * channel.gain, scale * channel.offset]).all()
-        if not finite or np.isinf(values).any():
-            raise RecordingError(
-                path,
-                f"channel {channel.name!r}",
-                expected="finite values",
-                found="values too large for a number",
-            )
-    return table.counts
-
-
-def _full_scale(channel: AnalogChannel, unit_scale: float) -> float | None:
-    """Largest magnitude within the file's minimum and maximum counts; None if these say nothing."""
-    if channel.minimum == channel.maximum:
-        return None
-    ends = (channel.gain * count + channel.offset for count in (channel.minimum, channel.maximum))
-    full_scale = max(abs(end) for end in ends) * channel.to_primary * unit_scale
-    return full_scale if np.isfinite(full_scale) else None
-
-
 def _remove_skew(
     path: Path,
     configuration: Configuration,
     roles: tuple[ChannelRole, ...],
-    samples: NDArray[np.float64],
+    samples: NDArray[float64],
     base: TimeBase,
     repairs: Repairs,
 ) -> None:
@@ -244,26 +158,3 @@ def _remove_skew(
             continue
         for stretch, period_s in stretches:
             samples[row, stretch] = without_skew(samples[row, stretch], channel.skew_us * 1e-6 / period_s)
-
-
-def _trigger_index(
-    path: Path, configuration: Configuration, base: TimeBase, samples: int, repairs: Repairs
-) -> int | None:
-    """Return the sample next to the trigger."""
-    elapsed_s = (configuration.trigger_time_ns - configuration.start_time_ns) / NANOSECONDS_PER_SECOND
-    if base.instants_s is None:
-        index, duration_s = round(elapsed_s * base.rate_hz), samples / base.rate_hz
-        within = 0 <= index < samples
-    else:
-        index, duration_s = int(np.argmin(np.abs(base.instants_s - elapsed_s))), float(base.instants_s[-1])
-        within = 0 <= elapsed_s <= duration_s + 0.5 / base.rate_hz
-    if within:
-        return index
-    fault = RecordingError(
-        path,
-        "time of the trigger",
-        expected=f"within the record, 0 to {duration_s:.6g} s after its first sample",
-        found=f"{elapsed_s:.6f} s after it",
-    )
-    repairs.mend(fault, "the trigger is left out")
-    return None

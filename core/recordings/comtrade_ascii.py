@@ -1,6 +1,8 @@
 """The ASCII form of the COMTRADE data file: one line a sample (C37.111-1999, 6.4)."""
 
 import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 from math import nan
 from pathlib import Path
 
@@ -8,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.recordings.comtrade_configuration import Configuration
-from core.recordings.comtrade_data import SampleNumbers, SampleTable
+from core.recordings.comtrade_data import SampleNumbers, Sink, SinkOf
 from core.recordings.comtrade_lines import quoted
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
@@ -19,12 +21,19 @@ MISSING = 99_999
 
 _TABLE = re.compile(r"[0-9+\-.eE, \t\n]*", re.ASCII)
 _FIELD = re.compile(r"[0-9+\-.eE]+", re.ASCII)
-_BLANK_LINES = re.compile(rb"\n[ \t\n]*\n")
+_BLANK = b" \t"
+_END = b"\x1a\r\n\t "
+"""What may follow the last sample."""
+
 _MAX_FIELD = 32
 _BLOCK_BYTES = 1 << 16
+_MAX_LINE = 1 << 20
+"""As long is a line of 20,000 channels with the longest numbers."""
 
 
-def decode_ascii(section: DataSection, configuration: Configuration, repairs: Repairs) -> SampleTable:
+def decode_ascii(
+    section: DataSection, configuration: Configuration, repairs: Repairs, sink_of: SinkOf[Sink]
+) -> Sink:
     """Read the samples of an ASCII file.
 
     A lenient reader takes the lines there are, up to the number announced.
@@ -37,11 +46,13 @@ def decode_ascii(section: DataSection, configuration: Configuration, repairs: Re
         The checked configuration file.
     repairs : Repairs
         Collects what was mended; of a strict reader nothing is.
+    sink_of : callable
+        Makes what takes the samples.
 
     Returns
     -------
-    SampleTable
-        The samples as written.
+    SampleSink
+        What took the samples.
 
     Raises
     ------
@@ -50,38 +61,91 @@ def decode_ascii(section: DataSection, configuration: Configuration, repairs: Re
     OSError
         If the file cannot be read.
     """
-    content = section.content().rstrip(b"\x1a\r\n\t ")
-    content = content.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
-    lines = content.count(b"\n") + 1 if content else 0
-    if lines != configuration.sample_count and (squeezed := _BLANK_LINES.sub(b"\n", content)) != content:
-        repairs.mend(_fault(section.path, lines, configuration.sample_count), "blank lines are passed over")
-        content, lines = squeezed, squeezed.count(b"\n") + 1
+    text = _Text.of(section)
+    announced, lines = configuration.sample_count, text.lines
+    without_blanks = lines != announced and text.blank_lines > 0
+    if without_blanks:
+        repairs.mend(_fault(section.path, lines, announced), "blank lines are passed over")
+        lines -= text.blank_lines
     analog, states = len(configuration.analog), len(configuration.status_names)
-    samples = _sample_count(section.path, lines, configuration.sample_count, repairs)
-    if samples * (1 + analog + states) > len(content):  # a line is no shorter than its commas
+    samples = _sample_count(section.path, lines, announced, repairs)
+    if samples * (1 + analog + states) > text.characters:  # a line is no shorter than its commas
         raise RecordingError(
             section.path,
             "size",
             expected=f"{2 + analog + states} fields a line",
-            found=f"{len(content)} characters on {lines} lines",
+            found=f"{text.characters} characters on {lines} lines",
         )
-    table = SampleTable.empty(configuration, samples)
+    sink = sink_of(configuration, samples)
     numbers = SampleNumbers(section.path, repairs)
-    first = start = 0
-    while first < samples:
-        end = content.find(b"\n", start + _BLOCK_BYTES)
-        end = len(content) if end < 0 else end
-        block_lines = content[start:end].decode("latin-1").split("\n")[: samples - first]
+    first = 0
+    for found in _blocks(section):
+        wanted = [line for line in found if line.strip(_BLANK)] if without_blanks else found
+        block_lines = [line.rstrip(_END).decode("latin-1") for line in wanted[: samples - first]]
+        if not block_lines:
+            continue
         block = _numbers(section.path, block_lines, first, analog, states)
         numbers.check(block[:, 0])
-        last = first + block.shape[0]
-        table.stamps[first:last] = block[:, 1]
-        table.counts[:, first:last] = block[:, 2 : 2 + analog].T
-        table.status[first:last] = _packed(section.path, block[:, 2 + analog :], first, 3 + analog)
-        first, start = last, end + 1
-    if configuration.revision >= 1999:
-        table.counts[table.counts == MISSING] = np.nan
-    return table
+        counts = block[:, 2 : 2 + analog]
+        if configuration.revision >= 1999:
+            counts[counts == MISSING] = np.nan
+        status = _packed(section.path, block[:, 2 + analog :], first, 3 + analog)
+        sink.put(first, counts, block[:, 1], status)
+        first += block.shape[0]
+        if first == samples:
+            break
+    return sink
+
+
+@dataclass(frozen=True, slots=True)
+class _Text:
+    """What an ASCII file holds before its padding; `blank_lines` are among the `lines`."""
+
+    lines: int
+    blank_lines: int
+    characters: int
+
+    @classmethod
+    def of(cls, section: DataSection) -> "_Text":
+        """Count, without keeping any of it."""
+        lines = blank = characters = read = read_blank = read_characters = 0
+        for block in _blocks(section):
+            for line in block:
+                read += 1
+                read_characters += len(line) + 1
+                if line.rstrip(_END):
+                    lines, blank, characters = read, read_blank, read_characters
+                elif not line.strip(_BLANK):
+                    read_blank += 1
+        return cls(lines, blank, characters)
+
+
+def _blocks(section: DataSection) -> Iterator[list[bytes]]:
+    """Lines of the file, some at a time; their ends are those of Windows, Unix or old Macintoshes."""
+    begun: list[bytes] = []
+    begun_bytes = 0
+    held = b""
+    with section.opened() as file:
+        left = section.size
+        while left > 0 and (piece := file.read(min(left, _BLOCK_BYTES))):
+            left -= len(piece)
+            piece, held = held + piece, b""
+            if piece.endswith(b"\r") and left > 0:  # perhaps half of an end
+                piece, held = piece[:-1], b"\r"
+            first, *rest = piece.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n")
+            begun.append(first)
+            begun_bytes += len(first)
+            if begun_bytes > _MAX_LINE:
+                raise RecordingError(
+                    section.path,
+                    "text",
+                    expected=f"lines of at most {_MAX_LINE} characters",
+                    found="a longer one",
+                )
+            if rest:
+                yield [b"".join(begun), *rest[:-1]]
+                begun, begun_bytes = [rest[-1]], len(rest[-1])
+    yield [b"".join(begun)]
 
 
 def _sample_count(path: Path, lines: int, announced: int, repairs: Repairs) -> int:

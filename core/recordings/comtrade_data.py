@@ -3,8 +3,10 @@
 Clauses are those of C37.111-1999, chapter 6; the 32-bit formats came with 2013 (chapter 8).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +19,39 @@ from core.recordings.repairs import Repairs
 NO_TIME_STAMP = 0xFFFFFFFF
 
 _PADDING = b"\x1a"
-_BLOCK_SAMPLES = 1 << 14
-"""Samples converted at a time: enough to be fast, few enough to stay in the processor's cache."""
+_BLOCK_BYTES = 1 << 18
+"""Read and converted at a time: enough to be fast, little enough to stay in the processor's cache."""
+
+
+class SampleSink(Protocol):
+    """What takes the samples of a record, block by block in their order."""
+
+    def put(
+        self,
+        first: int,
+        counts: NDArray[np.float64],
+        stamps: NDArray[np.float64],
+        status: NDArray[np.uint8],
+    ) -> None:
+        """Take a block.
+
+        Parameters
+        ----------
+        first : int
+            Number of samples before it.
+        counts : ndarray, shape (samples, channels)
+            Analogue values as written, NaN where missing.
+        stamps : ndarray, shape (samples,)
+            Time stamps in the file's unit, NaN where missing.
+        status : ndarray of uint8, shape (samples, ceil(states / 8))
+            States, the first in the lowest bit.
+        """
+        ...
+
+
+Sink = TypeVar("Sink", bound=SampleSink)
+SinkOf = Callable[[Configuration, int], Sink]
+"""Makes the sink for a configuration and a number of samples."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +94,31 @@ class SampleTable:
             status=np.empty((samples, states), dtype=np.uint8),
             stamps=np.empty(samples),
         )
+
+    def put(
+        self,
+        first: int,
+        counts: NDArray[np.float64],
+        stamps: NDArray[np.float64],
+        status: NDArray[np.uint8],
+    ) -> None:
+        """Take a block of samples.
+
+        Parameters
+        ----------
+        first : int
+            Number of samples before it.
+        counts : ndarray, shape (samples, channels)
+            Analogue values as written, NaN where missing.
+        stamps : ndarray, shape (samples,)
+            Time stamps in the file's unit, NaN where missing.
+        status : ndarray of uint8, shape (samples, ceil(states / 8))
+            States, the first in the lowest bit.
+        """
+        last = first + stamps.size
+        self.counts[:, first:last] = counts.T
+        self.stamps[first:last] = stamps
+        self.status[first:last] = status
 
 
 class SampleNumbers:
@@ -118,7 +176,9 @@ class SampleNumbers:
         self._next += numbers.size
 
 
-def decode_binary(section: DataSection, configuration: Configuration, repairs: Repairs) -> SampleTable:
+def decode_binary(
+    section: DataSection, configuration: Configuration, repairs: Repairs, sink_of: SinkOf[Sink]
+) -> Sink:
     """Read the samples of a BINARY, BINARY32 or FLOAT32 file.
 
     A lenient reader takes the whole samples that a file of another size has, up to the number announced.
@@ -131,11 +191,13 @@ def decode_binary(section: DataSection, configuration: Configuration, repairs: R
         The checked configuration file.
     repairs : Repairs
         Collects what was mended; of a strict reader nothing is.
+    sink_of : callable
+        Makes what takes the samples.
 
     Returns
     -------
-    SampleTable
-        The samples as written.
+    SampleSink
+        What took the samples.
 
     Raises
     ------
@@ -146,11 +208,13 @@ def decode_binary(section: DataSection, configuration: Configuration, repairs: R
     """
     row = _row(configuration)
     samples = _sample_count(section, configuration, row, repairs)
-    table = SampleTable.empty(configuration, samples)
+    states = -(-len(configuration.status_names) // 8)
+    sink = sink_of(configuration, samples)
     numbers = SampleNumbers(section.path, repairs)
     with section.opened() as file:
-        for first in range(0, samples, _BLOCK_SAMPLES):
-            last = min(first + _BLOCK_SAMPLES, samples)
+        block_samples = max(1, _BLOCK_BYTES // row.itemsize)
+        for first in range(0, samples, block_samples):
+            last = min(first + block_samples, samples)
             block = np.fromfile(file, dtype=row, count=last - first)
             if block.size != last - first:
                 raise RecordingError(
@@ -160,15 +224,13 @@ def decode_binary(section: DataSection, configuration: Configuration, repairs: R
                     found="fewer: it was cut",
                 )
             numbers.check(block["number"])
-            counts = table.counts[:, first:last]
             with np.errstate(invalid="ignore"):  # of a signalling NaN
-                counts[:] = block["analog"].T
-            counts[(block["analog"] == _missing(configuration)).T] = np.nan
-            stamps = table.stamps[first:last]
-            stamps[:] = block["stamp"]
+                counts = block["analog"].astype(np.float64)
+            counts[block["analog"] == _missing(configuration)] = np.nan
+            stamps = block["stamp"].astype(np.float64)
             stamps[block["stamp"] == NO_TIME_STAMP] = np.nan
-            table.status[first:last] = block["status"][:, : table.status.shape[1]]
-    return table
+            sink.put(first, counts, stamps, block["status"][:, :states])
+    return sink
 
 
 def _row(configuration: Configuration) -> np.dtype[np.void]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from core.recordings.comtrade_configuration import Configuration
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
+from core.units import NANOSECONDS_PER_SECOND
 
 RATE_TOLERANCE = 1e-3
 """Largest difference between the rate in the configuration and the one the time stamps show, fraction."""
@@ -91,6 +92,53 @@ def time_base(
     if instants is None and len(configuration.rates) > 1:
         instants = nominal.times(np.arange(stamps.size))
     return TimeBase(configuration.rates[0][0], instants)
+
+
+def trigger_index(
+    path: Path, configuration: Configuration, base: TimeBase, samples: int, repairs: Repairs
+) -> int | None:
+    """Find the sample next to the trigger.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Configuration file, for messages.
+    configuration : Configuration
+        The checked configuration file.
+    base : TimeBase
+        Times of the samples.
+    samples : int
+        Number of samples.
+    repairs : Repairs
+        Collects what was mended; of a strict reader nothing is.
+
+    Returns
+    -------
+    int or None
+        The sample; None where a lenient reader left it out.
+
+    Raises
+    ------
+    RecordingError
+        If the trigger is outside the record.
+    """
+    elapsed_s = (configuration.trigger_time_ns - configuration.start_time_ns) / NANOSECONDS_PER_SECOND
+    if base.instants_s is None:
+        index, duration_s = round(elapsed_s * base.rate_hz), samples / base.rate_hz
+        within = 0 <= index < samples
+    else:
+        index, duration_s = int(np.argmin(np.abs(base.instants_s - elapsed_s))), float(base.instants_s[-1])
+        within = 0 <= elapsed_s <= duration_s + 0.5 / base.rate_hz
+    if within:
+        return index
+    fault = RecordingError(
+        path,
+        "time of the trigger",
+        expected=f"within the record, 0 to {duration_s:.6g} s after its first sample",
+        found=f"{elapsed_s:.6f} s after it",
+    )
+    repairs.mend(fault, "the trigger is left out")
+    return None
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,5 +31,9 @@ class RecordingError(ValueError):
         return _rebuild, (self.path, self.field, self.expected, self.found)
 
 
+class RecordingTooLongError(RecordingError):
+    """The error of a recording that is sound as far as it was read, but longer than the caller wants it."""
+
+
 def _rebuild(path: Path, field: str, expected: str, found: str) -> RecordingError:
     return RecordingError(path, field, expected=expected, found=found)

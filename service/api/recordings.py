@@ -1,25 +1,24 @@
 """Recordings: list, look at, take away, bring."""
 
 import shutil
-import tempfile
 import time
-import zipfile
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncIterator
 from http import HTTPStatus
 from pathlib import PurePosixPath
-from typing import Annotated, BinaryIO
+from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, File, Form, Query, Request, Response, UploadFile
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
-from core.recordings import RecordingError, read
+from core.recordings import Envelope, RecordingError, read_envelope
+from service.api.archive import zipped
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import FieldError, ProblemError, problems
 from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile
-from service.api.waveform import MAX_POINTS, Envelope, Waveform, WaveformResponse, envelope_of
+from service.api.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
 from service.storage.records import RecordingEntry
 from service.storage.states import RecordingState
@@ -30,8 +29,6 @@ UPLOAD_SUFFIXES = {*WAVEFORM_SUFFIXES, ".HDR", ".INF"}
 MAX_UPLOAD_FILES = 4
 UPLOAD_ROUTES = frozenset({("POST", "/recordings")})
 """Routes that take files; bodies of others are small."""
-
-CHUNK_BYTES = 1 << 16
 
 
 @router.get("/recordings", responses=problems())
@@ -132,7 +129,7 @@ def download_recording(context: Context, recording_id: UUID) -> StreamingRespons
     entry = context.repository.recording(str(recording_id))
     stored = context.store.find(_digest(entry))
     return StreamingResponse(
-        _archive(stored),
+        zipped(stored),
         media_type="application/zip",
         headers={"Content-Disposition": f'attachment; filename="{stored.name}.zip"'},
     )
@@ -142,7 +139,7 @@ def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
     entry = context.repository.recording(recording_id)
     path = context.store.entry(_digest(entry))
     try:
-        return envelope_of(read(path), points, context.settings.max_waveform_values)
+        return read_envelope(path, intervals_within(points, context.settings.max_waveform_values))
     except RecordingError as error:
         raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
 
@@ -190,17 +187,3 @@ def _refused(message: str) -> ProblemError:
         f"body.files: {message}",
         errors=[FieldError(location="body.files", message=message)],
     )
-
-
-def _archive(stored: StoredRecording) -> Iterator[bytes]:
-    with tempfile.TemporaryFile() as archive:
-        _write_archive(stored, archive)
-        archive.seek(0)
-        while chunk := archive.read(CHUNK_BYTES):
-            yield chunk
-
-
-def _write_archive(stored: StoredRecording, archive: BinaryIO) -> None:
-    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as zipped:
-        for file in stored.files:
-            zipped.write(stored.directory / file.name, arcname=file.name)

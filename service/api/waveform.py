@@ -2,8 +2,7 @@
 
 import asyncio
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
 from typing import Annotated
 
 import numpy as np
@@ -14,7 +13,7 @@ from pydantic import Field
 from starlette.types import Send
 from structlog.typing import FilteringBoundLogger
 
-from core.recordings import Channel, Quantity, Recording
+from core.recordings import Envelope, Quantity
 from service.api.document import Document
 from service.api.times import Time, rfc3339
 
@@ -56,42 +55,16 @@ class Waveform(Document):
     channels: Annotated[list[WaveformChannel], Field(max_length=MAX_CHANNELS)]
 
 
-@dataclass(frozen=True, slots=True)
-class Envelope:
-    """The smallest and largest samples of a recording's intervals, and what else a waveform tells.
+def intervals_within(points: int, most_values: int) -> Callable[[int, int], int]:
+    """Return how many intervals a recording gets: `points`, or fewer where it has many channels.
 
-    lowest, highest: shape (channels, intervals). times_s: where each interval begins, shape (intervals,).
+    most_values: most intervals of all channels together.
     """
 
-    channels: tuple[Channel, ...]
-    lowest: NDArray[np.float32]
-    highest: NDArray[np.float32]
-    times_s: NDArray[np.float64]
-    start_time_ns: int
-    trigger_time_ns: int
-    sample_rate_hz: float
-    samples: int
+    def intervals_of(channels: int, samples: int) -> int:
+        return min(points, samples, max(2, most_values // max(1, channels)))
 
-
-def envelope_of(recording: Recording, points: int, most_values: int) -> Envelope:
-    """Return the envelope of a recording in up to `points` intervals of equal length, within a sample.
-
-    There are fewer where all channels together would have more than `most_values` intervals.
-    """
-    channels, count = recording.samples.shape
-    intervals = min(points, count, max(2, most_values // max(1, channels)))
-    starts = np.unique(np.linspace(0, count, num=intervals, endpoint=False).astype(np.int64))
-    lowest, highest = _extremes(recording.samples, starts)
-    return Envelope(
-        channels=recording.channels,
-        lowest=lowest.astype(np.float32),
-        highest=highest.astype(np.float32),
-        times_s=recording.time_s[starts],
-        start_time_ns=recording.start_time_ns,
-        trigger_time_ns=recording.trigger_time_ns,
-        sample_rate_hz=recording.sample_rate_hz,
-        samples=count,
-    )
+    return intervals_of
 
 
 def waveform_json(recording_id: str, envelope: Envelope) -> Iterator[bytes]:
@@ -132,19 +105,10 @@ class WaveformResponse(StreamingResponse):
             log.warning("a client was too slow to take its waveform", limit_s=SENDING_LIMIT_S)
 
 
-def _extremes(
-    samples: NDArray[np.float64], starts: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    if starts.size == 0:
-        return samples, samples
-    # fmin and fmax pass over samples the recorder missed (NaN).
-    return np.fmin.reduceat(samples, starts, axis=1), np.fmax.reduceat(samples, starts, axis=1)
-
-
 def _compact(part: Mapping[str, object]) -> str:
     return json.dumps(part, separators=(",", ":"), allow_nan=False)
 
 
-def _figures(values: NDArray[np.float32]) -> str:
+def _figures(values: NDArray[np.float64]) -> str:
     """Return the values as the inside of a JSON list, with null for NaN, which JSON does not know."""
     return ",".join(map("{:.7g}".format, values.tolist())).replace("nan", "null")

@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from core.diagnosis.baseline import Baseline
 
 
+MOST_VALUES = 8_000_000
+"""A longer recording is rejected: it would take more memory than a worker may have.
+
+Twenty channels at 10 kHz have half a minute."""
+
+
 def prepare_worker() -> None:
     """Prepare a worker for its first job, which then need not wait for the compiler."""
     from core.warm_up import warm_up
@@ -31,7 +37,7 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
     from core.diagnosis.stator import diagnose
 
     try:
-        recording = read(task.entry)
+        recording = read(task.entry, most_values=MOST_VALUES)
         diagnosis = diagnose(
             recording,
             task.motor,
@@ -53,6 +59,6 @@ def _learnt(healthy: tuple[Path, ...], motor: Motor) -> "Baseline":
     from core.diagnosis.stator import learn_baseline
 
     try:
-        return learn_baseline((read(one) for one in healthy), motor)
+        return learn_baseline((read(one, most_values=MOST_VALUES) for one in healthy), motor)
     except (RecordingError, DiagnosisError) as error:
         raise DiagnosisError(f"the motor's baseline cannot be learnt: {error}") from error

@@ -7,9 +7,10 @@ import pytest
 from starlette.types import Message, Receive, Scope, Send
 
 from core.recordings import Channel, Quantity, Recording
+from core.recordings.envelope import envelope_of
 from service.api import ApiContext, create_app
 from service.api.admission import Admission, BusyError
-from service.api.waveform import Waveform, envelope_of, waveform_json
+from service.api.waveform import Waveform, intervals_within, waveform_json
 from service.storage import Repository
 from testing.service.plants import NOW_NS
 from testing.service.small_record import CFG, DAT
@@ -22,7 +23,7 @@ def recording(samples: list[list[float]]) -> Recording:
 
 
 def document(recording: Recording, points: int, most_values: int = 250_000) -> bytes:
-    return b"".join(waveform_json("id", envelope_of(recording, points, most_values)))
+    return b"".join(waveform_json("id", envelope_of(recording, intervals_within(points, most_values))))
 
 
 def waveform_of(recording: Recording, points: int, most_values: int = 250_000) -> Waveform:

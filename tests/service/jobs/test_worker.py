@@ -55,6 +55,15 @@ def test_a_record_is_diagnosed_as_of_its_trigger(tmp_path: Path) -> None:
     assert (outcome.diagnosis.method, outcome.diagnosis.model) == ("hcpa", "split-winding")
 
 
+def test_a_recording_that_would_not_fit_into_memory_is_rejected(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.jobs.worker.MOST_VALUES", 19_999)
+    outcome = diagnose_recording(task(write(tmp_path / "LONG", recording())))
+    assert isinstance(outcome, Rejected)
+    assert "at most 19999 values" in outcome.reason
+
+
 def test_what_would_fail_again_is_rejected(tmp_path: Path) -> None:
     without_voltages = write(tmp_path / "CURRENTS", recording(voltages=False))
     truncated = write(tmp_path / "SHORT", recording())

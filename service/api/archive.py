@@ -1,0 +1,45 @@
+"""The files of a recording as a ZIP archive, made while it is sent: it is neither in memory nor on disk."""
+
+import io
+import zipfile
+from collections.abc import Iterator
+
+from service.recording_store.store import StoredRecording
+
+CHUNK_BYTES = 1 << 16
+
+
+def zipped(stored: StoredRecording) -> Iterator[bytes]:
+    """Return the archive piece by piece."""
+    sink = _Sink()
+    with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED) as archive:
+        for file in stored.files:
+            path = stored.directory / file.name
+            about = zipfile.ZipInfo.from_file(path, arcname=file.name)
+            about.compress_type = zipfile.ZIP_DEFLATED
+            with path.open("rb") as source, archive.open(about, "w") as packed:
+                while chunk := source.read(CHUNK_BYTES):
+                    packed.write(chunk)
+                    yield sink.taken()
+    yield sink.taken()
+
+
+class _Sink(io.RawIOBase):
+    """A file that cannot be wound back; what is written waits until it is taken."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._waiting = bytearray()
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, content: "bytes | bytearray | memoryview", /) -> int:  # type: ignore[override]  # narrower
+        self._waiting += content
+        return len(content)
+
+    def taken(self) -> bytes:
+        """Return what was written since the last time."""
+        content = bytes(self._waiting)
+        self._waiting.clear()
+        return content
