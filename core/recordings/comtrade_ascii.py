@@ -21,7 +21,6 @@ MISSING = 99_999
 
 _TABLE = re.compile(r"[0-9+\-.eE, \t\n]*", re.ASCII)
 _FIELD = re.compile(r"[0-9+\-.eE]+", re.ASCII)
-_BLANK = b" \t"
 _END = b"\x1a\r\n\t "
 """What may follow the last sample."""
 
@@ -80,7 +79,7 @@ def decode_ascii(
     numbers = SampleNumbers(section.path, repairs)
     first = 0
     for found in _blocks(section):
-        wanted = [line for line in found if line.strip(_BLANK)] if without_blanks else found
+        wanted = [line for line in found if line.strip()] if without_blanks else found
         block_lines = [line.rstrip(_END).decode("latin-1") for line in wanted[: samples - first]]
         if not block_lines:
             continue
@@ -110,13 +109,18 @@ class _Text:
         """Count, without keeping any of it."""
         lines = blank = characters = read = read_blank = read_characters = 0
         for block in _blocks(section):
-            for line in block:
-                read += 1
-                read_characters += len(line) + 1
-                if line.rstrip(_END):
-                    lines, blank, characters = read, read_blank, read_characters
-                elif not line.strip(_BLANK):
-                    read_blank += 1
+            stripped = list(map(bytes.strip, block))
+            blank_here = stripped.count(b"")
+            end = len(block) if blank_here < len(block) else 0
+            while end and not stripped[end - 1].rstrip(_END):
+                end -= 1
+            if end:
+                lines = read + end
+                blank = read_blank + stripped[:end].count(b"")
+                characters = read_characters + sum(map(len, block[:end])) + end
+            read += len(block)
+            read_blank += blank_here
+            read_characters += sum(map(len, block)) + len(block)
         return cls(lines, blank, characters)
 
 
