@@ -9,7 +9,7 @@ MB = 1_000_000
 BASELINE = "/api/v1/motors/PUMP-A1/baseline"
 DIAGNOSES = "/api/v1/recordings/00000000-0000-0000-0000-000000000000/diagnoses"
 RECORDINGS = "/api/v1/recordings"
-JUST_JSON = 16_000
+JUST_JSON = 8_000
 """So many bytes pass the limit of the JSON routes."""
 
 
@@ -98,8 +98,8 @@ ATTACKS = (
     Attack("diagnosis, 3 million keys", _once("POST", DIAGNOSES, lambda: _keys(3 * MB))),
     Attack("diagnosis, a text of 60 MB", _once("POST", DIAGNOSES, lambda: _text(60 * MB))),
     Attack("60 at once: 3 MB of `{}`", _many("PUT", BASELINE, _objects(3 * MB))),
-    Attack("600 at once: 16 kB of `{}`", _many("PUT", BASELINE, _objects(JUST_JSON), 600)),
-    Attack("600 at once: 16 kB of keys", _many("POST", DIAGNOSES, _keys(1600), 600)),
+    Attack("600 at once: 8 kB of `{}`", _many("PUT", BASELINE, _objects(JUST_JSON), 600)),
+    Attack("600 at once: 8 kB of keys", _many("POST", DIAGNOSES, _keys(800), 600)),
     Attack("upload, 1000 fields of 60 kB", _form(_fields)),
     Attack("upload, a part's header of 60 MB", _form(_long_header)),
     Attack("upload, 6 million headers of a part", _form(_many_headers)),

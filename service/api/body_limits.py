@@ -15,8 +15,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.api.admission import Admission, BusyError
 from service.api.problems import busy_response, problem_response
 
-MAX_JSON_BYTES = 16 * 1024
-"""Four times the largest document that a route takes, a baseline of a hundred recordings."""
+MAX_JSON_BYTES = 8 * 1024
+"""Twice the largest document that a route takes, a baseline of a hundred recordings."""
 
 UPLOADS_AT_ONCE = 3
 UPLOAD_WAIT_S = 10.0

@@ -202,8 +202,9 @@ def install(app: FastAPI) -> None:
             headers={"Retry-After": str(RETRY_AFTER_S)},
         )
 
+    # On the event loop: what describes the faults would pile up in memory while it waits for a thread.
     @app.exception_handler(RequestValidationError)
-    def _validation(request: Request, error: RequestValidationError) -> JSONResponse:
+    async def _validation(request: Request, error: RequestValidationError) -> JSONResponse:
         errors = [
             FieldError(location=_location(found["loc"]), message=found["msg"])
             for found in error.errors()[:MAX_ERRORS]
