@@ -4,6 +4,7 @@ import sys
 from collections.abc import Sequence
 from enum import StrEnum
 from importlib.metadata import version
+from math import isfinite
 from pathlib import Path
 from typing import Annotated
 
@@ -230,6 +231,8 @@ def trigger(
     """Request a recording of a motor from its relay."""
     from service.cli.remote import trigger_motor
 
+    if not isfinite(wait):
+        raise typer.BadParameter(f"--wait: expected a number of seconds, found {wait}")
     trigger_motor(url, motor, key=key, wait_s=wait, as_json=as_json)
 
 

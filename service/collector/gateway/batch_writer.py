@@ -4,16 +4,20 @@ With a transaction for each, hundreds of relays would wait for the one writer th
 what cannot wait: the renewal of their leases.
 """
 
+import time
 from collections.abc import Callable, Sequence
 from queue import SimpleQueue
 from typing import Generic, TypeVar
 
+import structlog
 from sqlalchemy.exc import DBAPIError
 
 from service.storage import Repository
 from service.storage.engine import NO_ANSWER
 from service.storage.records import LinkNote, Sample
 from service.timing.periodic_worker import PeriodicWorker
+
+log = structlog.get_logger(__name__)
 
 Item = TypeVar("Item")
 
@@ -22,6 +26,13 @@ PERIOD_S = 1.0
 
 MOST_UNWRITTEN = 100_000
 """So many items of a kind are kept while the database does not answer; beyond that the oldest are dropped."""
+
+
+MOST_REFUSED = 100
+"""Items are found one by one that the database refuses, so many in a round; the rest waits for the next."""
+
+TELL_PERIOD_S = 60.0
+"""Between lines of the log that say how many items were dropped."""
 
 
 class BatchRefusedError(RuntimeError):
@@ -36,8 +47,8 @@ class BatchWriter:
 
         period_s: between transactions.
         """
-        self._samples = _Batch(repository.add_samples)
-        self._notes = _Batch(repository.note_links)
+        self._samples = _Batch("measured values", repository.add_samples)
+        self._notes = _Batch("notes of links", repository.note_links)
         self._worker = PeriodicWorker("the batch writer", self._write, period_s=period_s, once_more=True)
 
     def add_sample(self, sample: Sample) -> None:
@@ -70,32 +81,63 @@ class BatchWriter:
 class _Batch(Generic[Item]):
     """Hold the items of one kind until they are written."""
 
-    def __init__(self, write: Callable[[Sequence[Item]], None]) -> None:
+    def __init__(self, kind: str, write: Callable[[Sequence[Item]], None]) -> None:
+        self._kind = kind
         self._write = write
         self._arrived: SimpleQueue[Item] = SimpleQueue()
         self._unwritten: list[Item] = []
+        self._dropped = 0
+        self._told_s = -TELL_PERIOD_S
 
     def add(self, item: Item) -> None:
         self._arrived.put(item)
 
     def write(self) -> None:
-        """Write all items in one transaction.
+        """Write all items, in one transaction where the database takes them all.
 
         Raises SQLAlchemyError where the database does not answer: the items are kept. Raises
-        BatchRefusedError where it refuses them: they are lost.
+        BatchRefusedError where it refuses some: those are lost, and the others are written.
         """
         while not self._arrived.empty():
             self._unwritten.append(self._arrived.get())
-        del self._unwritten[:-MOST_UNWRITTEN]
-        if not self._unwritten:
-            return
-        try:
-            self._write(self._unwritten)
-        except NO_ANSWER:
-            raise
-        except Exception as error:  # items the database never takes must not hold up all that come after them
-            lost = len(self._unwritten)
-            self._unwritten.clear()
-            reason = error.orig if isinstance(error, DBAPIError) else error  # without the whole statement
-            raise BatchRefusedError(f"lost {lost} items, the database refuses them: {reason}") from error
-        self._unwritten.clear()
+        self._drop_oldest()
+        refused: list[Exception] = []
+        parts = [self._unwritten] if self._unwritten else []
+        while parts and len(refused) < MOST_REFUSED:
+            part = parts.pop()
+            try:
+                self._write(part)
+            except NO_ANSWER:
+                self._unwritten = _joined([*parts, part])
+                raise
+            except Exception as error:  # noqa: BLE001 - raised below, once the others are written
+                if len(part) == 1:
+                    refused.append(error)
+                else:
+                    middle = len(part) // 2
+                    parts += [part[middle:], part[:middle]]
+        self._unwritten = _joined(parts)
+        if refused:
+            first = refused[0]
+            reason = first.orig if isinstance(first, DBAPIError) else first  # without the whole statement
+            raise BatchRefusedError(
+                f"lost {len(refused)} items, the database refuses them: {reason}"
+            ) from first
+
+    def _drop_oldest(self) -> None:
+        """Drop what is too much to keep, and say so now and then."""
+        excess = len(self._unwritten) - MOST_UNWRITTEN
+        if excess > 0:
+            del self._unwritten[:excess]
+            self._dropped += excess
+        if self._dropped and time.monotonic() - self._told_s >= TELL_PERIOD_S:
+            log.warning(
+                "dropped: the database has not taken them for too long", kind=self._kind, number=self._dropped
+            )
+            self._dropped = 0
+            self._told_s = time.monotonic()
+
+
+def _joined(parts: Sequence[list[Item]]) -> list[Item]:
+    """Return the items of a stack of parts in the order in which they came; the first part is on top."""
+    return [item for part in reversed(parts) for item in part]

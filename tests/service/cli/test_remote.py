@@ -112,3 +112,9 @@ def test_a_relay_is_released(
     assert "A1_SEL710: released" in shown
     assert "A2_SEL710: was not set aside" in shown
     assert repository.quarantines() == ()
+
+
+@pytest.mark.parametrize("wait", ["inf", "nan", "-1"])
+def test_a_wait_without_end_is_refused(wait: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["trigger", "PUMP-A1", "--wait", wait, "--url", "http://127.0.0.1:9"]) == 2
+    assert "--wait" in capsys.readouterr().err

@@ -6,17 +6,19 @@ from contextlib import closing
 from dataclasses import replace
 
 import pytest
+from sqlalchemy import Engine
 from structlog.testing import capture_logs
 
+from service.collector.gateway import batch_writer
 from service.collector.gateway.batch_writer import BatchWriter
 from service.storage import Repository, connect
 from service.storage.records import LinkNote, LinkTraffic, Sample
 from service.storage.states import LinkState
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 from testing.waiting import eventually
-from tests.service.fixtures import database_url
+from tests.service.fixtures import database_url, engine
 
-__all__ = ["database_url"]
+__all__ = ["database_url", "engine"]
 
 RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
 
@@ -106,3 +108,40 @@ def test_what_the_database_refuses_holds_up_nothing(repository: Repository) -> N
     assert eventually(good_ones_arrive)
     assert eventually(lambda: batches.problem() is None)
     batches.stop(10)
+
+
+def test_beside_refused_items_all_others_are_written_once(repository: Repository) -> None:
+    """One value of a motor that is unknown cost all values of a second, of all relays of the gateway."""
+    batches = BatchWriter(repository, period_s=0.05)
+    for number in range(64):
+        motor = "NO-SUCH-MOTOR" if number in (5, 6, 40) else MOTOR
+        batches.add_sample(Sample(motor, NOW_NS + number, {"ia_A": 1.0}))
+        batches.add_note(replace(note(number), ied="NO-SUCH-RELAY") if number == 63 else note(number))
+    batches.start()
+    assert eventually(lambda: "lost 3 items, the database refuses them" in (batches.problem() or ""))
+    batches.stop(10)
+    times = [one.time_ns - NOW_NS for one in repository.measurements(MOTOR, 0, limit=100).items]
+    assert times == [number for number in range(64) if number not in (5, 6, 40)]
+    assert repository.link_figures(RELAY).reports == 2 * 63
+
+
+def test_what_is_dropped_is_told_with_its_number(
+    repository: Repository, engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(batch_writer, "MOST_UNWRITTEN", 10)
+    with engine.begin() as connection:
+        connection.exec_driver_sql("ALTER TABLE measurements RENAME TO away")
+    batches = BatchWriter(repository, period_s=0.05)
+    for number in range(25):
+        batches.add_sample(Sample(MOTOR, NOW_NS + number, {"ia_A": 1.0}))
+    with capture_logs() as logs:
+        batches.start()
+        assert eventually(lambda: "does not answer" in (batches.problem() or ""))
+    (told,) = [entry for entry in logs if entry["event"].startswith("dropped")]
+    assert (told["kind"], told["number"]) == ("measured values", 15)
+    with engine.begin() as connection:
+        connection.exec_driver_sql("ALTER TABLE away RENAME TO measurements")
+    batches.stop(10)
+    assert [one.time_ns - NOW_NS for one in repository.measurements(MOTOR, 0, limit=100).items] == [
+        *range(15, 25)
+    ]
