@@ -2,7 +2,7 @@
 
 from typing import Annotated, TypeVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, model_validator
 
 from core.units import NANOSECONDS_PER_SECOND
 
@@ -33,3 +33,19 @@ Listed = Annotated[list[Item], BeforeValidator(_begin), Field(max_length=LONGEST
 
 class Document(BaseModel):
     model_config = ConfigDict(from_attributes=True, validate_by_name=True)
+
+
+MOST_FIELDS = 20
+
+
+class RequestDocument(BaseModel):
+    """A document that comes from a client. One of too many fields is refused before each of them is named."""
+
+    model_config = ConfigDict(json_schema_extra={"maxProperties": MOST_FIELDS})
+
+    @model_validator(mode="before")
+    @classmethod
+    def _few_fields(cls, found: object) -> object:
+        if isinstance(found, dict) and len(found) > MOST_FIELDS:
+            raise ValueError(f"expected at most {MOST_FIELDS} fields, found {len(found)}")
+        return found

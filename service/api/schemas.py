@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, FailFast, Field, Str
 from core.diagnosis import methods
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
-from service.api.document import Document, Listed
+from service.api.document import Document, Listed, RequestDocument
 from service.api.relay_schemas import RelayClock
 from service.api.times import Time
 from service.plant import MeteredQuantity
@@ -151,7 +151,7 @@ class Recording(RelayClock):
     recorded_time: Time | None = Field(validation_alias="recorded_ns")
 
 
-class BaselineRequest(BaseModel):
+class BaselineRequest(RequestDocument):
     """The recordings that stand for a motor's healthy condition."""
 
     recording_ids: Annotated[set[UUID], Field(min_length=3, max_length=100), FailFast()]
@@ -195,7 +195,7 @@ class DiagnosisRun(Document):
     result: Diagnosis | None = None
 
 
-class DiagnosisRequest(BaseModel):
+class DiagnosisRequest(RequestDocument):
     """How to diagnose: the optimiser and the machine model."""
 
     model_config = ConfigDict(extra="forbid")

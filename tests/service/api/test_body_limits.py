@@ -157,6 +157,13 @@ def test_validation_of_a_list_stops_at_the_first_fault(client: httpx.Client) -> 
     assert [error["location"] for error in errors] == ["body.recording_ids.0"]
 
 
+def test_a_document_of_many_fields_is_not_described_field_by_field(client: httpx.Client) -> None:
+    errors = client.post(DIAGNOSES, json=dict.fromkeys(map(str, range(21)), 1)).json()["errors"]
+    assert [error["location"] for error in errors] == ["body"]
+    assert "at most 20 fields, found 21" in errors[0]["message"]
+    assert len(client.post(DIAGNOSES, json=dict.fromkeys(map(str, range(20)), 1)).json()["errors"]) == 20
+
+
 def test_uploads_wait_for_one_another(context: ApiContext, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("service.api.body_limits.UPLOAD_WAIT_S", 0.2)
     begun, end = threading.Semaphore(0), threading.Event()
