@@ -78,20 +78,27 @@ class TemporarilyUnavailable(MmsError):
     """The object or file is busy; a later attempt may succeed."""
 
 
-class ProtocolError(MmsError):
-    """The peer answered with something the service does not allow, or refused it for another reason."""
+class ServiceFailed(MmsError):
+    """The peer answers that it cannot carry out this request (ISO 9506-2, ServiceError).
+
+    The answer is a proper one: the link is in order, and other requests are not affected.
+    """
 
 
-class FileServiceFailed(ProtocolError):
-    """The peer's file service reports another error (ISO 9506-2) for this file; the link is in order."""
-
-
-class ValueRefused(ProtocolError):
+class ValueRefused(ServiceFailed):
     """The peer answers that it gives or takes no value of this one object.
 
     The cause may be a hardware fault or a type that does not fit (ISO 9506-2, DataAccessError). Other objects
     are not affected.
     """
+
+
+class ProtocolError(MmsError):
+    """The peer answered with something the service does not allow, or rejected the request."""
+
+
+class RequestRejected(ProtocolError):
+    """The peer rejects the request (ISO 9506-2, Reject): it knows no such service or form of it."""
 
 
 class ControlRefused(MmsError):
@@ -215,16 +222,16 @@ _CLIENT_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     1: (ConnectionLost, "not connected"),
     2: (ProtocolError, "already connected"),
     3: (ConnectionLost, "the connection was lost"),
-    4: (ProtocolError, "service not supported"),
+    4: (RequestRejected, "service not supported"),
     5: (ConnectFailed, "the connection was rejected"),
-    6: (ProtocolError, "too many outstanding requests"),
+    6: (ServiceFailed, "too many outstanding requests"),
     11: (ProtocolError, "data set mismatch"),
     12: (NotFound, "no object of this reference"),
     13: (ProtocolError, "a value of an unexpected type was received"),
     20: (Timeout, "no answer in time"),
     21: (AccessDenied, "access denied"),
     22: (NotFound, "no such object"),
-    23: (ProtocolError, "the object exists already"),
+    23: (ServiceFailed, "the object exists already"),
     24: (AccessDenied, "this kind of access is not supported"),
     25: (ValueRefused, "type inconsistent"),
     26: (TemporarilyUnavailable, "temporarily unavailable"),
@@ -236,26 +243,53 @@ _CLIENT_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     32: (ValueRefused, "the value is invalid"),
     33: (NotFound, "the object was invalidated"),
     34: (ProtocolError, "malformed message"),
-    35: (ProtocolError, "object constraint conflict"),
-    98: (ProtocolError, "service not implemented"),
+    35: (ServiceFailed, "object constraint conflict"),
+    98: (RequestRejected, "service not implemented"),
 }
 
-_FILE_ERRORS: dict[int, tuple[type[MmsError], str]] = {
+_MMS_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     1: (ConnectFailed, "the connection was rejected"),
     2: (ConnectionLost, "the connection was lost"),
     3: (Timeout, "no answer in time"),
     4: (ProtocolError, "malformed message"),
+    5: (ValueRefused, "hardware fault"),
+    6: (ProtocolError, "the end of the association was rejected"),
+    7: (ProtocolError, "invalid arguments"),
     8: (ProtocolError, "too many outstanding requests"),
-    40: (TemporarilyUnavailable, "the file is busy, or too many files are open"),
-    81: (NotFound, "no such file"),
+    10: (TemporarilyUnavailable, "the relay is not in a state for this"),
+    31: (NotFound, "invalid address"),
+    32: (ValueRefused, "the data type is not supported"),
+    33: (ValueRefused, "type inconsistent"),
+    34: (NotFound, "the object is not defined"),
+    36: (ValueRefused, "the object's attributes are inconsistent"),
+    40: (TemporarilyUnavailable, "the relay is busy: its resources are used up"),
+    41: (TemporarilyUnavailable, "the relay is busy: the capability is unavailable"),
+    60: (TemporarilyUnavailable, "the service was preempted"),
+    81: (NotFound, "no such object"),
+    82: (AccessDenied, "this kind of access is not supported"),
     83: (AccessDenied, "access denied"),
+    84: (NotFound, "the object was invalidated"),
+    85: (ValueRefused, "the value is invalid"),
     86: (TemporarilyUnavailable, "temporarily unavailable"),
     92: (TemporarilyUnavailable, "the file is busy"),
     93: (NotFound, "not a file name"),
     96: (AccessDenied, "file access denied"),
     97: (NotFound, "no such file"),
+    100: (RequestRejected, "the request was rejected"),
+    101: (RequestRejected, "the request was rejected: unknown kind of PDU"),
+    102: (RequestRejected, "the request was rejected: invalid PDU"),
+    103: (RequestRejected, "service not supported"),
+    104: (RequestRejected, "the request was rejected: modifier not supported"),
+    105: (RequestRejected, "the request was rejected: invalid argument"),
 }
 
+_OF_FILES: dict[int, tuple[type[MmsError], str]] = {
+    5: (ServiceFailed, "hardware fault"),
+    40: (TemporarilyUnavailable, "the file is busy, or too many files are open"),
+    81: (NotFound, "no such file"),
+    84: (ServiceFailed, "the file was invalidated"),
+    **dict.fromkeys((31, 32, 33, 34, 36, 85), (ServiceFailed, "the file service failed")),
+}
 
 _HARDWARE_FAULT = 5
 _SERVICE_ERRORS = range(9, 100)
@@ -264,6 +298,9 @@ _SERVICE_ERRORS = range(9, 100)
 
 def client_error(host: str, operation: str, code: int) -> MmsError:
     """Make the error for a number of the library's client functions.
+
+    These functions give one number (99) for every ServiceError without a number of its own and for a Reject.
+    The client uses functions that pass on the MmsError (`mms_error`) wherever there are such.
 
     Parameters
     ----------
@@ -279,7 +316,33 @@ def client_error(host: str, operation: str, code: int) -> MmsError:
     MmsError
         The kind of error that belongs to the number.
     """
-    kind, message = _CLIENT_ERRORS.get(code, (ProtocolError, f"the service failed (client error {code})"))
+    kind, message = _CLIENT_ERRORS.get(code, (ServiceFailed, f"the service failed (client error {code})"))
+    return kind(host, operation, code, message)
+
+
+def mms_error(host: str, operation: str, code: int) -> MmsError:
+    """Make the error for a number of the library's MMS services.
+
+    Parameters
+    ----------
+    host : str
+        The peer as "address:port".
+    operation : str
+        The service and its object.
+    code : int
+        The library's MmsError.
+
+    Returns
+    -------
+    MmsError
+        The kind of error that belongs to the number.
+
+    References
+    ----------
+    ISO 9506-2, ServiceError and Reject.
+    """
+    other = ServiceFailed if code in _SERVICE_ERRORS else ProtocolError
+    kind, message = _MMS_ERRORS.get(code, (other, f"the service failed (MMS error {code})"))
     return kind(host, operation, code, message)
 
 
@@ -298,13 +361,33 @@ def file_error(host: str, operation: str, code: int) -> MmsError:
     Returns
     -------
     MmsError
-        The kind of error that belongs to the number.
+        The kind of error that belongs to the number. Errors that speak of a value speak of the file here.
 
     References
     ----------
     ISO 9506-2, ServiceError.
     """
-    of_a_file = code == _HARDWARE_FAULT or code in _SERVICE_ERRORS
-    other = FileServiceFailed if of_a_file else ProtocolError
-    kind, message = _FILE_ERRORS.get(code, (other, f"the file service failed (MMS error {code})"))
-    return kind(host, operation, code, message)
+    if code in _OF_FILES:
+        kind, message = _OF_FILES[code]
+        return kind(host, operation, code, message)
+    return mms_error(host, operation, code)
+
+
+def is_answered(code: int) -> bool:
+    """Tell whether the peer carried out the request, or answered properly that it cannot.
+
+    Parameters
+    ----------
+    code : int
+        The library's MmsError.
+
+    Returns
+    -------
+    bool
+        False for a lost connection, no answer, a malformed answer and a reject.
+
+    References
+    ----------
+    ISO 9506-2, ServiceError.
+    """
+    return code in (0, _HARDWARE_FAULT) or code in _SERVICE_ERRORS

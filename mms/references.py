@@ -101,3 +101,32 @@ def object_reference(reference: str, *, names: int = 1, room: int = len("$ST")) 
     if len(re.split(r"[.$]", item)) < names:
         raise ValueError(f"object reference too short: {reference!r} (expected {names} names after the /)")
     return reference.encode("ascii")
+
+
+def variable_name(reference: str, constraint: FunctionalConstraint) -> tuple[bytes, bytes]:
+    """Name a data object or attribute as MMS does: its domain and its item "LN$FC$DO$DA".
+
+    Parameters
+    ----------
+    reference : str
+        Reference "LD/LN.DO.DA".
+    constraint : FunctionalConstraint
+        Functional constraint of what is named.
+
+    Returns
+    -------
+    domain, item : bytes
+        The names in ASCII.
+
+    Raises
+    ------
+    ValueError
+        It is no reference, or is too long.
+
+    References
+    ----------
+    IEC 61850-8-1 clause 7.3, mapping of names.
+    """
+    domain, _, item = object_reference(reference).replace(b".", b"$").partition(b"/")
+    node, _, names = item.partition(b"$")
+    return domain, b"$".join((node, constraint.name.encode("ascii"), *filter(None, (names,))))

@@ -43,6 +43,8 @@ ConnectionClosedHandler = CFUNCTYPE(None, c_void_p, c_void_p)
 ReportHandler = CFUNCTYPE(None, c_void_p, c_void_p)
 # void (parameter, control)
 CommandTerminationHandler = CFUNCTYPE(None, c_void_p, c_void_p)
+# void (parameter, file name, size, last modified)
+FileDirectoryHandler = CFUNCTYPE(None, c_void_p, c_char_p, c_uint32, c_uint64)
 # void (parameter, frsm id, buffer, bytes)
 FileReadHandler = CFUNCTYPE(None, c_void_p, c_int32, _BYTES, c_uint32)
 # ControlHandlerResult (action, parameter, value, test)
@@ -135,15 +137,17 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "IedConnection_installConnectionClosedHandler": (None, [c_void_p, ConnectionClosedHandler, c_void_p]),
     "IedConnection_getMmsConnection": (c_void_p, [c_void_p]),
     # client: directories, data, data sets
-    "IedConnection_getLogicalDeviceList": (c_void_p, [c_void_p, _ERROR]),
-    "IedConnection_getLogicalDeviceDirectory": (c_void_p, [c_void_p, _ERROR, c_char_p]),
-    "IedConnection_getLogicalNodeDirectory": (c_void_p, [c_void_p, _ERROR, c_char_p, c_int]),
-    "IedConnection_readObject": (c_void_p, [c_void_p, _ERROR, c_char_p, c_int]),
+    "MmsConnection_getDomainNames": (c_void_p, [c_void_p, _ERROR]),
+    "MmsConnection_getDomainVariableNames": (c_void_p, [c_void_p, _ERROR, c_char_p]),
+    "MmsConnection_getDomainVariableListNames": (c_void_p, [c_void_p, _ERROR, c_char_p]),
+    "MmsConnection_readVariable": (c_void_p, [c_void_p, _ERROR, c_char_p, c_char_p]),
+    "MmsConnection_readSingleArrayElementWithComponent": (
+        c_void_p,
+        [c_void_p, _ERROR, c_char_p, c_char_p, c_uint32, c_char_p],
+    ),
     "MmsConnection_readNamedVariableListDirectory": (c_void_p, [c_void_p, _ERROR, c_char_p, c_char_p, _FLAG]),
     "MmsVariableAccessSpecification_destroy": (None, [c_void_p]),
-    "IedConnection_readDataSetValues": (c_void_p, [c_void_p, _ERROR, c_char_p, c_void_p]),
-    "ClientDataSet_getValues": (c_void_p, [c_void_p]),
-    "ClientDataSet_destroy": (None, [c_void_p]),
+    "MmsConnection_readNamedVariableListValues": (c_void_p, [c_void_p, _ERROR, c_char_p, c_char_p, c_bool]),
     # client: reports
     "IedConnection_getRCBValues": (c_void_p, [c_void_p, _ERROR, c_char_p, c_void_p]),
     "IedConnection_setRCBValues": (None, [c_void_p, _ERROR, c_void_p, c_uint32, c_bool]),
@@ -151,6 +155,7 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "IedConnection_uninstallReportHandler": (None, [c_void_p, c_char_p]),
     "ClientReportControlBlock_destroy": (None, [c_void_p]),
     "ClientReportControlBlock_getRptId": (c_char_p, [c_void_p]),
+    "ClientReportControlBlock_getDataSetReference": (c_char_p, [c_void_p]),
     "ClientReportControlBlock_getRptEna": (c_bool, [c_void_p]),
     "ClientReportControlBlock_setRptEna": (None, [c_void_p, c_bool]),
     "ClientReportControlBlock_setResv": (None, [c_void_p, c_bool]),
@@ -178,6 +183,7 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "ControlObjectClient_destroy": (None, [c_void_p]),
     "ControlObjectClient_getControlModel": (c_int, [c_void_p]),
     "ControlObjectClient_setOrigin": (None, [c_void_p, c_char_p, c_int]),
+    "ControlObjectClient_setCtlNum": (None, [c_void_p, c_uint8]),
     "ControlObjectClient_select": (c_bool, [c_void_p]),
     "ControlObjectClient_selectWithValue": (c_bool, [c_void_p, c_void_p]),
     "ControlObjectClient_operate": (c_bool, [c_void_p, c_void_p, c_uint64]),
@@ -188,11 +194,10 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
         [c_void_p, CommandTerminationHandler, c_void_p],
     ),
     # client: files
-    "IedConnection_getFileDirectoryEx": (c_void_p, [c_void_p, _ERROR, c_char_p, c_char_p, _FLAG]),
-    "FileDirectoryEntry_getFileName": (c_char_p, [c_void_p]),
-    "FileDirectoryEntry_getFileSize": (c_uint32, [c_void_p]),
-    "FileDirectoryEntry_getLastModified": (c_uint64, [c_void_p]),
-    "FileDirectoryEntry_destroy": (None, [c_void_p]),
+    "MmsConnection_getFileDirectory": (
+        c_bool,
+        [c_void_p, _ERROR, c_char_p, c_char_p, FileDirectoryHandler, c_void_p],
+    ),
     "MmsConnection_fileOpen": (
         c_int32,
         [c_void_p, _ERROR, c_char_p, c_uint32, POINTER(c_uint32), POINTER(c_uint64)],

@@ -11,6 +11,7 @@ import logging
 import socket
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from enum import Enum
@@ -20,6 +21,7 @@ from mms import errors
 from mms.binding.callbacks import guarded, inside_callback
 from mms.binding.connection_deadline import connections_between, end_connections_after, open_sockets
 from mms.binding.library import library
+from mms.binding.linked_lists import take_names
 from mms.binding.prototypes import ConnectionClosedHandler
 from mms.client.closed_notice import ClosedNotice
 from mms.client.connect_failure import explain_failure
@@ -32,6 +34,10 @@ log: Final = logging.getLogger("mms")
 _CONNECTION_LOST: Final = 3
 _REJECTED: Final = 5
 _TIMEOUT: Final = 20
+_MALFORMED: Final = 34
+_REQUEST_REJECTED: Final = 98
+_OF_FIRST_REQUEST: Final = {2: _CONNECTION_LOST, 3: _TIMEOUT, 4: _MALFORMED}
+"""Numbers of the library's MMS services in those of its client functions; others are rejects."""
 _ATTEMPTS: Final = 5
 _PAUSE_BETWEEN_ATTEMPTS_S: Final = 0.02
 
@@ -49,6 +55,13 @@ class ServiceFunction(Protocol):
 
     def __call__(self, connection: int, error: object, *arguments: object) -> object:
         """Call the function."""
+
+
+class MakeError(Protocol):
+    """Function that makes the error for a number of the library."""
+
+    def __call__(self, host: str, operation: str, code: int) -> errors.MmsError:
+        """Return the error."""
 
 
 class Connection:
@@ -99,7 +112,10 @@ class Connection:
         self._lock = threading.RLock()
         self._pointer = 0
         self.round_trip_s: float | None = None
+        self.first_names: list[str] | None = None
+        """Names of the logical devices, from the first request; None where the relay gave none for now."""
         self._handlers: list[object] = []  # C holds them until they are uninstalled or all is destroyed
+        self._commands: Counter[str] = Counter()
         addresses = self._resolve(host, port)
         self._credentials = Credentials(self.lib, tls, password)
         try:
@@ -202,17 +218,27 @@ class Connection:
             else end_connections_after(connections_between(peer=(address, port)), timeout_s)
         ):
             lib.IedConnection_connect(self._pointer, ctypes.byref(error), address.encode("ascii"), port)
-        if error.value == 0:
-            with self._limited(self.limits.names_s) as over:
-                names = lib.IedConnection_getLogicalDeviceList(self._pointer, ctypes.byref(error))
-            if names:
-                lib.LinkedList_destroy(names)
-            if over.is_set():
-                error.value = _ENDLESS
-            elif error.value == _TIMEOUT and notice.event.wait(self.limits.loss_notice_s):
-                error.value = _CONNECTION_LOST
+        code = error.value or self._first_request()
         lib.IedConnection_setRequestTimeout(self._pointer, round(self.request_timeout_s * 1000))
-        return error.value
+        return code
+
+    def _first_request(self) -> int:
+        """Return 0 if the relay answers properly: that it cannot tell its names for now is an answer."""
+        lib = self.lib
+        error = ctypes.c_int(0)
+        with self._limited(self.limits.names_s) as over:
+            mms = lib.IedConnection_getMmsConnection(self._pointer)
+            names = lib.MmsConnection_getDomainNames(mms, ctypes.byref(error))
+        listed = take_names(lib, names)
+        if over.is_set():
+            return _ENDLESS
+        if errors.is_answered(error.value):
+            self.first_names = None if error.value else listed
+            return 0
+        code = _OF_FIRST_REQUEST.get(error.value, _REQUEST_REJECTED)
+        if code == _TIMEOUT and self._notice.event.wait(self.limits.loss_notice_s):
+            return _CONNECTION_LOST
+        return code
 
     def _limited(self, limit_s: float) -> AbstractContextManager[threading.Event]:
         """End this connection when the limit is over; the event tells that it was."""
@@ -242,6 +268,27 @@ class Connection:
             False if the association still stands.
         """
         return self._notice.event.wait(timeout_s)
+
+    def count_command(self, reference: str) -> int:
+        """Count a command on a control object: each has a control number (ctlNum) one above the last.
+
+        Parameters
+        ----------
+        reference : str
+            Reference of the control object.
+
+        Returns
+        -------
+        int
+            The control number of the command before this one, 0 to 255; the library adds one.
+
+        References
+        ----------
+        IEC 61850-7-2 clause 20, ctlNum.
+        """
+        before = self._commands[reference]
+        self._commands[reference] = (before + 1) % 256
+        return before
 
     def keep_callback(self, handler: object) -> None:
         """Hold a callback for as long as C may call it.
@@ -296,25 +343,30 @@ class Connection:
             yield self._pointer
 
     def request(
-        self, operation: str, function: ServiceFunction, *arguments: object, longest_s: float | None = None
-    ) -> int | None:
-        """Carry out one confirmed service.
+        self, operation: str, function: ServiceFunction, *arguments: object, longest_s: float | None = None,
+        make_error: MakeError = errors.mms_error,
+    ) -> int | None:  # fmt: skip
+        """Carry out one confirmed service by a function of the library's MMS layer.
+
+        These functions pass on what the relay answers: a ServiceError is told from a Reject.
 
         Parameters
         ----------
         operation : str
             The service and its object, for messages.
         function : ServiceFunction
-            The library's function. It is called with the connection, the error cell and `arguments`.
+            The library's function. It is called with the MMS connection, the error cell and `arguments`.
         *arguments : object
             Further arguments of the function.
         longest_s : float, optional
             Limit for a function that requests part after part [s]. The connection is ended when it is over.
+        make_error : callable
+            Makes the error for a number of the library's MmsError.
 
         Returns
         -------
         int or None
-            The function's pointer result, if it has one.
+            The function's result, if it is a pointer or a number.
 
         Raises
         ------
@@ -324,18 +376,53 @@ class Connection:
             The answer did not come in time, or `longest_s` is over.
         """
         with self.exclusive(operation) as pointer:
-            error = ctypes.c_int(0)
-            sent_s = time.monotonic()
-            with nullcontext() if longest_s is None else self._limited(longest_s) as over:
-                result = function(pointer, ctypes.byref(error), *arguments)
-            if error.value not in (_CONNECTION_LOST, _TIMEOUT):
-                self.round_trip_s = time.monotonic() - sent_s
-        if error.value and over is not None and over.is_set():
+            mms = self.lib.IedConnection_getMmsConnection(pointer)
+            return self._carry_out(operation, function, mms, arguments, longest_s, make_error)
+
+    def client_request(self, operation: str, function: ServiceFunction, *arguments: object) -> int | None:
+        """Carry out one service by a function of the library's client layer.
+
+        Parameters
+        ----------
+        operation : str
+            The service and its object, for messages.
+        function : ServiceFunction
+            The library's function. It is called with the connection, the error cell and `arguments`.
+        *arguments : object
+            Further arguments of the function.
+
+        Returns
+        -------
+        int or None
+            The function's result, if it is a pointer or a number.
+
+        Raises
+        ------
+        MmsError
+            The kind that belongs to the library's error number.
+        """
+        with self.exclusive(operation) as pointer:
+            return self._carry_out(operation, function, pointer, arguments, None, errors.client_error)
+
+    def _carry_out(
+        self, operation: str, function: ServiceFunction, pointer: int, arguments: tuple[object, ...],
+        longest_s: float | None, make_error: MakeError,
+    ) -> int | None:  # fmt: skip
+        error = ctypes.c_int(0)
+        sent_s = time.monotonic()
+        with nullcontext() if longest_s is None else self._limited(longest_s) as over:
+            result = function(pointer, ctypes.byref(error), *arguments)
+        took_s = time.monotonic() - sent_s
+        if not error.value:
+            self.round_trip_s = took_s
+            return result if isinstance(result, int) else None
+        if over is not None and over.is_set():
             reason = f"expected all names in {longest_s:g} s, and more follow"
             raise errors.Timeout(self.host, operation, 0, reason)
-        if error.value:
-            raise self.resolve_timeout(errors.client_error(self.host, operation, error.value))
-        return result if isinstance(result, int) else None
+        failure = make_error(self.host, operation, error.value)
+        if not isinstance(failure, errors.ConnectionLost | errors.Timeout):
+            self.round_trip_s = took_s
+        raise self.resolve_timeout(failure)
 
     def resolve_timeout(self, error: errors.MmsError) -> errors.MmsError:
         """Turn a timeout into ConnectionLost where the association has ended.

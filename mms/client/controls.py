@@ -15,6 +15,7 @@ from mms.binding.callbacks import guarded
 from mms.binding.prototypes import CommandTerminationHandler
 from mms.binding.value_conversion import decode
 from mms.client.connection import Connection
+from mms.client.data_values import request_value
 from mms.control_model import AddCause, ControlModel, words_of
 from mms.references import FunctionalConstraint, object_reference
 
@@ -63,6 +64,7 @@ def operate(connection: Connection, reference: str, *, value: bool, originator: 
         control = _create(connection, operation, reference, object_name, pointer)
         try:
             lib.ControlObjectClient_setOrigin(control, origin, _REMOTE_CONTROL)
+            lib.ControlObjectClient_setCtlNum(control, connection.count_command(reference))
             _Command(connection, operation, control).execute(value=value)
         finally:
             lib.ControlObjectClient_destroy(control)
@@ -88,12 +90,7 @@ def _create(connection: Connection, operation: str, reference: str, object_name:
 def _no_control(connection: Connection, operation: str, reference: str) -> errors.MmsError:
     """Find out why the library made no control object: it does not pass on the error of what it asked for."""
     lib = connection.lib
-    model = connection.request(
-        operation,
-        lib.IedConnection_readObject,
-        object_reference(f"{reference}.ctlModel"),
-        FunctionalConstraint.CF,
-    )
+    model = request_value(connection, operation, f"{reference}.ctlModel", FunctionalConstraint.CF)
     try:
         found = decode(lib, model)
     except ValueError as error:

@@ -1,12 +1,11 @@
 """Members of a data set (IEC 61850-7-2 GetDataSetDirectory, ISO 9506-2 GetNamedVariableListAttributes).
 
-The request is made in MMS's own terms. The library's function for it follows a null pointer when a relay
-names a member without a functional constraint.
+The library's own client function for this follows a null pointer when a relay names a member without a
+functional constraint.
 """
 
 import ctypes
 import re
-from typing import Final
 
 from mms import errors
 from mms.binding.linked_lists import elements
@@ -15,7 +14,6 @@ from mms.client.connection import Connection
 from mms.references import object_reference
 
 _ITEM = re.compile(r"([^$]+)\$([A-Z]{2})\$([^$]+(?:\$[^$]+)*)")
-_NOT_FOUND: Final = (81, 84)
 
 
 def data_set_members(connection: Connection, reference: str) -> tuple[str, ...]:
@@ -44,19 +42,13 @@ def data_set_members(connection: Connection, reference: str) -> tuple[str, ...]:
     lib = connection.lib
     domain, _, item = object_reference(reference, names=2).partition(b"/")
     deletable = ctypes.c_bool(False)  # noqa: FBT003 (a C cell)
-    error = ctypes.c_int(0)
-    with connection.exclusive(operation) as pointer:
-        found = lib.MmsConnection_readNamedVariableListDirectory(
-            lib.IedConnection_getMmsConnection(pointer),
-            ctypes.byref(error),
-            domain,
-            item.replace(b".", b"$"),
-            ctypes.byref(deletable),
-        )
-    if error.value:
-        if error.value in _NOT_FOUND:
-            raise errors.NotFound(connection.host, operation, error.value, "no such data set")
-        raise connection.resolve_timeout(errors.file_error(connection.host, operation, error.value))
+    found = connection.request(
+        operation,
+        lib.MmsConnection_readNamedVariableListDirectory,
+        domain,
+        item.replace(b".", b"$"),
+        ctypes.byref(deletable),
+    )
     if found is None:
         raise errors.ProtocolError(connection.host, operation, 0, "no members came")
     try:

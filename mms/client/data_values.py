@@ -1,12 +1,13 @@
 """Reading of data (IEC 61850-7-2 GetDataValues and GetDataSetValues)."""
 
+import re
 from dataclasses import dataclass
 from typing import Final
 
 from mms import errors
 from mms.binding.value_conversion import decode
 from mms.client.connection import Connection
-from mms.references import FunctionalConstraint, object_reference
+from mms.references import FunctionalConstraint, object_reference, variable_name
 from mms.values import DataAccessError, Value
 
 _ACCESS_ERRORS: Final[dict[DataAccessError, type[errors.MmsError]]] = {
@@ -17,6 +18,7 @@ _ACCESS_ERRORS: Final[dict[DataAccessError, type[errors.MmsError]]] = {
     DataAccessError.UNDEFINED: errors.NotFound,
     DataAccessError.NON_EXISTENT: errors.NotFound,
 }
+_ARRAY_ELEMENT: Final = re.compile(rb"([^(]+)\(([0-9]+)\)(?:\$(.+))?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,16 +56,14 @@ def read_value(connection: Connection, reference: str, constraint: FunctionalCon
 
     Raises
     ------
-    AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused
+    AccessDenied, NotFound, TemporarilyUnavailable, ServiceFailed
         The relay answers that it gives no value.
     ProtocolError
         The relay answers with something that is no value.
     """
     operation = f"read {reference}[{constraint.name}]"
     lib = connection.lib
-    pointer = connection.request(
-        operation, lib.IedConnection_readObject, object_reference(reference), int(constraint)
-    )
+    pointer = request_value(connection, operation, reference, constraint)
     try:
         value = _decode(connection, operation, pointer)
     finally:
@@ -100,20 +100,59 @@ def read_data_set(
     """
     operation = f"read data set {reference}"
     lib = connection.lib
-    data_set = connection.request(
-        operation, lib.IedConnection_readDataSetValues, object_reference(reference, names=2), None
+    domain, _, item = object_reference(reference, names=2).replace(b".", b"$").partition(b"/")
+    specification_with_result = False
+    pointer = connection.request(
+        operation, lib.MmsConnection_readNamedVariableListValues, domain, item, specification_with_result
     )
-    if data_set is None:
+    if pointer is None:
         raise errors.ProtocolError(connection.host, operation, 0, "no values came")
     try:
-        values = _decode(connection, operation, lib.ClientDataSet_getValues(data_set))
+        values = _decode(connection, operation, pointer)
     finally:
-        lib.ClientDataSet_destroy(data_set)
+        lib.MmsValue_delete(pointer)
     if not isinstance(values, tuple) or len(values) != len(members):
         raise errors.ProtocolError(
             connection.host, operation, 0, f"expected {len(members)} values, found {values!r:.80}"
         )
     return tuple(DataSetMember(name, value) for name, value in zip(members, values, strict=True))
+
+
+def request_value(
+    connection: Connection, operation: str, reference: str, constraint: FunctionalConstraint
+) -> int | None:
+    """Read a data object, an attribute or an element of an array "LD/LN.DO(3).DA".
+
+    Parameters
+    ----------
+    connection : Connection
+        The association with the relay.
+    operation : str
+        The service and its object, for messages.
+    reference : str
+        Reference of what is read.
+    constraint : FunctionalConstraint
+        Functional constraint of what is read.
+
+    Returns
+    -------
+    int or None
+        Pointer to the library's MmsValue, which the caller deletes.
+
+    Raises
+    ------
+    MmsError
+        The relay gave no answer that is a value.
+    """
+    lib = connection.lib
+    domain, item = variable_name(reference, constraint)
+    element = _ARRAY_ELEMENT.fullmatch(item)
+    if element is None:
+        return connection.request(operation, lib.MmsConnection_readVariable, domain, item)
+    array, index, component = element.groups()
+    return connection.request(
+        operation, lib.MmsConnection_readSingleArrayElementWithComponent, domain, array, int(index), component
+    )
 
 
 def _decode(connection: Connection, operation: str, pointer: int | None) -> Value:

@@ -10,8 +10,7 @@ from typing import Final, Protocol
 
 from mms import errors
 from mms.binding.callbacks import guarded
-from mms.binding.linked_lists import elements
-from mms.binding.prototypes import FileReadHandler
+from mms.binding.prototypes import FileDirectoryHandler, FileReadHandler
 from mms.client.connection import Connection
 from mms.client.throughput import ThroughputLimit
 from mms.values import NANOSECONDS_PER_MILLISECOND
@@ -110,25 +109,21 @@ def _listing(
     connection: Connection, operation: str, directory: str, after: str | None
 ) -> tuple[list[FileEntry], bool]:
     """Fetch one part of a listing; return its entries and whether more follows."""
-    lib = connection.lib
-    more = ctypes.c_bool()
-    found = connection.request(
+    entries: list[FileEntry] = []
+
+    def receive(_parameter: int | None, name: bytes, size: int, changed_ms: int) -> None:
+        entries.append(FileEntry(name.decode("latin-1"), size, changed_ms * NANOSECONDS_PER_MILLISECOND))
+
+    more = connection.request(
         operation,
-        lib.IedConnection_getFileDirectoryEx,
+        connection.lib.MmsConnection_getFileDirectory,
         file_name(directory) or None,
         None if after is None else file_name(after),
-        ctypes.byref(more),
+        FileDirectoryHandler(guarded(receive, None)),
+        None,
+        make_error=errors.file_error,
     )
-    if found is None:
-        raise errors.ProtocolError(connection.host, operation, 0, "no listing came")
-    entries = []
-    for item in elements(connection.lib, found):
-        name = lib.FileDirectoryEntry_getFileName(item).decode("latin-1")
-        changed_ns = int(lib.FileDirectoryEntry_getLastModified(item)) * NANOSECONDS_PER_MILLISECOND
-        entries.append(FileEntry(name, int(lib.FileDirectoryEntry_getFileSize(item)), changed_ns))
-        lib.FileDirectoryEntry_destroy(item)
-    lib.LinkedList_destroyStatic(found)
-    return entries, more.value
+    return entries, bool(more)
 
 
 def file_name(name: str) -> bytes:
@@ -217,14 +212,12 @@ def download(connection: Connection, name: str, sink: Sink, expected_size: int |
 def _open_file(connection: Connection, operation: str, name: str) -> Iterator[tuple[int, int]]:
     lib = connection.lib
     size = ctypes.c_uint32(0)
-    error = ctypes.c_int(0)
-    with connection.exclusive(operation) as pointer:
-        mms = lib.IedConnection_getMmsConnection(pointer)
-        handle = lib.MmsConnection_fileOpen(
-            mms, ctypes.byref(error), file_name(name), 0, ctypes.byref(size), None
-        )
-    if error.value:
-        raise connection.resolve_timeout(errors.file_error(connection.host, operation, error.value))
+    handle = connection.request(
+        operation, lib.MmsConnection_fileOpen, file_name(name), 0, ctypes.byref(size), None,
+        make_error=errors.file_error,
+    )  # fmt: skip
+    if handle is None:
+        raise errors.ProtocolError(connection.host, operation, 0, "no file handle came")
     try:
         yield handle, size.value
     finally:
@@ -233,15 +226,15 @@ def _open_file(connection: Connection, operation: str, name: str) -> Iterator[tu
 
 def _close_file(connection: Connection, operation: str, handle: int) -> None:
     """Close the file: a relay has few handles. A lost connection holds none and is reported elsewhere."""
-    error = ctypes.c_int(0)
     try:
-        with connection.exclusive(operation) as pointer:
-            mms = connection.lib.IedConnection_getMmsConnection(pointer)
-            connection.lib.MmsConnection_fileClose(mms, ctypes.byref(error), handle)
+        connection.request(
+            f"{operation}: close the file", connection.lib.MmsConnection_fileClose, handle,
+            make_error=errors.file_error,
+        )  # fmt: skip
     except errors.ConnectionLost:
         return
-    if error.value:
-        log.warning("%s", errors.file_error(connection.host, f"{operation}: close the file", error.value))
+    except errors.MmsError as error:
+        log.warning("%s", error)
 
 
 class _Reader:
@@ -259,14 +252,9 @@ class _Reader:
 
     def read(self) -> tuple[bytes, bool]:
         """Carry out one FileRead; return the bytes and whether more follow."""
-        lib = self._connection.lib
-        error = ctypes.c_int(0)
         self._parts.clear()
-        with self._connection.exclusive(self._operation) as pointer:
-            mms = lib.IedConnection_getMmsConnection(pointer)
-            more = lib.MmsConnection_fileRead(mms, ctypes.byref(error), self._file, self._handler, None)
-        if error.value:
-            raise self._connection.resolve_timeout(
-                errors.file_error(self._connection.host, self._operation, error.value)
-            )
+        more = self._connection.request(
+            self._operation, self._connection.lib.MmsConnection_fileRead, self._file, self._handler, None,
+            make_error=errors.file_error,
+        )  # fmt: skip
         return b"".join(self._parts), bool(more)

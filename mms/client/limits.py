@@ -11,12 +11,12 @@ class ClientLimits:
     Parameters
     ----------
     names_s : float
-        Longest time for the first request, in which the library fetches the names of all that the relay
-        offers, part by part [s]. The default allows some 10 000 names over a serial line of 9600 baud, twice
-        what a motor relay has.
+        Longest time for the names of the logical devices, which is the first request, and for those of all
+        variables of one device, listed part by part [s]. The default allows some 10 000 names over a serial
+        line of 9600 baud, twice what a motor relay has.
     directory_s : float
-        Longest time for the directory of a logical node, whose data sets are listed part by part [s]. The
-        default allows a thousand of them over a serial line of 9600 baud.
+        Longest time for the names of a device's data sets, listed part by part [s]. The default allows a
+        thousand of them over a serial line of 9600 baud.
     listing_s : float
         Longest time for a listing of files that comes in parts [s]. The default allows some 5000 names over a
         serial line of 9600 baud.

@@ -1,11 +1,19 @@
-"""Directory services of an association (IEC 61850-7-2): what the data model of a relay holds."""
+"""Directory services of an association (IEC 61850-7-2): what the data model of a relay holds.
+
+The names of a logical device, of its variables and of its data sets, are listed once for each association
+(ISO 9506-2, GetNameList), all of them in parts. One device that a relay cannot list leaves the others.
+"""
+
+from collections.abc import Callable
 
 from mms.binding.linked_lists import take_names
-from mms.client.connection import Connection
+from mms.client.connection import Connection, ServiceFunction
 from mms.client.data_sets import data_set_members
 from mms.references import logical_device, object_reference
 
-_DATA_OBJECT, _DATA_SET, _BUFFERED, _UNBUFFERED = range(4)  # the library's ACSIClass
+_BUFFERED, _UNBUFFERED = "BR", "RP"
+_NO_DATA = frozenset({"BR", "RP", "GO", "LG", "MS", "US"})
+"""Functional constraints of control blocks, which are no data objects."""
 
 
 class ModelBrowser:
@@ -19,6 +27,9 @@ class ModelBrowser:
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
+        self._devices = connection.first_names
+        self._variables: dict[str, list[str]] = {}
+        self._data_sets: dict[str, list[str]] = {}
 
     def logical_devices(self) -> list[str]:
         """List the logical devices of the relay (MMS domains).
@@ -37,10 +48,15 @@ class ModelBrowser:
         ----------
         IEC 61850-7-2, GetServerDirectory.
         """
-        lib = self._connection.lib
-        return take_names(
-            lib, self._connection.request("list logical devices", lib.IedConnection_getLogicalDeviceList)
-        )
+        operation = "list logical devices"
+        with self._connection.exclusive(operation):
+            if self._devices is None:
+                self._devices = self._names(
+                    operation,
+                    self._connection.lib.MmsConnection_getDomainNames,
+                    longest_s=self._connection.limits.names_s,
+                )
+        return list(self._devices)
 
     def logical_nodes(self, device: str) -> list[str]:
         """List the logical nodes of one logical device.
@@ -64,14 +80,7 @@ class ModelBrowser:
         ----------
         IEC 61850-7-2, GetLogicalDeviceDirectory.
         """
-        name = logical_device(device)
-        lib = self._connection.lib
-        return take_names(
-            lib,
-            self._connection.request(
-                f"list logical nodes of {device}", lib.IedConnection_getLogicalDeviceDirectory, name
-            ),
-        )
+        return list(dict.fromkeys(name.partition("$")[0] for name in self._variables_of(device)))
 
     def data_objects(self, node: str) -> list[str]:
         """List the data objects of a logical node.
@@ -90,7 +99,7 @@ class ModelBrowser:
         ----------
         IEC 61850-7-2, GetLogicalNodeDirectory.
         """
-        return self._node_directory(node, _DATA_OBJECT)
+        return self._names_below(node, lambda constraint: constraint not in _NO_DATA)
 
     def data_sets(self, node: str) -> list[str]:
         """List the data sets of a logical node.
@@ -109,7 +118,19 @@ class ModelBrowser:
         ----------
         IEC 61850-7-2, GetLogicalNodeDirectory.
         """
-        return self._node_directory(node, _DATA_SET)
+        device, _, name = object_reference(node).decode("ascii").partition("/")
+        if device not in self._data_sets:
+            self._data_sets[device] = self._names(
+                f"list data sets of {device}",
+                self._connection.lib.MmsConnection_getDomainVariableListNames,
+                logical_device(device),
+                longest_s=self._connection.limits.directory_s,
+            )
+        return [
+            data_set
+            for owner, _, data_set in (each.partition("$") for each in self._data_sets[device])
+            if owner == name and data_set
+        ]
 
     def buffered_reports(self, node: str) -> list[str]:
         """List the buffered report control blocks of a logical node.
@@ -128,7 +149,7 @@ class ModelBrowser:
         ----------
         IEC 61850-7-2, GetLogicalNodeDirectory.
         """
-        return self._node_directory(node, _BUFFERED)
+        return self._names_below(node, lambda constraint: constraint == _BUFFERED)
 
     def unbuffered_reports(self, node: str) -> list[str]:
         """List the unbuffered report control blocks of a logical node.
@@ -147,7 +168,7 @@ class ModelBrowser:
         ----------
         IEC 61850-7-2, GetLogicalNodeDirectory.
         """
-        return self._node_directory(node, _UNBUFFERED)
+        return self._names_below(node, lambda constraint: constraint == _UNBUFFERED)
 
     def data_set_directory(self, reference: str) -> tuple[str, ...]:
         """List the members of a data set.
@@ -175,15 +196,28 @@ class ModelBrowser:
         """
         return data_set_members(self._connection, reference)
 
-    def _node_directory(self, node: str, kind: int) -> list[str]:
-        lib = self._connection.lib
-        return take_names(
-            lib,
-            self._connection.request(
-                f"directory of {node}",
-                lib.IedConnection_getLogicalNodeDirectory,
-                object_reference(node),
-                kind,
-                longest_s=self._connection.limits.directory_s,
-            ),
-        )
+    def _names_below(self, node: str, wanted: Callable[[str], bool]) -> list[str]:
+        """Return the names of data objects or control blocks of a node, by their functional constraint."""
+        device, _, name = object_reference(node).decode("ascii").partition("/")
+        found: dict[str, None] = {}
+        for variable in self._variables_of(device):
+            parts = variable.split("$", 3)
+            if len(parts) > 2 and parts[0] == name and wanted(parts[1]):
+                found[parts[2]] = None
+        return list(found)
+
+    def _variables_of(self, device: str) -> list[str]:
+        if device not in self._variables:
+            self._variables[device] = self._names(
+                f"list logical nodes of {device}",
+                self._connection.lib.MmsConnection_getDomainVariableNames,
+                logical_device(device),
+                longest_s=self._connection.limits.names_s,
+            )
+        return self._variables[device]
+
+    def _names(
+        self, operation: str, function: ServiceFunction, *domain: bytes, longest_s: float
+    ) -> list[str]:
+        names = self._connection.request(operation, function, *domain, longest_s=longest_s)
+        return take_names(self._connection.lib, names)

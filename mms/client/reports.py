@@ -181,6 +181,10 @@ class Subscriptions:
             )
         with _control_block(self._connection, operation, reference) as block:
             report_id = self._claim(operation, reference, block)
+            if not self._connection.lib.ClientReportControlBlock_getDataSetReference(block):
+                raise errors.NotFound(
+                    self._connection.host, operation, 0, "the block has no data set, so it reports nothing"
+                )
             if not buffered:
                 self._reserve(operation, block)
             self._set_optional_fields(
@@ -234,7 +238,11 @@ class Subscriptions:
             raise _in_use(error) from error
 
     def _set_optional_fields(self, operation: str, block: int, wanted: _Option) -> None:
-        """Request the fields we rely on, unless they are set already: a relay need not allow writing them."""
+        """Request the fields we rely on, unless they are set already.
+
+        A relay need not allow writing them: its reports are then taken as they come. Where another client has
+        the block, enabling it says so.
+        """
         lib = self._connection.lib
         present = int(lib.ClientReportControlBlock_getOptFlds(block))
         if present & wanted == wanted:
@@ -242,8 +250,10 @@ class Subscriptions:
         lib.ClientReportControlBlock_setOptFlds(block, present | wanted)
         try:
             self._write(operation, block, _Field.OPTIONAL_FIELDS)
-        except errors.TemporarilyUnavailable as error:
-            raise _in_use(error) from error
+        except (
+            errors.AccessDenied, errors.NotFound, errors.ServiceFailed, errors.TemporarilyUnavailable
+        ) as error:  # fmt: skip
+            log.info("%s: the optional fields stay %#x: %s", error.host, present, error.message)
 
     def _set_entry_id(self, operation: str, block: int, entry_id: bytes) -> None:
         """Write the entry ID in a request of its own before enabling.
@@ -259,7 +269,7 @@ class Subscriptions:
             self._write(operation, block, _Field.ENTRY_ID)
         except (errors.AccessDenied, errors.TemporarilyUnavailable) as error:
             raise _in_use(error) from error
-        except errors.ProtocolError as error:
+        except (errors.NotFound, errors.ProtocolError, errors.ServiceFailed) as error:
             message = f"the relay does not hold entry {entry_id.hex()}: reports were lost ({error.message})"
             raise errors.EntryNotFound(error.host, operation, error.code, message) from error
 
@@ -299,7 +309,7 @@ class Subscriptions:
 
     def _write(self, operation: str, block: int, field: _Field) -> None:
         single_request = True
-        self._connection.request(
+        self._connection.client_request(
             operation, self._connection.lib.IedConnection_setRCBValues, block, int(field), single_request
         )
 
@@ -324,7 +334,7 @@ def _in_use(error: errors.MmsError) -> errors.ReportControlInUse:
 def _control_block(connection: Connection, operation: str, reference: str) -> Iterator[int]:
     """Hold the library's copy of the block's attributes, read by GetBRCBValues or GetURCBValues."""
     name = object_reference(reference, names=3, room=_RCB_ROOM)
-    block = connection.request(operation, connection.lib.IedConnection_getRCBValues, name, None)
+    block = connection.client_request(operation, connection.lib.IedConnection_getRCBValues, name, None)
     if block is None:
         raise errors.ProtocolError(connection.host, operation, 0, "no control block came")
     try:

@@ -153,7 +153,9 @@ def _variables(connection: Connection, domain: str) -> list[str]:
     function = connection.lib.IedConnection_getLogicalDeviceVariables
     function.restype = ctypes.c_void_p
     function.argtypes = [ctypes.c_void_p, ctypes.POINTER(ctypes.c_int), ctypes.c_char_p]
-    return take_names(connection.lib, connection.request(f"variables of {domain}", function, domain.encode()))
+    return take_names(
+        connection.lib, connection.client_request(f"variables of {domain}", function, domain.encode())
+    )
 
 
 def _to_block(name: str) -> str:

@@ -12,7 +12,7 @@ from typing import Protocol
 
 import structlog
 
-from mms import Client
+from mms import Client, ServiceFailed, TemporarilyUnavailable
 from service.collector.records.event_folder import Contents, EventFolder
 from service.collector.records.formats import Chosen, one_format_an_event
 from service.collector.records.ledger import RecordLedger, WrongListings
@@ -64,7 +64,8 @@ class Scan:
     failing: why a pull of them failed, by names, of those that are tried again, soon or late.  held_back:
     ready ones that wait for another day.  ignored: files that are not taken, with the reason;
     `ignored_in_all` may be more.  unreachable: why no record could be had at all.  no_folder: why there is
-    none at present; a relay may make it with its first record.
+    none at present; a relay may make it with its first record.  busy: why the relay lists no files for now;
+    all else is empty then, and nothing is known.
     """
 
     listed: frozenset[str] = frozenset()
@@ -76,6 +77,7 @@ class Scan:
     ignored_in_all: int = 0
     unreachable: str | None = None
     no_folder: str | None = None
+    busy: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,8 +141,13 @@ class RecordDirectory:
         when the disk does; what was stored until then stays.
         """
         began_s = time.monotonic()
-        contents = self._folder.contents(client)
-        self.listing_s = time.monotonic() - began_s
+        try:
+            contents = self._folder.contents(client, expected=expected)
+        except (ServiceFailed, TemporarilyUnavailable) as error:
+            log.info("the relay lists no files for now", relay=self._relay, reason=str(error))
+            return Scan(busy=str(error))
+        finally:
+            self.listing_s = time.monotonic() - began_s
         if contents.directory is None:
             unreachable = self._folder.missing if self._folder.no_files else None
             return Scan(unreachable=unreachable, no_folder=self._folder.missing)

@@ -16,9 +16,10 @@ from mms import (
     AccessDenied,
     Client,
     FileEntry,
-    FileServiceFailed,
     NotFound,
     ProtocolError,
+    RequestRejected,
+    ServiceFailed,
     TemporarilyUnavailable,
 )
 from service.collector.records.listing import is_of_a_record, last_component, printable
@@ -34,8 +35,8 @@ ROOT = ""
 MOST_FOLDERS = 16
 """So many of the folders that the root lists are looked into."""
 
-NO_SERVICE_CODES = (4, 98, 99)
-"""The library means by these codes: service not supported, service not implemented, request rejected."""
+MOST_REFUSALS = 10
+"""After so many refusals in a row to list it, a folder that was listed before is looked for again."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +72,7 @@ class EventFolder:
         self._is_sure = False
         self._look_beside = False
         self._next_search_s = 0.0
+        self._refusals = 0
         self.missing: str | None = None
         self.unread: str | None = None
         self.no_files = False
@@ -85,8 +87,17 @@ class EventFolder:
         self._next_search_s = 0.0
         self._look_beside = True
 
-    def contents(self, client: Client) -> Contents:
-        """Return the contents of the folder. Raises MmsError (the link, or an impossible listing)."""
+    def contents(self, client: Client, *, expected: bool = False) -> Contents:
+        """Return the contents of the folder.
+
+        expected: a report has just said that a record was made, maybe in a folder that was made for it.
+
+        Raises MmsError (the link, or an impossible listing); TemporarilyUnavailable, ServiceFailed where the
+        relay cannot list its files for now.
+        """
+        if expected and not self.no_files:
+            latest_s = time.monotonic() + self._policy.expected_search_s
+            self._next_search_s = min(self._next_search_s, latest_s)
         found = [] if not self._candidates else self._look_into(client, self._candidates)
         if not found:
             self._is_sure = False
@@ -124,7 +135,7 @@ class EventFolder:
         ]
         try:
             others = [each for each in self._look_into(client, names) if _holds_records(each)]
-        except (FileServiceFailed, ProtocolError, TemporarilyUnavailable):
+        except (ProtocolError, ServiceFailed, TemporarilyUnavailable):
             return  # one more way to say that there is none
         finally:
             self.no_files = False
@@ -145,12 +156,18 @@ class EventFolder:
                 contents = Contents(directory, client.files(directory))
             except (NotFound, AccessDenied):
                 continue
-            except ProtocolError as error:
-                # A folder that was listed before fails for another reason, which ends the visit.
-                if directory in self._candidates or error.code not in NO_SERVICE_CODES:
+            except ServiceFailed:
+                # A folder that was listed before is there, and cannot be listed for now, or has gone.
+                self._refusals += 1
+                if directory in self._candidates and self._refusals < MOST_REFUSALS:
+                    raise
+                continue
+            except RequestRejected:
+                if directory in self._candidates:
                     raise
                 self.no_files = True
                 continue
+            self._refusals = 0
             found.append(contents)
             if directory == self._configured or _holds_records(contents):
                 break
@@ -179,7 +196,7 @@ class EventFolder:
         """Yield the folders with recordings or of a usual name that the root lists; maybe the root itself."""
         try:
             entries = client.files(ROOT)
-        except (NotFound, AccessDenied):
+        except (NotFound, AccessDenied, ServiceFailed):
             return
         usual = {name.casefold() for name in (self._default, *USUAL)}
         folders: dict[str, None] = {}

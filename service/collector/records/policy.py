@@ -12,10 +12,10 @@ from types import MappingProxyType
 from mms import (
     AccessDenied,
     ConnectionLost,
-    FileServiceFailed,
     FileSizeMismatch,
     NotFound,
     ProtocolError,
+    ServiceFailed,
     TemporarilyUnavailable,
     Timeout,
 )
@@ -43,7 +43,7 @@ _KINDS: dict[type[Exception], Failure] = {
     TemporarilyUnavailable: Failure.BUSY,
     # What a relay may answer for a record that is fine: nobody may open files, or it is out of memory.
     AccessDenied: Failure.DENIED,
-    FileServiceFailed: Failure.DENIED,
+    ServiceFailed: Failure.DENIED,
     # What one record can do wrong while the link is fine.
     FileSizeMismatch: Failure.NOT_AS_LISTED,
     NotFound: Failure.NOT_AS_LISTED,
@@ -144,8 +144,9 @@ class RecordPolicy:
     wrong_listings_a_day: how often a record of one name may prove not to be as listed, of whatever size and
     time it is listed each time, before it is an alarm and waits for the next day of UTC.
     soon_s: a record whose next attempt is further away does not hurry the listings.
-    folder_search_s, no_files_search_s: between two searches for a folder that was not there, and at a relay
-    that seems to have no file service.
+    folder_search_s, expected_search_s: between two searches for a folder that was not there; where a report
+    said that a record was made, which the folder may have been made for.
+    no_files_search_s: between two searches at a relay that seems to have no file service.
     """
 
     rules: Mapping[Failure, FailureRule] = field(default_factory=lambda: DEFAULT_RULES)
@@ -156,6 +157,7 @@ class RecordPolicy:
     wrong_listings_a_day: int = 30
     soon_s: float = 2.0
     folder_search_s: float = 10.0
+    expected_search_s: float = 0.5
     no_files_search_s: float = 60.0
 
 

@@ -18,9 +18,9 @@ from mms import (
     Client,
     FunctionalConstraint,
     NotFound,
+    ServiceFailed,
     TemporarilyUnavailable,
     Timestamp,
-    ValueRefused,
 )
 from service.plant import Measurand
 from service.storage import Repository
@@ -44,7 +44,7 @@ def stamp_of(client: Client, reference: str, constraint: FunctionalConstraint) -
     """Return the stamp "LD/LN.DO.t"; None where the relay gives none. Raises MmsError (the link)."""
     try:
         stamp = client.read(reference, constraint)
-    except (AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused):
+    except (AccessDenied, NotFound, ServiceFailed, TemporarilyUnavailable):
         return None
     return stamp if isinstance(stamp, Timestamp) and stamp.ns > 0 else None
 

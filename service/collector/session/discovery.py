@@ -6,9 +6,10 @@ are stored. A difference in what the service uses raises an alarm. None ends a c
 """
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict
 from itertools import islice
+from typing import TypeVar
 
 import structlog
 
@@ -19,6 +20,7 @@ from mms import (
     FunctionalConstraint,
     NotFound,
     ProtocolError,
+    ServiceFailed,
     TemporarilyUnavailable,
 )
 from service.collector.records.event_folder import ROOT
@@ -40,10 +42,15 @@ from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
 
+_Names = TypeVar("_Names", list[str], tuple[str, ...])
+
 NOT_BROWSED = "the relay does not tell what it offers: its SCL is taken at its word"
 
-REFUSALS = (AccessDenied, NotFound, ProtocolError, TemporarilyUnavailable, ValueError)
+REFUSALS = (AccessDenied, NotFound, ProtocolError, ServiceFailed, TemporarilyUnavailable, ValueError)
 """These errors concern one request, and the link is fine. ValueError stands for a name that is none."""
+
+PATIENCE_S = (0.1, 0.5)
+"""Pauses after which a relay that is busy is asked again for a list of names."""
 
 MOST_DEVICES, MOST_NODES, MOST_DATA_SETS, MOST_BLOCKS = 64, 4000, 64, 128
 """No more of one relay is browsed. Protection relays have fewer; a faulty one may list any number."""
@@ -159,11 +166,11 @@ def browse(client: Client, expected: Offer | None) -> Offer | None:
     expected: what its SCL promises. Data sets are looked for where the SCL has some, and in every LLN0.
     """
     try:
-        devices = client.logical_devices()[:MOST_DEVICES]
+        devices = _patiently(client.logical_devices)[:MOST_DEVICES]
     except REFUSALS as error:
         log.warning("the relay cannot be browsed", host=client.host, reason=str(error))
         return None
-    nodes = dict(islice(_nodes(client, devices), MOST_NODES))
+    nodes = dict(islice(_nodes(client, devices, expected), MOST_NODES))
     if not nodes:
         return None
     promised = () if expected is None else expected.data_sets
@@ -194,10 +201,21 @@ def _control_model(client: Client, reference: str) -> ControlModel | None:
     return ControlModel(model) if isinstance(model, int) and model in tuple(ControlModel) else None
 
 
-def _nodes(client: Client, devices: list[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
+def _nodes(
+    client: Client, devices: list[str], expected: Offer | None
+) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield the logical nodes with their data objects; those of the SCL for a device that is busy."""
     for device in devices:
         try:
-            names = client.logical_nodes(device)
+            names = _patiently(client.logical_nodes, device)
+        except (ServiceFailed, TemporarilyUnavailable) as error:
+            log.warning(
+                "a logical device does not tell its nodes: its SCL is taken at its word",
+                host=client.host, device=device, reason=str(error)[:200],
+            )  # fmt: skip
+            promised = {} if expected is None else expected.nodes
+            yield from ((node, what) for node, what in promised.items() if node.startswith(f"{device}/"))
+            continue
         except REFUSALS as error:
             log.warning("a logical device is passed over", host=client.host, reason=str(error)[:200])
             continue
@@ -209,16 +227,27 @@ def _nodes(client: Client, devices: list[str]) -> Iterator[tuple[str, tuple[str,
                 log.info("a logical node is passed over", host=client.host, reason=str(error)[:200])
 
 
+def _patiently(list_names: Callable[..., _Names], *arguments: str) -> _Names:
+    """Return a list of names; ask again, after a pause, a relay that is busy."""
+    for pause_s in PATIENCE_S:
+        try:
+            return list_names(*arguments)
+        except TemporarilyUnavailable as error:
+            log.info("busy, asked again", reason=str(error), pause_s=pause_s)
+            time.sleep(pause_s)
+    return list_names(*arguments)
+
+
 def _data_sets(client: Client, nodes: list[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
     for node in nodes:
         try:
-            names = client.data_sets(node)
+            names = _patiently(client.data_sets, node)
         except REFUSALS:
             continue
         for name in names:
             reference = f"{node}.{name}"
             try:
-                yield reference, client.data_set_directory(reference)
+                yield reference, _patiently(client.data_set_directory, reference)
             except REFUSALS as error:
                 log.info("a data set is passed over", host=client.host, reason=str(error)[:200])
 

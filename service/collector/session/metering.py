@@ -11,8 +11,8 @@ from mms import (
     Client,
     FunctionalConstraint,
     NotFound,
+    ServiceFailed,
     TemporarilyUnavailable,
-    ValueRefused,
 )
 from service.plant import Measurand, Relay
 from service.storage.records import Sample
@@ -93,7 +93,7 @@ class Metering:
             except NOT_OFFERED as error:
                 left_out[measurand] = str(error)
                 continue
-            except ValueRefused as error:
+            except ServiceFailed as error:
                 left_out[measurand] = str(error)
             except TemporarilyUnavailable:
                 pass
@@ -126,7 +126,7 @@ def _factor(client: Client, measurand: Measurand) -> float:
         return 1.0
     try:
         power = client.read(measurand.multiplier, FunctionalConstraint.CF)
-    except NOT_OFFERED:
+    except (*NOT_OFFERED, ServiceFailed):
         return 1.0
     usable = isinstance(power, int) and abs(power) <= LARGEST_POWER_OF_TEN
     return 10.0**power if usable and isinstance(power, int) else 1.0

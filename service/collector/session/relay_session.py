@@ -282,6 +282,9 @@ class RelaySession:
             self._directory.pull_untimed_again()
             self._record_expected_until_s = 0.0
         scan = self._directory.scan(client, self._triggers.claim, expected=expected)
+        if scan.busy is not None:
+            self._triggers.link_failed(f"lists no files for now: {scan.busy}")
+            return expected
         triggered = self._triggers.follow(client, scan)
         if not triggered and not scan.waiting:
             self._clock.measure_if_due(client)

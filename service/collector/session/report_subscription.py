@@ -21,6 +21,7 @@ from mms import (
     Report,
     ReportControlInUse,
     ReportMember,
+    ServiceFailed,
     TemporarilyUnavailable,
 )
 from service.collector.session.link import Link
@@ -36,7 +37,10 @@ ENTRY_ID_OCTETS = 8
 MOST_BLOCKS = 16
 """So many blocks are tried at a time: at some relays a block has many instances, all of them taken."""
 
-REFUSALS = (AccessDenied, NotFound, ProtocolError, ReportControlInUse, TemporarilyUnavailable, ValueError)
+REFUSALS = (
+    AccessDenied, NotFound, ProtocolError, ReportControlInUse, ServiceFailed, TemporarilyUnavailable,
+    ValueError,
+)  # fmt: skip
 """These errors concern one block, and the link is fine. ValueError stands for a reference that is none."""
 
 SEQUENCE_NUMBERS = 65_536

@@ -22,9 +22,9 @@ from mms import (
     FunctionalConstraint,
     NotFound,
     ProtocolError,
+    ServiceFailed,
     TemporarilyUnavailable,
     Timestamp,
-    ValueRefused,
 )
 from service.collector.records.directory import Scan
 from service.collector.triggers.request_deadlines import RequestDeadlines, UnansweredRequests
@@ -35,7 +35,9 @@ from service.storage.states import IN_THE_RELAY, RecordingRequestState
 
 log = structlog.get_logger(__name__)
 
-REFUSALS = (AccessDenied, ControlRefused, NotFound, ProtocolError, ValueError)
+REFUSALS = (
+    AccessDenied, ControlRefused, NotFound, ProtocolError, ServiceFailed, TemporarilyUnavailable, ValueError,
+)  # fmt: skip
 """By these errors the relay refuses. ValueError stands for an override that is no reference. Errors of the
 link leave a request as it is until its time limit."""
 
@@ -233,5 +235,5 @@ def _is_set(client: Client, control: str) -> bool:
     """
     try:
         return client.read(f"{control}.stVal", FunctionalConstraint.ST) is True
-    except (AccessDenied, NotFound, TemporarilyUnavailable, ValueRefused):
+    except (AccessDenied, NotFound, ServiceFailed, TemporarilyUnavailable):
         return False

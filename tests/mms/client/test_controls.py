@@ -54,6 +54,15 @@ def test_an_object_is_operated_by_its_control_model(relay: Server, client: Clien
     assert not first.test
 
 
+def test_control_numbers_count_up(relay: Server, client: Client, controllable: str) -> None:
+    """Relays that look for repeated commands take the same number twice for one command."""
+    seen: list[ControlAction] = []
+    relay.on_operate(controllable, _obey(relay, seen))
+    for number in range(258):
+        client.operate(controllable, value=number % 2 == 0)
+    assert [action.control_number for action in seen] == [(k + 1) % 256 for k in range(258)]
+
+
 @pytest.mark.parametrize(
     ("verdict", "cause"),
     [(False, "blocked by process"), (AddCause.BLOCKED_BY_INTERLOCKING, "blocked by interlocking")],

@@ -219,7 +219,7 @@ def test_clients_cannot_delete_or_rename(relay: Server, client: Client, file_roo
     lib.IedConnection_deleteFile.argtypes = [ctypes.c_void_p, ctypes.POINTER(ctypes.c_int), ctypes.c_char_p]
     lib.IedConnection_deleteFile.restype = None
     with pytest.raises(AccessDenied):
-        client._connection.request("delete", lib.IedConnection_deleteFile, NAME.encode())
+        client._connection.client_request("delete", lib.IedConnection_deleteFile, NAME.encode())
     assert (file_root / NAME).exists()
 
 

@@ -188,7 +188,7 @@ def test_clients_may_not_write_settings(relay: Server, client: Client) -> None:
     ]
     write.restype = None
     with pytest.raises(MmsError):
-        client._connection.request("write", write, b"T1PRO/GGIO1.Setting.setVal", 2, value)
+        client._connection.client_request("write", write, b"T1PRO/GGIO1.Setting.setVal", 2, value)
     lib.MmsValue_delete(value)
     assert relay.read("T1PRO/GGIO1.Setting.setVal") == 7
 

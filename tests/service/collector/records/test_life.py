@@ -149,7 +149,7 @@ def test_what_failed_is_forgotten_once_the_record_is_decided() -> None:
 
 @pytest.mark.parametrize("code", [5, 41, 50, 80, 90, 91, 94, 95])
 def test_an_error_of_the_file_service_is_that_of_one_file(code: int) -> None:
-    assert type(errors.file_error("relay", "download", code)) is errors.FileServiceFailed
+    assert type(errors.file_error("relay", "download", code)) is errors.ServiceFailed
 
 
 @pytest.mark.parametrize("code", [4, 7, 8, 100, 109])

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mms import AccessDenied, ConnectionLost, FileServiceFailed, ProtocolError, Timeout, ValueRefused
+from mms import AccessDenied, ConnectionLost, ProtocolError, ServiceFailed, Timeout, ValueRefused
 from service.collector.records.life import Life
 from service.collector.records.policy import (
     DEFAULT_RULES,
@@ -87,7 +87,7 @@ def test_every_failure_has_a_rule_and_an_error() -> None:
     ("kind", "failure"),
     [
         (AccessDenied, Failure.DENIED),
-        (FileServiceFailed, Failure.DENIED),
+        (ServiceFailed, Failure.DENIED),
         (ConnectionLost, Failure.LINK_LOST),
         (Timeout, Failure.LINK_LOST),
         (ProtocolError, Failure.PROTOCOL_BROKEN),
