@@ -132,6 +132,17 @@ def test_a_folder_that_goes_and_comes(bench: Bench, relay: ScriptedRelay) -> Non
         assert eventually(lambda: bench.repository.relay(NAME).link_reason is None)
 
 
+def test_an_announced_record_hurries_the_search_for_its_folder(bench: Bench, relay: ScriptedRelay) -> None:
+    """A relay that makes its folder with its first record: that record waited 9.5 s once."""
+    relay.events.rmdir()
+    assert RECORD_POLICY.folder_search_s >= 10
+    with bench.with_settings(record_timeout_s=30.0).session():
+        assert eventually(lambda: "looked for" in (bench.repository.relay(NAME).link_reason or ""))
+        relay.events.mkdir()
+        relay.write_record("HR_1")
+        assert eventually(lambda: bench.is_stored("HR_1"), 5)
+
+
 def test_records_are_pulled_from_where_they_are(bench: Bench, relay: ScriptedRelay, tmp_path: Path) -> None:
     write(relay, "COMTRADE/HR_1.CFG", "COMTRADE/HR_1.DAT")
     with bench.session():

@@ -18,9 +18,7 @@ QUICK = SessionPolicy(reconnect=Backoff(first_s=0.01, longest_s=0.02))
 MANY = 4 * SESSION_POLICY.faults_in_a_row
 
 
-@pytest.mark.parametrize(
-    ("service", "times"), [(LIST_OF_NAMES, 4), (READ, MANY), (FILE_DIRECTORY, MANY)]
-)
+@pytest.mark.parametrize(("service", "times"), [(LIST_OF_NAMES, 4), (READ, MANY), (FILE_DIRECTORY, MANY)])
 def test_a_relay_that_is_busy_is_not_set_aside(
     bench: Bench, relay: ScriptedRelay, service: bytes, times: int
 ) -> None:

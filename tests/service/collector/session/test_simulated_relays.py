@@ -63,6 +63,9 @@ def always(kind: Kind, number: float = 0.0, for_s: float = float("inf")) -> Misb
         ("sel-710-ed2", (always(Kind.EMPTY_RPTID), always(Kind.SLOW_REPLIES, 0.02))),
         ("sel-710-ed2", (always(Kind.GROWING_FILE, 1.0),)),
         ("sel-710-ed2", (always(Kind.REPORT_TAKEN),)),
+        ("sel-710-ed2", (always(Kind.REPORT_OPTFIELDS_READONLY, 5),)),
+        ("sel-710-ed2", (always(Kind.REPORT_WITHOUT_DATA_SET),)),
+        ("sel-710-ed2", (always(Kind.FILES_BUSY, for_s=3.0), always(Kind.UNREADABLE_MEASURAND, 1))),
         ("sel-710-ed1", (always(Kind.CUT_MID_FILE, 100, for_s=4.0),)),
         (
             "sel-710-ed1",
