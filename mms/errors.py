@@ -263,7 +263,6 @@ _MMS_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     34: (NotFound, "the object is not defined"),
     36: (ValueRefused, "the object's attributes are inconsistent"),
     40: (TemporarilyUnavailable, "the relay is busy: its resources are used up"),
-    41: (TemporarilyUnavailable, "the relay is busy: the capability is unavailable"),
     60: (TemporarilyUnavailable, "the service was preempted"),
     81: (NotFound, "no such object"),
     82: (AccessDenied, "this kind of access is not supported"),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import scl
 from benchmarks.interoperability.peers import Result, Tree, c_server
-from mms import Client, ConnectFailed, FunctionalConstraint, Report
+from mms import AssociationRejected, Client, FunctionalConstraint, Report
 from scl import Address
 from service.client.rest_client import ServiceClient
 from testing.ports import LOOPBACK, free_port
@@ -159,7 +159,7 @@ def _refused(port: int) -> Result:
     """It lets in only who gives a password."""
     try:
         Client.connect(LOOPBACK, port).close()
-    except ConnectFailed as error:
+    except AssociationRejected as error:
         return Result(PASSWORD, "associate without a password", error.message, passed=True)
     return Result(PASSWORD, "associate without a password", "let in", passed=False)
 

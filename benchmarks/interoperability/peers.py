@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from mms import Client, ConnectFailed
+from mms import AssociationRejected, Client, ConnectFailed
 from testing.ports import LOOPBACK, free_port
 
 C_CLIENT = Path(__file__).parent / "c_client.c"
@@ -99,9 +99,9 @@ def _await(name: str, port: int, process: "subprocess.Popen[bytes]", log: Path) 
     while process.poll() is None and time.monotonic() < deadline_s:
         try:
             Client.connect(LOOPBACK, port).close()
-        except ConnectFailed as error:
-            if "rejected" in error.message:  # it listens, and wants a password
-                return
+        except AssociationRejected:  # it listens, and wants a password
+            return
+        except ConnectFailed:
             time.sleep(0.05)
         else:
             return

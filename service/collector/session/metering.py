@@ -126,7 +126,7 @@ def _factor(client: Client, measurand: Measurand) -> float:
         return 1.0
     try:
         power = client.read(measurand.multiplier, FunctionalConstraint.CF)
-    except (*NOT_OFFERED, ServiceFailed):
+    except NOT_OFFERED:
         return 1.0
     usable = isinstance(power, int) and abs(power) <= LARGEST_POWER_OF_TEN
     return 10.0**power if usable and isinstance(power, int) else 1.0

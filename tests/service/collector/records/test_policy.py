@@ -6,7 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from mms import AccessDenied, ConnectionLost, ProtocolError, ServiceFailed, Timeout, ValueRefused
+from mms import (
+    AccessDenied,
+    ConnectionLost,
+    ProtocolError,
+    RequestRejected,
+    ServiceFailed,
+    Timeout,
+    ValueRefused,
+)
 from service.collector.records.life import Life
 from service.collector.records.policy import (
     DEFAULT_RULES,
@@ -91,7 +99,8 @@ def test_every_failure_has_a_rule_and_an_error() -> None:
         (ConnectionLost, Failure.LINK_LOST),
         (Timeout, Failure.LINK_LOST),
         (ProtocolError, Failure.PROTOCOL_BROKEN),
-        (ValueRefused, Failure.PROTOCOL_BROKEN),
+        (RequestRejected, Failure.PROTOCOL_BROKEN),
+        (ValueRefused, Failure.DENIED),
     ],
 )
 def test_an_error_is_of_the_most_special_kind(kind: type[Exception], failure: Failure) -> None:

@@ -1,7 +1,6 @@
 """Relays that are not what their SCL says, over real MMS: told, not fatal, and used as they are."""
 
 from collections.abc import Mapping
-from contextlib import AbstractContextManager
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,8 +16,10 @@ from service.collector.session.discovery import browse
 from service.plant import Overrides, TriggerAction, differences
 from service.plant.offer import node_class, offer_from_scl
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState
+from testing.ports import LOOPBACK
 from testing.relays.simulated import IED, scenario_of, simulated
 from testing.waiting import eventually
+from tests.service.collector.busy_front import busy_front
 from tests.service.collector.conftest import Bench
 from tests.service.collector.expectations import at, expecting
 from tests.service.collector.scripted_relay import NAME, ScriptedRelay
@@ -233,24 +234,14 @@ def test_a_trigger_that_was_ruled_out_or_does_not_exist(bench: Bench, relay: Scr
     assert relay.edges == 0
 
 
-def test_browsing_is_cheap(relay: ScriptedRelay, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One request a logical device twice, and one for each data set and report block."""
-    with Client.connect("127.0.0.1", relay.port) as client:
-        asked: list[str] = []
-        connection = client._connection
-        exclusive = connection.exclusive
-
-        def counted(operation: str) -> AbstractContextManager[int]:
-            asked.append(operation)
-            return exclusive(operation)
-
-        monkeypatch.setattr(connection, "exclusive", counted)
+def test_browsing_is_cheap(relay: ScriptedRelay) -> None:
+    """Two requests a logical device, and one for each data set and report block."""
+    with busy_front(relay.port, {}) as front, Client.connect(LOOPBACK, front.port) as client:
+        devices = len(client.logical_devices())
+        assert len(front.asked) == 1
         offer = browse(client, None)
-    assert offer is not None
-    on_the_wire = [
-        words for words in asked if not words.startswith(("directory of A1", "list logical nodes"))
-    ]
-    assert len(on_the_wire) == 1 + len(offer.data_sets) + len(offer.report_blocks)
+        assert offer is not None
+        assert len(front.asked) == 1 + 2 * devices + len(offer.data_sets) + len(offer.report_blocks)
 
 
 @pytest.mark.parametrize(
