@@ -6,9 +6,11 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from subprocess import SubprocessError
 
 from rich.console import Console
 
+from service.client.rest_client import ServiceError
 from tests.chaos.disk import enter_own_mounts
 from tests.chaos.order import Order
 from tests.chaos.result import Result
@@ -35,7 +37,11 @@ def main() -> int:
             if not console.is_terminal:
                 console.print(f"{time.monotonic() - began_s:6.0f} s  {line}")
 
-        result = run(order, directory, tell)
+        try:
+            result = run(order, directory, tell)
+        except (RuntimeError, OSError, SubprocessError, ServiceError) as error:
+            console.print(f"the run could not be made: {error}; logs: {directory}")
+            return 1
     if arguments.json is not None:
         result.write(arguments.json)
     _print(console, result, directory)

@@ -12,6 +12,7 @@ from typing import Self
 from scl import Address
 
 CHUNK_BYTES = 65_536
+_CLOSING_PERIOD_S = 0.05
 RESET = struct.pack("ii", 1, 0)
 """SO_LINGER on, for no time: closing resets the connection."""
 
@@ -30,6 +31,11 @@ class Link:
         self._writers: set[asyncio.StreamWriter] = set()
         self._server: asyncio.Server | None = None
 
+    @property
+    def connections(self) -> int:
+        """Number of connections that stand."""
+        return len(self._writers) // 2
+
     async def listen(self) -> None:
         self._server = await asyncio.start_server(self._accept, self.seen.host, self.seen.port)
 
@@ -38,10 +44,16 @@ class Link:
         for writer in list(self._writers):
             _reset(writer)
 
-    def close(self) -> None:
+    def end(self) -> None:
+        """Reset every connection, and from now on each that comes."""
+        self.refuses = True
+        self.flowing.set()
+        self.cut()
+
+    def stop_listening(self) -> None:
+        """Accept no connection any more."""
         if self._server is not None:
             self._server.close()
-        self.cut()
 
     async def _accept(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         if self.refuses:
@@ -144,13 +156,21 @@ class Proxy:
         self._loop.close()
 
     async def _close(self) -> None:
+        """End every link, and stop listening at a moment in which nothing is being accepted.
+
+        asyncio loses a connection whose server is closed while it is being accepted, and prints a traceback
+        of one whose task is cancelled.
+        """
+        while True:
+            for link in self.links.values():
+                link.end()
+            others = asyncio.all_tasks() - {asyncio.current_task()}
+            if not others:
+                break
+            await asyncio.wait(others, timeout=_CLOSING_PERIOD_S)
         for link in self.links.values():
-            link.flowing.set()
-            link.close()
-        others = asyncio.all_tasks() - {asyncio.current_task()}
-        for task in others:
-            task.cancel()
-        await asyncio.gather(*others, return_exceptions=True)
+            link.stop_listening()
+        await asyncio.sleep(0)  # connections that were reset are closed in the loop's next round
 
 
 def _reset(writer: asyncio.StreamWriter) -> None:

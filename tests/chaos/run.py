@@ -15,6 +15,7 @@ from tests.chaos import account
 from tests.chaos.disk import Disk, SmallDisk, WritingLimit
 from tests.chaos.evidence import Evidence, growth
 from tests.chaos.faults import Faults
+from tests.chaos.hang_watch import HangWatch
 from tests.chaos.history import History
 from tests.chaos.ledger import Ledger
 from tests.chaos.order import Order
@@ -24,7 +25,7 @@ from tests.chaos.result import Result, result_of
 from tests.chaos.schedule import OWN_TRIGGER, TRIGGER, Action, make_schedule
 from tests.chaos.served import ServedService, handles_of, running
 from tests.chaos.settling import links_not_up, settle
-from tests.chaos.simulators import running_simulators
+from tests.chaos.simulators import running_simulators, stop_all
 from tests.chaos.triggers import Triggers
 
 LINKS_UP_LIMIT_S = 300.0
@@ -113,6 +114,7 @@ def _evidence(
     files = directory / "relays"
     with ExitStack() as stack:
         simulators = stack.enter_context(running_simulators(plant, directory, files))
+        watch = stack.enter_context(HangWatch(simulators, history.note))
         proxy = stack.enter_context(Proxy({each.name: (each.own, each.seen) for each in plant.relays}))
         stack.enter_context(running(service))
         client = stack.enter_context(ServiceClient(service.url))
@@ -137,7 +139,9 @@ def _evidence(
         eventually(lambda: not growth(at_first, _handles(service)), REST_LIMIT_S)
         at_last = _handles(service)
         exit_code = service.stop()
-        tell("the service has ended, comparing")
+        watch.stop()
+        stop_all(simulators)
+        tell("the service and the relays have ended, comparing")
         recordings = service.data / "recordings"
         return Evidence(
             schedule=schedule,
@@ -154,7 +158,7 @@ def _evidence(
             at_last=at_last,
             exit_code=exit_code,
             integrity=account.integrity(service.data / "statorwatch.sqlite"),
-            noticed=[*noticed, *service.unwanted_ends],
+            noticed=[*noticed, *service.unwanted_ends, *(hang for each in simulators for hang in each.hangs)],
             open_matters=open_matters,
             pulled_bytes=proxy.carried_bytes,
             settled_after_s=settled_s - healed_s,
