@@ -49,7 +49,7 @@ class ScipyRefinement(Refinement):
 
     def minimise(self, start: Candidates) -> tuple[Array, float, int]:
         """Unknowns, misfit and number of linearisations at the end."""
-        unknowns = tuple(unknown(name, self._case, self._running.model) for name in NAMES)
+        unknowns = tuple(unknown(name, self._case, self.running.model) for name in NAMES)
         steps = np.array([one.step for one in unknowns])
         points: dict[bytes, tuple[Array, Array]] = {}
 

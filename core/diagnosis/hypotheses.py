@@ -13,11 +13,11 @@ import numpy as np
 from core.diagnosis.case import Case
 from core.diagnosis.fundamental import Fundamental
 from core.diagnosis.operating_point import from_phasors
+from core.diagnosis.paths import PathPosterior
 from core.diagnosis.refinement import (
     FAULT_LEVEL,
     LOAD_LEVEL,
     OFFSET_SCALE_S,
-    PATH_RATIO,
     TIME_OFFSET,
     Fit,
     Refinement,
@@ -25,21 +25,12 @@ from core.diagnosis.refinement import (
 from core.diagnosis.search import Starts
 from core.diagnosis.tolerance import Systematic
 from core.machines.base import StatorModel
-from core.machines.candidates import Candidates
 
 SHARE_UNEXPLAINED = 0.15
 """Share of the asymmetry that a winding's fit may leave: the path and the leakages of the shorted turns
 are never known exactly."""
-PATH_THRESHOLD, PATH_THRESHOLD_SHARE = 0.007, 0.02
-"""Unexplained current, of the forward one (what current sensors within their class can leave) and of the
-asymmetry, beyond which a resistive path is tried."""
-SIGNIFICANT = 3.0
-"""Standard errors above which a level or a path is significant."""
 ONE_IN_A_HUNDRED = 2.15
 """Standard deviations that a complex error exceeds once in a hundred times: sqrt(ln 100)."""
-PATH_START = 0.5
-"""Path ratio and least level at which a fit starts; the level is above zero so that its angle counts."""
-LEVEL_START = 0.005
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +58,9 @@ class Explanation:
         dead-shorted turns and paths of any resistance, as far as the record leaves them open. They hold the
         record's own noise and this ambiguity. They do not hold what sensors and parameters add at a given
         path; that is `Systematic`'s. Where one hypothesis stands alone they are `fit.interval(...)`.
+    in_direction : bool
+        Whether the current has the direction of shorted turns, dead or through one of the paths tried, as far
+        as sensors and parameters let it be known. True where the asymmetry is too small to tell.
     """
 
     record: Fundamental
@@ -79,9 +73,10 @@ class Explanation:
     evaluations: int
     level_interval: tuple[float, float]
     load_interval: tuple[float, float]
+    in_direction: bool
 
 
-def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
+def explain(case: Case, model: StatorModel, starts: Starts, *, known_share: float = 0.0) -> Explanation:
     """Refine every winding's best point and the healthy machine; choose the winding that leaves least.
 
     All windings have equally many unknowns, so the least residual is also the greatest likelihood. Turns
@@ -121,27 +116,31 @@ def explain(case: Case, model: StatorModel, starts: Starts) -> Explanation:
     healthy = refinement.fit(replace(nearest.candidate, fault_level=np.zeros(1)), (LOAD_LEVEL, TIME_OFFSET))
     tried.append(healthy)
 
+    intervals = {name: fit.interval(name) for name in (FAULT_LEVEL, LOAD_LEVEL)}
+    in_direction = True
+    evaluations = sum(one.evaluations for one in tried)
+    if model.knows_path and not case.voltages_assumed:
+        posterior = PathPosterior(case, refinement, known_share)
+        if abs(healthy.left) > ONE_IN_A_HUNDRED * posterior.backward_A:
+            if not posterior.holds(fit):
+                winding, fit = posterior.winding, posterior.likeliest()
+                healthy = posterior.without_fault(fit)
+            in_direction = posterior.explains
+            intervals = {name: _joined(fit.interval(name), posterior.interval(name)) for name in intervals}
+        evaluations += posterior.evaluations
     forward = abs(refinement.record.current.forward)
-    before, after = abs(healthy.left) / forward, abs(_left(fit, healthy)) / forward
-    if model.knows_path and after > max(PATH_THRESHOLD, PATH_THRESHOLD_SHARE * before):
-        through = [refinement.fit(_with_path(one), (*unknowns, PATH_RATIO)) for one in fits]
-        tried += through
-        likeliest = _likeliest(through)
-        bridged = through[likeliest]
-        left = abs(_left(bridged, healthy)) / forward
-        if left < after and _is_seen(bridged, FAULT_LEVEL) and _is_seen(bridged, PATH_RATIO):
-            winding, fit, after = likeliest, bridged, left
     return Explanation(
         record=refinement.record,
         winding=winding,
         fit=fit,
         healthy=healthy,
-        asymmetry=before,
-        unexplained=after,
+        asymmetry=abs(healthy.left) / forward,
+        unexplained=abs(_left(fit, healthy)) / forward,
         noise=refinement.backward_noise_A / forward,
-        evaluations=sum(one.evaluations for one in tried),
-        level_interval=fit.interval(FAULT_LEVEL),
-        load_interval=fit.interval(LOAD_LEVEL),
+        evaluations=evaluations,
+        level_interval=intervals[FAULT_LEVEL],
+        load_interval=intervals[LOAD_LEVEL],
+        in_direction=in_direction,
     )
 
 
@@ -183,7 +182,31 @@ def is_explained(explanation: Explanation, tolerance: Systematic) -> bool:
         Whether they do.
     """
     allowed = max(limit_of_chance(explanation, tolerance), SHARE_UNEXPLAINED * explanation.asymmetry)
-    return explanation.fit.value(FAULT_LEVEL) > 0.0 and explanation.unexplained <= allowed
+    return (
+        explanation.in_direction
+        and explanation.fit.value(FAULT_LEVEL) > 0.0
+        and explanation.unexplained <= allowed
+    )
+
+
+def is_another_asymmetry(explanation: Explanation, tolerance: Systematic) -> bool:
+    """Return whether the currents show an asymmetry that shorted turns do not account for.
+
+    Parameters
+    ----------
+    explanation : Explanation
+        The hypothesis that explains the currents best.
+    tolerance : Systematic
+        Errors that no averaging reduces.
+
+    Returns
+    -------
+    bool
+        Whether they do.
+    """
+    if is_explained(explanation, tolerance):
+        return False
+    return not explanation.in_direction or explanation.unexplained > limit_of_chance(explanation, tolerance)
 
 
 def _likeliest(fits: list[Fit]) -> int:
@@ -204,17 +227,8 @@ def _size(fit: Fit) -> float:
     return abs(fit.value(FAULT_LEVEL))
 
 
-def _with_path(fit: Fit) -> Candidates:
-    return replace(
-        fit.candidate,
-        fault_level=np.maximum(fit.candidate.fault_level, LEVEL_START),
-        path_ratio=np.full(1, PATH_START),
-    )
-
-
-def _is_seen(fit: Fit, name: str) -> bool:
-    error = fit.standard_error.get(name)
-    return error is not None and fit.value(name) > SIGNIFICANT * error
+def _joined(one: tuple[float, float], other: tuple[float, float]) -> tuple[float, float]:
+    return min(one[0], other[0]), max(one[1], other[1])
 
 
 def _left(fit: Fit, healthy: Fit) -> complex:

@@ -1,7 +1,7 @@
 """The verdict and its reasons: the fits compared with the effects of noise, sensors and parameters."""
 
 from core.diagnosis.case import Case
-from core.diagnosis.hypotheses import Explanation, is_explained, limit_of_chance
+from core.diagnosis.hypotheses import Explanation, is_another_asymmetry, is_explained
 from core.diagnosis.refinement import (
     CHANNEL_RATIO,
     FAULT_LEVEL,
@@ -89,7 +89,7 @@ def judge(
             f"shorted turns in phase {phase}: {level}, above the limit of {limit:.2%}{bridged}",
             *figures,
         ]
-    if not explained and explanation.unexplained > limit_of_chance(explanation, tolerance):
+    if is_another_asymmetry(explanation, tolerance):
         return Verdict.WATCH, ["an asymmetry that shorted turns in no phase explain", *figures]
     if scatter_high > limit:
         return Verdict.WATCH, [

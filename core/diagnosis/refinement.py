@@ -179,7 +179,9 @@ class Refinement:
 
     Components are weighted by what noise and the sensors' class make of each: noise on the voltages, say,
     falls mostly on the backward-turning current, which meets the machine's least impedance.
-    `backward_noise_A` is the standard deviation of the backward-turning phasor, peak.
+    `noise` is the covariance of the current's components that the record's noise leaves [A^2], and
+    `backward_noise_A` the standard deviation of the backward-turning phasor, peak; `running` is the motor on
+    the record's voltage.
 
     Parameters
     ----------
@@ -195,12 +197,12 @@ class Refinement:
         self._case = case
         self.record = fundamental_of(case)
         current, voltage = self.record.current, self.record.voltage
-        self._running = SteadyRunning(
+        self.running = SteadyRunning(
             model, case.motor, case.supply.angular_frequency, axis_phasors(voltage.components)
         )
-        passed = self._admittance(near)
-        self._noise = current.covariance + passed @ voltage.covariance @ passed.T
-        self.backward_noise_A = sqrt(self._noise[2, 2] + self._noise[3, 3])
+        passed = self.admittance(near)
+        self.noise = current.covariance + passed @ voltage.covariance @ passed.T
+        self.backward_noise_A = sqrt(self.noise[2, 2] + self.noise[3, 3])
         cycles = self.record.cycles
         sensors = (CHANNEL_RATIO * abs(current.forward)) ** 2 / COMPONENTS_OF_A_RATIO * np.eye(4)
         weighed = current.shrunk(cycles) + passed @ voltage.shrunk(cycles) @ passed.T + sensors
@@ -221,7 +223,7 @@ class Refinement:
         Fit
             The fit.
         """
-        unknowns = tuple(unknown(name, self._case, self._running.model) for name in names)
+        unknowns = tuple(unknown(name, self._case, self.running.model) for name in names)
         inside = _moved(start, unknowns, np.zeros(len(unknowns)))
         point, rounds, damping = self._linearise(inside, unknowns), 1, 0.0
         while rounds <= MOST_ROUNDS and damping <= MOST_DAMPING:
@@ -241,12 +243,23 @@ class Refinement:
                 point = moved
         return self._finished(point, unknowns, evaluations=rounds * (1 + 2 * len(unknowns)))
 
-    def _admittance(self, candidate: Candidates) -> Array:
-        """How the current's components follow the voltage's, (4, 4) [A/V]."""
+    def admittance(self, candidate: Candidates) -> Array:
+        """Return how the current's components follow the voltage's at a candidate.
+
+        Parameters
+        ----------
+        candidate : Candidates
+            A batch of one hypothesis.
+
+        Returns
+        -------
+        ndarray, shape (4, 4)
+            Difference quotients [A/V].
+        """
         volts = self.record.voltage.components
         step = ADMITTANCE_STEP * abs(self.record.voltage.forward)
-        here = self._modelled(self._running, candidate)[0]
-        moved = [self._running.on(axis_phasors(volts + change)) for change in step * np.eye(4)]
+        here = self._modelled(self.running, candidate)[0]
+        moved = [self.running.on(axis_phasors(volts + change)) for change in step * np.eye(4)]
         return np.stack([(self._modelled(one, candidate)[0] - here) / step for one in moved], axis=1)
 
     def _modelled(self, running: SteadyRunning, candidates: Candidates) -> Array:
@@ -267,7 +280,7 @@ class Refinement:
             values[1 + 2 * k] = min(values[0] + one.step, one.upper)
             values[2 + 2 * k] = max(values[0] - one.step, one.lower)
             steps[k] = values[1 + 2 * k] - values[2 + 2 * k]
-        modelled = self._modelled(self._running, batch)
+        modelled = self._modelled(self.running, batch)
         residual = self.record.current.components - modelled[0]
         observed = self._whitening @ residual
         slopes = self._whitening @ ((modelled[1::2] - modelled[2::2]) / steps[:, np.newaxis]).T
@@ -289,7 +302,7 @@ class Refinement:
         slopes = point.slopes[:, free]
         # Reduction of the misfit that one more step would bring.
         gain = float(np.sum((slopes @ _step(point, unknowns, 0.0)[free]) ** 2))
-        noise = self._whitening @ self._noise @ self._whitening.T
+        noise = self._whitening @ self.noise @ self._whitening.T
         seen = [one.name for one, is_free in zip(unknowns, free, strict=True) if is_free]
         try:
             inverse = np.linalg.inv(slopes.T @ slopes)
@@ -300,7 +313,7 @@ class Refinement:
             # The record does not identify the unknowns: all their values fit equally well.
             errors = [float("inf")] * len(seen)
             responses = np.full((len(seen), 4), np.inf)
-        balanced = self._running.state(point.candidate).balanced[0]
+        balanced = self.running.state(point.candidate).balanced[0]
         return Fit(
             candidate=point.candidate,
             misfit=point.misfit,

@@ -103,7 +103,8 @@ def _diagnosed(
         case = baseline.taken_off(case)
     playback = Playback(MODELS[model], motor, case.supply, case.window)
     starts = search(case, playback.model, method)
-    explanation = explain(case, playback.model, starts)
+    known_share = 0.0 if baseline is None else 1.0 - baseline.remaining
+    explanation = explain(case, playback.model, starts, known_share=known_share)
     quality.append(identified(explanation))
     if not quality[-1].passed:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)

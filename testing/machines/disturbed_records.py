@@ -87,7 +87,8 @@ def plant_of(motor: Motor, model: FaultModel, condition: Condition, supply: Supp
         return MotorWithAdditionalWinding(
             motor, supply, load, sensors, level=condition.level, winding=condition.winding
         )
-    course = FaultCourse(condition.winding, ((0.0, condition.level),))
+    path = condition.path_resistance_ohm(motor)
+    course = FaultCourse(condition.winding, ((0.0, condition.level),), path)
     return MotorPlant(motor, supply, load, sensors, fault=course)
 
 
@@ -101,6 +102,7 @@ def steady_samples(
         nameplate.rated_frequency_Hz,
         unbalance=abs(condition.unbalance),
         unbalance_angle_rad=float(np.angle(condition.unbalance)),
+        sequence="acb" if condition.reverse else "abc",
     )
     plant = plant_of(motor, model, condition, supply, Load(condition.load_level))
     true = plant.operation(0.0, samples / sample_rate_hz, sample_rate_hz, settling_s=2.0)
@@ -161,6 +163,7 @@ def disturbed_record(
         unbalance=abs(condition.unbalance),
         unbalance_angle_rad=float(np.angle(condition.unbalance)),
         harmonics=tuple(Harmonic(*one) for one in disturbances.harmonics),
+        sequence="acb" if condition.reverse else "abc",
     )
     load = Load(condition.load_level, disturbances.swing, 1.0 / disturbances.swing_frequency_hz)
     plant = plant_of(true_motor, FaultModel.SPLIT, condition, supply, load)

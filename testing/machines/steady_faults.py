@@ -31,7 +31,8 @@ class FaultModel(StrEnum):
 class Condition:
     """A running motor: load over rated torque, voltage unbalance V2/V1, turns mu shorted in a phase 0, 1, 2.
 
-    relative_voltage: positive-sequence voltage over the rated one.
+    relative_voltage: positive-sequence voltage over the rated one.  path_ratio: resistance of the path that
+    bridges the turns over the turns' own (split winding alone).  reverse: whether the supply turns a-c-b.
     """
 
     load_level: float
@@ -39,6 +40,17 @@ class Condition:
     level: float = 0.0
     winding: int = 0
     relative_voltage: complex = 1.0
+    path_ratio: float = 0.0
+    reverse: bool = False
+
+    @property
+    def equivalent_level(self) -> float:
+        """Level of the dead-shorted turns that draw the same current at one slip."""
+        return self.level / (1.0 + self.path_ratio)
+
+    def path_resistance_ohm(self, motor: Motor) -> float:
+        """Resistance of the path [ohm]."""
+        return self.path_ratio * self.level * motor.parameters.stator_resistance_ohm
 
 
 def steady(motor: Motor, model: FaultModel, condition: Condition) -> Operation:
@@ -52,8 +64,11 @@ def steady(motor: Motor, model: FaultModel, condition: Condition) -> Operation:
         ),
     )
     if model is FaultModel.SPLIT or condition.level == 0.0:
-        fault = Fault(condition.level, condition.winding) if condition.level else None
-        found = running(fed, condition.load_level, fault=fault, unbalance=condition.unbalance)
+        path = condition.path_resistance_ohm(motor)
+        fault = Fault(condition.level, condition.winding, path) if condition.level else None
+        found = running(
+            fed, condition.load_level, fault=fault, unbalance=condition.unbalance, reverse=condition.reverse
+        )
     else:
         found = _beside_additional_winding(fed, condition)
     turn = condition.relative_voltage / abs(condition.relative_voltage)

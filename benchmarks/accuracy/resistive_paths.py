@@ -1,0 +1,230 @@
+"""Turns bridged by a resistance: phase, level, load and verdict, on the simulator's windings.
+
+The estimator has no part in the records. How far the simulator's windings, the tests' phase circuits and the
+estimator's model agree on such faults is measured beside them.
+"""
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from itertools import product
+from math import pi
+
+import numpy as np
+
+from benchmarks.reporting import spread, table
+from core.diagnosis.stator import diagnose
+from core.diagnosis.verdict import Diagnosis, Verdict
+from core.machines.candidates import Candidates
+from core.machines.parameters import Connection, Motor
+from core.machines.running import SteadyRunning
+from core.machines.split_winding import SplitWinding
+from testing.machines.disturbed_records import (
+    Disturbances,
+    disturbed_record,
+    steady_samples,
+)
+from testing.machines.motors import ALL
+from testing.machines.steady_faults import Condition, FaultModel, steady
+
+RATIOS = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0)
+LOADS = ((0.05, 0.2), (0.2, 0.5), (0.5, 1.0))
+LEAST_TURNS, MOST_TURNS = 0.06, 0.12
+UNBALANCES = (0.0, 0.03)
+NOISE = 0.002
+SHORTEST_DETECTED = 0.024
+"""Equivalent level above which every record is to be called a fault."""
+LEVEL_SHARE, LOAD_POINTS = 0.1, 0.05
+"""Errors of level and load that count as right even outside their intervals."""
+SEED = 20_264
+
+
+@dataclass(frozen=True, slots=True)
+class Sensors:
+    """Class of a relay's channels: gain errors within `current_gain` and `voltage_gain`, delays up to
+    `delay_s`, one for the currents against the voltages, or each channel its own."""
+
+    name: str
+    current_gain: float
+    voltage_gain: float
+    delay_s: float
+    of_its_own: bool
+
+
+GOOD = Sensors("currents within 0.5 %, up to 50 us behind the voltages", 0.005, 0.0, 50e-6, of_its_own=False)
+PROTECTION = Sensors("every channel within 1 % and 50 us", 0.01, 0.01, 50e-6, of_its_own=True)
+
+
+@dataclass(frozen=True, slots=True)
+class PathDraw:
+    """One random record of a path ratio and a range of loads."""
+
+    path_ratio: float
+    loads: tuple[float, float]
+    sensors: Sensors
+    index: int
+
+
+@dataclass(frozen=True, slots=True)
+class PathOutcome:
+    """The truth and the diagnosis of a draw."""
+
+    motor: Motor
+    condition: Condition
+    diagnosis: Diagnosis
+
+    @property
+    def phase_right(self) -> bool:
+        return self.diagnosis.theta_f == self.condition.winding
+
+    @property
+    def level_right(self) -> bool:
+        truth = self.condition.equivalent_level
+        found, interval = self.diagnosis.mu_f, self.diagnosis.mu_f_ci95
+        if found is None or interval is None:
+            return False
+        return abs(found - truth) <= LEVEL_SHARE * truth or interval[0] <= truth <= interval[1]
+
+    @property
+    def load_right(self) -> bool:
+        truth = self.condition.load_level
+        found, interval = self.diagnosis.load_level, self.diagnosis.load_level_ci95
+        if found is None or interval is None:
+            return False
+        return abs(found - truth) <= LOAD_POINTS or interval[0] <= truth <= interval[1]
+
+    @property
+    def verdict_right(self) -> bool:
+        is_small = self.condition.equivalent_level <= SHORTEST_DETECTED
+        return self.diagnosis.verdict is Verdict.FAULT or is_small
+
+    @property
+    def right(self) -> bool:
+        return self.phase_right and self.level_right and self.load_right and self.verdict_right
+
+
+def draw_condition(draw: PathDraw) -> tuple[Motor, Condition, Disturbances, float]:
+    """Motor, condition, disturbances and the time the window starts at.
+
+    Motors (three), windings and both sequences in turn, so that each cell has all of them; turns 6 to 12 %,
+    load, gains, delays and the angle of V2 uniform; V2/V1 0 or 3 %.
+    """
+    random = np.random.default_rng(
+        [SEED, draw.index, round(100 * draw.path_ratio), round(100 * draw.loads[0])]
+    )
+    motor = ALL[draw.index % 3]
+    angle = random.uniform(0.0, 2.0 * pi)
+    condition = Condition(
+        load_level=float(random.uniform(*draw.loads)),
+        unbalance=complex(UNBALANCES[draw.index // 6 % 2] * np.exp(1j * angle)),
+        level=float(random.uniform(LEAST_TURNS, MOST_TURNS)),
+        winding=int(random.integers(3)),
+        path_ratio=draw.path_ratio,
+        reverse=bool(draw.index // 3 % 2),
+    )
+    sensors = draw.sensors
+    gains = random.uniform(-1.0, 1.0, 6) * np.repeat([sensors.current_gain, sensors.voltage_gain], 3)
+    delays = random.uniform(0.0, sensors.delay_s, 6)
+    if not sensors.of_its_own:
+        delays = np.repeat([delays[0], 0.0], 3)
+    disturbances = Disturbances(
+        gain_errors=tuple(gains.tolist()), delays_s=tuple(delays.tolist()), noise=NOISE
+    )
+    return motor, condition, disturbances, float(random.uniform(0.0, 1_000.0))
+
+
+def judge_path(draw: PathDraw) -> PathOutcome:
+    """Make the record, 0.5 s at 10 kHz, and diagnose it."""
+    motor, condition, disturbances, start_s = draw_condition(draw)
+    record = disturbed_record(
+        motor, condition, disturbances, start_s=start_s, cycles=25.0, sample_rate_hz=10_000.0, seed=draw.index
+    )
+    return PathOutcome(motor, condition, diagnose(record, motor))
+
+
+HEADER = (
+    "path", "load", "phase", "level", "load right", "`fault` above 2.4 %", "all right", "level off, median, most",
+    "interval, half width",
+)  # fmt: skip
+
+
+def resistive_paths(*, records: int, pool: Executor) -> Iterator[str]:
+    """A table each for good sensors and for those of protection relays, `records` a cell."""
+    for sensors in (GOOD, PROTECTION):
+        cells = list(product(RATIOS, LOADS))
+        draws = [PathDraw(ratio, loads, sensors, k) for ratio, loads in cells for k in range(records)]
+        outcomes = list(spread(judge_path, draws, f"paths, {sensors.name}", pool))
+        yield f"Sensors: {sensors.name}."
+        yield ""
+        rows = []
+        for k, (ratio, loads) in enumerate(cells):
+            here = outcomes[k * records : (k + 1) * records]
+            rows.append([f"{ratio:g}", f"{loads[0]:.0%} to {loads[1]:.0%}", *_row(here)])
+        yield from table(HEADER, [*rows, ["all", "", *_row(outcomes)]])
+        yield ""
+    yield from _agreement()
+
+
+def _row(outcomes: Sequence[PathOutcome]) -> list[str]:
+    n = len(outcomes)
+    seen = [one for one in outcomes if one.diagnosis.mu_f is not None]
+    off = np.array([(one.diagnosis.mu_f or 0.0) / one.condition.equivalent_level - 1.0 for one in seen])
+    widths = [
+        (one.diagnosis.mu_f_ci95[1] - one.diagnosis.mu_f_ci95[0]) / 2.0 / one.condition.equivalent_level
+        for one in seen
+        if one.diagnosis.mu_f_ci95 is not None
+    ]
+    counted = [one for one in outcomes if one.condition.equivalent_level > SHORTEST_DETECTED]
+    faults = sum(one.diagnosis.verdict is Verdict.FAULT for one in counted)
+    furthest = float(off[np.argmax(np.abs(off))]) if off.size else 0.0
+    return [
+        f"{sum(one.phase_right for one in outcomes)} of {n}",
+        f"{sum(one.level_right for one in outcomes)} of {n}",
+        f"{sum(one.load_right for one in outcomes)} of {n}",
+        f"{faults} of {len(counted)}",
+        f"{sum(one.right for one in outcomes)} of {n}",
+        f"{np.median(off):+.1%}, {furthest:+.1%}" if off.size else "",
+        f"{np.median(widths):.0%}" if widths else "",
+    ]
+
+
+def _agreement() -> Iterator[str]:
+    """Line currents of three models of the same faults, which share no code."""
+    between_physics, of_estimator = [], []
+    for motor, ratio, reverse in product(ALL, (0.0, 1.0, 4.0), (False, True)):
+        condition = Condition(0.5, 0.03, 0.1, 1, path_ratio=ratio, reverse=reverse)
+        phasors = steady(motor, FaultModel.SPLIT, condition).line_current
+        samples = steady_samples(motor, FaultModel.SPLIT, condition, 5_000, 10_000.0)[:3]
+        turning = np.exp(-2j * pi * 50.0 / 10_000.0 * np.arange(5_000))
+        simulated = np.sqrt(2.0) / 5_000 * samples @ turning
+        size = float(np.abs(phasors).max())
+        between_physics.append(float(np.abs(np.abs(simulated) - np.abs(phasors)).max()) / size)
+        if not reverse and motor.nameplate.connection is Connection.STAR:
+            of_estimator.append(
+                float(np.abs(np.abs(_estimated(motor, condition)) - np.abs(phasors)).max()) / size
+            )
+    yield (
+        "Three models of these faults share no code. Line currents of the simulator's windings, integrated in "
+        f"time, and of the phase circuits, solved by phasors, differ by at most {max(between_physics):.2%} of the "
+        "greatest (three motors, both sequences, paths 0, 1 and 4; the phase circuits know no ripple of the "
+        f"speed). The estimator's split winding differs from the phase circuits by at most {max(of_estimator):.2%} "
+        "(motors in star)."
+    )
+
+
+def _estimated(motor: Motor, condition: Condition) -> np.ndarray[tuple[int], np.dtype[np.complex128]]:
+    """Line currents of the estimator's split winding in star, rms phasors (3,)."""
+    volts = steady(motor, FaultModel.SPLIT, condition).phase_voltage
+    to_axes = np.sqrt(2.0 / 3.0) * np.array([[1.0, -0.5, -0.5], [0.0, np.sqrt(0.75), -np.sqrt(0.75)]])
+    running = SteadyRunning(
+        SplitWinding(), motor, motor.nameplate.rated_angular_frequency, np.sqrt(2.0) * to_axes @ volts
+    )
+    one = np.ones(1)
+    candidate = Candidates(
+        condition.equivalent_level * one,
+        np.array([condition.winding]),
+        condition.load_level * one,
+        0.0 * one,
+        condition.path_ratio * one,
+    )
+    return np.asarray(to_axes.T @ running.state(candidate).current[:, 0] / np.sqrt(2.0))

@@ -1,0 +1,343 @@
+"""Which winding, and through what path its turns are bridged: the posterior over both.
+
+Dead-shorted turns draw a current that lags the voltage by the angle of R_s + j X_ls; a path of resistance
+turns it towards the voltage. With level, load and offset free besides, four unknowns meet four real figures,
+and dead shorts with a long offset and too small a load fit a path as well as the path itself. So every path
+is fitted with what is known of offsets, loads, sensors and parameters (`core.diagnosis.priors`), and weighed
+by its evidence (Laplace's approximation of the integral over level, load and offset):
+
+    ln P(p | y) = ln P(p) - Q_p / 2 - ln det(H_p) / 2,    Q_p = min (r' inv(C) r + priors)
+
+r is what of the currents' phasors is left, C its covariance by noise, sensors and parameters, H_p half the
+curvature of Q_p. P gives half to dead-shorted turns and half to paths, evenly over the share u = p / (1 + p)
+of the loop's resistance that lies in the path.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from statistics import NormalDist
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.diagnosis.case import Case
+from core.diagnosis.fundamental import components
+from core.diagnosis.operating_point import from_phasors
+from core.diagnosis.priors import beliefs, systematic_covariance
+from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET, Fit, Refinement
+from core.machines.base import Array
+from core.machines.candidates import Candidates
+
+DEAD_SHORTED = 0.5
+"""Probability of dead-shorted turns before the record is seen."""
+PATH_SHARES = np.linspace(0.0, 0.9, 19)
+"""Shares u of the loop's resistance that lie in the path. At the last, nine times the turns' own resistance,
+the current is in phase with the voltage, as in other asymmetries."""
+COARSE_SHARES = np.array([0.0, 0.5])
+"""Shares with which the windings are told apart: their directions differ by more than any path turns them."""
+UNKNOWNS = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
+STEPS = np.array([2e-4, 2e-3, 2e-6])
+LOWEST, HIGHEST = np.array([0.0, -0.2, -8e-3]), np.array([0.5, 2.0, 8e-3])
+LONGEST_STEP = np.array([0.2, 0.4, 1e-3])
+FIRST_LEVEL, LEAST_LOAD, MOST_LOAD = 0.03, 0.02, 1.5
+MOST_ROUNDS = 12
+NEGLIGIBLE = 0.01
+"""Step, in standard deviations, below which a fit has converged."""
+FIRST_DAMPING = 0.1
+POINTS = 40
+"""Points with which a hypothesis stands for its normal distribution in a mixture."""
+WITHIN_REACH = 4.0
+"""Misfit above the least, two standard deviations, up to which a point belongs to a hypothesis."""
+TAIL = 0.025
+MOST_MISFIT = 9.2
+"""Least misfit that one record of a hundred exceeds: quantile of chi square, two degrees of freedom."""
+
+_NORMAL_POINTS = np.array([NormalDist().inv_cdf((k + 0.5) / POINTS) for k in range(POINTS)])
+
+
+@dataclass(frozen=True, slots=True)
+class Hypotheses:
+    """Fits of a batch: windings and path shares held, level, load and offset at their likeliest.
+
+    Parameters
+    ----------
+    winding : ndarray of int, shape (candidates,)
+        Winding with the fault.
+    share : ndarray, shape (candidates,)
+        Share of the loop's resistance that lies in the path.
+    values, scatter : ndarray, shape (candidates, 3)
+        Level, load and offset, and the standard deviations that noise alone gives them.
+    misfit, log_evidence : ndarray, shape (candidates,)
+        Least misfit, and the logarithm of the evidence but for a constant.
+    left : ndarray of complex, shape (candidates,)
+        Backward-turning current left, peak [A].
+    is_sound : ndarray of bool, shape (candidates,)
+        Whether the fit converged to a machine that can run.
+    """
+
+    winding: NDArray[np.int64]
+    share: Array
+    values: Array
+    scatter: Array
+    misfit: Array
+    log_evidence: Array
+    left: NDArray[np.complex128]
+    is_sound: NDArray[np.bool_]
+
+
+class PathPosterior:
+    """Posterior of one record over windings and paths.
+
+    Parameters
+    ----------
+    case : Case
+        The record in the winding frame.
+    refinement : Refinement
+        The record's phasors, noise, and the motor on its voltage.
+    known_share : float, default 0.0
+        Share of the channels' errors that a baseline has taken off.
+    """
+
+    def __init__(self, case: Case, refinement: Refinement, known_share: float = 0.0) -> None:
+        self._refinement = refinement
+        self._measured = refinement.record.current.components
+        near = from_phasors(refinement.record, case.motor, 0)
+        self._load = float(np.clip(near.load_level[0], LEAST_LOAD, MOST_LOAD))
+        near = replace(near, load_level=np.full(1, self._load))
+        self._covariance = refinement.noise + systematic_covariance(
+            refinement.record, refinement.running, near, refinement.admittance(near), known_share
+        )
+        self._whitening = np.linalg.inv(np.linalg.cholesky(self._covariance))
+        self.evaluations = 0
+
+    @property
+    def backward_A(self) -> float:
+        """Standard deviation of the backward-turning current by noise, sensors and parameters [A, peak]."""
+        return float(np.sqrt(self._covariance[2, 2] + self._covariance[3, 3]))
+
+    @cached_property
+    def winding(self) -> int:
+        """The likeliest winding."""
+        windings = np.repeat(np.arange(3), COARSE_SHARES.size)
+        tried = self._fitted(windings, np.tile(COARSE_SHARES, 3))
+        evidence = tried.log_evidence.reshape(3, -1)
+        return int(np.argmax(np.logaddexp.reduce(evidence, axis=1)))
+
+    @cached_property
+    def _paths(self) -> Hypotheses:
+        """Every path of the likeliest winding, dead-shorted turns first."""
+        return self._fitted(np.full(PATH_SHARES.size, self.winding), PATH_SHARES)
+
+    @cached_property
+    def probability(self) -> Array:
+        """Posterior probability of each of PATH_SHARES."""
+        prior = np.full(PATH_SHARES.size, (1.0 - DEAD_SHORTED) / (PATH_SHARES.size - 1))
+        prior[0] = DEAD_SHORTED
+        logarithm = self._paths.log_evidence + np.log(prior)
+        weight = np.exp(logarithm - logarithm.max())
+        return np.asarray(weight / weight.sum())
+
+    def interval(self, name: str) -> tuple[float, float]:
+        """Return the 95 % interval of an unknown over all paths, each with its own noise.
+
+        Parameters
+        ----------
+        name : str
+            FAULT_LEVEL, LOAD_LEVEL or TIME_OFFSET.
+
+        Returns
+        -------
+        tuple of float
+            Lower and upper end.
+        """
+        k = UNKNOWNS.index(name)
+        points = self._paths.values[:, k, np.newaxis] + self._paths.scatter[:, k, np.newaxis] * _NORMAL_POINTS
+        weights = np.repeat(self.probability / POINTS, POINTS)
+        order = np.argsort(points, axis=None)
+        below = np.cumsum(weights[order])
+        low, high = np.searchsorted(below, [TAIL, 1.0 - TAIL])
+        ordered = points.ravel()[order]
+        return float(ordered[low]), float(ordered[min(high, ordered.size - 1)])
+
+    def holds(self, fit: Fit) -> bool:
+        """Return whether a fit of dead-shorted turns is what the posterior finds likeliest.
+
+        Parameters
+        ----------
+        fit : Fit
+            The fit.
+
+        Returns
+        -------
+        bool
+            True where dead-shorted turns of the same winding are as likely as all paths together and the fit
+            is within their reach.
+        """
+        if int(fit.candidate.winding[0]) != self.winding or self.probability[0] < DEAD_SHORTED:
+            return False
+        values = np.array([[fit.value(name) for name in UNKNOWNS]])
+        misfit = self._misfit(values, self._modelled(values, fit.candidate.winding, np.zeros(1)))
+        return bool(fit.is_sound and misfit[0] <= self._paths.misfit[0] + WITHIN_REACH)
+
+    def likeliest(self) -> Fit:
+        """Return the fit of dead-shorted turns, or of the likeliest path where paths are likelier.
+
+        Returns
+        -------
+        Fit
+            The fit; its standard errors are what noise gives at this path, the path's own is the posterior's.
+        """
+        share = self._likeliest_share()
+        found = self._fitted(np.full(1, self.winding), np.full(1, share))
+        errors = dict(zip(UNKNOWNS, found.scatter[0].tolist(), strict=True))
+        if share > 0.0:
+            ratios = PATH_SHARES / (1.0 - PATH_SHARES)
+            mean = float(self.probability @ ratios)
+            errors[PATH_RATIO] = float(np.sqrt(self.probability @ (ratios - mean) ** 2))
+        edge = (found.values[0] <= LOWEST) | (found.values[0] >= HIGHEST)
+        return self._as_fit(found, errors, edge)
+
+    def without_fault(self, fit: Fit) -> Fit:
+        """Return the healthy machine at the load and the offset of a fit.
+
+        Parameters
+        ----------
+        fit : Fit
+            The fit.
+
+        Returns
+        -------
+        Fit
+            The same without shorted turns.
+        """
+        values = np.array([[0.0, fit.value(LOAD_LEVEL), fit.value(TIME_OFFSET)]])
+        modelled = self._modelled(values, fit.candidate.winding, np.zeros(1))
+        left = (self._measured - modelled)[0]
+        return replace(
+            fit,
+            candidate=_candidates(values, fit.candidate.winding, np.zeros(1)),
+            misfit=float(self._misfit(values, modelled)[0]),
+            left=complex(left[2], left[3]),
+            standard_error={
+                name: fit.standard_error[name] for name in UNKNOWNS[1:] if name in fit.standard_error
+            },
+        )
+
+    @property
+    def explains(self) -> bool:
+        """Whether some path leaves no more than sensors and parameters make up.
+
+        A path at the end of those tried does not count: it is no other than an asymmetry of another kind.
+        """
+        best = int(np.argmax(self.probability))
+        return bool(best < PATH_SHARES.size - 1 and self._paths.misfit[best] <= MOST_MISFIT)
+
+    def _likeliest_share(self) -> float:
+        """Return the share with the greatest posterior, between those tried by a parabola."""
+        if self.probability[0] >= DEAD_SHORTED:
+            return 0.0
+        best = 1 + int(np.argmax(self.probability[1:]))
+        if best in {1, PATH_SHARES.size - 1}:
+            return float(PATH_SHARES[best])
+        before, here, after = self._paths.log_evidence[best - 1 : best + 2].tolist()
+        bend = before - 2.0 * here + after
+        ahead = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
+        return float(PATH_SHARES[best] + ahead * (PATH_SHARES[1] - PATH_SHARES[0]))
+
+    def _as_fit(self, found: Hypotheses, errors: dict[str, float], edge: NDArray[np.bool_]) -> Fit:
+        at_bound = tuple(name for name, is_edge in zip(UNKNOWNS, edge.tolist(), strict=True) if is_edge)
+        return Fit(
+            candidate=_candidates(found.values, found.winding, found.share),
+            misfit=float(found.misfit[0]),
+            left=complex(found.left[0]),
+            is_sound=bool(found.is_sound[0]),
+            standard_error={name: error for name, error in errors.items() if name not in at_bound},
+            degrees_of_freedom=self._refinement.record.cycles - 1,
+            at_bound=at_bound,
+            evaluations=0,
+        )
+
+    def _fitted(self, winding: NDArray[np.int64], share: Array) -> Hypotheses:
+        """Fit level, load and offset to every winding and path at once, by Gauss and Newton.
+
+        Steps that do not help are damped, after Levenberg and Marquardt.
+        """
+        n = winding.size
+        values = np.tile([FIRST_LEVEL, self._load, 0.0], (n, 1))
+        # What the model sees are the turns, mu_eq (1 + p): no more than the whole phase.
+        highest = np.minimum(HIGHEST, np.column_stack([1.0 - share, np.full((n, 2), np.inf)]))
+        damping = np.zeros(n)
+        modelled = self._modelled(values, winding, share)
+        misfit = self._misfit(values, modelled)
+        curvature, rows, slopes = self._linearised(values, modelled, winding, share)
+        converged = np.zeros(n, np.bool_)
+        for _ in range(MOST_ROUNDS):
+            diagonal = np.einsum("nii->ni", curvature)
+            damped = curvature + damping[:, np.newaxis, np.newaxis] * diagonal[:, :, np.newaxis] * np.eye(3)
+            downhill = np.einsum("nri,nr->ni", slopes, rows)
+            step = -np.linalg.solve(damped, downhill[..., np.newaxis])[..., 0]
+            step = np.clip(step, -LONGEST_STEP, LONGEST_STEP)
+            moved = np.clip(values + step, LOWEST, highest)
+            converged = (np.abs(moved - values) * np.sqrt(diagonal) < NEGLIGIBLE).all(axis=1)
+            if converged.all():
+                break
+            there = self._modelled(moved, winding, share)
+            fallen = self._misfit(moved, there)
+            better = fallen <= misfit
+            values = np.where(better[:, np.newaxis], moved, values)
+            modelled = np.where(better[:, np.newaxis], there, modelled)
+            misfit = np.where(better, fallen, misfit)
+            shorter = np.maximum(FIRST_DAMPING, 4.0 * damping)
+            damping = np.where(better, np.where(damping > FIRST_DAMPING, damping / 4.0, 0.0), shorter)
+            curvature, rows, slopes = self._linearised(values, modelled, winding, share)
+        inverse = np.linalg.inv(curvature)
+        noise = self._whitening @ self._refinement.noise @ self._whitening.T
+        filling = np.einsum("nri,rs,nsj->nij", slopes[:, :4], noise, slopes[:, :4])
+        scatter = np.sqrt(np.einsum("nij,njk,nki->ni", inverse, filling, inverse))
+        left = self._measured - modelled
+        balanced = self._refinement.running.state(_candidates(values, winding, share)).balanced
+        return Hypotheses(
+            winding=winding,
+            share=share,
+            values=values,
+            scatter=scatter,
+            misfit=misfit,
+            log_evidence=-0.5 * (misfit + np.linalg.slogdet(curvature)[1]),
+            left=left[:, 2] + 1j * left[:, 3],
+            is_sound=converged & balanced,
+        )
+
+    def _linearised(
+        self, values: Array, modelled: Array, winding: NDArray[np.int64], share: Array
+    ) -> tuple[Array, Array, Array]:
+        """Curvature (n, 3, 3), rows (n, 6) and slopes (n, 6, 3) of the misfit, the priors' two rows last."""
+        n, unknowns = values.shape
+        moves = np.concatenate([STEPS * sign * np.eye(unknowns) for sign in (1.0, -1.0)])
+        around = (values + moves[:, np.newaxis, :]).reshape(-1, unknowns)
+        beside = self._modelled(around, np.tile(winding, 2 * unknowns), np.tile(share, 2 * unknowns))
+        up, down = beside.reshape(2, unknowns, n, 4)
+        known = beliefs(values[:, 2], values[:, 1])
+        slopes = np.zeros((n, 6, unknowns))
+        slopes[:, :4] = np.einsum("rs,kns->nrk", self._whitening, up - down) / (2.0 * STEPS)
+        slopes[:, 4, 2] = known.offset_slope
+        slopes[:, 5, 1] = known.load_slope
+        rows = np.column_stack([(modelled - self._measured) @ self._whitening.T, known.offset, known.load])
+        return np.einsum("nri,nrj->nij", slopes, slopes), rows, slopes
+
+    def _modelled(self, values: Array, winding: NDArray[np.int64], share: Array) -> Array:
+        self.evaluations += len(values)
+        return components(self._refinement.running.state(_candidates(values, winding, share)).current)
+
+    def _misfit(self, values: Array, modelled: Array) -> Array:
+        rows = (modelled - self._measured) @ self._whitening.T
+        return np.asarray(np.sum(rows**2, axis=1) + beliefs(values[:, 2], values[:, 1]).misfit)
+
+
+def _candidates(values: Array, winding: NDArray[np.int64], share: Array) -> Candidates:
+    return Candidates(
+        fault_level=np.ascontiguousarray(values[:, 0]),
+        winding=winding,
+        load_level=np.ascontiguousarray(values[:, 1]),
+        time_offset_s=np.ascontiguousarray(values[:, 2]),
+        path_ratio=share / (1.0 - share),
+    )
