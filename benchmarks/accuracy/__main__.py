@@ -131,9 +131,11 @@ def _alarms(effort: Effort, pool: Executor) -> Iterator[str]:
 
 
 def _paths(effort: Effort, pool: Executor) -> Iterator[str]:
-    yield "6 to 12 % of the turns, bridged by `path` times their own resistance; three motors, both sequences,"
-    yield f"V2/V1 0 and 3 %, 0.2 % noise, 16-bit converters, {effort.paths} records a cell. Right is a level within"
-    yield "10 % of the truth or with the truth inside its interval, a load within 5 points or inside."
+    yield "6 to 12 % of the turns, bridged by `path` times their own resistance; three motors, both"
+    yield "sequences, V2/V1 0 and 3 %, 0.2 % noise, 16-bit converters, 0.5 s at 10 kHz. Right is a level"
+    yield "within 10 % of the truth or with the truth inside its interval, and a load within 5 points or"
+    yield "inside its own."
+    yield f"The level of a path is the equivalent one, turns / (1 + path). {effort.paths} records a cell."
     yield ""
     yield from resistive_paths(records=effort.paths, pool=pool)
 

@@ -36,13 +36,14 @@ the current is in phase with the voltage, as in other asymmetries."""
 COARSE_SHARES = np.array([0.0, 0.5])
 """Shares with which the windings are told apart: their directions differ by more than any path turns them."""
 UNKNOWNS = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
-STEPS = np.array([2e-4, 2e-3, 2e-6])
+STEPS = np.array([1e-5, 1e-4, 1e-7])
+"""Steps of the difference quotients, small against any curvature and large against rounding."""
 LOWEST, HIGHEST = np.array([0.0, -0.2, -8e-3]), np.array([0.5, 2.0, 8e-3])
 LONGEST_STEP = np.array([0.2, 0.4, 1e-3])
-FIRST_LEVEL, LEAST_LOAD, MOST_LOAD = 0.03, 0.02, 1.5
+FIRST_LEVEL, LEAST_START, LEAST_LOAD, MOST_LOAD = 0.03, 0.002, 0.02, 1.5
 MOST_ROUNDS = 12
-NEGLIGIBLE = 0.01
-"""Step, in standard deviations, below which a fit has converged."""
+NEAR, NEGLIGIBLE = 0.1, 3e-3
+"""Steps in standard deviations below which a fit is good enough to be weighed, and to be used."""
 FIRST_DAMPING = 0.1
 POINTS = 40
 """Points with which a hypothesis stands for its normal distribution in a mixture."""
@@ -71,8 +72,8 @@ class Hypotheses:
         Least misfit, and the logarithm of the evidence but for a constant.
     left : ndarray of complex, shape (candidates,)
         Backward-turning current left, peak [A].
-    is_sound : ndarray of bool, shape (candidates,)
-        Whether the fit converged to a machine that can run.
+    converged : ndarray of bool, shape (candidates,)
+        Whether the last step was negligible.
     """
 
     winding: NDArray[np.int64]
@@ -82,7 +83,7 @@ class Hypotheses:
     misfit: Array
     log_evidence: Array
     left: NDArray[np.complex128]
-    is_sound: NDArray[np.bool_]
+    converged: NDArray[np.bool_]
 
 
 class PathPosterior:
@@ -116,17 +117,25 @@ class PathPosterior:
         return float(np.sqrt(self._covariance[2, 2] + self._covariance[3, 3]))
 
     @cached_property
+    def _windings(self) -> Hypotheses:
+        """COARSE_SHARES of each winding."""
+        windings, shares = np.repeat(np.arange(3), COARSE_SHARES.size), np.tile(COARSE_SHARES, 3)
+        start = np.tile([FIRST_LEVEL, self._load, 0.0], (windings.size, 1))
+        return self._fitted(windings, shares, start, NEAR)
+
+    @cached_property
     def winding(self) -> int:
         """The likeliest winding."""
-        windings = np.repeat(np.arange(3), COARSE_SHARES.size)
-        tried = self._fitted(windings, np.tile(COARSE_SHARES, 3))
-        evidence = tried.log_evidence.reshape(3, -1)
+        evidence = self._windings.log_evidence.reshape(3, -1)
         return int(np.argmax(np.logaddexp.reduce(evidence, axis=1)))
 
     @cached_property
     def _paths(self) -> Hypotheses:
         """Every path of the likeliest winding, dead-shorted turns first."""
-        return self._fitted(np.full(PATH_SHARES.size, self.winding), PATH_SHARES)
+        dead, bridged = self._windings.values[self._windings.winding == self.winding]
+        start = dead + PATH_SHARES[:, np.newaxis] / COARSE_SHARES[1] * (bridged - dead)
+        start[:, 0] = np.maximum(start[:, 0], LEAST_START)
+        return self._fitted(np.full(PATH_SHARES.size, self.winding), PATH_SHARES, start, NEAR)
 
     @cached_property
     def probability(self) -> Array:
@@ -188,7 +197,8 @@ class PathPosterior:
             The fit; its standard errors are what noise gives at this path, the path's own is the posterior's.
         """
         share = self._likeliest_share()
-        found = self._fitted(np.full(1, self.winding), np.full(1, share))
+        start = self._paths.values[[int(np.argmin(np.abs(PATH_SHARES - share)))]]
+        found = self._fitted(np.full(1, self.winding), np.full(1, share), start, NEGLIGIBLE)
         errors = dict(zip(UNKNOWNS, found.scatter[0].tolist(), strict=True))
         if share > 0.0:
             ratios = PATH_SHARES / (1.0 - PATH_SHARES)
@@ -246,83 +256,84 @@ class PathPosterior:
 
     def _as_fit(self, found: Hypotheses, errors: dict[str, float], edge: NDArray[np.bool_]) -> Fit:
         at_bound = tuple(name for name, is_edge in zip(UNKNOWNS, edge.tolist(), strict=True) if is_edge)
+        candidate = _candidates(found.values, found.winding, found.share)
+        balanced = self._refinement.running.state(candidate).balanced
         return Fit(
-            candidate=_candidates(found.values, found.winding, found.share),
+            candidate=candidate,
             misfit=float(found.misfit[0]),
             left=complex(found.left[0]),
-            is_sound=bool(found.is_sound[0]),
+            is_sound=bool(found.converged[0] and balanced[0]),
             standard_error={name: error for name, error in errors.items() if name not in at_bound},
             degrees_of_freedom=self._refinement.record.cycles - 1,
             at_bound=at_bound,
             evaluations=0,
         )
 
-    def _fitted(self, winding: NDArray[np.int64], share: Array) -> Hypotheses:
+    def _fitted(self, winding: NDArray[np.int64], share: Array, start: Array, precision: float) -> Hypotheses:
         """Fit level, load and offset to every winding and path at once, by Gauss and Newton.
 
         Steps that do not help are damped, after Levenberg and Marquardt.
         """
-        n = winding.size
-        values = np.tile([FIRST_LEVEL, self._load, 0.0], (n, 1))
         # What the model sees are the turns, mu_eq (1 + p): no more than the whole phase.
-        highest = np.minimum(HIGHEST, np.column_stack([1.0 - share, np.full((n, 2), np.inf)]))
-        damping = np.zeros(n)
-        modelled = self._modelled(values, winding, share)
+        highest = np.minimum(HIGHEST, np.column_stack([1.0 - share, np.full((share.size, 2), np.inf)]))
+        values = np.clip(start, LOWEST, highest)
+        modelled, slopes = self._linearised(values, winding, share)
         misfit = self._misfit(values, modelled)
-        curvature, rows, slopes = self._linearised(values, modelled, winding, share)
-        converged = np.zeros(n, np.bool_)
+        damping = np.zeros(share.size)
         for _ in range(MOST_ROUNDS):
+            curvature = np.einsum("nri,nrj->nij", slopes, slopes)
             diagonal = np.einsum("nii->ni", curvature)
-            damped = curvature + damping[:, np.newaxis, np.newaxis] * diagonal[:, :, np.newaxis] * np.eye(3)
-            downhill = np.einsum("nri,nr->ni", slopes, rows)
+            damped = curvature + (damping[:, np.newaxis] * diagonal)[:, :, np.newaxis] * np.eye(3)
+            downhill = np.einsum("nri,nr->ni", slopes, self._rows(values, modelled))
             step = -np.linalg.solve(damped, downhill[..., np.newaxis])[..., 0]
-            step = np.clip(step, -LONGEST_STEP, LONGEST_STEP)
-            moved = np.clip(values + step, LOWEST, highest)
-            converged = (np.abs(moved - values) * np.sqrt(diagonal) < NEGLIGIBLE).all(axis=1)
+            moved = np.clip(values + np.clip(step, -LONGEST_STEP, LONGEST_STEP), LOWEST, highest)
+            converged = (np.abs(moved - values) * np.sqrt(diagonal) < precision).all(axis=1)
             if converged.all():
                 break
-            there = self._modelled(moved, winding, share)
+            there, slopes_there = self._linearised(moved, winding, share)
             fallen = self._misfit(moved, there)
             better = fallen <= misfit
             values = np.where(better[:, np.newaxis], moved, values)
             modelled = np.where(better[:, np.newaxis], there, modelled)
+            slopes = np.where(better[:, np.newaxis, np.newaxis], slopes_there, slopes)
             misfit = np.where(better, fallen, misfit)
             shorter = np.maximum(FIRST_DAMPING, 4.0 * damping)
             damping = np.where(better, np.where(damping > FIRST_DAMPING, damping / 4.0, 0.0), shorter)
-            curvature, rows, slopes = self._linearised(values, modelled, winding, share)
+        curvature = np.einsum("nri,nrj->nij", slopes, slopes)
         inverse = np.linalg.inv(curvature)
         noise = self._whitening @ self._refinement.noise @ self._whitening.T
         filling = np.einsum("nri,rs,nsj->nij", slopes[:, :4], noise, slopes[:, :4])
-        scatter = np.sqrt(np.einsum("nij,njk,nki->ni", inverse, filling, inverse))
         left = self._measured - modelled
-        balanced = self._refinement.running.state(_candidates(values, winding, share)).balanced
         return Hypotheses(
             winding=winding,
             share=share,
             values=values,
-            scatter=scatter,
+            scatter=np.sqrt(np.einsum("nij,njk,nki->ni", inverse, filling, inverse)),
             misfit=misfit,
             log_evidence=-0.5 * (misfit + np.linalg.slogdet(curvature)[1]),
             left=left[:, 2] + 1j * left[:, 3],
-            is_sound=converged & balanced,
+            converged=converged,
         )
 
-    def _linearised(
-        self, values: Array, modelled: Array, winding: NDArray[np.int64], share: Array
-    ) -> tuple[Array, Array, Array]:
-        """Curvature (n, 3, 3), rows (n, 6) and slopes (n, 6, 3) of the misfit, the priors' two rows last."""
+    def _linearised(self, values: Array, winding: NDArray[np.int64], share: Array) -> tuple[Array, Array]:
+        """Return modelled components (n, 4) and the slopes of `_rows` (n, 6, 3)."""
         n, unknowns = values.shape
-        moves = np.concatenate([STEPS * sign * np.eye(unknowns) for sign in (1.0, -1.0)])
+        moves = np.concatenate([np.zeros((1, unknowns)), np.diag(STEPS)])
         around = (values + moves[:, np.newaxis, :]).reshape(-1, unknowns)
-        beside = self._modelled(around, np.tile(winding, 2 * unknowns), np.tile(share, 2 * unknowns))
-        up, down = beside.reshape(2, unknowns, n, 4)
+        seen = self._modelled(around, np.tile(winding, 1 + unknowns), np.tile(share, 1 + unknowns))
+        here, *beside = seen.reshape(1 + unknowns, n, 4)
         known = beliefs(values[:, 2], values[:, 1])
         slopes = np.zeros((n, 6, unknowns))
-        slopes[:, :4] = np.einsum("rs,kns->nrk", self._whitening, up - down) / (2.0 * STEPS)
+        slopes[:, :4] = np.einsum("rs,kns->nrk", self._whitening, np.stack(beside) - here) / STEPS
         slopes[:, 4, 2] = known.offset_slope
         slopes[:, 5, 1] = known.load_slope
-        rows = np.column_stack([(modelled - self._measured) @ self._whitening.T, known.offset, known.load])
-        return np.einsum("nri,nrj->nij", slopes, slopes), rows, slopes
+        return here, slopes
+
+    def _rows(self, values: Array, modelled: Array) -> Array:
+        """Modelled minus measured components over their standard deviation, and the priors' rows, (n, 6)."""
+        known = beliefs(values[:, 2], values[:, 1])
+        whitened = (modelled - self._measured) @ self._whitening.T
+        return np.column_stack([whitened, known.offset, known.load])
 
     def _modelled(self, values: Array, winding: NDArray[np.int64], share: Array) -> Array:
         self.evaluations += len(values)

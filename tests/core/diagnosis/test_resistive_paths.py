@@ -1,0 +1,80 @@
+"""Turns bridged by a resistance, on records of independent phase circuits: phase, level, load, verdict."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.diagnosis.stator import diagnose
+from core.diagnosis.verdict import Verdict
+from core.machines.parameters import Motor
+from testing.machines.motors import ALL, LARGE, REFERENCE
+from testing.machines.phase_circuits import Fault, recording, running
+
+IDS = [motor.name for motor in ALL]
+GAINS = (1.005, 0.995, 1.003)
+
+
+@pytest.mark.parametrize("motor", ALL, ids=IDS)
+@pytest.mark.parametrize("reverse", [False, True], ids=["abc", "acb"])
+@pytest.mark.parametrize(
+    ("turns", "ratio", "load", "unbalance"),
+    [(0.12, 2.0, 0.05, 0.03), (0.11, 2.0, 0.3, 0.03j), (0.10, 1.0, 0.15, 0.0), (0.06, 0.5, 0.9, -0.03)],
+)
+def test_a_path_is_no_dead_short_with_a_long_offset(
+    motor: Motor, reverse: bool, turns: float, ratio: float, load: float, unbalance: complex
+) -> None:
+    path = Fault(turns, 1, ratio * turns * motor.parameters.stator_resistance_ohm)
+    truth = running(motor, load, fault=path, unbalance=unbalance, reverse=reverse)
+    record = recording(truth, noise=0.002, current_delay_s=30e-6, current_gains=GAINS)
+    result = diagnose(record, motor)
+    assert result.verdict is Verdict.FAULT
+    assert result.phase == "b"
+    level = turns / (1.0 + ratio)
+    assert result.mu_f is not None
+    assert result.mu_f_ci95 is not None
+    assert result.mu_f_ci95[0] <= level <= result.mu_f_ci95[1] or result.mu_f == pytest.approx(level, rel=0.1)
+    assert result.load_level == pytest.approx(load, abs=0.05)
+    assert result.time_offset_s == pytest.approx(30e-6, abs=200e-6)
+
+
+def test_the_interval_covers_paths_and_dead_shorts_where_both_hold() -> None:
+    """A path of a quarter turns the current less than a voltage channel within its class may."""
+    level = 0.05 / 1.25
+    path = Fault(0.05, 2, 0.25 * 0.05 * REFERENCE.parameters.stator_resistance_ohm)
+    dead = Fault(level, 2)
+    for fault in (path, dead):
+        result = diagnose(recording(running(REFERENCE, 0.5, fault=fault), noise=0.002), REFERENCE)
+        assert result.mu_f_ci95 is not None
+        assert result.mu_f_ci95[0] <= level <= result.mu_f_ci95[1]
+        assert result.mu_f_ci95[1] - result.mu_f_ci95[0] > 0.1 * level
+
+
+def test_dead_shorted_turns_stay_dead_shorted_with_parameters_off() -> None:
+    """Warm windings and a wrong inductance are no path: level and load stay near."""
+    machine = LARGE.parameters
+    warm = replace(
+        LARGE,
+        parameters=replace(
+            machine,
+            stator_resistance_ohm=1.08 * machine.stator_resistance_ohm,
+            rotor_resistance_ohm=1.08 * machine.rotor_resistance_ohm,
+            stator_self_inductance_H=0.93 * machine.stator_self_inductance_H,
+        ),
+    )
+    truth = running(warm, 0.4, fault=Fault(0.08, 0), unbalance=0.02)
+    result = diagnose(recording(truth, noise=0.002), LARGE)
+    assert result.verdict is Verdict.FAULT
+    assert result.phase == "a"
+    assert result.mu_f == pytest.approx(0.08, rel=0.1)
+    assert result.load_level == pytest.approx(0.4, abs=0.05)
+
+
+@pytest.mark.parametrize("angle_deg", range(0, 360, 60))
+def test_the_load_of_a_path_is_never_far_below_zero(angle_deg: int) -> None:
+    unbalance = 0.03 * np.exp(1j * np.radians(angle_deg))
+    fault = Fault(0.12, 0, 2.0 * 0.12 * REFERENCE.parameters.stator_resistance_ohm)
+    truth = running(REFERENCE, 0.05, fault=fault, unbalance=complex(unbalance))
+    result = diagnose(recording(truth, noise=0.002, current_gains=GAINS), REFERENCE)
+    assert result.verdict is Verdict.FAULT
+    assert result.load_level == pytest.approx(0.05, abs=0.05)
