@@ -14,6 +14,7 @@ from core.diagnosis.case import Case
 from core.diagnosis.fundamental import Fundamental
 from core.diagnosis.operating_point import from_phasors
 from core.diagnosis.paths import PathPosterior
+from core.diagnosis.propagation import Known
 from core.diagnosis.refinement import (
     FAULT_LEVEL,
     LOAD_LEVEL,
@@ -29,6 +30,7 @@ from core.machines.base import StatorModel
 SHARE_UNEXPLAINED = 0.15
 """Share of the asymmetry that a winding's fit may leave: the path and the leakages of the shorted turns
 are never known exactly."""
+NOTHING_KNOWN = Known()
 ONE_IN_A_HUNDRED = 2.15
 """Standard deviations that a complex error exceeds once in a hundred times: sqrt(ln 100)."""
 
@@ -76,12 +78,14 @@ class Explanation:
     in_direction: bool
 
 
-def explain(case: Case, model: StatorModel, starts: Starts, *, known_share: float = 0.0) -> Explanation:
+def explain(case: Case, model: StatorModel, starts: Starts, known: Known = NOTHING_KNOWN) -> Explanation:
     """Refine every winding's best point and the healthy machine; choose the winding that leaves least.
 
     All windings have equally many unknowns, so the least residual is also the greatest likelihood. Turns
-    bridged by a resistance draw a current nearer to the voltage's direction: where dead-shorted turns leave
-    much unexplained, the path's resistance is fitted too, and taken where it is seen.
+    bridged by a resistance draw a current nearer to the voltage's direction, which a long offset and too
+    small a load imitate. So wherever the asymmetry exceeds what chance makes of it, every path is weighed
+    against dead-shorted turns (`PathPosterior`). The fit of dead-shorted turns is kept where the posterior
+    finds it likeliest; else the posterior's own likeliest is taken.
 
     Parameters
     ----------
@@ -91,6 +95,8 @@ def explain(case: Case, model: StatorModel, starts: Starts, *, known_share: floa
         Machine model of the fault.
     starts : Starts
         Best point of each winding.
+    known : Known, optional
+        What a baseline has taken off of the sensors' and the parameters' errors.
 
     Returns
     -------
@@ -120,7 +126,7 @@ def explain(case: Case, model: StatorModel, starts: Starts, *, known_share: floa
     in_direction = True
     evaluations = sum(one.evaluations for one in tried)
     if model.knows_path and not case.voltages_assumed:
-        posterior = PathPosterior(case, refinement, known_share)
+        posterior = PathPosterior(case, refinement, known)
         if abs(healthy.left) > ONE_IN_A_HUNDRED * posterior.backward_A:
             if not posterior.holds(fit):
                 winding, fit = posterior.winding, posterior.likeliest()

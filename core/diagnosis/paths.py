@@ -3,8 +3,9 @@
 Dead-shorted turns draw a current that lags the voltage by the angle of R_s + j X_ls; a path of resistance
 turns it towards the voltage. With level, load and offset free besides, four unknowns meet four real figures,
 and dead shorts with a long offset and too small a load fit a path as well as the path itself. So every path
-is fitted with what is known of offsets, loads, sensors and parameters (`core.diagnosis.priors`), and weighed
-by its evidence (Laplace's approximation of the integral over level, load and offset):
+is fitted with what is known of offsets and loads (`core.diagnosis.priors`) and of sensors and parameters
+(`core.diagnosis.propagation`), and weighed by its evidence (Laplace's approximation of the integral over
+level, load and offset):
 
     ln P(p | y) = ln P(p) - Q_p / 2 - ln det(H_p) / 2,    Q_p = min (r' inv(C) r + priors)
 
@@ -23,7 +24,8 @@ from numpy.typing import NDArray
 from core.diagnosis.case import Case
 from core.diagnosis.fundamental import components
 from core.diagnosis.operating_point import from_phasors
-from core.diagnosis.priors import beliefs, systematic_covariance
+from core.diagnosis.priors import beliefs
+from core.diagnosis.propagation import Known, errors_of
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET, Fit, Refinement
 from core.machines.base import Array
 from core.machines.candidates import Candidates
@@ -39,6 +41,8 @@ UNKNOWNS = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
 STEPS = np.array([1e-5, 1e-4, 1e-7])
 """Steps of the difference quotients, small against any curvature and large against rounding."""
 LOWEST, HIGHEST = np.array([0.0, -0.2, -8e-3]), np.array([0.5, 2.0, 8e-3])
+WIDEST = np.diag((HIGHEST - LOWEST) ** -2.0)
+"""Curvature of a prior as wide as the ranges: none is wider, even where the record says nothing."""
 LONGEST_STEP = np.array([0.2, 0.4, 1e-3])
 FIRST_LEVEL, LEAST_START, LEAST_LOAD, MOST_LOAD = 0.03, 0.002, 0.02, 1.5
 MOST_ROUNDS = 12
@@ -70,6 +74,8 @@ class Hypotheses:
         Level, load and offset, and the standard deviations that noise alone gives them.
     misfit, log_evidence : ndarray, shape (candidates,)
         Least misfit, and the logarithm of the evidence but for a constant.
+    response : ndarray, shape (candidates, 3, 4)
+        Change of level, load and offset by one ampere more of each measured component.
     left : ndarray of complex, shape (candidates,)
         Backward-turning current left, peak [A].
     converged : ndarray of bool, shape (candidates,)
@@ -82,6 +88,7 @@ class Hypotheses:
     scatter: Array
     misfit: Array
     log_evidence: Array
+    response: Array
     left: NDArray[np.complex128]
     converged: NDArray[np.bool_]
 
@@ -95,19 +102,18 @@ class PathPosterior:
         The record in the winding frame.
     refinement : Refinement
         The record's phasors, noise, and the motor on its voltage.
-    known_share : float, default 0.0
-        Share of the channels' errors that a baseline has taken off.
+    known : Known
+        What a baseline has taken off of the sensors' and the parameters' errors.
     """
 
-    def __init__(self, case: Case, refinement: Refinement, known_share: float = 0.0) -> None:
+    def __init__(self, case: Case, refinement: Refinement, known: Known) -> None:
         self._refinement = refinement
         self._measured = refinement.record.current.components
         near = from_phasors(refinement.record, case.motor, 0)
         self._load = float(np.clip(near.load_level[0], LEAST_LOAD, MOST_LOAD))
         near = replace(near, load_level=np.full(1, self._load))
-        self._covariance = refinement.noise + systematic_covariance(
-            refinement.record, refinement.running, near, refinement.admittance(near), known_share
-        )
+        errors = errors_of(case, refinement.running.model, refinement.record, near, known)
+        self._covariance = refinement.noise + errors @ errors.T
         self._whitening = np.linalg.inv(np.linalg.cholesky(self._covariance))
         self.evaluations = 0
 
@@ -133,7 +139,8 @@ class PathPosterior:
     def _paths(self) -> Hypotheses:
         """Every path of the likeliest winding, dead-shorted turns first."""
         dead, bridged = self._windings.values[self._windings.winding == self.winding]
-        start = dead + PATH_SHARES[:, np.newaxis] / COARSE_SHARES[1] * (bridged - dead)
+        way = np.minimum(PATH_SHARES / COARSE_SHARES[1], 1.0)[:, np.newaxis]
+        start = dead + way * (bridged - dead)
         start[:, 0] = np.maximum(start[:, 0], LEAST_START)
         return self._fitted(np.full(PATH_SHARES.size, self.winding), PATH_SHARES, start, NEAR)
 
@@ -223,6 +230,7 @@ class PathPosterior:
         values = np.array([[0.0, fit.value(LOAD_LEVEL), fit.value(TIME_OFFSET)]])
         modelled = self._modelled(values, fit.candidate.winding, np.zeros(1))
         left = (self._measured - modelled)[0]
+        response = {name: one for name, one in fit.response.items() if name != FAULT_LEVEL}
         return replace(
             fit,
             candidate=_candidates(values, fit.candidate.winding, np.zeros(1)),
@@ -231,6 +239,7 @@ class PathPosterior:
             standard_error={
                 name: fit.standard_error[name] for name in UNKNOWNS[1:] if name in fit.standard_error
             },
+            response=response,
         )
 
     @property
@@ -267,6 +276,11 @@ class PathPosterior:
             degrees_of_freedom=self._refinement.record.cycles - 1,
             at_bound=at_bound,
             evaluations=0,
+            response={
+                name: one
+                for name, one in zip(UNKNOWNS, found.response[0], strict=True)
+                if name not in at_bound
+            },
         )
 
     def _fitted(self, winding: NDArray[np.int64], share: Array, start: Array, precision: float) -> Hypotheses:
@@ -274,14 +288,15 @@ class PathPosterior:
 
         Steps that do not help are damped, after Levenberg and Marquardt.
         """
-        # What the model sees are the turns, mu_eq (1 + p): no more than the whole phase.
-        highest = np.minimum(HIGHEST, np.column_stack([1.0 - share, np.full((share.size, 2), np.inf)]))
+        # The turns, mu_eq (1 + p), stay well below the whole phase.
+        turns = HIGHEST[0] * (1.0 - share)
+        highest = np.column_stack([turns, np.tile(HIGHEST[1:], (share.size, 1))])
         values = np.clip(start, LOWEST, highest)
         modelled, slopes = self._linearised(values, winding, share)
         misfit = self._misfit(values, modelled)
         damping = np.zeros(share.size)
         for _ in range(MOST_ROUNDS):
-            curvature = np.einsum("nri,nrj->nij", slopes, slopes)
+            curvature = np.einsum("nri,nrj->nij", slopes, slopes) + WIDEST
             diagonal = np.einsum("nii->ni", curvature)
             damped = curvature + (damping[:, np.newaxis] * diagonal)[:, :, np.newaxis] * np.eye(3)
             downhill = np.einsum("nri,nr->ni", slopes, self._rows(values, modelled))
@@ -299,18 +314,19 @@ class PathPosterior:
             misfit = np.where(better, fallen, misfit)
             shorter = np.maximum(FIRST_DAMPING, 4.0 * damping)
             damping = np.where(better, np.where(damping > FIRST_DAMPING, damping / 4.0, 0.0), shorter)
-        curvature = np.einsum("nri,nrj->nij", slopes, slopes)
-        inverse = np.linalg.inv(curvature)
-        noise = self._whitening @ self._refinement.noise @ self._whitening.T
-        filling = np.einsum("nri,rs,nsj->nij", slopes[:, :4], noise, slopes[:, :4])
+        curvature = np.einsum("nri,nrj->nij", slopes, slopes) + WIDEST
+        weighted = np.einsum("nri,rs->nis", slopes[:, :4], self._whitening)
+        response = np.linalg.inv(curvature) @ weighted
+        scatter = np.einsum("nir,rs,nis->ni", response, self._refinement.noise, response)
         left = self._measured - modelled
         return Hypotheses(
             winding=winding,
             share=share,
             values=values,
-            scatter=np.sqrt(np.einsum("nij,njk,nki->ni", inverse, filling, inverse)),
+            scatter=np.sqrt(scatter),
             misfit=misfit,
             log_evidence=-0.5 * (misfit + np.linalg.slogdet(curvature)[1]),
+            response=response,
             left=left[:, 2] + 1j * left[:, 3],
             converged=converged,
         )

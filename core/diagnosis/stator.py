@@ -103,12 +103,11 @@ def _diagnosed(
         case = baseline.taken_off(case)
     playback = Playback(MODELS[model], motor, case.supply, case.window)
     starts = search(case, playback.model, method)
-    known_share = 0.0 if baseline is None else 1.0 - baseline.remaining
-    explanation = explain(case, playback.model, starts, known_share=known_share)
+    known = _known(baseline, SUPPLY_UNBALANCE if assumed else 0.0)
+    explanation = explain(case, playback.model, starts, known)
     quality.append(identified(explanation))
     if not quality[-1].passed:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
-    known = _known(baseline, SUPPLY_UNBALANCE if assumed else 0.0)
     fit = explanation.fit
     tolerance = systematic(case, playback, fit, known)
     level_ci95 = _level_interval(case, playback, explanation, tolerance, known)
