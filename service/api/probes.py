@@ -22,8 +22,9 @@ router = APIRouter(tags=["operation"])
 
 
 @router.get("/healthz")
-def get_health_of_service() -> Status:
+async def get_health_of_service() -> Status:
     """Answer, which shows that the service runs."""
+    # Without a thread, of which all may be busy, and without the database: it is answered under any load.
     return Status(status="ok")
 
 

@@ -13,12 +13,12 @@ from threading import Event
 from types import FrameType
 
 import structlog
-import uvicorn
 from sqlalchemy import make_url
 from sqlalchemy.exc import OperationalError
 
 from service.api.app import create_app
 from service.api.context import ApiContext
+from service.api.server import ApiServer, connection_limits
 from service.application.parts import Part, running
 from service.background.workers import background_workers
 from service.collector.supervision.gateway_processes import GatewayProcesses
@@ -39,9 +39,6 @@ log = structlog.get_logger(__name__)
 
 LONGEST_RETRY_S = 3600.0
 """Before another attempt of a diagnosis, however many failed."""
-
-LAST_REQUESTS_S = 3
-"""Time for the requests under way when the service stops."""
 
 
 class ServeError(RuntimeError):
@@ -116,15 +113,9 @@ def _plant(settings: Settings) -> Plant:
 
 def _answer(context: ApiContext, listener: socket.socket) -> None:
     """Answer requests until a signal comes."""
-    configuration = uvicorn.Config(
-        create_app(context),
-        log_config=None,
-        access_log=False,
-        server_header=False,
-        timeout_graceful_shutdown=LAST_REQUESTS_S,
-    )
+    server = ApiServer(create_app(context), connection_limits(context.settings))
     try:
-        uvicorn.Server(configuration).run(sockets=[listener])
+        server.run(sockets=[listener])
     except KeyboardInterrupt:
         log.info("interrupted")
 

@@ -55,6 +55,10 @@ class Settings(BaseSettings):
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "::1")
     max_upload_bytes: int = Field(default=64 * MIB, ge=1, le=GIB)
     max_waveform_values: int = Field(default=250_000, ge=40_000, le=10_000_000)
+    max_connections: int = Field(default=400, ge=1, le=65_536)
+    header_timeout_s: float = Field(default=10.0, ge=0.1, le=600)
+    transfer_timeout_s: float = Field(default=20.0, ge=0.1, le=600)
+    idle_timeout_s: float = Field(default=5.0, ge=0.1, le=600)
 
     recordings_directory: AbsolutePath = Field(
         default_factory=lambda known: known["data_directory"] / "recordings"

@@ -1,0 +1,92 @@
+"""The HTTP server of the API: uvicorn, with limits on its connections."""
+
+import asyncio
+import errno
+import math
+import resource
+import socket
+from typing import Any
+
+import structlog
+import uvicorn
+from starlette.types import ASGIApp
+from structlog.typing import FilteringBoundLogger
+
+from service.api.connection_guard import ConnectionGuard
+from service.api.connections import EXTRA, ConnectionLimits, LimitedConnection, OpenConnections
+from service.configuration.settings import Settings
+
+log: FilteringBoundLogger = structlog.get_logger(__name__)
+
+BACKLOG = 64
+"""Connections that wait to be accepted; so many are accepted at a time, each with a descriptor."""
+
+OTHER_DESCRIPTORS = 300
+"""What else the service may have open: the database, files under way, pipes to its processes."""
+
+FEWEST_CONNECTIONS = 16
+
+LAST_REQUESTS_S = 3
+"""Time for the requests under way when the service stops."""
+
+OUT_OF_RESOURCES = {errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM}
+
+
+class ApiServer(uvicorn.Server):
+    """Answers requests until a signal comes."""
+
+    def __init__(self, app: ASGIApp, limits: ConnectionLimits) -> None:
+        self._open = OpenConnections(limits)
+        super().__init__(
+            uvicorn.Config(
+                ConnectionGuard(app, self._open),
+                http=LimitedConnection,
+                ws="none",
+                loop="asyncio",
+                backlog=BACKLOG,
+                timeout_keep_alive=math.ceil(limits.idle_timeout_s),
+                log_config=None,
+                access_log=False,
+                server_header=False,
+                timeout_graceful_shutdown=LAST_REQUESTS_S,
+            )
+        )
+        self.server_state = self._open
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        asyncio.get_running_loop().set_exception_handler(self._handle_loop_error)
+        await super().startup(sockets)
+
+    async def on_tick(self, counter: int) -> bool:
+        """Look at the connections, ten times a second."""
+        now_s = asyncio.get_running_loop().time()
+        self._open.close_overdue(now_s)
+        self._open.tally.tell(now_s)
+        return await super().on_tick(counter)
+
+    def _handle_loop_error(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        """Count connections that could not be accepted; asyncio has a line, and a traceback, for each."""
+        error = context.get("exception")
+        if "socket" in context and isinstance(error, OSError) and error.errno in OUT_OF_RESOURCES:
+            self._open.tally.add("not_accepted")
+        else:
+            loop.default_exception_handler(context)
+
+
+def connection_limits(settings: Settings) -> ConnectionLimits:
+    """Return the limits of the settings; fewer connections where this process may not open enough files."""
+    descriptors, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    possible = max(descriptors - OTHER_DESCRIPTORS - EXTRA - 2 * BACKLOG, FEWEST_CONNECTIONS)
+    if settings.max_connections > possible:
+        log.warning(
+            "fewer connections than max_connections says: this process may not open enough files",
+            max_connections=settings.max_connections,
+            possible=possible,
+            open_files=descriptors,
+        )
+    return ConnectionLimits(
+        most=min(settings.max_connections, possible),
+        header_timeout_s=settings.header_timeout_s,
+        transfer_timeout_s=settings.transfer_timeout_s,
+        idle_timeout_s=settings.idle_timeout_s,
+    )
