@@ -3,9 +3,9 @@
 A service of its own may open 1,024 descriptors, as Linux grants by default. Each attack holds 1,300
 connections to it (--connections), and opens each again half a second after the service has closed it.
 Meanwhile others ask for /healthz and for the list of motors, each time on a new connection. Told: the time
-within which 95 % of them had an answer and how many had none, descriptors and memory of the service above rest,
-growth of its log, and how many descriptors are left over ten seconds after the end. Ends with 1 where a limit
-is broken.
+within which 95 % of them had an answer and how many had none, descriptors and memory of the service above
+rest, growth of its log, and how many descriptors are left over ten seconds after the end. Ends with 1 where
+a limit is broken.
 """
 
 import argparse

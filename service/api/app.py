@@ -1,9 +1,11 @@
 """Puts the API together."""
 
+import json
 from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import version
 
-from fastapi import APIRouter, FastAPI
+from fastapi import APIRouter, FastAPI, Response
 from fastapi.openapi.utils import get_openapi
 
 from service.api import (
@@ -34,7 +36,7 @@ def create_app(context: ApiContext) -> FastAPI:
         title="StatorWatch",
         version=version("statorwatch"),
         description=DESCRIPTION,
-        openapi_url=f"{PREFIX}/openapi.json",
+        openapi_url=None,  # FastAPI would write the document anew at each request; see _complete_document
         docs_url=None,  # its page would run a script from the internet, with the rights of this API
         redoc_url=None,
     )
@@ -69,5 +71,13 @@ def _complete_document(app: FastAPI, limits: Mapping[Route, int]) -> None:
             document(schema["paths"], limits)
             app.openapi_schema = schema
         return app.openapi_schema
+
+    @cache
+    def written() -> bytes:
+        return json.dumps(openapi()).encode()
+
+    @app.get(f"{PREFIX}/openapi.json", include_in_schema=False)
+    async def get_openapi_document() -> Response:
+        return Response(written(), media_type="application/json")
 
     app.openapi = openapi  # type: ignore[method-assign]  # FastAPI's documented way to extend the schema

@@ -66,13 +66,16 @@ class OpenConnections(ServerState):
 
     def admit(self, new: "LimitedConnection") -> None:
         """Make room for a new connection if there are too many, or close it where no other can be."""
-        surplus = len(self.connections) - self.limits.most
-        if surplus <= 0:
+        if len(self.connections) <= self.limits.most:
             return
         now_s = new.loop.time()
+        present = [each for each in self._limited() if not each.is_gone()]
+        surplus = len(present) - self.limits.most
+        if surplus <= 0:
+            return
         waits = [
             (waited_s, index, each)
-            for index, each in enumerate(self._limited())
+            for index, each in enumerate(present)
             if each is not new and (waited_s := each.waited_s(now_s)) is not None
         ]
         longest = nlargest(min(DISPLACED_AT_ONCE, 1 + len(waits) // 2), waits)
@@ -124,6 +127,10 @@ class LimitedConnection(H11Protocol):
         self._since_s = self.loop.time()
         self._received_bytes = 0
         self._left_bytes = 0
+
+    def is_gone(self) -> bool:
+        """Tell whether the connection is closed, but for asyncio's next turn."""
+        return self.transport.is_closing() and self.transport.get_write_buffer_size() == 0
 
     def waited_s(self, now_s: float) -> float | None:
         """Return for how long the client has kept the service waiting [s]; None while the service works."""

@@ -38,6 +38,15 @@ def page(stored: StoredPage[Stored], to_item: Callable[[Stored], Item]) -> Page[
     return Page(items=[to_item(item) for item in stored.items], next_cursor=next_cursor)
 
 
+def is_storable(text: str) -> bool:
+    """Tell whether every database can hold a text: PostgreSQL takes no NUL, none takes half a character."""
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError:
+        return False
+    return "\0" not in text
+
+
 def encode(cursor: Cursor) -> str:
     return base64.urlsafe_b64encode(json.dumps(cursor).encode()).decode("ascii").rstrip("=")
 
@@ -58,6 +67,7 @@ def decode(text: str | None, *kinds: type[int] | type[str]) -> Cursor | None:
         isinstance(parts, list)
         and [type(part) for part in parts] == list(kinds)
         and all(abs(part) <= MAX_NS for part in parts if isinstance(part, int))
+        and all(is_storable(part) for part in parts if isinstance(part, str))
     )
     if not fits:
         message = "expected the next_cursor of a page of this list"

@@ -17,6 +17,7 @@ from service.api.problems import problem_response, problems
 from service.api.schemas import Status
 from service.storage.repository import Repository
 from service.storage.states import AlarmKind
+from service.timing.database_silence import database_trouble
 
 router = APIRouter(tags=["operation"])
 
@@ -60,7 +61,7 @@ def _parts(context: ApiContext) -> dict[str, str | None]:
     try:
         context.repository.check()
     except SQLAlchemyError as error:
-        parts["database"] = f"does not answer: {error}"
+        parts["database"] = database_trouble(error)
     return parts | {part: problem() for part, problem in context.readiness.items()}
 
 

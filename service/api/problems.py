@@ -1,6 +1,5 @@
 """Every error is a problem document (RFC 9457, application/problem+json), whoever raised it."""
 
-import sqlite3
 from collections.abc import Callable, Iterable, Mapping
 from http import HTTPStatus
 from typing import Annotated
@@ -12,9 +11,11 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
 from sqlalchemy.exc import DataError, OperationalError, TimeoutError  # noqa: A004 - that of the database
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 from structlog.typing import FilteringBoundLogger
 
 from service.api.admission import BusyError
+from service.process.disk_space import is_disk_full
 from service.recording_store.store import RecordingStoreError
 from service.storage.errors import (
     NotFoundError,
@@ -23,6 +24,7 @@ from service.storage.errors import (
     TooManyWaitingError,
     UnusableBaselineError,
 )
+from service.timing.database_silence import does_not_answer
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
@@ -41,6 +43,8 @@ RETRY_AFTER_S = 5
 
 RETRY_WHEN_FULL_S = 60
 """Clients are told to wait this long while a motor's queue is full."""
+
+METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 
 OF_ALL = (HTTPStatus.UNPROCESSABLE_ENTITY, HTTPStatus.SERVICE_UNAVAILABLE)
 
@@ -152,6 +156,26 @@ def _busy(request: Request, error: Exception) -> JSONResponse:
     return busy_response(request.url.path, str(error))
 
 
+def _full(request: Request, error: Exception) -> JSONResponse:
+    """Return the answer to what found no room on a disk. Raises any other error again."""
+    if not is_disk_full(error):
+        raise error
+    log.error("the disk is full", path=request.url.path, error=str(error.__cause__ or error))
+    return busy_response(request.url.path, "there is no room on the disk")
+
+
+def _methods(request: Request) -> list[str]:
+    """Return the methods that the path of a request has, on whatever routes."""
+    return [
+        method
+        for method in METHODS
+        if any(
+            route.matches({**request.scope, "method": method})[0] is Match.FULL
+            for route in request.app.routes
+        )
+    ]
+
+
 def _location(way: Iterable[str | int]) -> str:
     """Return the way to a fault; names in it come from the client, and may be long or no proper text."""
     text = ".".join(str(part)[:MAX_LOCATION_LENGTH] for part in way)[:MAX_LOCATION_LENGTH]
@@ -172,6 +196,10 @@ def install(app: FastAPI) -> None:
             detail = f"nothing is at {request.url.path}; /api/v1/openapi.json says what there is"
         if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
             detail = f"{request.method} is not possible here"
+            headers = {"Allow": ", ".join(_methods(request))}
+            return problem_response(request.url.path, error.status_code, detail, headers=headers)
+        if is_disk_full(error):  # the parser of uploads, which go through the temporary folder
+            return _full(request, error)
         return problem_response(request.url.path, error.status_code, detail, headers=error.headers)
 
     for error_type, status in STATUS_OF.items():
@@ -179,6 +207,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(DataError, _unstorable)
     app.add_exception_handler(TooManyWaitingError, _too_many)
     app.add_exception_handler(BusyError, _busy)
+    app.add_exception_handler(OSError, _full)
 
     @app.exception_handler(RecordingStoreError)
     def _damaged(request: Request, error: RecordingStoreError) -> JSONResponse:
@@ -188,11 +217,9 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(TimeoutError)
     @app.exception_handler(OperationalError)
     def _database(request: Request, error: OperationalError | TimeoutError) -> JSONResponse:
-        reason = str(error)
-        if isinstance(error, OperationalError):
-            if getattr(error.orig, "sqlite_errorcode", None) == sqlite3.SQLITE_ERROR:  # our query is wrong
-                return _unexpected(request, error)
-            reason = str(error.orig)
+        if not does_not_answer(error):
+            return _unexpected(request, error)
+        reason = str(error.orig) if isinstance(error, OperationalError) else str(error)
         log.error("database does not answer", path=request.url.path, error=reason)
         detail = f"the database does not answer ({reason}); nothing was changed, try again"
         return problem_response(

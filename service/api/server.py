@@ -18,8 +18,11 @@ from service.configuration.settings import Settings
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
-BACKLOG = 64
-"""Connections that wait to be accepted; so many are accepted at a time, each with a descriptor."""
+ACCEPTED_AT_ONCE = 64
+"""Connections between two looks at anything else, each with a descriptor."""
+
+QUEUE = 2048
+"""Connections that the system holds until they are accepted. Those beyond try again after a second."""
 
 OTHER_DESCRIPTORS = 300
 """What else the service may have open: the database, files under way, pipes to its processes."""
@@ -43,7 +46,7 @@ class ApiServer(uvicorn.Server):
                 http=LimitedConnection,
                 ws="none",
                 loop="asyncio",
-                backlog=BACKLOG,
+                backlog=ACCEPTED_AT_ONCE,
                 timeout_keep_alive=math.ceil(limits.idle_timeout_s),
                 log_config=None,
                 access_log=False,
@@ -56,6 +59,8 @@ class ApiServer(uvicorn.Server):
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         asyncio.get_running_loop().set_exception_handler(self._handle_loop_error)
         await super().startup(sockets)
+        for each in sockets or ():
+            each.listen(QUEUE)
 
     async def on_tick(self, counter: int) -> bool:
         """Look at the connections, ten times a second."""
@@ -76,7 +81,7 @@ class ApiServer(uvicorn.Server):
 def connection_limits(settings: Settings) -> ConnectionLimits:
     """Return the limits of the settings; fewer connections where this process may not open enough files."""
     descriptors, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
-    possible = max(descriptors - OTHER_DESCRIPTORS - EXTRA - 2 * BACKLOG, FEWEST_CONNECTIONS)
+    possible = max(descriptors - OTHER_DESCRIPTORS - EXTRA - 2 * ACCEPTED_AT_ONCE, FEWEST_CONNECTIONS)
     if settings.max_connections > possible:
         log.warning(
             "fewer connections than max_connections says: this process may not open enough files",

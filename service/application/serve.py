@@ -6,14 +6,14 @@ import socket
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from ipaddress import IPv6Address
 from pathlib import Path
-from tempfile import TemporaryFile
+from tempfile import TemporaryFile, gettempdir
 from threading import Event
 from types import FrameType
 
 import structlog
-from sqlalchemy import make_url
 from sqlalchemy.exc import OperationalError
 
 from service.api.app import create_app
@@ -29,10 +29,12 @@ from service.jobs import JobRunner
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.plant import Plant, read_plant
+from service.process.disk_space import disk_problem
 from service.process.installation import installation_id
 from service.process.single_instance import exclusive
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
+from service.storage.database_url import readable_url
 from service.timing.backoff import Backoff
 
 log = structlog.get_logger(__name__)
@@ -58,7 +60,8 @@ def serve(settings: Settings) -> None:
         store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
         store.discard_incoming()
         jobs, parts = _parts(settings, plant, repository, store)
-        readiness = {name: part.problem for name, part in parts.items()}
+        room = {"disk": partial(disk_problem, _written(settings))}
+        readiness = room | {name: part.problem for name, part in parts.items()}
         context = ApiContext(settings, repository, store, readiness=readiness, on_new_job=jobs.wake)
         with running(parts.values()):
             host, port = listener.getsockname()[:2]
@@ -75,10 +78,9 @@ def _prepared(settings: Settings, plant: Plant) -> Repository:
         repository.sync_plant(plant)
         repository.reset_links(now_ns=time.time_ns())
     except OperationalError as error:
-        url = make_url(settings.database_url).render_as_string(hide_password=True)
         raise ServeError(
-            f"{url}: expected a database that can be read and written (setting database_url), found: "
-            f"{error.orig}; is its disk full, or its server down?"
+            f"{readable_url(settings.database_url)}: expected a database that can be read and written "
+            f"(setting database_url), found: {error.orig}; is its disk full, or its server down?"
         ) from error
     return repository
 
@@ -148,6 +150,11 @@ def _parts(
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
     )
     return jobs, {"collector": gateways, "jobs": jobs, **workers}
+
+
+def _written(settings: Settings) -> list[Path]:
+    """The directories that the service writes to; uploads and downloads pass through the last one."""
+    return list(dict.fromkeys((settings.data_directory, settings.recordings_directory, Path(gettempdir()))))
 
 
 def _require_writable(directory: Path) -> None:

@@ -1,5 +1,6 @@
 """A client of the service's REST API, for the command line and the demo."""
 
+import re
 from collections.abc import Iterator, Mapping
 from http import HTTPStatus
 from types import TracebackType
@@ -26,13 +27,14 @@ class ServiceClient:
     """A client of one service. It returns documents as JSON objects; every failure is a ServiceError."""
 
     def __init__(self, url: str) -> None:
-        self._url = url
+        self._url = without_credentials(url)
+        wrong = f"{self._url}: expected a URL such as http://127.0.0.1:8710"
         try:
             parsed = httpx.URL(url)
-        except httpx.InvalidURL as error:
-            raise ServiceError(f"{url}: expected a URL such as http://127.0.0.1:8710: {error}") from error
-        if parsed.scheme not in ("http", "https") or not parsed.host:
-            raise ServiceError(f"{url}: expected a URL such as http://127.0.0.1:8710")
+        except httpx.InvalidURL:  # it quotes what it takes for the port, which may be part of a password
+            raise ServiceError(wrong) from None
+        if parsed.scheme not in ("http", "https") or not parsed.host or "@" in parsed.host:
+            raise ServiceError(wrong)
         self._http = httpx.Client(base_url=parsed, timeout=TIMEOUT_S, trust_env=False)
 
     def __enter__(self) -> Self:
@@ -107,20 +109,28 @@ class ServiceClient:
         raise ServiceError(_problem(response), status=response.status_code)
 
 
+def without_credentials(url: str) -> str:
+    """Return a URL as it may be printed: without what is before its last @, where a password may stand."""
+    return re.sub(r"(//|^).*@", r"\1", url, count=1, flags=re.DOTALL)
+
+
 def segment(name: str) -> str:
     """Return a name as one segment of a path."""
     return quote(name, safe="")
+
+
+def _asked(response: httpx.Response) -> str:
+    return without_credentials(str(response.url))
 
 
 def _document(response: httpx.Response) -> Document:
     try:
         document = response.json()
     except ValueError as error:
-        raise ServiceError(
-            f"{response.url}: expected JSON, found {response.headers.get('content-type')}"
-        ) from error
+        found = response.headers.get("content-type")
+        raise ServiceError(f"{_asked(response)}: expected JSON, found {found}") from error
     if not isinstance(document, dict):
-        raise ServiceError(f"{response.url}: expected a JSON object")
+        raise ServiceError(f"{_asked(response)}: expected a JSON object")
     return document
 
 
@@ -132,4 +142,4 @@ def _problem(response: httpx.Response) -> str:
         problem = None
     if isinstance(problem, dict):
         return str(problem.get("detail") or problem.get("title") or f"HTTP status {response.status_code}")
-    return f"{response.url}: HTTP status {response.status_code}"
+    return f"{_asked(response)}: HTTP status {response.status_code}"

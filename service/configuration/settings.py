@@ -157,6 +157,7 @@ def _first_problem(error: ValidationError, config: Path | None) -> SettingsError
         )
     if problem["type"] == "missing":
         return SettingsError(source, field, expected="this setting", found="none")
-    return SettingsError(
-        source, field, expected=problem["msg"].removeprefix("Input should be "), found=repr(problem["input"])
-    )
+    found = repr(problem["input"])
+    if field in Settings.model_fields and not Settings.model_fields[field].repr:
+        found = f"a value of type {type(problem['input']).__name__}"  # it may hold a password
+    return SettingsError(source, field, expected=problem["msg"].removeprefix("Input should be "), found=found)

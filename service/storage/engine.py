@@ -6,12 +6,13 @@ import time
 from collections.abc import Mapping
 from functools import partial
 
-from sqlalchemy import Connection, Engine, create_engine, event, func, make_url, select
+from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine.interfaces import DBAPIConnection
-from sqlalchemy.exc import ArgumentError, InterfaceError, OperationalError
+from sqlalchemy.exc import InterfaceError, OperationalError
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.pool import ConnectionPoolEntry
 
+from service.storage.database_url import parsed_url
 from service.storage.errors import StorageError
 
 BUSY_TIMEOUT_S = 30.0
@@ -39,10 +40,7 @@ def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
     busy_timeout_s: how long a transaction waits while others write to an SQLite file. Raises StorageError for
     what is no URL.
     """
-    try:
-        parsed = make_url(url)
-    except ArgumentError as error:
-        raise StorageError("database_url: expected a URL such as sqlite:////var/lib/mcc/db.sqlite") from error
+    parsed = parsed_url(url)
     # A figure that is not a number has no place in a JSON document; better to fail here than in a reader.
     serializer = partial(json.dumps, allow_nan=False)
     if parsed.get_backend_name() != "sqlite":

@@ -1,5 +1,6 @@
 """A background thread that repeats one piece of work and reports when it fails."""
 
+import time
 from collections.abc import Callable
 from threading import Event, Thread
 
@@ -7,11 +8,16 @@ import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.timing.backoff import Backoff
+from service.timing.database_silence import database_trouble, does_not_answer
 
 log = structlog.get_logger(__name__)
 
 LONGEST_PAUSE_S = 30.0
 """After errors that nobody foresaw: each is logged with its traceback, and periods may be short."""
+
+OVERDUE_PERIODS = 5
+SHORTEST_OVERDUE_S = 30.0
+"""Work that lasts for longer than both say hangs, or has more to do than it can."""
 
 
 class PeriodicWorker:
@@ -19,7 +25,8 @@ class PeriodicWorker:
 
     No failure ends the thread. It is logged, `problem` reports it, and the work is tried again. Where the
     database does not answer, that is a warning, and the next attempt comes a period later. Any other error is
-    logged with its traceback, and the pauses grow while such errors follow each other.
+    logged with its traceback, and the pauses grow while such errors follow each other. `problem` also reports
+    work that does not come to its end.
     """
 
     def __init__(
@@ -31,11 +38,13 @@ class PeriodicWorker:
         at_once: bool = False,
         once_more: bool = False,
         stopping: Event | None = None,
+        overdue_s: float | None = None,
     ) -> None:
         """
         at_once: begin with the work, not with a pause.
         once_more: do the work a last time after `stop`.
         stopping: set by `stop`, for work that may take long and should then end.
+        overdue_s: how long the work may last [s]; by default five periods, and 30 s at least.
         """
         self._name = name
         self._work = work
@@ -49,6 +58,8 @@ class PeriodicWorker:
         self._thread = Thread(target=self._run, name=name, daemon=True)
         self._started = False
         self._failure: str | None = None
+        self._overdue_s = overdue_s or max(OVERDUE_PERIODS * period_s, SHORTEST_OVERDUE_S)
+        self._begun_s: float | None = None
 
     def start(self) -> None:
         """Start the thread."""
@@ -72,7 +83,16 @@ class PeriodicWorker:
             return f"{self._name} has not started"
         if not self._thread.is_alive() and not self._stopping.is_set():
             return f"{self._name} is not running"
-        return self._failure
+        return self._overdue() or self._failure
+
+    def _overdue(self) -> str | None:
+        begun_s = self._begun_s
+        if begun_s is None:
+            return None
+        lasted_s = time.monotonic() - begun_s
+        if lasted_s <= self._overdue_s:
+            return None
+        return f"{self._name} has been at work for {lasted_s:.0f} s, expected at most {self._overdue_s:g} s"
 
     def _run(self) -> None:
         if self._at_once:
@@ -87,12 +107,17 @@ class PeriodicWorker:
             self._attempt()
 
     def _attempt(self) -> None:
+        self._begun_s = time.monotonic()
         try:
             self._work()
         except SQLAlchemyError as error:
-            self._unforeseen = 0
-            self._failure = f"the database does not answer: {error}"
-            log.warning("database does not answer, trying again", work=self._name, error=str(error))
+            self._failure = database_trouble(error)
+            if does_not_answer(error):
+                self._unforeseen = 0
+                log.warning("database does not answer, trying again", work=self._name, error=str(error))
+            else:
+                self._unforeseen += 1
+                log.exception("database refused a statement, trying again", work=self._name)
         except Exception as error:  # a bug in one round must not end all that would follow
             self._unforeseen += 1
             self._failure = f"{type(error).__name__}: {error}"
@@ -100,3 +125,5 @@ class PeriodicWorker:
         else:
             self._unforeseen = 0
             self._failure = None
+        finally:
+            self._begun_s = None

@@ -14,6 +14,7 @@ from service.collector.supervision.gateway_supervisor import GatewaySupervisor
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.storage import Repository, StorageError
+from service.timing.database_silence import database_trouble
 
 log = structlog.get_logger(__name__)
 
@@ -66,7 +67,7 @@ class GatewayProcesses:
         try:
             gateways = self._repository.gateways()
         except SQLAlchemyError as error:
-            return f"what the gateways report is not known, the database does not answer: {error}"
+            return f"what the gateways report is not known: {database_trouble(error)}"
         reported = [
             f"{each.id}: {each.problem}" for each in gateways if each.id in self._ids and each.problem
         ]

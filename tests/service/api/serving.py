@@ -7,16 +7,30 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 import httpx
-import uvicorn
 from fastapi import FastAPI
+from starlette.types import ASGIApp
+
+from service.api.connections import ConnectionLimits
+from service.api.server import ApiServer, connection_limits
 
 
 @contextmanager
 def serving(app: FastAPI) -> Iterator[httpx.Client]:
+    """A client of the API, with the limits of its settings."""
+    with (
+        listening(app, connection_limits(app.state.context.settings)) as port,
+        httpx.Client(base_url=f"http://127.0.0.1:{port}", trust_env=False) as client,
+    ):
+        yield client
+
+
+@contextmanager
+def listening(app: ASGIApp, limits: ConnectionLimits) -> Iterator[int]:
+    """The port at which an application is served."""
     with socket.socket() as listener:
         listener.bind(("127.0.0.1", 0))
         port = listener.getsockname()[1]
-        server = uvicorn.Server(uvicorn.Config(app, log_level="critical", lifespan="off"))
+        server = ApiServer(app, limits)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
         try:
@@ -24,8 +38,7 @@ def serving(app: FastAPI) -> Iterator[httpx.Client]:
             while not server.started:
                 assert time.monotonic() < deadline
                 time.sleep(0.005)
-            with httpx.Client(base_url=f"http://127.0.0.1:{port}", trust_env=False) as client:
-                yield client
+            yield int(port)
         finally:
             server.should_exit = True
             thread.join(timeout=10)

@@ -1,4 +1,6 @@
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from threading import Event, Semaphore
 
 import httpx
 from sqlalchemy import create_engine
@@ -7,6 +9,9 @@ from service.api import ApiContext, create_app
 from service.storage import Repository
 from testing.service.plants import NOW_NS
 from tests.service.api.serving import serving
+
+THREADS = 40
+"""As many answer requests at a time (anyio)."""
 
 
 def test_alive_and_ready(context: ApiContext) -> None:
@@ -31,6 +36,26 @@ def test_what_is_not_ready_is_named(context: ApiContext) -> None:
     parts = response.json()["parts"]
     assert (parts["collector"], parts["jobs"]) == ("ended with exit code 1", "ready")
     assert "does not answer" in parts["database"]
+
+
+def test_health_is_told_while_all_threads_are_busy(context: ApiContext) -> None:
+    busy, go_on = Semaphore(0), Event()
+
+    def wait() -> None:
+        busy.release()
+        go_on.wait(60)
+
+    app = create_app(replace(context, readiness={"slow": wait}))
+    with serving(app) as client, ThreadPoolExecutor(THREADS) as others:
+        url = f"{client.base_url}/readyz"
+        answers = [others.submit(httpx.get, url, trust_env=False, timeout=60) for _ in range(THREADS)]
+        try:
+            for _ in range(THREADS):
+                assert busy.acquire(timeout=20)
+            assert client.get("/healthz", timeout=20).status_code == 200
+        finally:
+            go_on.set()
+        assert {answer.result().status_code for answer in answers} == {200}
 
 
 def test_metrics(client: httpx.Client, repository: Repository) -> None:

@@ -37,6 +37,8 @@ NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
         ("GET", "/api/v1/motors?cursor=nonsense", 422),
         ("GET", "/api/v1/motors?cursor=WzFd", 422),
         ("GET", "/api/v1/event-reports?cursor=WzFlOTk5LCAieCJd", 422),
+        ("GET", "/api/v1/motors?cursor=WyJcdWQ4MDAiXQ", 422),  # ["\ud800"], half a surrogate pair
+        ("GET", "/api/v1/motors?cursor=WyJcdTAwMDAiXQ", 422),  # ["\u0000"]
         ("GET", "/api/v1/motors/PUMP-A1/trend?from=yesterday", 422),
         ("GET", "/api/v1/recordings/1", 422),
     ],
@@ -50,6 +52,20 @@ def test_errors_are_problem_documents(client: httpx.Client, method: str, path: s
     assert problem["title"]
     assert problem["detail"]
     assert problem["type"] == "about:blank"
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "allowed"),
+    [
+        ("PATCH", "/api/v1/motors/PUMP-A1/baseline", "GET, PUT, DELETE"),
+        ("OPTIONS", "/api/v1/recordings", "GET, POST"),
+        ("POST", "/healthz", "GET"),
+    ],
+)
+def test_allow_has_all_methods(client: httpx.Client, method: str, path: str, allowed: str) -> None:
+    response = client.request(method, path)
+    assert response.status_code == 405
+    assert response.headers["allow"] == allowed
 
 
 def test_a_wrong_request_says_which_field(client: httpx.Client) -> None:

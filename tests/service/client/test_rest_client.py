@@ -88,3 +88,20 @@ def test_an_address_where_nobody_answers() -> None:
         pytest.raises(ServiceError, match="no service answers"),
     ):
         client.get("/motors")
+
+
+@pytest.mark.parametrize(
+    "url",
+    [
+        "http://mcc:Zx9@127.0.0.1:1",
+        "http://mcc:Zx9@Zx9@127.0.0.1:1",
+        "http://mcc:Zx9@Zx9:Zx9@127.0.0.1:1",
+        "http://mcc:Zx9/Zx9@127.0.0.1:1",
+        "mcc:Zx9@127.0.0.1",
+        "ftp://mcc:Zx9@127.0.0.1",
+    ],
+)
+def test_no_password_of_a_url_is_told(url: str) -> None:
+    with pytest.raises(ServiceError) as refused, ServiceClient(url) as client:
+        client.get("/motors")
+    assert "Zx9" not in str(refused.value)

@@ -188,3 +188,12 @@ def test_the_least_and_the_largest_numbers_work(repository: Repository, tmp_path
     for hours in range(3):
         passed_ns = hours * 3600 * SECOND_NS
         housekeeping.average_and_delete(NOW_NS + passed_ns, passed_ns)
+
+
+def test_a_database_url_that_is_no_text_is_not_told(tmp_path: Path) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text('database_url = ["postgresql://mcc:Zx9@db/mcc"]')
+    with pytest.raises(
+        SettingsError, match="database_url: expected a valid string, found a value of type list"
+    ):
+        Settings.load(config)

@@ -5,9 +5,11 @@ from queue import SimpleQueue
 from threading import Event
 
 import pytest
-from sqlalchemy.exc import SQLAlchemyError
+from sqlalchemy.exc import IntegrityError, OperationalError, ProgrammingError, SQLAlchemyError
+from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 from service.timing.periodic_worker import PeriodicWorker
+from testing.waiting import wait_until
 
 LIMIT_S = 10.0
 
@@ -53,6 +55,40 @@ def test_a_failure_is_told_and_the_work_is_tried_again(error: Exception) -> None
         go_on.set()
         assert done.wait(LIMIT_S)
     assert worker.problem() is None
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (OperationalError("SELECT 1", {}, Exception("locked")), "does not answer"),
+        (PoolTimeoutError("no connection"), "does not answer"),
+        (IntegrityError("INSERT", {}, Exception("twice")), "refused a statement"),
+        (ProgrammingError("SELEC", {}, Exception("syntax")), "refused a statement"),
+    ],
+)
+def test_a_database_that_is_away_is_told_from_one_that_refuses(error: SQLAlchemyError, words: str) -> None:
+    def fail() -> None:
+        raise error
+
+    worker = PeriodicWorker("asking", fail, period_s=0.01, at_once=True)
+    with running(worker):
+        wait_until(lambda: worker.problem() is not None)
+        assert words in str(worker.problem())
+
+
+def test_work_that_hangs_is_told() -> None:
+    go_on = Event()
+
+    def hang() -> None:
+        go_on.wait(LIMIT_S)
+
+    worker = PeriodicWorker("hanging", hang, period_s=0.01, at_once=True, overdue_s=0.05)
+    with running(worker):
+        try:
+            wait_until(lambda: "hanging has been at work for" in str(worker.problem()))
+        finally:
+            go_on.set()
+        wait_until(lambda: worker.problem() is None)
 
 
 def test_it_can_be_woken_before_its_pause_is_over() -> None:
