@@ -55,7 +55,7 @@ def serve(settings: Settings) -> None:
     signal.signal(signal.SIGTERM, _stop)
     plant = _plant(settings)
     _require_writable(settings.data_directory)
-    with exclusive(settings.data_directory / "service.lock", wait=False), _listener(settings) as listener:
+    with exclusive(settings.data_directory / "service.lock", wait=False), listening(settings) as listener:
         repository = _prepared(settings, plant)
         store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
         store.discard_incoming()
@@ -171,8 +171,11 @@ def _require_writable(directory: Path) -> None:
 
 
 @contextmanager
-def _listener(settings: Settings) -> Iterator[socket.socket]:
-    """The API's socket. It is opened before anything is started, since a busy port would end it all again."""
+def listening(settings: Settings) -> Iterator[socket.socket]:
+    """Open the API's socket, before anything is started: a busy port would end it all again.
+
+    Raises ServeError.
+    """
     address = settings.bind_address
     family = socket.AF_INET6 if isinstance(address, IPv6Address) else socket.AF_INET
     try:
@@ -183,6 +186,9 @@ def _listener(settings: Settings) -> Iterator[socket.socket]:
             f"(settings bind_address, port), found: {error.strerror}"
         ) from error
     with listener:
+        # The connections inherit it. The body of an answer would else wait for the client's acknowledgement
+        # of the header, 40 ms: asyncio sets it for sockets only that were made with the protocol's number.
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         yield listener
 
 

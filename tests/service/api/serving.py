@@ -28,6 +28,7 @@ def serving(app: FastAPI) -> Iterator[httpx.Client]:
 def listening(app: ASGIApp, limits: ConnectionLimits) -> Iterator[int]:
     """The port at which an application is served."""
     with socket.socket() as listener:
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as the service's own
         listener.bind(("127.0.0.1", 0))
         port = listener.getsockname()[1]
         server = ApiServer(app, limits)
