@@ -1,5 +1,7 @@
 """Every list has an index for each of its filters, and the numbers of standing alarms are kept."""
 
+from collections.abc import Mapping
+
 import sqlalchemy as sa
 from alembic import op
 
@@ -29,33 +31,11 @@ NEW = {
     "ix_alarms_standing_ied_raised_ns_id": ("alarms", ["ied", "raised_ns", "id"], STANDING),
     "ix_alarms_cleared_raised_ns_id": ("alarms", ["raised_ns", "id"], CLEARED),
     "ix_alarms_cleared_ied_raised_ns_id": ("alarms", ["ied", "raised_ns", "id"], CLEARED),
-    "ix_diagnoses_trend": (
-        "diagnoses",
-        [
-            "motor",
-            "current",
-            "recorded_ns",
-            "id",
-            "recording_id",
-            "verdict",
-            "mu_f",
-            "mu_f_ci95_low",
-            "mu_f_ci95_high",
-            "theta_f",
-            "load_level",
-        ],
-        None,
-    ),
 }
 OLD = {
     "ix_alarms_standing": ("alarms", ["ied", "kind"], STANDING),
-    "ix_diagnoses_motor_current_recorded_ns_id": (
-        "diagnoses",
-        ["motor", "current", "recorded_ns", "id"],
-        None,
-    ),
 }
-Indexes = dict[str, tuple[str, list[str], sa.TextClause | None]]
+Indexes = Mapping[str, tuple[str, list[str], sa.TextClause | None]]
 
 
 def upgrade() -> None:

@@ -61,28 +61,19 @@ DOWNGRADE = {
 }
 
 
+BY_TIME = "ix_diagnoses_motor_current_recorded_ns_id"
+TIME = ("motor", "current", "recorded_ns", "id")
+
 TREND = "ix_diagnoses_trend"
-TREND_OF_0018 = [
-    "motor",
-    "current",
-    "recorded_ns",
-    "id",
-    "recording_id",
-    "verdict",
-    "mu_f",
-    "mu_f_ci95_low",
-    "mu_f_ci95_high",
-    "theta_f",
-    "load_level",
-]
+FIGURES = ("recording_id", "verdict", "mu_f", "mu_f_ci95_low", "mu_f_ci95_high", "theta_f", "load_level")
 
 
 def upgrade() -> None:
-    op.drop_index(TREND, table_name="diagnoses")
+    op.drop_index(BY_TIME, table_name="diagnoses")
     for name in NEW:
         op.add_column("diagnoses", sa.Column(name, sa.Double(), nullable=True))
     op.execute(sa.text(_escaped(UPGRADE[op.get_bind().dialect.name])))
-    op.create_index(TREND, "diagnoses", [*TREND_OF_0018, *NEW])
+    op.create_index(TREND, "diagnoses", [*TIME, *FIGURES, *NEW])
 
 
 def downgrade() -> None:
@@ -90,7 +81,7 @@ def downgrade() -> None:
     op.execute(sa.text(_escaped(DOWNGRADE[op.get_bind().dialect.name])))
     for name in NEW:
         op.drop_column("diagnoses", name)
-    op.create_index(TREND, "diagnoses", TREND_OF_0018)
+    op.create_index(BY_TIME, "diagnoses", [*TIME])
 
 
 def _escaped(statement: str) -> str:
