@@ -20,6 +20,7 @@ from pathlib import Path
 from threading import Event, Thread
 
 from sqlalchemy import Engine, delete, func, select, text
+from sqlalchemy.exc import OperationalError, TimeoutError  # noqa: A004 - that of the database
 from sqlalchemy.orm import Session
 
 from service.configuration.settings import sqlite_url
@@ -53,9 +54,10 @@ GATEWAY = "measured"
 
 @dataclass(slots=True)
 class Waits:
-    """How long each of many calls took [s]."""
+    """How long each of many calls took [s], and how many the database refused as it was locked."""
 
     each_s: list[float] = field(default_factory=list)
+    refused: int = 0
 
     def repeat(
         self,
@@ -66,7 +68,10 @@ class Waits:
         """Call again and again, one call each `period_s`, until `stopping`, which waits, says so."""
         while True:
             began_s = time.monotonic()
-            call()
+            try:
+                call()
+            except (OperationalError, TimeoutError):
+                self.refused += 1
             took_s = time.monotonic() - began_s
             self.each_s.append(took_s)
             if stopping(max(0.0, period_s - took_s)):
@@ -77,7 +82,7 @@ class Waits:
         p99_s = ordered[int(0.99 * (len(ordered) - 1))]
         return (
             f"{len(ordered)} calls, median {1e3 * statistics.median(ordered):.1f} ms, "
-            f"99 % {1e3 * p99_s:.0f} ms, longest {1e3 * ordered[-1]:.0f} ms"
+            f"99 % {1e3 * p99_s:.0f} ms, longest {1e3 * ordered[-1]:.0f} ms, {self.refused} refused"
         )
 
 

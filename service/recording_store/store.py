@@ -2,6 +2,7 @@
 
     <root>/<digest[:2]>/<digest>/C_0001.CFG, C_0001.DAT, C_0001.HDR
     <root>/incoming/<writer>/<random>/...      while they arrive
+    <root>/deleted/<digest>.<random>/...       while they are removed
 
 The digest is the SHA-256 of the list of (name, SHA-256 of the content), so the same record is stored once
 however often it is pulled. A folder appears under its digest only when it is complete and on disk (fsync).
@@ -12,7 +13,7 @@ import os
 import re
 import shutil
 import uuid
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from hashlib import file_digest, sha256
@@ -22,6 +23,8 @@ from typing import BinaryIO
 ENTRY_SUFFIXES = (".CFG", ".CFF", ".CEV")
 WAVEFORM_SUFFIXES = (*ENTRY_SUFFIXES, ".DAT")
 MAX_NAME_LENGTH = 100
+ASIDE = "deleted"
+"""Below this folder everything may be removed, whoever put it there."""
 _DIGEST = re.compile(r"[0-9a-f]{64}")
 
 
@@ -159,6 +162,24 @@ class RecordingStore:
             shutil.rmtree(directory)
         return len(left_over)
 
+    def set_aside(self, digest: str) -> None:
+        """Take the record of a digest away, at once and as a whole, to be removed; it may be gone already."""
+        aside = self.root / ASIDE
+        aside.mkdir(exist_ok=True)
+        directory = _content_directory(self.root, digest)
+        if not directory.is_dir():
+            return
+        directory.rename(aside / f"{digest}.{uuid.uuid4().hex}")
+        _sync_directory(aside)
+        _sync_directory(directory.parent)
+
+    def remove_set_aside(self) -> None:
+        """Remove what was set aside, also by others and before a crash."""
+        aside = self.root / ASIDE
+        if aside.is_dir():
+            for directory in aside.iterdir():
+                shutil.rmtree(directory, ignore_errors=True)
+
     def _present(self, digest: str) -> Path:
         directory = _content_directory(self.root, digest)
         if not directory.is_dir():
@@ -184,6 +205,12 @@ def manifest_digest(files: tuple[StoredFile, ...]) -> str:
     """Return the SHA-256 of the sorted (name, SHA-256) of the files, hexadecimal."""
     lines = sorted(f"{file.name}\t{file.sha256}\n" for file in files)
     return sha256("".join(lines).encode("ascii")).hexdigest()
+
+
+def waveform_digest(files: Iterable[StoredFile]) -> str:
+    """Return the SHA-256 of the contents of the files with the samples, whatever the files are called."""
+    contents = sorted(file.sha256 for file in files if Path(file.name).suffix in WAVEFORM_SUFFIXES)
+    return sha256("\n".join(contents).encode("ascii")).hexdigest()
 
 
 def _content_directory(root: Path, digest: str) -> Path:

@@ -43,6 +43,20 @@ class UnusableBaselineError(StorageError):
         super().__init__(f"recording {recording_id} cannot be part of a baseline: {reason}")
 
 
+class RecordingInUseError(StorageError):
+    """A recording that cannot be deleted now; `cause` says what uses it and what to do."""
+
+    def __init__(self, recording_id: str, cause: str) -> None:
+        super().__init__(f"recording {recording_id} cannot be deleted: {cause}")
+
+
+class FolderGoneError(StorageError):
+    """The folder of a record that was about to be added was removed meanwhile: store its files again."""
+
+    def __init__(self, digest: str) -> None:
+        super().__init__(f"the files of recording {digest} were removed meanwhile; store them again")
+
+
 class UnstorableDiagnosisError(StorageError):
     """A diagnosis that no database can hold: a figure that is no number, or more text than people read."""
 

@@ -70,6 +70,13 @@ class RecordingSource(StrEnum):
     UPLOAD = "upload"
 
 
+class DeletedBy(StrEnum):
+    """Who deleted a recording."""
+
+    PERSON = "person"
+    RETENTION = "retention"
+
+
 class JobState(StrEnum):
     """A diagnosis to be made."""
 

@@ -34,6 +34,7 @@ from service.configuration.settings import Settings
 from service.plant import Relay
 from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import Repository
+from service.storage.errors import FolderGoneError
 from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
@@ -278,7 +279,10 @@ class RecordDirectory:
             if failure in VISIT_ENDS:
                 raise
             return
-        self._ledger.keep(state, stored, claim(state.name))
+        try:
+            self._ledger.keep(state, stored, claim(state.name))
+        except FolderGoneError as error:  # somebody deleted the same content just now
+            log.info("record pulled once more", relay=self._relay, record=state.name, reason=str(error))
 
     def _pull(self, client: Client, state: RecordState) -> StoredRecording:
         stored = pull(

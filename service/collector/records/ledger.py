@@ -16,7 +16,7 @@ from service.collector.records.life import Life, RecordState, remote_of
 from service.collector.records.listing import ListedRecord
 from service.recording_store.store import StoredRecording
 from service.storage import Repository
-from service.storage.records import RecordingEntry, RemoteRecord
+from service.storage.records import Deletion, RecordingEntry, RemoteRecord
 from service.storage.states import RecordingState
 
 log = structlog.get_logger(__name__)
@@ -50,13 +50,13 @@ class RecordLedger:
         before = {state.remote: state for state in self._states.values()}
         new = [record for record in listed if record not in self._states]
         unseen = {remote_of(record) for record in new} - before.keys()
-        known = self._repository.remote_recordings(
-            self._relay, [remote for remote in unseen if remote.modified_ns or not self._has_begun]
-        )
+        asked = [remote for remote in unseen if remote.modified_ns or not self._has_begun]
+        known = self._repository.remote_recordings(self._relay, asked)
+        deleted = self._repository.deleted_remote_records(self._relay, asked)
         if not self._has_begun:
             self._announced.update(self._repository.announced_remote_records(self._relay))
             self._has_begun = True
-        begun = {record: self._begin(record, before, known) for record in new}
+        begun = {record: self._begin(record, before, known, deleted) for record in new}
         waited_since_s = {
             state.name: state.first_s for state in self._states.values() if state.first_s is not None
         }
@@ -72,10 +72,12 @@ class RecordLedger:
         record: ListedRecord,
         before: dict[RemoteRecord, RecordState],
         known: dict[RemoteRecord, RecordingEntry],
+        deleted: dict[RemoteRecord, Deletion],
     ) -> RecordState:
         """Return the state of a record that is listed anew, as far as it is known from before."""
         state = RecordState(record)
         same, recording = before.get(state.remote), known.get(state.remote)
+        deletion = deleted.get(state.remote)
         if same is not None:  # its files are listed in another way, for instance in another folder
             state.in_store = same.in_store
             if same.is_decided:
@@ -83,6 +85,9 @@ class RecordLedger:
         elif recording is not None and recording.state is not RecordingState.ANNOUNCED:
             state.in_store = recording.digest is not None
             state.life = Life.STORED if state.in_store else Life.REFUSED
+        elif deletion is not None and recording is None:
+            state.in_store = deletion.digest is not None
+            state.life = Life.DELETED if state.in_store else Life.REFUSED
         return state
 
     def pass_over(self, states: Iterable[RecordState]) -> None:
@@ -106,7 +111,23 @@ class RecordLedger:
         )
 
     def keep(self, state: RecordState, stored: StoredRecording, recording_request_id: str | None) -> None:
-        """Write down that its files are in the store; the recording request, if any, gets it."""
+        """Write down that its files are in the store; the recording request, if any, gets it.
+
+        A record that was deleted here stays so, under whatever listing it comes back.
+        """
+        deletion = self._repository.keep_deleted(
+            stored,
+            motor=self._motor,
+            relay=self._relay,
+            remote=state.remote,
+            now_ns=time.time_ns(),
+            recording_request_id=recording_request_id,
+        )
+        if deletion is not None:
+            state.in_store = True
+            self._decide(state, Life.DELETED)
+            log.info("record stays deleted", relay=self._relay, record=state.name, recording=deletion.id)
+            return
         added = self._repository.add_recording(
             stored,
             motor=self._motor,
@@ -156,12 +177,12 @@ class RecordLedger:
             log.warning("record gone", relay=self._relay, record=remote.name, reason=reason)
 
     def pull_untimed_again(self) -> None:
-        """Pull once more what is stored and has no time.
+        """Pull once more what is stored, or was until somebody deleted it, and has no time.
 
         Where a relay gives no times, a new record of the same name and size looks like the old one.
         """
         for state in self._states.values():
-            if state.life is Life.STORED and not state.record.modified_ns:
+            if state.life in (Life.STORED, Life.DELETED) and not state.record.modified_ns:
                 state.begin_anew(Life.SETTLING)
                 self.revision += 1
 

@@ -20,9 +20,10 @@ class Life(StrEnum):
     INCOMPLETE = "incomplete"
     STORED = "stored"
     REFUSED = "refused"
+    DELETED = "deleted"
 
 
-DECIDED = frozenset({Life.STORED, Life.REFUSED})
+DECIDED = frozenset({Life.STORED, Life.REFUSED, Life.DELETED})
 """Nothing more is asked of the relay for records that stand here."""
 
 WHOLE = frozenset({Life.READY, Life.RETRYING})
@@ -42,8 +43,9 @@ class SettlingTimes:
 class RecordState:
     """What is known of one record as it is listed. A record that changes is listed as another one.
 
-    in_store: its files were stored under this listing. While its life is then not `stored`, it is pulled once
-    more, because it may be another record by now.
+    in_store: its files were stored under this listing, though they may have been deleted since. While its
+    life is then neither `stored` nor `deleted`, it is pulled once more, because it may be another record by
+    now.
     since_s: since when it stands still.  first_s: since when a record of its name has been waited for. Both
     are None while it is not waited for.  due_s: when it may be asked for again.  Times are monotonic [s].
     failures: attempts since the collector started, by kind.  reason: why the latest one failed.

@@ -5,6 +5,7 @@ The code says relay; the tables, their columns and the REST API say IED, as IEC 
 
 from service.storage.models.base import Base
 from service.storage.models.counts import StandingAlarmCountRow, StateCountRow
+from service.storage.models.deletions import DeletedRemoteRecordRow, DeletionRow, DiscardedFolderRow
 from service.storage.models.diagnoses import DiagnosisRow, JobRow, JobRunnerRow
 from service.storage.models.measurements import MeasurementRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
@@ -29,7 +30,10 @@ __all__ = [
     "AlarmRow",
     "Base",
     "BaselineRecordingRow",
+    "DeletedRemoteRecordRow",
+    "DeletionRow",
     "DiagnosisRow",
+    "DiscardedFolderRow",
     "GatewayRow",
     "IedRow",
     "JobRow",

@@ -10,6 +10,7 @@ from core.diagnosis.verdict import Verdict
 from service.storage.states import (
     AlarmKind,
     ClockQuality,
+    DeletedBy,
     JobState,
     LinkState,
     RecordingRequestOrigin,
@@ -52,6 +53,7 @@ class Base(DeclarativeBase):
         RecordingRequestState: _words(RecordingRequestState),
         RecordingState: _words(RecordingState),
         RecordingSource: _words(RecordingSource),
+        DeletedBy: _words(DeletedBy),
         JobState: _words(JobState),
         Verdict: _words(Verdict),
         Mapping[str, object]: JSON,

@@ -1,6 +1,6 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
-from service.storage.records.deletions import DeletedRows
+from service.storage.records.deletions import DeletedRows, Deletion
 from service.storage.records.diagnoses import (
     ClaimedJob,
     Counts,
@@ -36,6 +36,7 @@ __all__ = [
     "Counts",
     "Cursor",
     "DeletedRows",
+    "Deletion",
     "DiagnosisEntry",
     "GatewayEntry",
     "IedEntry",

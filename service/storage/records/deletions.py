@@ -1,6 +1,9 @@
-"""What was deleted: how much in one transaction."""
+"""What was deleted."""
 
 from dataclasses import dataclass
+
+from core.diagnosis.verdict import Verdict
+from service.storage.states import DeletedBy, RecordingSource, RecordingState
 
 
 @dataclass(frozen=True, slots=True)
@@ -9,3 +12,23 @@ class DeletedRows:
 
     rows: int
     took_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Deletion:
+    """A recording that was deleted: what it was when it was deleted, when, by whom and why."""
+
+    id: str
+    motor: str
+    ied: str | None
+    source: RecordingSource
+    name: str
+    digest: str | None
+    size_bytes: int
+    state: RecordingState
+    verdict: Verdict | None
+    announced_ns: int
+    recorded_ns: int | None
+    deleted_ns: int
+    deleted_by: DeletedBy
+    reason: str

@@ -2,6 +2,7 @@
 
 from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
+from service.storage.repository.deletions import DeletionRows
 from service.storage.repository.findings import FindingsRows
 from service.storage.repository.job_runners import JobRunnerRows
 from service.storage.repository.jobs import JobRows
@@ -31,6 +32,7 @@ class Repository(
     StateCounts,
     MeasurementRows,
     BaselineRows,
+    DeletionRows,
 ):
     """All there is to ask of and tell the database; every method is one transaction.
 

@@ -50,7 +50,7 @@ class JobRows(Sessions):
         StateConflictError (not stored), TooManyWaitingError.
         """
         with self._write() as session:
-            recording = found(session, RecordingRow, recording_id, "recording")
+            recording = found(session, RecordingRow, recording_id, "recording", lock=True)
             if recording.digest is None:
                 raise StateConflictError(
                     "recording", recording_id, present=recording.state, wanted=RecordingState.DIAGNOSED

@@ -4,13 +4,14 @@ import uuid
 from collections.abc import Collection
 from dataclasses import astuple, dataclass
 
-from sqlalchemy import ColumnElement, delete, func, select, tuple_
+from sqlalchemy import ColumnElement, and_, delete, func, select, tuple_
 from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from service.recording_store.store import StoredRecording
 from service.storage.errors import TooManyWaitingError
 from service.storage.models import (
+    DeletedRemoteRecordRow,
     IedRow,
     JobRow,
     MotorRow,
@@ -21,6 +22,7 @@ from service.storage.models import (
 )
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
 from service.storage.repository.clocks import give_clock
+from service.storage.repository.folders import discard_folder, require_folder
 from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_row, fail_rows, fetch_row
 from service.storage.repository.sessions import (
     Order,
@@ -54,7 +56,6 @@ class RecordingRows(Sessions):
 
         What is read grows with the records asked for, not with what the relay listed in all its years.
         """
-        listed = tuple_(RemoteRecordRow.name, RemoteRecordRow.size_bytes, RemoteRecordRow.modified_ns)
         query = select(RemoteRecordRow, RecordingRow).join(
             RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id
         )
@@ -63,12 +64,7 @@ class RecordingRows(Sessions):
         with self._read() as session:
             for first in range(0, len(asked), RECORDS_A_QUERY):
                 some = asked[first : first + RECORDS_A_QUERY]
-                # The names let the primary key be searched; the whole key keeps out others of these names.
-                of_these = query.where(
-                    RemoteRecordRow.ied == relay,
-                    RemoteRecordRow.name.in_({remote.name for remote in some}),
-                    listed.in_([astuple(remote) for remote in some]),
-                )
+                of_these = query.where(listed_in(RemoteRecordRow, relay, some))
                 for row, held in session.execute(of_these):
                     known[record_of(RemoteRecord, row)] = recording(held)
         return known
@@ -100,7 +96,7 @@ class RecordingRows(Sessions):
     def give_up_remote_record(self, relay: str, remote: RemoteRecord, reason: str) -> None:
         """Reject an announced record that its relay no longer lists; it is new if listed again."""
         with self._write() as session:
-            link = _link(session, relay, remote)
+            link = remote_link(session, relay, remote)
             if link is None:
                 return
             row = found(session, RecordingRow, link.recording_id, "recording")
@@ -171,16 +167,17 @@ class RecordingRows(Sessions):
         a relay are the same if their names and waveforms are: a file that only describes the waveform may
         come late and is then added. If one of two recordings of a motor was uploaded, the waveform is enough.
         The request gets what its relay had not sent before: a record that is listed again, under another
-        time, is none that a trigger made.
+        time, is none that a trigger made. A folder that nothing needs after all is discarded.
 
         most_queued: so many diagnoses of the motor may be queued; beyond that nothing new is added. Raises
-        NotFoundError, StateConflictError, TooManyWaitingError.
+        NotFoundError, StateConflictError, TooManyWaitingError, FolderGoneError.
         """
         if (relay is None) != (remote is None):
             raise ValueError("a recording comes from a relay (relay and remote) or is uploaded (neither)")
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
-            row = _stored_before(session, motor, relay, remote.name if remote else stored.name, stored)
+            require_folder(session, stored)
+            row = stored_before(session, motor, relay, remote.name if remote else stored.name, stored)
             created = row is None
             sent_before = row is not None and row.ied is not None
             if row is None:
@@ -196,7 +193,9 @@ class RecordingRows(Sessions):
             elif relay is not None and remote is not None:
                 _link_remote(session, relay, remote, row)
                 if row.ied == relay:
-                    _complete(session, row, stored)
+                    _complete(session, row, stored, now_ns)
+            if not created:
+                discard_folder(session, stored.digest, now_ns)
             if recording_request_id is not None and not sent_before:
                 _attach(session, recording_request_id, row, now_ns)
             return AddedRecording(recording(row), created)
@@ -246,6 +245,18 @@ def require_room(session: Session, motor: str, most_queued: int) -> None:
         raise TooManyWaitingError(motor, "queued diagnoses", most_queued, "max_queued_diagnoses")
 
 
+def listed_in(
+    table: type[RemoteRecordRow | DeletedRemoteRecordRow], relay: str, remotes: Collection[RemoteRecord]
+) -> ColumnElement[bool]:
+    """Return the condition that a row of the table is one of these records of the relay."""
+    # The names let the primary key be searched; the whole key keeps out others of these names.
+    return and_(
+        table.ied == relay,
+        table.name.in_({remote.name for remote in remotes}),
+        tuple_(table.name, table.size_bytes, table.modified_ns).in_([astuple(remote) for remote in remotes]),
+    )
+
+
 def new_job(recording_id: str, method: str, model: str, priority: JobPriority, now_ns: int) -> JobRow:
     return JobRow(
         id=str(uuid.uuid4()),
@@ -260,7 +271,7 @@ def new_job(recording_id: str, method: str, model: str, priority: JobPriority, n
     )
 
 
-def _stored_before(
+def stored_before(
     session: Session, motor: str, relay: str | None, name: str, stored: StoredRecording
 ) -> RecordingRow | None:
     if relay is None:
@@ -295,7 +306,7 @@ def _of_the_same_waveform(
 def _announced(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
     """Return the recording of what the relay lists, whatever became of it; announce it the first time."""
     found(session, MotorRow, motor, "motor", lock=True)
-    link = _link(session, relay, remote)
+    link = remote_link(session, relay, remote)
     if link is None:
         return _announce(session, relay, motor, remote, now_ns)
     return found(session, RecordingRow, link.recording_id, "recording")
@@ -324,16 +335,19 @@ def _announce(session: Session, relay: str, motor: str, remote: RemoteRecord, no
     session.add(row)
     session.flush()
     _link_remote(session, relay, remote, row)
+    deleted = session.get(DeletedRemoteRecordRow, (relay, *astuple(remote)))
+    if deleted is not None:  # a relay without times: this record only looks like the one that was deleted
+        session.delete(deleted)
     return row
 
 
-def _link(session: Session, relay: str, remote: RemoteRecord) -> RemoteRecordRow | None:
+def remote_link(session: Session, relay: str, remote: RemoteRecord) -> RemoteRecordRow | None:
     return session.get(RemoteRecordRow, (relay, remote.name, remote.size_bytes, remote.modified_ns))
 
 
 def _link_remote(session: Session, relay: str, remote: RemoteRecord, row: RecordingRow) -> None:
     """Link what the relay lists to the recording; an announcement that this replaces is deleted."""
-    link = _link(session, relay, remote)
+    link = remote_link(session, relay, remote)
     if link is None:
         session.add(
             RemoteRecordRow(
@@ -380,15 +394,18 @@ def _fill(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: 
     _list_files(session, row, stored)
 
 
-def _complete(session: Session, row: RecordingRow, stored: StoredRecording) -> None:
+def _complete(session: Session, row: RecordingRow, stored: StoredRecording, now_ns: int) -> None:
     """Add the files that had not come yet with the same waveform."""
     listed = select(RecordingFileRow.name).where(RecordingFileRow.recording_id == row.id)
     if not {file.name for file in stored.files} > set(session.scalars(listed)):
         return
     session.execute(delete(RecordingFileRow).where(RecordingFileRow.recording_id == row.id))
+    before = row.digest
     row.digest = stored.digest
     row.size_bytes = stored.size_bytes
     _list_files(session, row, stored)
+    if before is not None:
+        discard_folder(session, before, now_ns)
 
 
 def _list_files(session: Session, row: RecordingRow, stored: StoredRecording) -> None:

@@ -71,6 +71,7 @@ def test_no_renewal_waits_for_long(
     assert repository.measurements("MOTOR-000", 0, limit=1).items == ()
     assert repository.measurements("MOTOR-000", 60, limit=1).items != ()
     assert len(waits.each_s) > 10
+    assert waits.refused == 0
     assert max(waits.each_s) < 0.5, waits.text()
 
 

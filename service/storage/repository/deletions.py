@@ -1,0 +1,246 @@
+"""Recordings deleted on purpose: their rows go, what they were is remembered, their folders go afterwards.
+
+The rows go first, in one transaction that also notes the folder as discarded. A service that is killed after
+it removes the folder when it starts again. Whoever adds a recording looks, under the same lock, whether its
+folder is still there.
+"""
+
+from collections.abc import Callable, Collection
+
+from sqlalchemy import Select, delete, select
+from sqlalchemy.orm import Session
+
+from core.diagnosis.verdict import Verdict
+from service.recording_store.store import StoredFile, StoredRecording, waveform_digest
+from service.storage.errors import RecordingInUseError
+from service.storage.models import (
+    BaselineRecordingRow,
+    DeletedRemoteRecordRow,
+    DeletionRow,
+    DiagnosisRow,
+    DiscardedFolderRow,
+    JobRow,
+    MotorRow,
+    RecordingFileRow,
+    RecordingRequestRow,
+    RecordingRow,
+    RemoteRecordRow,
+)
+from service.storage.records import Cursor, Deletion, Page, RemoteRecord
+from service.storage.repository.folders import discard_folder, lock_folder
+from service.storage.repository.recording_requests import KIND, fail_row, fail_rows
+from service.storage.repository.recordings import RECORDS_A_QUERY, listed_in, remote_link, stored_before
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
+from service.storage.states import DeletedBy, JobState, RecordingState
+
+
+class DeletionRows(Sessions):
+    def delete_recording(
+        self, recording_id: str, reason: str, *, now_ns: int, deleted_by: DeletedBy = DeletedBy.PERSON
+    ) -> Deletion:
+        """Delete a recording with its diagnoses and jobs; remember what it was, and why it was deleted.
+
+        Its folder is discarded, if no other recording has it. Recording requests stay, without a recording.
+        Raises NotFoundError, RecordingInUseError.
+        """
+        with self._write() as session:
+            motor = found(session, RecordingRow, recording_id, "recording").motor
+            row = to_delete(session, motor, recording_id)
+            if row is None:
+                found(session, RecordingRow, recording_id, "recording")
+                raise RecordingInUseError(recording_id, "it is of another motor now")
+            cause = in_use(session, row)
+            if cause is not None:
+                raise RecordingInUseError(recording_id, cause)
+            return delete_row(session, row, reason, deleted_by, now_ns)
+
+    def deletion(self, recording_id: str) -> Deletion:
+        """Return what is remembered of a deleted recording. Raises NotFoundError."""
+        with self._read() as session:
+            return record_of(Deletion, found(session, DeletionRow, recording_id, "deleted recording"))
+
+    def deletions(
+        self, *, limit: int, after: Cursor | None = None, motor: str | None = None
+    ) -> Page[Deletion]:
+        """Return a page of deleted recordings, of one motor or of all, latest first."""
+        query = select(*columns_of(Deletion, DeletionRow))
+        if motor is not None:
+            query = query.where(DeletionRow.motor == motor)
+        order: Order = [DeletionRow.deleted_ns, DeletionRow.id]
+        with self._read() as session:
+            return page_of(session, query, order, Deletion, limit=limit, after=after, descending=True)
+
+    def deleted_remote_records(
+        self, relay: str, remotes: Collection[RemoteRecord]
+    ) -> dict[RemoteRecord, Deletion]:
+        """Return which of a relay's records were deleted here: they are not pulled again."""
+        query = select(DeletedRemoteRecordRow, DeletionRow).join(
+            DeletionRow, DeletionRow.id == DeletedRemoteRecordRow.deletion_id
+        )
+        asked = list(remotes)
+        deleted: dict[RemoteRecord, Deletion] = {}
+        with self._read() as session:
+            for first in range(0, len(asked), RECORDS_A_QUERY):
+                some = asked[first : first + RECORDS_A_QUERY]
+                of_these = query.where(listed_in(DeletedRemoteRecordRow, relay, some))
+                for row, deletion in session.execute(of_these):
+                    deleted[record_of(RemoteRecord, row)] = record_of(Deletion, deletion)
+        return deleted
+
+    def keep_deleted(
+        self,
+        stored: StoredRecording,
+        *,
+        motor: str,
+        relay: str,
+        remote: RemoteRecord,
+        now_ns: int,
+        recording_request_id: str | None = None,
+    ) -> Deletion | None:
+        """Note that a relay's record, pulled under another listing, is one that was deleted: it stays so.
+
+        None, and no change, where no record of this name and content was deleted, or somebody has brought it
+        back since. The request that waited for it fails.
+        """
+        same = select(DeletionRow).where(
+            DeletionRow.ied == relay,
+            DeletionRow.name == remote.name,
+            DeletionRow.waveform == waveform_digest(stored.files),
+        )
+        with self._read() as session:
+            if only(session, same) is None:
+                return None
+        with self._write() as session:
+            found(session, MotorRow, motor, "motor", lock=True)
+            deletion = only(session, same)
+            if deletion is None or stored_before(session, motor, relay, remote.name, stored) is not None:
+                return None
+            announced = remote_link(session, relay, remote)
+            if announced is not None:
+                row = found(session, RecordingRow, announced.recording_id, "recording")
+                session.delete(announced)
+                session.flush()
+                if row.state is RecordingState.ANNOUNCED:
+                    session.delete(row)
+            _remember_listing(session, relay, remote, deletion.id)
+            discard_folder(session, stored.digest, now_ns)
+            if recording_request_id is not None:
+                request = found(session, RecordingRequestRow, recording_request_id, KIND, lock=True)
+                fail_row(request, f"the relay's record was deleted here: {deletion.reason}", now_ns)
+            return record_of(Deletion, deletion)
+
+    def discarded_folders(self) -> tuple[str, ...]:
+        """Return the digests of the folders that are to be removed."""
+        with self._read() as session:
+            return tuple(session.scalars(select(DiscardedFolderRow.digest)))
+
+    def release_folder(self, digest: str, set_aside: Callable[[str], None]) -> None:
+        """Have a discarded folder set aside, unless a recording needs it again.
+
+        Nobody adds a recording of this content meanwhile.
+        """
+        with self._write() as session:
+            lock_folder(session, digest)
+            discarded = session.get(DiscardedFolderRow, digest)
+            if discarded is None:
+                return
+            if only(session, select(RecordingRow).where(RecordingRow.digest == digest)) is None:
+                set_aside(digest)
+            session.delete(discarded)
+
+
+def to_delete(session: Session, motor: str, recording_id: str) -> RecordingRow | None:
+    """Lock a recording of the motor and all that hangs on it, and return it; None where it is gone."""
+    found(session, MotorRow, motor, "motor", lock=True)
+    # Jobs before the recording, as whoever finishes a job does: no two wait for each other.
+    session.scalars(_jobs_of(recording_id)).all()
+    row = session.get(RecordingRow, recording_id, with_for_update=True, populate_existing=True)
+    return row if row is not None and row.motor == motor else None
+
+
+def in_use(session: Session, row: RecordingRow) -> str | None:
+    """Return what keeps a locked recording from being deleted; None where nothing does."""
+    if row.state is RecordingState.ANNOUNCED:
+        return "it is announced, and its relay still has its files; wait until they are pulled or refused"
+    baseline = select(BaselineRecordingRow).where(BaselineRecordingRow.recording_id == row.id)
+    if only(session, baseline) is not None:
+        return f"it is part of the baseline of motor {row.motor}; replace or delete that baseline first"
+    running = next((job for job in session.scalars(_jobs_of(row.id)) if job.state is JobState.RUNNING), None)
+    if running is not None:
+        return f"diagnosis {running.id} of it is running; ask again when it has ended"
+    return None
+
+
+def delete_row(
+    session: Session, row: RecordingRow, reason: str, deleted_by: DeletedBy, now_ns: int
+) -> Deletion:
+    """Delete a locked recording that nothing uses, and return what is remembered of it."""
+    files = session.scalars(select(RecordingFileRow).where(RecordingFileRow.recording_id == row.id)).all()
+    deletion = DeletionRow(
+        id=row.id,
+        motor=row.motor,
+        ied=row.ied,
+        source=row.source,
+        name=row.name,
+        digest=row.digest,
+        waveform=waveform_digest(record_of(StoredFile, file) for file in files) if files else None,
+        size_bytes=row.size_bytes if row.digest is not None else 0,
+        state=row.state,
+        verdict=_verdict(session, row.id),
+        announced_ns=row.announced_ns,
+        recorded_ns=row.recorded_ns,
+        deleted_ns=now_ns,
+        deleted_by=deleted_by,
+        reason=reason,
+    )
+    session.add(deletion)
+    session.flush()
+    _free_requests(session, row.id, reason, now_ns)
+    for link in session.scalars(select(RemoteRecordRow).where(RemoteRecordRow.recording_id == row.id)):
+        _remember_listing(session, link.ied, record_of(RemoteRecord, link), deletion.id)
+        session.delete(link)
+    session.execute(delete(DiagnosisRow).where(DiagnosisRow.recording_id == row.id))
+    session.execute(delete(RecordingFileRow).where(RecordingFileRow.recording_id == row.id))
+    for job in session.scalars(_jobs_of(row.id)):
+        session.delete(job)
+    session.flush()
+    digest = row.digest
+    session.delete(row)
+    session.flush()
+    if digest is not None:
+        discard_folder(session, digest, now_ns)
+    return record_of(Deletion, deletion)
+
+
+def _jobs_of(recording_id: str) -> Select[JobRow]:
+    return select(JobRow).where(JobRow.recording_id == recording_id).order_by(JobRow.id).with_for_update()
+
+
+def _verdict(session: Session, recording_id: str) -> Verdict | None:
+    query = select(DiagnosisRow.verdict).where(
+        DiagnosisRow.recording_id == recording_id, DiagnosisRow.current
+    )
+    return session.scalar(query)
+
+
+def _free_requests(session: Session, recording_id: str, reason: str, now_ns: int) -> None:
+    """End the requests that wait for the recording's diagnosis, and let none of them point to it."""
+    told = f"recording {recording_id} was deleted: {reason}"
+    fail_rows(session, recording_id, told, now_ns)
+    query = select(RecordingRequestRow).where(RecordingRequestRow.recording_id == recording_id)
+    for request in session.scalars(query):
+        request.recording_id = None
+        request.reason = request.reason or told
+    session.flush()
+
+
+def _remember_listing(session: Session, relay: str, remote: RemoteRecord, deletion_id: str) -> None:
+    session.merge(
+        DeletedRemoteRecordRow(
+            ied=relay,
+            name=remote.name,
+            size_bytes=remote.size_bytes,
+            modified_ns=remote.modified_ns,
+            deletion_id=deletion_id,
+        )
+    )
