@@ -20,6 +20,7 @@ from service.recording_store.store import RecordingStoreError
 from service.storage.errors import (
     NotFoundError,
     OutOfServiceError,
+    RecordingInUseError,
     StateConflictError,
     TooManyWaitingError,
     UnusableBaselineError,
@@ -35,6 +36,7 @@ STATUS_OF: dict[type[Exception], HTTPStatus] = {
     UnusableBaselineError: HTTPStatus.CONFLICT,
     OutOfServiceError: HTTPStatus.CONFLICT,
     StateConflictError: HTTPStatus.CONFLICT,
+    RecordingInUseError: HTTPStatus.CONFLICT,
 }
 """The HTTP status that answers each refusal of the storage."""
 

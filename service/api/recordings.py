@@ -20,7 +20,9 @@ from service.api.problems import FieldError, ProblemError, problems
 from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile
 from service.api.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
+from service.storage.errors import FolderGoneError, TooManyWaitingError
 from service.storage.records import RecordingEntry
+from service.storage.repository.recordings import AddedRecording
 from service.storage.states import RecordingState
 
 router = APIRouter(tags=["recordings"])
@@ -75,10 +77,10 @@ def upload_recording(
 ) -> RecordingDetails:
     """Store the files of one recording and queue its diagnosis; one the motor has stays as it is."""
     context.repository.motor(motor)
-    stored = _store_upload(context, files)
-    added = context.repository.add_recording(
-        stored, motor=motor, now_ns=time.time_ns(), most_queued=context.settings.max_queued_diagnoses
-    )
+    try:
+        added = _add(context, motor, files)
+    except FolderGoneError:  # a recording of the same content was deleted just now
+        added = _add(context, motor, files)
     context.on_new_job()
     if not added.created:
         response.status_code = HTTPStatus.OK
@@ -144,6 +146,18 @@ def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
         raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
 
 
+def _add(context: ApiContext, motor: str, files: list[UploadFile]) -> AddedRecording:
+    stored = _store_upload(context, files)
+    now_ns = time.time_ns()
+    try:
+        return context.repository.add_recording(
+            stored, motor=motor, now_ns=now_ns, most_queued=context.settings.max_queued_diagnoses
+        )
+    except TooManyWaitingError:
+        context.repository.discard_stored(stored.digest, now_ns=now_ns)
+        raise
+
+
 def _digest(entry: RecordingEntry) -> str:
     if entry.digest is None:
         reason = "" if entry.reason is None else f": {entry.reason}"
@@ -175,6 +189,7 @@ def _store_upload(context: ApiContext, files: list[UploadFile]) -> StoredRecordi
         with context.store.incoming() as incoming:
             for name, file in zip(names, files, strict=True):
                 with incoming.create(name) as sink:
+                    file.file.seek(0)
                     shutil.copyfileobj(file.file, sink)
             return incoming.keep()
     except RecordingStoreError as error:

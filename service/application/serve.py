@@ -146,6 +146,7 @@ def _parts(
         settings,
         plant,
         repository,
+        store,
         gateway_problem=gateways.not_running,
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
     )

@@ -1,12 +1,10 @@
 """Averages measured values while they are fresh, and deletes them when they are old."""
 
-from functools import partial
 from threading import Event
 
-from core.units import NANOSECONDS_PER_DAY
 from service.configuration.settings import Settings
-from service.plant import AveragingStep
 from service.retention.batches import Batches
+from service.retention.rules import measurement_rules
 from service.storage import Repository
 from service.timing.wall_clock import WallClock
 
@@ -25,11 +23,7 @@ class Housekeeping:
         """stopping: set when deleting should end, though there is more to delete."""
         self._stopping = stopping or Event()
         self._repository = repository
-        self._kept_days = {
-            AveragingStep.AS_SAMPLED: settings.metering_sample_days,
-            AveragingStep.MINUTE: settings.metering_minute_days,
-            AveragingStep.QUARTER_HOUR: settings.metering_quarter_hour_days,
-        }
+        self._settings = settings
         self._clock = WallClock()
 
     def average_and_delete(self, now_ns: int, monotonic_ns: int) -> None:
@@ -41,6 +35,5 @@ class Housekeeping:
         if not self._clock.is_settled:
             return
         batches = Batches(stop=self._stopping)
-        for step, days in self._kept_days.items():
-            before_ns = now_ns - round(days * NANOSECONDS_PER_DAY)
-            batches.run(partial(self._repository.forget_measurements, step.value, before_ns=before_ns))
+        for rule in measurement_rules(self._settings, self._repository, now_ns):
+            rule.forget(batches)

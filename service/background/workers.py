@@ -5,12 +5,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from threading import Event
 
-from service.background import housekeeping, orphaned_requests, scheduling
+from service.background import housekeeping, orphaned_requests, retention, scheduling
 from service.background.housekeeping import Housekeeping
 from service.background.orphaned_requests import OrphanedRequestEnder
+from service.background.retention import Retention
 from service.background.scheduling import Scheduler
 from service.configuration.settings import Settings
 from service.plant import Plant
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.timing.periodic_worker import PeriodicWorker
 
@@ -21,6 +23,7 @@ class Periods:
 
     scheduling_s: float = scheduling.PERIOD_S
     housekeeping_s: float = housekeeping.PERIOD_S
+    retention_s: float = retention.PERIOD_S
     orphaned_requests_s: float = orphaned_requests.PERIOD_S
 
 
@@ -31,6 +34,7 @@ def background_workers(
     settings: Settings,
     plant: Plant,
     repository: Repository,
+    store: RecordingStore,
     *,
     gateway_problem: Callable[[], str | None],
     restart_delay_s: float,
@@ -42,8 +46,9 @@ def background_workers(
     pause before a gateway that ended is started again.
     """
     scheduler = Scheduler(plant.motors, repository)
-    stopping = Event()
-    keeper = Housekeeping(settings, repository, stopping)
+    housekeeping_ends, retention_ends = Event(), Event()
+    keeper = Housekeeping(settings, repository, housekeeping_ends)
+    retained = Retention(settings, repository, store, retention_ends)
     ender = OrphanedRequestEnder(
         settings, repository, gateway_problem=gateway_problem, restart_delay_s=restart_delay_s
     )
@@ -56,7 +61,14 @@ def background_workers(
             lambda: keeper.average_and_delete(time.time_ns(), time.monotonic_ns()),
             period_s=periods.housekeeping_s,
             at_once=True,
-            stopping=stopping,
+            stopping=housekeeping_ends,
+        ),
+        "retention": PeriodicWorker(
+            "retention",
+            lambda: retained.delete_old(time.time_ns(), time.monotonic_ns()),
+            period_s=periods.retention_s,
+            at_once=True,
+            stopping=retention_ends,
         ),
         "orphaned_requests": PeriodicWorker(
             "ending of orphaned requests",

@@ -265,6 +265,42 @@ def relay(
     show_relay(url, name, as_json=as_json)
 
 
+@app.command()
+def delete(
+    recording: Annotated[
+        str, typer.Argument(metavar="RECORDING", help="The recording's id, as GET /recordings lists it.")
+    ],
+    reason: Annotated[
+        str, typer.Option(metavar="TEXT", help="Why, in words; the service keeps it with the time.")
+    ],
+    url: Url = DEFAULT_URL,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Delete a recording with its files and diagnoses, for good; it is not pulled from its relay again."""
+    from service.cli.remote import delete_recording
+
+    delete_recording(url, recording, reason, as_json=as_json)
+
+
+@app.command()
+def retention(
+    config: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Settings file (TOML); see docs/reference/settings.md."),
+    ] = None,
+    *,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Delete nothing: show what each rule would delete.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Delete what the table [retention] of the settings says is old enough, now instead of once a day."""
+    from service.cli.retention import apply_retention
+
+    apply_retention(config, dry_run=dry_run, as_json=as_json)
+
+
 @app.command("import-scl")
 def import_scl(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="An SCD, CID, IID or ICD file.")],

@@ -1,4 +1,4 @@
-"""`mcc trigger`, `mcc motors`, `mcc health`, `mcc release`: requests to the REST API of a running service."""
+"""`mcc trigger`, `motors`, `health`, `release`, `delete`: requests to the REST API of a running service."""
 
 import time
 from collections.abc import Mapping
@@ -107,6 +107,17 @@ def release_relay(url: str, relay: str, *, as_json: bool) -> None:
         return
     told = "was not set aside" if before["quarantine"] is None else "released, visited again within seconds"
     results().print(Text(f"{relay}: {told}"), soft_wrap=True)
+
+
+def delete_recording(url: str, recording_id: str, reason: str, *, as_json: bool) -> None:
+    """Delete a recording for good. Raises CommandError."""
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        deletion = service.delete_recording(recording_id, reason)
+    if as_json:
+        print_document(deletion)
+        return
+    what = one_line(f"{deletion['motor']}: recording {deletion['name']} ({recording_id}) is deleted")
+    results().print(Text(what), soft_wrap=True)
 
 
 def _health(service: ServiceClient, motor: str) -> Document:

@@ -91,6 +91,11 @@ class ServiceClient:
         """End the quarantine of a relay. Raises ServiceError."""
         self._request("DELETE", f"{API}/ieds/{segment(relay)}/quarantine", {})
 
+    def delete_recording(self, recording_id: str, reason: str) -> Document:
+        """Delete a recording, and return what the service remembers of it. Raises ServiceError."""
+        self._request("DELETE", f"{API}/recordings/{segment(recording_id)}", {"reason": reason})
+        return self.get(f"/deletions/{segment(recording_id)}")
+
     def recording_request(self, request_id: str) -> Document:
         """Return a recording request, with its present state. Raises ServiceError."""
         return self.get(f"/event-reports/{segment(request_id)}")

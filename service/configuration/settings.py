@@ -15,11 +15,9 @@ from pydantic_settings import SettingsError as UnreadableEnvironment
 
 from core.units import SECONDS_PER_DAY
 from service.configuration.relay_access import AbsolutePath, RelayAccess
+from service.configuration.retention import MOST_DAYS, RetentionSettings
 
 MIB, GIB = 1024**2, 1024**3
-MOST_DAYS = 36_500
-"""A hundred years: in nanoseconds this fits into the integers of the database."""
-
 PATHS = ("data_directory", "recordings_directory", "scd", "motors")
 RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
 
@@ -71,6 +69,8 @@ class Settings(BaseSettings):
     job_timeout_s: float = Field(default=60.0, ge=0.1, le=3600)
     job_attempts: int = Field(default=3, ge=1, le=20)
     job_retry_delay_s: float = Field(default=2.0, ge=0, le=3600)
+
+    retention: RetentionSettings = Field(default_factory=RetentionSettings)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=100, ge=1, le=1000)
@@ -149,7 +149,7 @@ def _paths(value: object, folder: Path) -> object:
 def _first_problem(error: ValidationError, config: Path | None) -> SettingsError:
     problem = error.errors(include_url=False)[0]
     source = "settings" if config is None else f"settings ({config}, environment, options)"
-    depth = None if problem["loc"][:1] == ("relays",) else 1
+    depth = None if problem["loc"][:1] in (("relays",), ("retention",)) else 1
     field = ".".join(str(part) for part in problem["loc"][:depth])
     if problem["type"] == "extra_forbidden":
         return SettingsError(

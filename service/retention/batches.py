@@ -50,7 +50,6 @@ class Batches:
         self._pace = pace
         self._stop = stop or Event()
         self._end_s = monotonic() + pace.round_s
-        self._rows = min(FIRST_ROWS, pace.most_rows)
         self.largest_s = 0.0
 
     @property
@@ -58,22 +57,23 @@ class Batches:
         """Return whether no further batch may begin."""
         return self._stop.is_set() or monotonic() >= self._end_s
 
-    def run(self, delete: Callable[[int], DeletedRows]) -> int:
+    def run(self, delete: Callable[[int], DeletedRows], first_rows: int = FIRST_ROWS) -> int:
         """Call `delete` with the most rows it may delete until it deletes none; return how many it deleted.
 
         It returns earlier where the round is over.
         """
         number = 0
+        rows = min(first_rows, self._pace.most_rows)
         while not self.is_over:
-            deleted = delete(self._rows)
+            deleted = delete(rows)
             if deleted.rows == 0:
                 break
             number += deleted.rows
             self.largest_s = max(self.largest_s, deleted.took_s)
-            self._adapt(deleted.took_s)
+            rows = self._adapted(rows, deleted.took_s)
             self._stop.wait(deleted.took_s * self._pace.rest)
         return number
 
-    def _adapt(self, took_s: float) -> None:
+    def _adapted(self, rows: int, took_s: float) -> int:
         growth = min(LARGEST_GROWTH, self._pace.batch_s / max(took_s, 1e-6))
-        self._rows = max(1, min(self._pace.most_rows, int(self._rows * growth)))
+        return max(1, min(self._pace.most_rows, int(rows * growth)))

@@ -69,6 +69,11 @@ def fault(mu_f: float = 0.051) -> Diagnosis:
     )
 
 
+def healthy() -> Diagnosis:
+    """No shorted turns."""
+    return replace(fault(0.0), verdict=Verdict.HEALTHY, theta_f=None, reasons=("no shorted turns",))
+
+
 def undiagnosable() -> Diagnosis:
     """What the quality gate refused: no figures."""
     return Diagnosis(

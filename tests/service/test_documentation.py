@@ -5,6 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from service.api import ApiContext, create_app
+from service.configuration.retention import RetentionSettings
 from service.configuration.settings import Settings
 from service.plant import Overrides
 from service.recording_store.store import RecordingStore
@@ -18,6 +19,12 @@ def test_every_setting_is_documented() -> None:
         r"^\| `(\w+)` \|", (DOCS / "reference" / "settings.md").read_text(encoding="utf-8"), re.MULTILINE
     )
     assert sorted(rows) == sorted(Settings.model_fields)
+
+
+def test_every_rule_of_retention_is_documented() -> None:
+    page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `retention\.(\w+)`", page, re.MULTILINE)
+    assert rows == list(RetentionSettings.model_fields)
 
 
 def test_the_documented_ranges_and_defaults_are_those_of_the_settings() -> None:

@@ -1,6 +1,6 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
-from service.storage.records.deletions import DeletedRows, Deletion
+from service.storage.records.deletions import Amount, DeletedRows, Deletion
 from service.storage.records.diagnoses import (
     ClaimedJob,
     Counts,
@@ -31,6 +31,7 @@ from service.storage.records.relays import (
 
 __all__ = [
     "Alarm",
+    "Amount",
     "ClaimedJob",
     "ClockReading",
     "Counts",

@@ -15,6 +15,30 @@ class DeletedRows:
 
 
 @dataclass(frozen=True, slots=True)
+class Amount:
+    """So many rows of about this size, from the oldest to the newest; the times are None without rows."""
+
+    rows: int
+    size_bytes: int
+    oldest_ns: int | None
+    newest_ns: int | None
+
+    def plus(self, other: "Amount") -> "Amount":
+        """Return both together."""
+        times = [
+            time
+            for time in (self.oldest_ns, self.newest_ns, other.oldest_ns, other.newest_ns)
+            if time is not None
+        ]
+        return Amount(
+            self.rows + other.rows,
+            self.size_bytes + other.size_bytes,
+            min(times, default=None),
+            max(times, default=None),
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Deletion:
     """A recording that was deleted: what it was when it was deleted, when, by whom and why."""
 

@@ -14,6 +14,7 @@ from service.storage.repository.plant import PlantRows
 from service.storage.repository.quarantines import QuarantineRows
 from service.storage.repository.recording_requests import RecordingRequestRows
 from service.storage.repository.recordings import RecordingRows
+from service.storage.repository.retention import RetentionRows
 from service.storage.repository.state_counts import StateCounts
 
 
@@ -33,6 +34,7 @@ class Repository(
     MeasurementRows,
     BaselineRows,
     DeletionRows,
+    RetentionRows,
 ):
     """All there is to ask of and tell the database; every method is one transaction.
 

@@ -129,6 +129,11 @@ class DeletionRows(Sessions):
                 fail_row(request, f"the relay's record was deleted here: {deletion.reason}", now_ns)
             return record_of(Deletion, deletion)
 
+    def discard_stored(self, digest: str, *, now_ns: int) -> None:
+        """Note that the folder of a record that was not added is to be removed, if nothing else needs it."""
+        with self._write() as session:
+            discard_folder(session, digest, now_ns)
+
     def discarded_folders(self) -> tuple[str, ...]:
         """Return the digests of the folders that are to be removed."""
         with self._read() as session:

@@ -24,8 +24,8 @@ from tests.service.fixtures import database_url, engine, store
 
 __all__ = ["database_url", "engine", "store"]
 
-OFTEN = Periods(scheduling_s=0.01, housekeeping_s=0.01, orphaned_requests_s=0.01)
-PARTS = ("schedules", "housekeeping", "orphaned_requests")
+OFTEN = Periods(scheduling_s=0.01, housekeeping_s=0.01, retention_s=0.01, orphaned_requests_s=0.01)
+PARTS = ("schedules", "housekeeping", "retention", "orphaned_requests")
 
 
 class FaultyRepository(Repository):
@@ -40,6 +40,10 @@ class FaultyRepository(Repository):
     def average_measurements(self, *, now_ns: int) -> None:
         self._fail_for("housekeeping")
         super().average_measurements(now_ns=now_ns)
+
+    def discarded_folders(self) -> tuple[str, ...]:
+        self._fail_for("retention")
+        return super().discarded_folders()
 
     def held_relays(self) -> frozenset[str]:
         self._fail_for("orphaned_requests")
@@ -66,6 +70,7 @@ def serving_workers(repository: Repository, store: RecordingStore, directory: Pa
         settings,
         replace(plant, motors=often),
         repository,
+        store,
         gateway_problem=lambda: None,
         restart_delay_s=0.0,
         periods=OFTEN,

@@ -1,0 +1,151 @@
+"""The rules by which the settings have something deleted: what each would delete, and how it is done."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+
+from core.diagnosis.verdict import Verdict
+from core.units import NANOSECONDS_PER_DAY
+from service.configuration.settings import Settings
+from service.plant import AveragingStep
+from service.retention.batches import Batches
+from service.retention.row_sizes import ROW_BYTES
+from service.storage.records import Amount, DeletedRows
+from service.storage.repository import Repository
+from service.storage.repository.retention import NOTHING, ExpiredRecordings
+from service.storage.states import RecordingState
+
+FIRST_RECORDINGS = 5
+"""Recordings of a first batch: each has rows in a handful of tables."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """One rule: the setting that it comes from, and after how many days something is deleted; None for never.
+
+    amount: says what it would delete now.  forget: deletes it, and returns how many.
+    """
+
+    setting: str
+    days: float | None
+    amount: Callable[[], Amount]
+    forget: Callable[[Batches], int]
+
+
+def rules(settings: Settings, repository: Repository, now_ns: int) -> tuple[Rule, ...]:
+    """Return all rules of the settings, also those that keep everything."""
+    return (
+        *recording_rules(settings, repository, now_ns),
+        *other_rules(settings, repository, now_ns),
+        *measurement_rules(settings, repository, now_ns),
+    )
+
+
+def recording_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
+    """Yield the rules of recordings, by verdict or, where there is none, by state."""
+    kept = settings.retention
+    kinds: tuple[tuple[str, float | None, RecordingState, Verdict | None], ...] = (
+        ("healthy_days", kept.healthy_days, RecordingState.DIAGNOSED, Verdict.HEALTHY),
+        ("watch_days", kept.watch_days, RecordingState.DIAGNOSED, Verdict.WATCH),
+        ("fault_days", kept.fault_days, RecordingState.DIAGNOSED, Verdict.FAULT),
+        ("undiagnosable_days", kept.undiagnosable_days, RecordingState.DIAGNOSED, Verdict.UNDIAGNOSABLE),
+        ("rejected_days", kept.rejected_days, RecordingState.REJECTED, None),
+        ("failed_days", kept.failed_days, RecordingState.FAILED, None),
+    )
+    for name, days, state, verdict in kinds:
+        setting = f"retention.{name}"
+        if days is None:
+            yield _keeping(setting)
+            continue
+        expired = ExpiredRecordings(state, verdict, _before(now_ns, days), kept.keep_newest)
+        forget = partial(_forget_recordings, repository, expired, f"older than {setting} = {days:g}", now_ns)
+        yield Rule(setting, days, partial(repository.expired_recordings, expired), forget)
+
+
+def other_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
+    """Yield the rules of what is no recording: diagnoses, jobs, recording requests, deletions."""
+    kept = settings.retention
+    kinds: tuple[tuple[str, float | None, str, Callable[..., Amount], Callable[..., DeletedRows]], ...] = (
+        (
+            "superseded_diagnoses_days",
+            kept.superseded_diagnoses_days,
+            "diagnoses",
+            repository.superseded_diagnoses,
+            repository.forget_superseded_diagnoses,
+        ),
+        (
+            "failed_jobs_days",
+            kept.failed_jobs_days,
+            "jobs",
+            repository.failed_jobs,
+            repository.forget_failed_jobs,
+        ),
+        (
+            "event_reports_days",
+            kept.event_reports_days,
+            "recording_requests",
+            repository.ended_requests,
+            repository.forget_ended_requests,
+        ),
+        (
+            "deletions_days",
+            kept.deletions_days,
+            "deletions",
+            repository.old_deletions,
+            repository.forget_deletions,
+        ),
+    )
+    for name, days, table, amount, forget in kinds:
+        setting = f"retention.{name}"
+        if days is None:
+            yield _keeping(setting)
+            continue
+        before_ns = _before(now_ns, days)
+        yield Rule(
+            setting,
+            days,
+            partial(_sized, partial(amount, before_ns=before_ns), table),
+            partial(_forget, partial(forget, before_ns=before_ns)),
+        )
+
+
+def measurement_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
+    """Yield the rules of the measured values, by averaging step."""
+    kinds = (
+        ("metering_sample_days", settings.metering_sample_days, AveragingStep.AS_SAMPLED),
+        ("metering_minute_days", settings.metering_minute_days, AveragingStep.MINUTE),
+        ("metering_quarter_hour_days", settings.metering_quarter_hour_days, AveragingStep.QUARTER_HOUR),
+    )
+    for setting, days, step in kinds:
+        before_ns = _before(now_ns, days)
+        amount = partial(repository.old_measurements, step.value, before_ns=before_ns)
+        forget = partial(repository.forget_measurements, step.value, before_ns=before_ns)
+        yield Rule(setting, days, partial(_sized, amount, "measurements"), partial(_forget, forget))
+
+
+def _keeping(setting: str) -> Rule:
+    return Rule(setting, None, lambda: NOTHING, lambda _batches: 0)
+
+
+def _before(now_ns: int, days: float) -> int:
+    return now_ns - round(days * NANOSECONDS_PER_DAY)
+
+
+def _sized(amount: Callable[[], Amount], table: str) -> Amount:
+    """Return the amount with the size of its rows, estimated."""
+    found = amount()
+    return Amount(found.rows, found.rows * ROW_BYTES[table], found.oldest_ns, found.newest_ns)
+
+
+def _forget(delete: Callable[[int], DeletedRows], batches: Batches) -> int:
+    return batches.run(delete)
+
+
+def _forget_recordings(
+    repository: Repository, expired: ExpiredRecordings, reason: str, now_ns: int, batches: Batches
+) -> int:
+    number = 0
+    for motor in repository.all_motors():
+        delete = partial(repository.forget_recordings, motor, expired=expired, reason=reason, now_ns=now_ns)
+        number += batches.run(delete, first_rows=FIRST_RECORDINGS)
+    return number

@@ -1,0 +1,222 @@
+"""What is older than somebody wants to keep it: how much there is, and deleting some of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from time import monotonic
+
+from sqlalchemy import ColumnElement, and_, delete, exists, func, or_, select
+from sqlalchemy.orm import InstrumentedAttribute, Session
+
+from core.diagnosis.verdict import Verdict
+from service.storage.models import (
+    BaselineRecordingRow,
+    DeletedRemoteRecordRow,
+    DeletionRow,
+    DiagnosisRow,
+    JobRow,
+    MeasurementRow,
+    MotorRow,
+    RecordingRequestRow,
+    RecordingRow,
+)
+from service.storage.records import Amount, DeletedRows
+from service.storage.repository.deletions import delete_row, in_use, to_delete
+from service.storage.repository.recording_requests import ENDED
+from service.storage.repository.sessions import Sessions
+from service.storage.states import DeletedBy, JobState, RecordingState
+
+NOTHING = Amount(0, 0, None, None)
+
+
+@dataclass(frozen=True, slots=True)
+class ExpiredRecordings:
+    """Recordings in a state, with a verdict, that were first seen before a time.
+
+    verdict: None for recordings of any verdict or none.  keep_newest: so many of each motor stay in any case,
+    counted by when they were seen and by when they were recorded.
+    """
+
+    state: RecordingState
+    verdict: Verdict | None
+    before_ns: int
+    keep_newest: int
+
+
+class RetentionRows(Sessions):
+    def all_motors(self) -> tuple[str, ...]:
+        """Return the names of all motors, also of those that left the plant."""
+        with self._read() as session:
+            return tuple(session.scalars(select(MotorRow.name).order_by(MotorRow.name)))
+
+    def expired_recordings(self, expired: ExpiredRecordings) -> Amount:
+        """Return how many recordings could be deleted, with the size of their files."""
+        amount = NOTHING
+        for motor in self.all_motors():
+            with self._read() as session:
+                condition = _expired(session, motor, expired)
+                if condition is not None:
+                    size = func.sum(RecordingRow.size_bytes)
+                    amount = amount.plus(_amount(session, RecordingRow.announced_ns, condition, size))
+        return amount
+
+    def forget_recordings(
+        self, motor: str, rows: int, *, expired: ExpiredRecordings, reason: str, now_ns: int
+    ) -> DeletedRows:
+        """Delete the oldest of a motor's expired recordings, at most so many, as one deletes one by hand."""
+        with self._read() as session:
+            condition = _expired(session, motor, expired)
+            if condition is None:
+                return DeletedRows(0, 0.0)
+            order = (RecordingRow.announced_ns, RecordingRow.id)
+            ids = session.scalars(select(RecordingRow.id).where(condition).order_by(*order).limit(rows)).all()
+        if not ids:
+            return DeletedRows(0, 0.0)
+        number = 0
+        with self._write() as session:
+            session.connection()
+            began_s = monotonic()
+            for recording_id in ids:
+                row = to_delete(session, motor, recording_id)
+                if row is not None and row.state is expired.state and in_use(session, row) is None:
+                    delete_row(session, row, reason, DeletedBy.RETENTION, now_ns)
+                    number += 1
+        return DeletedRows(number, monotonic() - began_s)
+
+    def old_measurements(self, step_s: int, *, before_ns: int) -> Amount:
+        with self._read() as session:
+            condition = and_(MeasurementRow.step_s == step_s, MeasurementRow.time_ns < before_ns)
+            return _amount(session, MeasurementRow.time_ns, condition)
+
+    def superseded_diagnoses(self, *, before_ns: int) -> Amount:
+        """Return how many results there are that a later diagnosis of the same recording replaced."""
+        with self._read() as session:
+            return _amount(session, DiagnosisRow.created_ns, _superseded(before_ns))
+
+    def forget_superseded_diagnoses(self, rows: int, *, before_ns: int) -> DeletedRows:
+        """Delete some of them, each with its job."""
+        old = select(DiagnosisRow.id, DiagnosisRow.job_id).where(_superseded(before_ns)).limit(rows)
+        with self._write() as session:
+            session.connection()
+            began_s = monotonic()
+            found = session.execute(old).all()
+            session.execute(delete(DiagnosisRow).where(DiagnosisRow.id.in_([row.id for row in found])))
+            _delete_jobs(session, JobRow.id.in_([row.job_id for row in found]))
+        return DeletedRows(len(found), monotonic() - began_s)
+
+    def failed_jobs(self, *, before_ns: int) -> Amount:
+        with self._read() as session:
+            return _amount(session, JobRow.finished_ns, _failed(before_ns))
+
+    def forget_failed_jobs(self, rows: int, *, before_ns: int) -> DeletedRows:
+        """Delete some of the jobs that were given up; their recordings keep the reason."""
+        with self._write() as session:
+            session.connection()
+            began_s = monotonic()
+            ids = session.scalars(select(JobRow.id).where(_failed(before_ns)).limit(rows)).all()
+            _delete_jobs(session, JobRow.id.in_(ids))
+        return DeletedRows(len(ids), monotonic() - began_s)
+
+    def ended_requests(self, *, before_ns: int) -> Amount:
+        with self._read() as session:
+            return _amount(session, RecordingRequestRow.requested_ns, _ended(before_ns))
+
+    def forget_ended_requests(self, rows: int, *, before_ns: int) -> DeletedRows:
+        """Delete the oldest recording requests that have ended, at most so many."""
+        old = (
+            select(RecordingRequestRow)
+            .where(_ended(before_ns))
+            .order_by(RecordingRequestRow.requested_ns, RecordingRequestRow.id)
+            .limit(rows)
+        )
+        with self._write() as session:
+            session.connection()
+            began_s = monotonic()
+            found = session.scalars(old).all()
+            for row in found:
+                session.delete(row)
+        return DeletedRows(len(found), monotonic() - began_s)
+
+    def old_deletions(self, *, before_ns: int) -> Amount:
+        with self._read() as session:
+            return _amount(session, DeletionRow.deleted_ns, DeletionRow.deleted_ns < before_ns)
+
+    def forget_deletions(self, rows: int, *, before_ns: int) -> DeletedRows:
+        """Forget some of what was deleted long ago; a relay that still lists it is asked for it again."""
+        old = select(DeletionRow.id).where(DeletionRow.deleted_ns < before_ns)
+        with self._write() as session:
+            session.connection()
+            began_s = monotonic()
+            ids = session.scalars(old.order_by(DeletionRow.deleted_ns, DeletionRow.id).limit(rows)).all()
+            of_these = DeletedRemoteRecordRow.deletion_id.in_(ids)
+            session.execute(delete(DeletedRemoteRecordRow).where(of_these))
+            session.execute(delete(DeletionRow).where(DeletionRow.id.in_(ids)))
+        return DeletedRows(len(ids), monotonic() - began_s)
+
+
+def _amount(
+    session: Session,
+    time_ns: InstrumentedAttribute[int] | InstrumentedAttribute[int | None],
+    condition: ColumnElement[bool],
+    size_bytes: ColumnElement[int] | None = None,
+) -> Amount:
+    query = select(func.count(), func.min(time_ns), func.max(time_ns)).where(condition)
+    if size_bytes is not None:
+        query = query.add_columns(size_bytes)
+    row: Sequence[int | None] = session.execute(query).one()
+    number, oldest_ns, newest_ns, *size = row
+    return Amount(int(number or 0), int(size[0] or 0) if size else 0, oldest_ns, newest_ns)
+
+
+def _expired(session: Session, motor: str, expired: ExpiredRecordings) -> ColumnElement[bool] | None:
+    """Return the condition that a recording of the motor is expired; None where too few are there."""
+    of_motor = (RecordingRow.motor == motor, RecordingRow.state != RecordingState.ANNOUNCED)
+    seen, recorded = (
+        session.scalar(
+            select(time).where(*of_motor, time.is_not(None)).order_by(time.desc()).offset(nth).limit(1)
+        )
+        for time in (RecordingRow.announced_ns, RecordingRow.recorded_ns)
+        for nth in (expired.keep_newest - 1,)
+    )
+    if seen is None:
+        return None
+    conditions = [
+        RecordingRow.motor == motor,
+        RecordingRow.state == expired.state,
+        RecordingRow.announced_ns < min(expired.before_ns, seen),
+        ~exists().where(BaselineRecordingRow.recording_id == RecordingRow.id),
+        ~exists().where(JobRow.recording_id == RecordingRow.id, JobRow.state == JobState.RUNNING),
+    ]
+    untimed = RecordingRow.recorded_ns.is_(None)
+    conditions.append(untimed if recorded is None else or_(untimed, RecordingRow.recorded_ns < recorded))
+    if expired.verdict is not None:
+        conditions.append(
+            exists().where(
+                DiagnosisRow.recording_id == RecordingRow.id,
+                DiagnosisRow.current,
+                DiagnosisRow.verdict == expired.verdict,
+            )
+        )
+    return and_(*conditions)
+
+
+def _superseded(before_ns: int) -> ColumnElement[bool]:
+    # By motor, which the index begins with: the current ones are not read.
+    return and_(
+        DiagnosisRow.motor.in_(select(MotorRow.name)),
+        DiagnosisRow.current.is_(False),
+        DiagnosisRow.created_ns < before_ns,
+    )
+
+
+def _failed(before_ns: int) -> ColumnElement[bool]:
+    return and_(JobRow.state == JobState.FAILED, JobRow.finished_ns < before_ns)
+
+
+def _ended(before_ns: int) -> ColumnElement[bool]:
+    return and_(RecordingRequestRow.requested_ns < before_ns, RecordingRequestRow.state.in_(ENDED))
+
+
+def _delete_jobs(session: Session, condition: ColumnElement[bool]) -> None:
+    """Delete jobs one by one, as objects: the session counts them by their states."""
+    for job in session.scalars(select(JobRow).where(condition)):
+        session.delete(job)

@@ -1,0 +1,61 @@
+"""Deleting a recording by the API, and the list of what was deleted."""
+
+import httpx
+import pytest
+
+from service.api import ApiContext
+from service.storage import Repository
+from testing.service.job_runner import RUNNER
+from tests.service.api.test_recordings import FILES, upload
+
+
+@pytest.fixture
+def recording(client: httpx.Client) -> str:
+    return str(upload(client, FILES)[1]["id"])
+
+
+def test_a_wrong_upload_is_deleted_with_its_files(
+    client: httpx.Client, context: ApiContext, recording: str
+) -> None:
+    path = f"/api/v1/recordings/{recording}"
+    answer = client.delete(path, params={"reason": " of another motor "})
+    assert (answer.status_code, answer.content) == (204, b"")
+    assert client.get(path).status_code == 404
+    assert client.delete(path, params={"reason": "again"}).status_code == 404
+    (deletion,) = client.get("/api/v1/deletions", params={"motor": "PUMP-A1"}).json()["items"]
+    assert deletion == client.get(f"/api/v1/deletions/{recording}").json()
+    assert (deletion["id"], deletion["motor"], deletion["name"]) == (recording, "PUMP-A1", "EVENT")
+    assert (deletion["reason"], deletion["deleted_by"]) == ("of another motor", "person")
+    assert len(deletion["sha256"]) == 64
+    assert client.get("/api/v1/deletions", params={"motor": "FAN-A2"}).json()["items"] == []
+    assert list(context.store.root.glob("??/*")) == []
+    status, document = upload(client, FILES)
+    assert (status, document["id"] != recording) == (201, True), "who uploads it again means it"
+
+
+@pytest.mark.parametrize("query", [{}, {"reason": ""}, {"reason": "  "}, {"reason": "x" * 501}])
+def test_a_reason_is_needed(client: httpx.Client, recording: str, query: dict[str, str]) -> None:
+    answer = client.delete(f"/api/v1/recordings/{recording}", params=query)
+    assert answer.status_code == 422
+    assert answer.json()["errors"][0]["location"] == "query.reason"
+    assert client.get(f"/api/v1/recordings/{recording}").status_code == 200
+
+
+def test_a_diagnosis_that_runs_is_named(client: httpx.Client, repository: Repository, recording: str) -> None:
+    claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
+    assert claimed is not None
+    answer = client.delete(f"/api/v1/recordings/{recording}", params={"reason": "x"})
+    assert answer.status_code == 409
+    assert f"diagnosis {claimed.job.id} of it is running" in answer.json()["detail"]
+
+
+def test_what_was_deleted_comes_in_pages(client: httpx.Client) -> None:
+    ids = []
+    for number in range(3):
+        _, document = upload(client, {**FILES, "EVENT.DAT": bytes([number])})
+        ids.append(str(document["id"]))
+        client.delete(f"/api/v1/recordings/{ids[-1]}", params={"reason": "x"})
+    first = client.get("/api/v1/deletions", params={"limit": 2}).json()
+    second = client.get("/api/v1/deletions", params={"limit": 2, "cursor": first["next_cursor"]}).json()
+    assert [item["id"] for item in first["items"] + second["items"]] == ids[::-1]
+    assert second["next_cursor"] is None
