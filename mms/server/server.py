@@ -218,11 +218,12 @@ class Server:
             self._turn_delay_s = 0.0
 
     def post(self, values: Mapping[str, Value | Quality]) -> None:
-        """Set several attributes as one change, soon: before the next request of a client is answered.
+        """Set several attributes as one change, soon: a client's request meanwhile may still miss it.
 
-        Any thread may call this, with any lock held, because it does not wait for the server's. A change
-        that a handler posts is made when the handler returns. Changes are made in the order they were posted;
-        one that does not fit the model is logged. A stopped server makes none.
+        Any thread may call this, with any lock held, because it does not wait for the server's. The pump
+        makes the changes in the order they were posted, within a millisecond or so. What a handler posts is
+        there before its client is answered. A change that does not fit the model is logged. A stopped server
+        makes none.
 
         Parameters
         ----------
