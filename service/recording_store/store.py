@@ -3,6 +3,7 @@
     <root>/<digest[:2]>/<digest>/C_0001.CFG, C_0001.DAT, C_0001.HDR
     <root>/incoming/<writer>/<random>/...      while they arrive
     <root>/deleted/<digest>.<random>/...       while they are removed
+    <root>/unknown/<digest>/...                which the database does not know (unknown_folders.py)
 
 The digest is the SHA-256 of the list of (name, SHA-256 of the content), so the same record is stored once
 however often it is pulled. A folder appears under its digest only when it is complete and on disk (fsync).
@@ -95,7 +96,7 @@ class Incoming:
         files = _describe(self._directory)
         _entry(self._directory, (file.name for file in files))
         digest = manifest_digest(files)
-        directory = _content_directory(self._root, digest)
+        directory = content_directory(self._root, digest)
         if not directory.is_dir():
             directory.parent.mkdir(exist_ok=True)
             _sync_directory(self._directory)
@@ -166,7 +167,7 @@ class RecordingStore:
         """Take the record of a digest away, at once and as a whole, to be removed; it may be gone already."""
         aside = self.root / ASIDE
         aside.mkdir(exist_ok=True)
-        directory = _content_directory(self.root, digest)
+        directory = content_directory(self.root, digest)
         if not directory.is_dir():
             return
         directory.rename(aside / f"{digest}.{uuid.uuid4().hex}")
@@ -181,7 +182,7 @@ class RecordingStore:
                 shutil.rmtree(directory, ignore_errors=True)
 
     def _present(self, digest: str) -> Path:
-        directory = _content_directory(self.root, digest)
+        directory = content_directory(self.root, digest)
         if not directory.is_dir():
             raise RecordingStoreError(f"recording {digest}: its files are missing from {self.root}")
         return directory
@@ -213,8 +214,14 @@ def waveform_digest(files: Iterable[StoredFile]) -> str:
     return sha256("\n".join(contents).encode("ascii")).hexdigest()
 
 
-def _content_directory(root: Path, digest: str) -> Path:
-    if not _DIGEST.fullmatch(digest):
+def is_digest(name: str) -> bool:
+    """Return whether this may be the name of a folder of a content."""
+    return _DIGEST.fullmatch(name) is not None
+
+
+def content_directory(root: Path, digest: str) -> Path:
+    """Return the folder of a content below the root of a store. Raises RecordingStoreError (no digest)."""
+    if not is_digest(digest):
         raise RecordingStoreError(f"{digest[:80]!r}: expected a SHA-256 digest of 64 hexadecimal digits")
     return root / digest[:2] / digest
 

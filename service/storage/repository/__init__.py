@@ -4,6 +4,7 @@ from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
 from service.storage.repository.deletions import DeletionRows
 from service.storage.repository.findings import FindingsRows
+from service.storage.repository.folders import FolderRows
 from service.storage.repository.job_runners import JobRunnerRows
 from service.storage.repository.jobs import JobRows
 from service.storage.repository.leases import LeaseRows
@@ -34,6 +35,7 @@ class Repository(
     MeasurementRows,
     BaselineRows,
     DeletionRows,
+    FolderRows,
     RetentionRows,
 ):
     """All there is to ask of and tell the database; every method is one transaction.
