@@ -4,12 +4,14 @@ from threading import Event
 
 import structlog
 
-from core.units import NANOSECONDS_PER_DAY
+from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
+from service.recording_store.unknown_folders import UnknownFolders
 from service.retention.batches import Batches
 from service.retention.deletion import remove_discarded_folders
 from service.retention.rules import Rule, other_rules, recording_rules
+from service.retention.unknown_folders import UnknownFolderSweep
 from service.storage import Repository
 from service.timing.wall_clock import WallClock
 
@@ -37,6 +39,7 @@ class Retention:
         self._store = store
         self._stopping = stopping or Event()
         self._clock = WallClock()
+        self._sweep = UnknownFolderSweep(repository, UnknownFolders(store.root))
         self._left: list[Rule] = []
         self._next_ns: int | None = None
 
@@ -45,6 +48,7 @@ class Retention:
         self._clock.compare(now_ns, monotonic_ns)
         if self._clock.is_settled:
             self._apply_rules(now_ns, monotonic_ns)
+            self._sweep.sweep_a_part(now_ns / NANOSECONDS_PER_SECOND)
         remove_discarded_folders(self._repository, self._store)
 
     def _apply_rules(self, now_ns: int, monotonic_ns: int) -> None:

@@ -14,9 +14,11 @@ from core.units import NANOSECONDS_PER_SECOND
 from service.cli.output import failing_clearly, print_document, progress, results
 from service.configuration.settings import Settings, SettingsError
 from service.recording_store.store import RecordingStore
+from service.recording_store.unknown_folders import APART, Folder, UnknownFolders
 from service.retention.batches import Batches, Pace
 from service.retention.deletion import remove_discarded_folders
 from service.retention.rules import Rule, rules
+from service.retention.unknown_folders import KEPT_DAYS, UnknownFolderSweep
 from service.storage import Repository, StorageError, connect
 from service.storage.records import Amount
 
@@ -39,13 +41,24 @@ def apply_retention(config: Path | None, *, dry_run: bool, as_json: bool) -> Non
         settings = Settings.load(config)
         engine = connect(settings.database_url)
         try:
-            outcomes = _outcomes(settings, Repository(engine), dry_run=dry_run)
+            repository = Repository(engine)
+            outcomes = _outcomes(settings, repository, dry_run=dry_run)
+            unknown = _unknown_folders(settings, repository, dry_run=dry_run)
         finally:
             engine.dispose()
     if as_json:
-        print_document({"dry_run": dry_run, "rules": [_document(outcome) for outcome in outcomes]})
+        folders = {"number": len(unknown), "bytes": _size_bytes(unknown), "moved": not dry_run}
+        print_document(
+            {
+                "dry_run": dry_run,
+                "rules": [_document(outcome) for outcome in outcomes],
+                "unknown_folders": folders,
+            }
+        )
         return
     _print_table(outcomes, dry_run=dry_run)
+    if unknown:
+        _print_unknown(unknown, dry_run=dry_run)
 
 
 def _outcomes(settings: Settings, repository: Repository, *, dry_run: bool) -> list[Outcome]:
@@ -62,6 +75,28 @@ def _outcomes(settings: Settings, repository: Repository, *, dry_run: bool) -> l
     if not dry_run:
         remove_discarded_folders(repository, RecordingStore(settings.recordings_directory, "retention"))
     return outcomes
+
+
+def _unknown_folders(settings: Settings, repository: Repository, *, dry_run: bool) -> list[Folder]:
+    """Return the folders that the database does not know and, unless it is a dry run, move them apart."""
+    now_s = time.time()
+    sweep = UnknownFolderSweep(repository, UnknownFolders(settings.recordings_directory))
+    unknown = sweep.unknown(now_s)
+    if not dry_run:
+        sweep.sweep(now_s)
+    return unknown
+
+
+def _size_bytes(folders: list[Folder]) -> int:
+    return sum(folder.size_bytes for folder in folders)
+
+
+def _print_unknown(unknown: list[Folder], *, dry_run: bool) -> None:
+    what = f"folders of the recording store that the database does not know: {len(unknown)}"
+    done = (
+        "" if dry_run else f", moved to its folder {APART}, where they are deleted after {KEPT_DAYS:g} days"
+    )
+    results().print(Text(f"{what}, {_size_bytes(unknown) / MB:.1f} MB{done}"), soft_wrap=True)
 
 
 def _print_table(outcomes: list[Outcome], *, dry_run: bool) -> None:

@@ -1,9 +1,9 @@
 """Finds folders of the recording store that the database does not know, and deletes them after a while.
 
-A service that is killed after it has stored a record's files, and before it has written the row, leaves such a
-folder. So does whoever copies one there. A record that arrives is left alone for an hour. Whoever adds its row
-holds the folder's lock and looks whether the folder is there (repository/folders.py); whoever moves the folder
-holds the same lock. So no recording loses its files, whatever the clocks say.
+A service that is killed after it has stored a record's files, and before it has written the row, leaves such
+a folder. So does whoever copies one there. A record that arrives is left alone for an hour. Whoever adds its
+row holds the folder's lock and looks whether the folder is there (repository/folders.py); whoever moves the
+folder holds the same lock. So no recording loses its files, whatever the clocks say.
 """
 
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ class UnknownFolderSweep:
         prefix = PREFIXES[self._round % len(PREFIXES)]
         if prefix == PREFIXES[0]:
             self._look_at_those_apart(now_s)
-        for folder in self.unknown(prefix, now_s):
+        for folder in self._unknown(prefix, now_s):
             self._move_apart(folder)
         self._round += 1
 
@@ -57,8 +57,11 @@ class UnknownFolderSweep:
         for _ in PREFIXES:
             self.sweep_a_part(now_s)
 
-    def unknown(self, prefix: str, now_s: float) -> list[Folder]:
-        """Return the folders of a part that are old enough, and that the database does not know."""
+    def unknown(self, now_s: float) -> list[Folder]:
+        """Return the folders that are old enough, and that the database does not know. Moves none."""
+        return [folder for prefix in PREFIXES for folder in self._unknown(prefix, now_s)]
+
+    def _unknown(self, prefix: str, now_s: float) -> list[Folder]:
         old = [
             folder
             for folder in self._folders.stored(prefix)

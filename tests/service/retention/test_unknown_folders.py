@@ -1,5 +1,6 @@
 """Nothing that the database does not know stays in the store, and nothing that it knows leaves it."""
 
+import json
 import os
 import signal
 import time
@@ -13,6 +14,7 @@ from structlog.testing import capture_logs
 
 from core.units import SECONDS_PER_DAY
 from service.api import ApiContext, create_app
+from service.cli.app import main
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.recording_store.unknown_folders import UnknownFolders
@@ -157,3 +159,29 @@ def test_what_a_person_puts_there_is_found_too(repository: Repository, store: Re
     sweeping = sweep(repository, store, Ages(settled_s=-1.0))
     sweeping.sweep(time.time())
     assert (store.root / "ab" / "notes of somebody").is_dir(), "it is no record: left alone"
+
+
+@ON_SQLITE
+def test_the_command_shows_and_moves_what_is_unknown(
+    repository: Repository,
+    store: RecordingStore,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    repository.add_recording(store.store({"E.CFF": b"known"}), motor="PUMP-A1", now_ns=NOW_NS)
+    store.store({"U.CFF": bytes(1_500_000)})
+    config = tmp_path / "mcc.toml"
+    config.write_text('data_directory = "."\n')
+    later_s = time.time() + SETTLED_S + 60
+    monkeypatch.setattr(time, "time", lambda: later_s)
+    assert main(["retention", "--dry-run", "--config", str(config)]) == 0
+    shown = "folders of the recording store that the database does not know: 1, 1.5 MB"
+    assert f"{shown}\n" in capsys.readouterr().out
+    assert len(folders(store)) == 2
+    assert main(["retention", "--config", str(config)]) == 0
+    assert f"{shown}, moved to its folder unknown, where" in capsys.readouterr().out
+    assert folders(store) == known(repository)
+    assert main(["retention", "--json", "--config", str(config)]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document["unknown_folders"] == {"number": 0, "bytes": 0, "moved": True}
