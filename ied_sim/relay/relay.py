@@ -160,7 +160,7 @@ class Relay:
             self.misbehaviour_state, self._relay_server, self._points, profile.report_buffer_bytes
         )
         self._publish_initial_values(RelayClock.now_ns())
-        self._relay_server.check_published()
+        self._relay_server.apply_published()
 
     @property
     def server(self) -> Server:
@@ -214,8 +214,9 @@ class Relay:
         return FREQUENT_UPDATE_PERIOD_S
 
     def update_metering(self, time_ns: int) -> None:
-        """Meter the motor at UTC `time_ns` and publish the values."""
+        """Meter the motor at UTC `time_ns` and publish the values, which clients see on return."""
         self._values.publish_metering(self._monitor.measure(self._seconds(time_ns)), time_ns)
+        self._relay_server.apply_published()
 
     @property
     def _needs_frequent_updates(self) -> bool:

@@ -113,8 +113,11 @@ class RelayServer:
             for server in self._published_to:
                 server.post(changes)
 
-    def check_published(self) -> None:
-        """Apply what was published before the server listens. Raises ModelError where it does not fit."""
+    def apply_published(self) -> None:
+        """Apply to the server what was published. Raises ModelError where it does not fit.
+
+        It waits for the server, so no handler calls it, and nobody with a lock.
+        """
         self.server.apply_posted()
 
     def go_down(self) -> None:
