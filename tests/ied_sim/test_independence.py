@@ -3,8 +3,14 @@
 import subprocess
 import sys
 
-SHARED = ("core.machines.motor_file", "core.machines.parameters", "core.recordings", "core.units")
-"""What simulator and diagnosis have in common: what a nameplate says, a file format, units."""
+SHARED = (
+    "core.machines.motor_file",
+    "core.machines.parameters",
+    "core.machines.plausibility",
+    "core.recordings",
+    "core.units",
+)
+"""What simulator and diagnosis have in common: what a nameplate says and may say, a file format, units."""
 
 
 def test_the_simulator_loads_nothing_of_the_diagnosis() -> None:
