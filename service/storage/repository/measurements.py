@@ -76,17 +76,23 @@ class MeasurementRows(Sessions):
 
         rows: about how many at most. Those of one time go together, so it may be one more for each motor.
         """
-        old = (MeasurementRow.step_s == step_s, MeasurementRow.time_ns < before_ns)
-        in_order = select(MeasurementRow.time_ns).where(*old).order_by(MeasurementRow.time_ns)
+        of_step = MeasurementRow.step_s == step_s
+        in_order = (
+            select(MeasurementRow.time_ns)
+            .where(of_step, MeasurementRow.time_ns < before_ns)
+            .order_by(MeasurementRow.time_ns)
+        )
         with self._read() as session:
             # Where the batch ends is looked up before it begins, while others may write.
             end_ns = session.scalar(in_order.offset(rows - 1).limit(1))
         if end_ns is None:
             end_ns = before_ns - 1
+        # One bound only: of two, SQLite takes the first for the index, and reads all rows up to it.
+        batch = delete(MeasurementRow).where(of_step, MeasurementRow.time_ns <= end_ns)
         with self._write() as session:
             connection = session.connection()
             began_s = monotonic()
-            deleted = connection.execute(delete(MeasurementRow).where(*old, MeasurementRow.time_ns <= end_ns))
+            deleted = connection.execute(batch)
         return DeletedRows(deleted.rowcount, monotonic() - began_s)
 
     def measurements(

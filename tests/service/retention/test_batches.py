@@ -7,7 +7,7 @@ from pathlib import Path
 from threading import Event, Thread
 
 import pytest
-from sqlalchemy import Engine
+from sqlalchemy import Engine, event
 
 from benchmarks.storage.forgetting import MOTORS, Waits, fill, plant
 from core.units import NANOSECONDS_PER_DAY as DAY_NS
@@ -55,6 +55,24 @@ def test_a_lease_is_renewed_between_the_batches(
         renewals = len(waits.each_s)
     assert number >= 10_000
     assert renewals > 5, "there were more than 30 batches"
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+def test_a_batch_looks_at_no_row_that_it_leaves(engine: Engine, repository: Repository) -> None:
+    """Or each batch of ten million rows would take as long as all of them."""
+    repository.sync_plant(plant())
+    fill(engine, 20_000)
+    hundreds_of_steps = 0
+
+    def count() -> None:
+        nonlocal hundreds_of_steps
+        hundreds_of_steps += 1
+
+    event.listen(
+        engine, "checkout", lambda connection, _entry, _proxy: connection.set_progress_handler(count, 100)
+    )
+    assert repository.forget_measurements(0, 100, before_ns=NOW_NS).rows < 300
+    assert hundreds_of_steps < 300, "of SQLite's machine"
 
 
 @pytest.mark.campaign
