@@ -11,6 +11,7 @@ import numpy as np
 from benchmarks.attacks.attack import Attack, Statuses, Target, at_once
 
 CHANNELS, SAMPLES = 1600, 20_000
+LONGEST_SAMPLES = 800_000
 SETTLED_WITHIN_S = 120.0
 FORM = "multipart/form-data; boundary=b"
 RECORDINGS = "/api/v1/recordings"
@@ -34,6 +35,22 @@ def _wide(seed: int = 0) -> tuple[bytes, bytes]:
     return _configuration("BINARY", CHANNELS, SAMPLES, seed), data.tobytes()
 
 
+def _long(seed: int) -> tuple[bytes, bytes]:
+    """Configuration and data of as many values as are diagnosed: six channels for 80 s, 38 MB in ASCII."""
+    names, samples = ("IA", "IB", "IC", "VA", "VB", "VC"), LONGEST_SAMPLES
+    lines = [f"FACTORY A,{seed},1999", "6,6A,0D"]
+    for k, name in enumerate(names, 1):
+        unit = "A" if name[0] == "I" else "V"
+        lines.append(f"{k},{name},{name[1]},,{unit},0.01,0,0,-32767,32767,1,1,P")
+    lines += ["50", "1", f"10000,{samples}", "21/11/2026,06:00:00.000000", "21/11/2026,06:00:00.100000"]
+    angle = 2 * np.pi * (50e-4 * np.arange(samples)[:, None] - np.arange(3) / 3)
+    values = np.hstack([200 * np.sin(angle - 0.6), 31_000 * np.sin(angle + 0.001 * seed)]).astype(int)
+    numbers = np.arange(samples)[:, None]
+    table = np.hstack([numbers + 1, 100 * numbers, values])
+    data = "\r\n".join(",".join(map(str, row)) for row in table.tolist())
+    return "\r\n".join([*lines, "ASCII", "1", ""]).encode("ascii"), data.encode("ascii")
+
+
 @cache
 def _blank() -> tuple[bytes, bytes]:
     """Configuration and data of 64 MB in ASCII, whose values are left out: a byte a value."""
@@ -54,10 +71,9 @@ def _form(configuration: bytes, data: bytes) -> bytes:
     )
 
 
-def _uploaded(target: Target, *, blank: bool = False) -> Target:
+def _uploaded(target: Target, form: bytes | None = None) -> Target:
     """Upload the record, and wait until its diagnosis has come to an end."""
-    form = _form(*(_blank() if blank else _wide()))
-    status = target.ask("POST", RECORDINGS, form, FORM)
+    status = target.ask("POST", RECORDINGS, form or _form(*_wide()), FORM)
     assert status == "201", status
     deadline = time.monotonic() + SETTLED_WITHIN_S
     while time.monotonic() < deadline:
@@ -84,6 +100,17 @@ def _upload(times: int, target: Target) -> Statuses:
     return found + Counter([target.ask("POST", RECORDINGS, forms[1], FORM)])
 
 
+def _upload_longest(target: Target) -> Statuses:
+    """Four of them one after another, so that both workers have one, and waveforms are asked for beside."""
+    answers: Statuses = Counter()
+    first = _uploaded(target, _form(*_long(0)))
+    for seed in range(1, 5):
+        form = _form(*_long(seed))
+        answers[target.ask("POST", RECORDINGS, form, FORM)] += 1
+        answers += _waveforms(4, 20_000, first)
+    return answers
+
+
 def _upload_blank(target: Target) -> Statuses:
     return Counter([target.ask("POST", RECORDINGS, _form(*_blank()), FORM)])
 
@@ -94,9 +121,10 @@ ATTACKS = (
     Attack(
         "waveform, 63 million blank values",
         partial(_waveforms, 1, 20_000),
-        partial(_uploaded, blank=True),
+        lambda target: _uploaded(target, _form(*_blank())),
     ),
     Attack("files of 64 MB, 20 at once", partial(_files, 20), _uploaded),
     Attack("upload and diagnosis, 64 MB, 8 at once", partial(_upload, 8)),
+    Attack("upload and diagnosis, 4 x 8 million values, and waveforms", _upload_longest),
     Attack("upload and diagnosis, 63 million blank values", _upload_blank),
 )
