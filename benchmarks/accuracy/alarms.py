@@ -117,14 +117,15 @@ def draw_conditions(draw: Draw) -> tuple[Condition, Disturbances, float]:
 def judge_draw(draw: Draw) -> Outcome:
     """Make the record and diagnose it with the nameplate's parameters."""
     condition, disturbances, start_s = draw_conditions(draw)
-    record = _record(draw, condition, disturbances, start_s)
+    record = record_of_draw(draw, condition, disturbances, start_s)
     baseline = None
     if draw.healthy_before:
         baseline = learn_baseline(_healthy_before(draw, disturbances), draw.motor)
     return Outcome(condition, disturbances, diagnose(record, draw.motor, baseline=baseline))
 
 
-def _record(draw: Draw, condition: Condition, disturbances: Disturbances, start_s: float) -> Recording:
+def record_of_draw(draw: Draw, condition: Condition, disturbances: Disturbances, start_s: float) -> Recording:
+    """Make the record of a draw, in a condition and with disturbances that need not be its own."""
     return disturbed_record(
         draw.motor, condition, disturbances, start_s=start_s, cycles=draw.cycles,
         sample_rate_hz=draw.sample_rate_hz, seed=draw.index,
@@ -144,7 +145,7 @@ def _healthy_before(draw: Draw, disturbances: Disturbances) -> Iterator[Recordin
             delays_s=disturbances.delays_s,
             parameter_factors=disturbances.parameter_factors,
         )
-        record = _record(other, condition, same, start_s)
+        record = record_of_draw(other, condition, same, start_s)
         if diagnose(record, draw.motor).verdict is not Verdict.UNDIAGNOSABLE:
             found += 1
             yield record

@@ -36,6 +36,9 @@ AXES = tuple(np.array([np.cos(angle), np.sin(angle)]) for angle in (0.0, 2.0 * p
 """Axes of the phases a, b, c on the Clarke axes."""
 CONFIDENCE_QUANTILE = NormalDist().inv_cdf(0.975)
 """Standard deviations that hold 95 % of a normal distribution between them."""
+BEST_OF_THREE_QUANTILE = NormalDist().inv_cdf(1.0 - 0.05 / 3.0)
+"""Standard deviations above zero that the greatest of three windings' levels stays below in 95 of 100 healthy
+records."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +130,29 @@ def widened(value: float, interval: tuple[float, float], deviation: float) -> tu
     reach = CONFIDENCE_QUANTILE * deviation
     low, high = interval
     return value - hypot(max(0.0, value - low), reach), value + hypot(max(0.0, high - value), reach)
+
+
+def of_the_likeliest_winding(value: float, interval: tuple[float, float]) -> tuple[float, float]:
+    """Let the interval of a level begin at zero where a healthy motor would show as much.
+
+    The level is that of the winding which explains the record best. The greatest of three levels that chance
+    makes is greater than each of them usually is.
+
+    Parameters
+    ----------
+    value : float
+        The level.
+    interval : tuple of float
+        Its 95 % interval as that of one winding chosen beforehand.
+
+    Returns
+    -------
+    tuple of float
+        The 95 % interval.
+    """
+    low, high = interval
+    deviation = (value - low) / CONFIDENCE_QUANTILE
+    return (min(low, 0.0) if value <= BEST_OF_THREE_QUANTILE * deviation else low), high
 
 
 class _Machine:

@@ -13,7 +13,7 @@ from core.diagnosis.hypotheses import Explanation, explain, is_explained
 from core.diagnosis.indicators import indicators
 from core.diagnosis.judgement import identified, judge
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
-from core.diagnosis.propagation import Known, deviation, errors_of, widened
+from core.diagnosis.propagation import Known, deviation, errors_of, of_the_likeliest_winding, widened
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
 from core.diagnosis.search import METHODS, search
 from core.diagnosis.tolerance import Systematic, systematic
@@ -115,7 +115,9 @@ def _diagnosed(
     if assumed and verdict is Verdict.FAULT:
         verdict = Verdict.WATCH
     if assumed:
-        reasons.append("no voltages recorded: a balanced supply is assumed, so this is no better than a hint")
+        reasons.insert(
+            1, "no voltages recorded: a balanced supply is assumed, so this is no better than a hint"
+        )
     if baseline is not None:
         reasons.append(f"relative to a baseline of {baseline.recordings} healthy recordings")
     named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and is_explained(explanation, tolerance))
@@ -258,7 +260,8 @@ def _level_interval(
     errors = errors_of(case, playback.model, explanation.record, fit.candidate, known)
     at_bound = FAULT_LEVEL in fit.at_bound
     systematic_level = tolerance.level if at_bound else deviation(fit, FAULT_LEVEL, errors)
-    return widened(fit.value(FAULT_LEVEL), explanation.level_interval, systematic_level)
+    level = fit.value(FAULT_LEVEL)
+    return of_the_likeliest_winding(level, widened(level, explanation.level_interval, systematic_level))
 
 
 def _not_below_zero(interval: tuple[float, float]) -> tuple[float, float]:

@@ -143,8 +143,9 @@ def running(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Q
     why = (
         "there is no current at the supply's frequency: the motor is switched off"
         if off
-        else f"{share:.2f} of the locked rotor's current: the motor is starting or stalled, or the currents "
-        "are scaled 2 to 5 times too large"
+        else f"a start, or a stalled motor: {share:.2f} of the locked rotor's current (or the currents are "
+        "scaled 2 to 5 times too large); record while it runs for a diagnosis, or a start from before it on "
+        "for `mcc commission`"
     )
     yield finding(
         "running", share, MOST_OF_STANDSTILL, "of locked rotor", passed=not off and not stalled, message=why

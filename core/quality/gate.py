@@ -1,4 +1,9 @@
-"""The quality gate: it runs the checks in their order."""
+"""The quality gate: it runs the checks in their order, causes before what follows from them.
+
+A person reads the first failure as the reason. So what explains other failures is looked for first: samples
+that are missing or repeated, then a motor that starts, stops or stands, then the supply, channel by channel,
+and only then what the currents are like.
+"""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -9,6 +14,7 @@ from core.quality import currents, samples, supply
 from core.quality.circle_diagram import circle_diagram
 from core.quality.finding import QualityFinding, all_passed
 from core.quality.magnitude import magnitude
+from core.quality.operation import is_small, operation
 from core.quality.steadiness import steadiness
 from core.signals.sequence import PhaseSequence
 from core.signals.terminals import Terminals
@@ -50,9 +56,11 @@ def examine(terminals: Terminals, motor: Motor) -> tuple[list[QualityFinding], P
     passed : Passed or None
         Supply of the record; None where a check failed.
     """
-    found = sampled_well(terminals, motor.nameplate)
-    if not all_passed(found):
-        return found, None
+    found: list[QualityFinding] = []
+    for group in _sampled(terminals, motor):
+        found += group
+        if not all_passed(found):
+            return found, None
     feed = supply.feed_of(terminals, motor.nameplate)
     if isinstance(feed, QualityFinding):
         return [*found, feed], None
@@ -120,12 +128,24 @@ def wired_well(terminals: Terminals, motor: Motor, *, timed: bool) -> list[Quali
     return found
 
 
+def _sampled(terminals: Terminals, motor: Motor) -> Iterator[Iterable[QualityFinding]]:
+    """Yield groups of findings on the samples themselves and on what the motor does."""
+    per_cycle = terminals.sample_rate_hz / motor.nameplate.rated_frequency_Hz
+    yield samples.extent(terminals, motor.nameplate)
+    yield magnitude(terminals, motor.nameplate)
+    yield samples.holding(terminals.voltage_channels, terminals.voltages, per_cycle)
+    if not is_small(terminals, motor):
+        yield samples.holding(terminals.current_channels, terminals.current_abc, per_cycle)
+    yield operation(terminals, motor)
+    yield samples.clipping(terminals.current_channels, terminals.current_abc)
+
+
 def _electrical(terminals: Terminals, feed: supply.Feed, motor: Motor) -> Iterator[Iterable[QualityFinding]]:
     """Yield groups of findings, each computed only when asked for."""
-    nameplate, per_cycle = motor.nameplate, terminals.sample_rate_hz / feed.frequency_hz
+    nameplate = motor.nameplate
     yield supply.frequency(feed, nameplate)
     yield supply.drive(feed, terminals)
-    yield supply.shape(feed, terminals)
+    yield samples.clipping(terminals.voltage_channels, terminals.voltages)
     yield supply.channels(feed, terminals)
     yield supply.level(feed, nameplate)
     seen = currents.currents_of(terminals, feed.frequency_hz)
@@ -133,7 +153,6 @@ def _electrical(terminals: Terminals, feed: supply.Feed, motor: Motor) -> Iterat
     yield currents.running(seen, feed, circle)
     yield currents.phase_loss(seen, feed)
     yield currents.level(seen, feed, circle)
-    yield samples.holding(terminals.current_channels, terminals.current_abc, per_cycle)
     yield currents.saturation(seen, feed)
     yield currents.adding_up(seen, feed)
     yield currents.order(seen, feed, circle)

@@ -10,7 +10,6 @@ from core.machines.base import Array
 from core.machines.parameters import Nameplate
 from core.quality.assumed_supply import assumed_voltage
 from core.quality.finding import QualityFinding, finding
-from core.quality.samples import clipping, holding
 from core.signals.decimation import decimate
 from core.signals.errors import SignalError
 from core.signals.phasors import fundamental_frequency, fundamental_phasors
@@ -155,26 +154,6 @@ def drive(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
         # The harmonics' lines of a few cycles lie so close that there is nothing between them.
         return
     yield _pulses(_energy_beside_harmonics(feed.voltage_ab, feed.frequency_hz, terminals.sample_rate_hz))
-
-
-def shape(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
-    """Check the voltage channels for clipped and held samples.
-
-    Parameters
-    ----------
-    feed : Feed
-        Frequency and phasors of the voltages.
-    terminals : Terminals
-        Currents and voltages at the motor's terminals.
-
-    Yields
-    ------
-    QualityFinding
-        A finding.
-    """
-    per_cycle = terminals.sample_rate_hz / feed.frequency_hz
-    yield from clipping(terminals.voltage_channels, terminals.voltages)
-    yield from holding(terminals.voltage_channels, terminals.voltages, per_cycle)
 
 
 def channels(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
