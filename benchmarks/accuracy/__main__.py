@@ -125,8 +125,8 @@ def _coverage(effort: Effort, pool: Executor) -> Iterator[str]:
 def _intervals(effort: Effort, pool: Executor) -> Iterator[str]:
     yield f"{effort.interval} records a row of level and load, a tenth of it for other motors. All else is"
     yield "drawn as in the section on false alarms: gains, delays, unbalance, harmonics, frequency, swings,"
-    yield "noise; `R`: R_s and R_r within 10 %; `R, L`: L_ls, L_lr and L_s within 10 % too. Expected: the truth"
-    yield "inside `mu_f_ci95` and `load_level_ci95` in about 95 %, 0 in that of a healthy motor as well."
+    yield "noise; `R`: R_s and R_r within 10 %; `R, L`: L_ls, L_lr and L_s within 10 % too. Expected: that"
+    yield "`mu_f_ci95` and `load_level_ci95` hold the truth in about 95 %, that of a healthy motor 0 as well."
     yield "`its own scatter alone`: how often `mu_f_scatter95` holds the truth."
     yield ""
     yield from intervals(records=effort.interval, pool=pool)
