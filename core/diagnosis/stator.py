@@ -123,8 +123,6 @@ def _diagnosed(
     named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and is_explained(explanation, tolerance))
     # Load and speed are those of the accepted hypothesis; an insignificant level would bias them.
     running = fit if named else explanation.healthy
-    load_scatter95 = explanation.load_interval if named else running.interval(LOAD_LEVEL)
-    load_errors = errors_of(case, playback.model, explanation.record, running.candidate, known)
     return Diagnosis(
         verdict=verdict,
         mu_f=max(0.0, fit.value(FAULT_LEVEL)),
@@ -140,9 +138,7 @@ def _diagnosed(
         model=str(model),
         method=str(method),
         mu_f_scatter95=_not_below_zero(fit.interval(FAULT_LEVEL)),
-        load_level_ci95=widened(
-            running.value(LOAD_LEVEL), load_scatter95, deviation(running, LOAD_LEVEL, load_errors)
-        ),
+        load_level_ci95=_load_interval(case, playback, explanation, known, named=named),
         load_level_scatter95=running.interval(LOAD_LEVEL),
         speed_rpm=_speed_rpm(case, playback, running),
         detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),
@@ -262,6 +258,23 @@ def _level_interval(
     systematic_level = tolerance.level if at_bound else deviation(fit, FAULT_LEVEL, errors)
     level = fit.value(FAULT_LEVEL)
     return of_the_likeliest_winding(level, widened(level, explanation.level_interval, systematic_level))
+
+
+def _load_interval(
+    case: Case, playback: Playback, explanation: Explanation, known: Known, *, named: bool
+) -> tuple[float, float]:
+    """95 % interval of the load from all causes.
+
+    Where shorted turns are neither found nor excluded, it holds the loads of both hypotheses.
+    """
+    scatter = [(explanation.fit, explanation.load_interval)]
+    if not named:
+        scatter.append((explanation.healthy, explanation.healthy.interval(LOAD_LEVEL)))
+    found = []
+    for fit, interval in scatter:
+        errors = errors_of(case, playback.model, explanation.record, fit.candidate, known)
+        found.append(widened(fit.value(LOAD_LEVEL), interval, deviation(fit, LOAD_LEVEL, errors)))
+    return min(low for low, _ in found), max(high for _, high in found)
 
 
 def _not_below_zero(interval: tuple[float, float]) -> tuple[float, float]:
