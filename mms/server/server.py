@@ -75,7 +75,8 @@ class Server:
     identity : Identity, optional
         What the Identify service answers. The library's own name by default.
     dynamic_data_sets : int
-        Most data sets that clients may create in a logical device. 0 for no such service.
+        Most data sets of a logical device, those of its model included. Clients may create so many. 0 for no
+        such service.
     optional_fields_writable : bool
         Whether clients may choose the optional fields of reports (OptFlds).
 

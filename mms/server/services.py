@@ -48,8 +48,8 @@ class Services:
     report_buffer_bytes : int
         Buffer of each report control block [byte].
     dynamic_data_sets : int
-        Most data sets that clients may create in a logical device, and each of them for its association. 0
-        for no such service.
+        Most data sets of a logical device, those of its model included, and of an association. Clients may
+        create so many. 0 for no such service.
     optional_fields_writable : bool
         Whether clients may choose the optional fields of reports (OptFlds).
 
