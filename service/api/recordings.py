@@ -20,6 +20,7 @@ from service.api.problems import FieldError, ProblemError, problems
 from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile
 from service.api.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
+from service.retention.deletion import remove_discarded_folders_if_possible
 from service.storage.errors import FolderGoneError, TooManyWaitingError
 from service.storage.records import RecordingEntry
 from service.storage.repository.recordings import AddedRecording
@@ -84,6 +85,7 @@ def upload_recording(
     context.on_new_job()
     if not added.created:
         response.status_code = HTTPStatus.OK
+        remove_discarded_folders_if_possible(context.repository, context.store)
     response.headers["Location"] = request.url_for("get_recording", recording_id=added.recording.id).path
     return _details(context, added.recording)
 
@@ -155,6 +157,7 @@ def _add(context: ApiContext, motor: str, files: list[UploadFile]) -> AddedRecor
         )
     except TooManyWaitingError:
         context.repository.discard_stored(stored.digest, now_ns=now_ns)
+        remove_discarded_folders_if_possible(context.repository, context.store)
         raise
 
 

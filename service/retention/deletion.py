@@ -22,11 +22,16 @@ def delete_recording(
     """Delete a recording for a person who says why. Raises NotFoundError, RecordingInUseError."""
     deletion = repository.delete_recording(recording_id, reason, now_ns=now_ns)
     log.info("recording deleted", recording=recording_id, motor=deletion.motor, reason=reason)
+    remove_discarded_folders_if_possible(repository, store)
+    return deletion
+
+
+def remove_discarded_folders_if_possible(repository: Repository, store: RecordingStore) -> None:
+    """Remove the folders that no recording needs any more; what fails is done within a minute."""
     try:
         remove_discarded_folders(repository, store)
     except OSError as error:
-        log.warning("files of deleted recordings are not removed yet", error=str(error))
-    return deletion
+        log.warning("files that no recording needs are not removed yet", error=str(error))
 
 
 def remove_discarded_folders(repository: Repository, store: RecordingStore) -> None:

@@ -35,6 +35,7 @@ from service.storage.repository.sessions import (
     record_of,
 )
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
+from service.storage.texts import storable
 
 RECORDS_A_QUERY = 500
 """Databases limit how many values a query may hold."""
@@ -102,7 +103,7 @@ class RecordingRows(Sessions):
             row = found(session, RecordingRow, link.recording_id, "recording")
             if row.state is RecordingState.ANNOUNCED:
                 row.state = RecordingState.REJECTED
-                row.reason = reason
+                row.reason = storable(reason)
                 session.delete(link)
 
     def announce_recording(
@@ -120,7 +121,7 @@ class RecordingRows(Sessions):
             row = _announced(session, relay, motor, remote, now_ns)
             if row.state is RecordingState.ANNOUNCED:
                 row.attempts += 1
-                row.reason = reason
+                row.reason = storable(reason)
             return row.attempts
 
     def reject_remote_record(
@@ -141,7 +142,7 @@ class RecordingRows(Sessions):
             row = _announced(session, relay, motor, remote, now_ns)
             if row.state is RecordingState.ANNOUNCED:
                 row.state = RecordingState.REJECTED
-                row.reason = reason
+                row.reason = storable(reason)
             if recording_request_id is not None:
                 fail_row(
                     found(session, RecordingRequestRow, recording_request_id, KIND, lock=True), reason, now_ns
@@ -176,11 +177,11 @@ class RecordingRows(Sessions):
             raise ValueError("a recording comes from a relay (relay and remote) or is uploaded (neither)")
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
-            require_folder(session, stored)
             row = stored_before(session, motor, relay, remote.name if remote else stored.name, stored)
             created = row is None
             sent_before = row is not None and row.ied is not None
             if row is None:
+                require_folder(session, stored)
                 if most_queued is not None:
                     require_room(session, motor, most_queued)
                 if relay is None or remote is None:
@@ -399,6 +400,7 @@ def _complete(session: Session, row: RecordingRow, stored: StoredRecording, now_
     listed = select(RecordingFileRow.name).where(RecordingFileRow.recording_id == row.id)
     if not {file.name for file in stored.files} > set(session.scalars(listed)):
         return
+    require_folder(session, stored)
     session.execute(delete(RecordingFileRow).where(RecordingFileRow.recording_id == row.id))
     before = row.digest
     row.digest = stored.digest

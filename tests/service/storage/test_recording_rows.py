@@ -290,3 +290,14 @@ def test_a_record_of_another_day_loses_the_reading(
     assert (found.clock_offset_ns, found.clock_quality) == (
         (OFFSET_NS, ClockQuality.SYNCHRONISED) if kept else (None, None)
     )
+
+
+def test_a_reason_of_any_text_is_kept_as_far_as_it_can_be(repository: Repository) -> None:
+    """The names in it come from a relay. PostgreSQL holds no NUL, and UTF-8 no half of a surrogate pair."""
+    remote = RemoteRecord("HR_1", 7, NOW_NS)
+    strange = "HR\0\ud800_1: expected a .DAT file"
+    repository.note_failed_pull("A1_SEL710", "PUMP-A1", remote, strange, now_ns=NOW_NS)
+    entry = repository.reject_remote_record("A1_SEL710", "PUMP-A1", remote, strange * 1000, now_ns=NOW_NS)
+    assert entry.reason is not None
+    assert entry.reason.startswith("HR\ufffd\ufffd_1: expected a .DAT file")
+    assert len(entry.reason) < 5000
