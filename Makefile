@@ -1,4 +1,4 @@
-# make install | demo | test | test-all | lint | bench | fuzz SECONDS=60 | interop LIBIEC61850=TREE      (PYTHON=python3.11 make install: another interpreter)
+# make install | demo | test | test-all | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
 # make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
 # make hostile CASES=10000 SEED=1     (a relay that answers nonsense: docs/evidence/interoperability.md)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
@@ -76,7 +76,7 @@ bench: install
 	$(BIN)/python -m benchmarks
 	$(BIN)/python -m benchmarks.commands
 
-# LIBIEC61850: a source tree of that library, built with its examples (docs/evidence/interoperability.md).
+# Clients and servers of other stacks; LIBIEC61850: a built source tree of that library, too (docs/evidence/interoperability.md).
 interop: install
 	$(BIN)/python -m benchmarks.interoperability $(LIBIEC61850)
 

@@ -1,29 +1,38 @@
-"""Runs both parts and prints them as tables; ends with 1 when a check failed."""
+"""Runs every part and prints it as a table; ends with 1 when a check failed.
+
+Without an argument it runs what the package registry gives, with a built source tree of libiec61850 its
+programs too.
+"""
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.interoperability import our_client, their_clients
+from benchmarks.interoperability import our_client, stack_clients, stack_servers, their_clients
 from benchmarks.interoperability.peers import PeerError, Result, Tree
 from ied_sim import warm_up
 
-PARTS: tuple[tuple[str, Callable[[Tree], Iterator[Result]]], ...] = (
-    ("Our client and service, servers in C", our_client.results),
-    ("Clients in C, our servers", their_clients.results),
-)
+
+def parts(tree: Tree | None) -> Iterator[tuple[str, Iterator[Result]]]:
+    """Yield the parts with their titles."""
+    yield "Clients of other stacks, our servers", stack_clients.results()
+    yield "Our client, servers of other stacks", stack_servers.results()
+    if tree is not None:
+        yield "Our client and service, libiec61850's servers in C", our_client.results(tree)
+        yield "libiec61850's clients in C, our servers", their_clients.results(tree)
 
 
 def main(arguments: list[str]) -> int:
-    if len(arguments) != 1 or not Path(arguments[0]).is_dir():
-        sys.exit("python -m benchmarks.interoperability TREE: a built source tree of libiec61850")
-    tree = Tree(Path(arguments[0]).resolve())
+    """Print the tables and return the exit code."""
+    if len(arguments) > 1 or not all(Path(each).is_dir() for each in arguments):
+        sys.exit("python -m benchmarks.interoperability [TREE]: a built source tree of libiec61850")
+    tree = Tree(Path(arguments[0]).resolve()) if arguments else None
     warm_up()
     failed = 0
     try:
-        for title, part in PARTS:
+        for title, results in parts(tree):
             print(f"\n{title}\n\n| server | asked | seen | |\n|---|---|---|---|")
-            for result in part(tree):
+            for result in results:
                 failed += not result.passed
                 verdict = "ok" if result.passed else "FAILED"
                 print(f"| {result.server} | {result.asked} | {result.seen} | {verdict} |", flush=True)

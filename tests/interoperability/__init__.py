@@ -1,0 +1,1 @@
+"""Tests against peers that do not stand on libiec61850."""
