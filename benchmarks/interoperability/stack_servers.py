@@ -149,8 +149,8 @@ def _iec61850(model: _Model) -> Iterator[int]:
     """Serve on a thread of its own, which runs the server's event loop.
 
     This server takes data objects from SCL. Its data sets, of one logical device each, report blocks and
-    controls are declared beside. The block is an unbuffered one: it gives no buffered one as a whole, to its own
-    client neither.
+    controls are declared beside. The block is an unbuffered one: it gives no buffered one as a whole, to its
+    own client neither.
     """
     server = iec61850.IedServer.from_scl(model.path, ied_name=IED)
     device = model.block.removeprefix(IED).partition("/")[0]
