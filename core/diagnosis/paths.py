@@ -45,7 +45,9 @@ WIDEST = np.diag((HIGHEST - LOWEST) ** -2.0)
 """Curvature of a prior as wide as the ranges: none is wider, even where the record says nothing."""
 LONGEST_STEP = np.array([0.2, 0.4, 1e-3])
 FIRST_LEVEL, LEAST_START, LEAST_LOAD, MOST_LOAD = 0.03, 0.002, 0.02, 1.5
-MOST_ROUNDS = 12
+MOST_ROUNDS, ROUNDS_OF_ALL = 12, 3
+HOPELESS = 40.0
+"""Misfit above the least beyond which a fit is not followed further after ROUNDS_OF_ALL."""
 NEAR, NEGLIGIBLE = 0.1, 3e-3
 """Steps in standard deviations below which a fit is good enough to be weighed, and to be used."""
 FIRST_DAMPING = 0.1
@@ -295,25 +297,35 @@ class PathPosterior:
         modelled, slopes = self._linearised(values, winding, share)
         misfit = self._misfit(values, modelled)
         damping = np.zeros(share.size)
-        for _ in range(MOST_ROUNDS):
-            curvature = np.einsum("nri,nrj->nij", slopes, slopes) + WIDEST
-            diagonal = np.einsum("nii->ni", curvature)
-            damped = curvature + (damping[:, np.newaxis] * diagonal)[:, :, np.newaxis] * np.eye(3)
-            downhill = np.einsum("nri,nr->ni", slopes, self._rows(values, modelled))
-            step = -np.linalg.solve(damped, downhill[..., np.newaxis])[..., 0]
-            moved = np.clip(values + np.clip(step, -LONGEST_STEP, LONGEST_STEP), LOWEST, highest)
-            converged = (np.abs(moved - values) * np.sqrt(diagonal) < precision).all(axis=1)
-            if converged.all():
+        converged = np.zeros(share.size, np.bool_)
+        for done in range(MOST_ROUNDS):
+            going = ~converged
+            if done >= ROUNDS_OF_ALL:
+                going &= misfit < misfit.min() + HOPELESS
+            k = np.flatnonzero(going)
+            if k.size == 0:
                 break
-            there, slopes_there = self._linearised(moved, winding, share)
+            curvature = np.einsum("nri,nrj->nij", slopes[k], slopes[k]) + WIDEST
+            diagonal = np.einsum("nii->ni", curvature)
+            damped = curvature + (damping[k, np.newaxis] * diagonal)[:, :, np.newaxis] * np.eye(3)
+            downhill = np.einsum("nri,nr->ni", slopes[k], self._rows(values[k], modelled[k]))
+            step = -np.linalg.solve(damped, downhill[..., np.newaxis])[..., 0]
+            moved = np.clip(values[k] + np.clip(step, -LONGEST_STEP, LONGEST_STEP), LOWEST, highest[k])
+            near = (np.abs(moved - values[k]) * np.sqrt(diagonal) < precision).all(axis=1)
+            converged[k] = near
+            k, moved = k[~near], moved[~near]
+            if k.size == 0:
+                continue
+            there, slopes_there = self._linearised(moved, winding[k], share[k])
             fallen = self._misfit(moved, there)
-            better = fallen <= misfit
-            values = np.where(better[:, np.newaxis], moved, values)
-            modelled = np.where(better[:, np.newaxis], there, modelled)
-            slopes = np.where(better[:, np.newaxis, np.newaxis], slopes_there, slopes)
-            misfit = np.where(better, fallen, misfit)
-            shorter = np.maximum(FIRST_DAMPING, 4.0 * damping)
-            damping = np.where(better, np.where(damping > FIRST_DAMPING, damping / 4.0, 0.0), shorter)
+            better = fallen <= misfit[k]
+            shorter = np.maximum(FIRST_DAMPING, 4.0 * damping[k])
+            longer = np.where(damping[k] > FIRST_DAMPING, damping[k] / 4.0, 0.0)
+            damping[k] = np.where(better, longer, shorter)
+            taken = k[better]
+            values[taken], modelled[taken], slopes[taken], misfit[taken] = (
+                moved[better], there[better], slopes_there[better], fallen[better],
+            )  # fmt: skip
         curvature = np.einsum("nri,nrj->nij", slopes, slopes) + WIDEST
         weighted = np.einsum("nri,rs->nis", slopes[:, :4], self._whitening)
         response = np.linalg.inv(curvature) @ weighted
