@@ -14,6 +14,7 @@ from core.diagnosis.case import Case
 from core.diagnosis.fundamental import Fundamental
 from core.diagnosis.operating_point import from_phasors
 from core.diagnosis.paths import PathPosterior
+from core.diagnosis.priors import GENERATING, OFFSET_S
 from core.diagnosis.propagation import Known
 from core.diagnosis.refinement import (
     FAULT_LEVEL,
@@ -30,6 +31,8 @@ from core.machines.base import StatorModel
 SHARE_UNEXPLAINED = 0.15
 """Share of the asymmetry that a winding's fit may leave: the path and the leakages of the shorted turns
 are never known exactly."""
+UNUSUAL = 2.5
+"""Standard deviations of the offset's prior beyond which a fit is doubted, even of a small asymmetry."""
 NOTHING_KNOWN = Known()
 ONE_IN_A_HUNDRED = 2.15
 """Standard deviations that a complex error exceeds once in a hundred times: sqrt(ln 100)."""
@@ -83,9 +86,9 @@ def explain(case: Case, model: StatorModel, starts: Starts, known: Known = NOTHI
 
     All windings have equally many unknowns, so the least residual is also the greatest likelihood. Turns
     bridged by a resistance draw a current nearer to the voltage's direction, which a long offset and too
-    small a load imitate. So wherever the asymmetry exceeds what chance makes of it, every path is weighed
-    against dead-shorted turns (`PathPosterior`). The fit of dead-shorted turns is kept where the posterior
-    finds it likeliest; else the posterior's own likeliest is taken.
+    small a load imitate. So wherever the asymmetry exceeds what chance makes of it, or offset or load are not
+    usual, every path is weighed against dead-shorted turns (`PathPosterior`). The fit of dead-shorted turns
+    is kept where the posterior finds it likeliest; else the posterior's own likeliest is taken.
 
     Parameters
     ----------
@@ -127,11 +130,12 @@ def explain(case: Case, model: StatorModel, starts: Starts, known: Known = NOTHI
     evaluations = sum(one.evaluations for one in tried)
     if model.knows_path and not case.voltages_assumed:
         posterior = PathPosterior(case, refinement, known)
-        if abs(healthy.left) > ONE_IN_A_HUNDRED * posterior.backward_A:
+        chance = ONE_IN_A_HUNDRED * posterior.backward_A
+        if abs(healthy.left) > chance or not (_is_usual(fit) and _is_usual(healthy)):
             if not posterior.holds(fit):
                 winding, fit = posterior.winding, posterior.likeliest()
                 healthy = posterior.without_fault(fit)
-            in_direction = posterior.explains
+            in_direction = posterior.explains or abs(healthy.left) <= chance
             intervals = {name: _joined(fit.interval(name), posterior.interval(name)) for name in intervals}
         evaluations += posterior.evaluations
     forward = abs(refinement.record.current.forward)
@@ -227,6 +231,10 @@ def _likeliest(fits: list[Fit]) -> int:
 
 def _misfit(fit: Fit) -> float:
     return fit.misfit
+
+
+def _is_usual(fit: Fit) -> bool:
+    return abs(fit.value(TIME_OFFSET)) < UNUSUAL * OFFSET_S and fit.value(LOAD_LEVEL) > -GENERATING
 
 
 def _size(fit: Fit) -> float:

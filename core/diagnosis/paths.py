@@ -47,7 +47,7 @@ LONGEST_STEP = np.array([0.2, 0.4, 1e-3])
 FIRST_LEVEL, LEAST_START, LEAST_LOAD, MOST_LOAD = 0.03, 0.002, 0.02, 1.5
 MOST_ROUNDS, ROUNDS_OF_ALL = 12, 3
 HOPELESS = 40.0
-"""Misfit above the least beyond which a fit is not followed further after ROUNDS_OF_ALL."""
+"""Promised misfit above the least beyond which a fit is not followed further after ROUNDS_OF_ALL."""
 NEAR, NEGLIGIBLE = 0.1, 3e-3
 """Steps in standard deviations below which a fit is good enough to be weighed, and to be used."""
 FIRST_DAMPING = 0.1
@@ -297,18 +297,19 @@ class PathPosterior:
         modelled, slopes = self._linearised(values, winding, share)
         misfit = self._misfit(values, modelled)
         damping = np.zeros(share.size)
-        converged = np.zeros(share.size, np.bool_)
+        converged, hopeless = np.zeros(share.size, np.bool_), np.zeros(share.size, np.bool_)
         for done in range(MOST_ROUNDS):
-            going = ~converged
-            if done >= ROUNDS_OF_ALL:
-                going &= misfit < misfit.min() + HOPELESS
-            k = np.flatnonzero(going)
+            k = np.flatnonzero(~converged & ~hopeless)
             if k.size == 0:
                 break
             curvature = np.einsum("nri,nrj->nij", slopes[k], slopes[k]) + WIDEST
             diagonal = np.einsum("nii->ni", curvature)
-            damped = curvature + (damping[k, np.newaxis] * diagonal)[:, :, np.newaxis] * np.eye(3)
             downhill = np.einsum("nri,nr->ni", slopes[k], self._rows(values[k], modelled[k]))
+            if done >= ROUNDS_OF_ALL:
+                whole = np.linalg.solve(curvature, downhill[..., np.newaxis])[..., 0]
+                promised = misfit[k] - np.einsum("ni,ni->n", downhill, whole)
+                hopeless[k] = promised > misfit.min() + HOPELESS
+            damped = curvature + (damping[k, np.newaxis] * diagonal)[:, :, np.newaxis] * np.eye(3)
             step = -np.linalg.solve(damped, downhill[..., np.newaxis])[..., 0]
             moved = np.clip(values[k] + np.clip(step, -LONGEST_STEP, LONGEST_STEP), LOWEST, highest[k])
             near = (np.abs(moved - values[k]) * np.sqrt(diagonal) < precision).all(axis=1)
