@@ -9,6 +9,9 @@ from structlog.typing import Processor
 QUIET = ("alembic", "httpx", "uvicorn.access")
 """Libraries whose INFO messages are not logged."""
 
+QUIETER = ("python_multipart",)
+"""Libraries whose warnings are not logged either: they have one for each bad request, which is answered."""
+
 
 def configure_logging(process: str) -> None:
     """Send the events of this process and of the libraries it uses to stderr."""
@@ -40,6 +43,8 @@ def configure_logging(process: str) -> None:
     logging.basicConfig(handlers=[handler], level=logging.INFO, force=True)
     for name in QUIET:
         logging.getLogger(name).setLevel(logging.WARNING)
+    for name in QUIETER:
+        logging.getLogger(name).setLevel(logging.ERROR)
     structlog.configure(
         processors=[*shared, structlog.stdlib.ProcessorFormatter.wrap_for_formatter],
         logger_factory=structlog.stdlib.LoggerFactory(),
