@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from sqlalchemy import ForeignKey, Index, String
+from sqlalchemy import ForeignKey, Index, String, text
 from sqlalchemy.orm import Mapped, mapped_column, relationship
 
 from core.diagnosis.verdict import Verdict
@@ -24,6 +24,7 @@ class JobRunnerRow(Base):
 class JobRow(Base):
     """A diagnosis to be made.
 
+    motor: that of the recording; empty where the job ended before this column was.
     priority: a JobPriority.  runner: the job runner that makes or made it.
     """
 
@@ -34,6 +35,7 @@ class JobRow(Base):
     method: Mapped[str]
     model: Mapped[str]
     state: Mapped[JobState]
+    motor: Mapped[str] = mapped_column(server_default="")
     priority: Mapped[int] = mapped_column(server_default="0")
     attempts: Mapped[int]
     not_before_ns: Mapped[int]
@@ -46,6 +48,12 @@ class JobRow(Base):
 
     __table_args__ = (
         Index("ix_jobs_state_priority_not_before_ns_id", "state", "priority", "not_before_ns", "id"),
+        Index(
+            "ix_jobs_queued",
+            "motor",
+            sqlite_where=text("state = 'queued'"),
+            postgresql_where=text("state = 'queued'"),
+        ),
         Index("ix_jobs_recording_id_created_ns_id", "recording_id", "created_ns", "id"),
     )
 

@@ -57,7 +57,7 @@ class JobRows(Sessions):
                 )
             if most_queued is not None:
                 require_room(session, recording.motor, most_queued)
-            row = new_job(recording_id, method, model, JobPriority.REPETITION, now_ns)
+            row = new_job(recording, method, model, JobPriority.REPETITION, now_ns)
             session.add(row)
             session.flush()
             return job(row)

@@ -4,7 +4,7 @@ import uuid
 from collections.abc import Collection
 from dataclasses import astuple, dataclass
 
-from sqlalchemy import ColumnElement, and_, delete, func, select, tuple_
+from sqlalchemy import ColumnElement, and_, delete, func, literal_column, select, tuple_
 from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
@@ -190,7 +190,7 @@ class RecordingRows(Sessions):
                     row = _to_fill(session, relay, motor, remote, now_ns)
                 _fill(session, row, stored, now_ns)
                 priority = JobPriority.UPLOAD if relay is None else JobPriority.RELAY_RECORD
-                session.add(new_job(row.id, method, model, priority, now_ns))
+                session.add(new_job(row, method, model, priority, now_ns))
             elif relay is not None and remote is not None:
                 _link_remote(session, relay, remote, row)
                 if row.ied == relay:
@@ -237,10 +237,9 @@ class RecordingRows(Sessions):
 def require_room(session: Session, motor: str, most_queued: int) -> None:
     """Raise TooManyWaitingError where so many diagnoses of the motor are queued."""
     found(session, MotorRow, motor, "motor", lock=True)
-    queued = (
-        select(JobRow.id)
-        .join(RecordingRow, RecordingRow.id == JobRow.recording_id)
-        .where(JobRow.state == JobState.QUEUED, RecordingRow.motor == motor)
+    # The state as a literal: SQLite takes the index of the queued jobs for no parameter.
+    queued = select(JobRow.id).where(
+        JobRow.state == literal_column(f"'{JobState.QUEUED}'"), JobRow.motor == motor
     )
     if has_as_many(session, queued, most_queued):
         raise TooManyWaitingError(motor, "queued diagnoses", most_queued, "max_queued_diagnoses")
@@ -258,10 +257,11 @@ def listed_in(
     )
 
 
-def new_job(recording_id: str, method: str, model: str, priority: JobPriority, now_ns: int) -> JobRow:
+def new_job(row: RecordingRow, method: str, model: str, priority: JobPriority, now_ns: int) -> JobRow:
     return JobRow(
         id=str(uuid.uuid4()),
-        recording_id=recording_id,
+        recording_id=row.id,
+        motor=row.motor,
         method=method,
         model=model,
         state=JobState.QUEUED,
