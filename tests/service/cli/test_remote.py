@@ -15,7 +15,7 @@ from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import LinkState
 from service.timing.backoff import Backoff
-from testing.service.plants import NOW_NS
+from testing.service.plants import NOW_NS, fault
 from tests.service.api.serving import serving
 from tests.service.api.test_relays import ACQUISITION
 from tests.service.fixtures import database_url, engine, repository
@@ -80,9 +80,32 @@ def test_a_relay_tells_what_is_used_of_it(
         assert main(["relay", "A1_SEL710", "--url", str(client.base_url), "--json"]) == 0
         assert json.loads(capsys.readouterr().out)["differences"] == [missing]
         assert main(["relay", "NOPE", "--url", str(client.base_url)]) == 1
+    assert "there is no relay 'NOPE'" in capsys.readouterr().err
     for words in ("direct-with-normal-security", "COMTRADE", "NOTES.TXT: no file of a recording"):
         assert words in shown
     assert "found none" in shown
+
+
+def test_the_detection_limit_stands_beside_the_interval_from_all_causes(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    store = RecordingStore(tmp_path / "recordings")
+    repository.add_recording(store.store({"E.CFF": b"samples"}), motor="PUMP-A1", now_ns=NOW_NS)
+    repository.register_runner("runner", installation="here", now_ns=NOW_NS, max_attempts=3)
+    claimed = repository.claim_job(now_ns=NOW_NS, runner="runner")
+    assert claimed is not None
+    repository.finish_job(claimed.job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner="runner")
+    app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
+    with serving(app) as client:
+        assert main(["motors", "--url", str(client.base_url)]) == 0
+        listed = capsys.readouterr().out
+        assert main(["health", "PUMP-A1", "--url", str(client.base_url)]) == 0
+        health = capsys.readouterr().out
+    (row,) = [line for line in listed.splitlines() if "PUMP-A1" in line]
+    assert row[row.index("fault") :].split()[:4] == ["fault", "5.00", "4.60..5.40", "2.10"]
+    assert "5.00 % [4.60..5.40]" in health
+    assert "2.10 %: nine of ten such recordings show a fault of it" in health
+    assert "0.480 [0.460..0.500]" in health
 
 
 def test_a_key_triggers_once(

@@ -1,0 +1,16 @@
+"""An example that is run without its files says how it is run."""
+
+import runpy
+import sys
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.mark.parametrize("name", ["commission_motor", "diagnose_recording", "picture_of_a_demo"])
+def test_an_example_without_arguments_says_how_it_is_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", [f"{name}.py"])
+    with pytest.raises(SystemExit, match=rf"python examples/{name}\.py"):
+        runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
