@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.accuracy.resistive_paths import GOOD, LOADS, PathDraw, judge_path
 from core.diagnosis.stator import diagnose
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import Motor
@@ -78,3 +79,12 @@ def test_the_load_of_a_path_is_never_far_below_zero(angle_deg: int) -> None:
     result = diagnose(recording(truth, noise=0.002, current_gains=GAINS), REFERENCE)
     assert result.verdict is Verdict.FAULT
     assert result.load_level == pytest.approx(0.05, abs=0.05)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("loads", LOADS)
+@pytest.mark.parametrize("ratio", [0.0, 0.5, 1.0, 2.0])
+def test_windings_integrated_in_time_tell_the_same(ratio: float, loads: tuple[float, float]) -> None:
+    """Other records than those of the accuracy page, with the ripple of the speed."""
+    outcomes = [judge_path(PathDraw(ratio, loads, GOOD, index)) for index in range(1_000, 1_006)]
+    assert [one.condition for one in outcomes if not one.right] == []
