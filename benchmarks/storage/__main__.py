@@ -14,6 +14,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from statistics import median
 
 from fastapi import FastAPI
 from sqlalchemy import Engine
@@ -99,12 +100,13 @@ def _scans(app: FastAPI, engine: Engine, asked: Sequence[Ask], amounts: Amounts)
 
 
 def _print_times(times: Sequence[Times]) -> None:
-    header = ("request", "kB", "first, cold", "median", "p95", "longest", "of", "goal", "")
+    header = ("request", "kB", "first, cold", "processor", "median", "p95", "longest", "of", "goal", "")
     rows = [
         (
             f"`{one.ask.label}`",
             f"{one.bytes / 1000:.0f}",
             _ms(one.cold_s),
+            _ms(median(one.processor_s)),
             _ms(one.percentile_s(0.5)),
             _ms(one.percentile_s(0.95)),
             _ms(max(one.warm_s)),

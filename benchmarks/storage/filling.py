@@ -66,7 +66,8 @@ def _copy(connection: Connection, table: Table) -> int:
     driver = connection.connection.driver_connection
     assert driver is not None
     written = 0
-    statement = f"COPY {table.name} ({', '.join(table.columns)}) FROM STDIN"
+    columns = ", ".join(f'"{column}"' for column in table.columns)
+    statement = f"COPY {table.name} ({columns}) FROM STDIN"
     with driver.cursor() as cursor, cursor.copy(statement) as copy:
         for row in table.rows:
             copy.write_row(row)

@@ -4,12 +4,13 @@ import sys
 import tempfile
 from pathlib import Path
 
-import uvicorn
 from fastapi import FastAPI
 
 from service.api import ApiContext, create_app
+from service.api.server import ApiServer, connection_limits
 from service.application.serve import listening
 from service.configuration.settings import Settings
+from service.process.garbage_collection import spare_what_stays
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 
@@ -23,12 +24,12 @@ def api_on(repository: Repository, directory: Path) -> FastAPI:
 def main() -> None:
     """Print the port, then answer until the process is ended."""
     with tempfile.TemporaryDirectory() as name:
-        directory = Path(name)
-        app = api_on(Repository(connect(sys.argv[1])), directory)
-        configuration = uvicorn.Config(app, log_config=None, access_log=False, server_header=False)
-        with listening(Settings(data_directory=directory, port=0)) as listener:
+        settings = Settings(data_directory=Path(name), port=0)
+        app = api_on(Repository(connect(sys.argv[1])), settings.data_directory)
+        spare_what_stays()
+        with listening(settings) as listener:
             print(listener.getsockname()[1], flush=True)
-            uvicorn.Server(configuration).run(sockets=[listener])
+            ApiServer(app, connection_limits(settings)).run(sockets=[listener])
 
 
 if __name__ == "__main__":

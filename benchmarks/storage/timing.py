@@ -24,11 +24,16 @@ Progress = Callable[[str], None]
 
 @dataclass(slots=True)
 class Times:
-    """How long one request took [s]: cold_s the first time, with nothing of the database in memory."""
+    """How long one request took [s].
+
+    cold_s: the first time, with nothing of the database in memory. processor_s: of the service alone, which
+    other work on the machine does not lengthen.
+    """
 
     ask: Ask
     cold_s: float = 0.0
     warm_s: list[float] = field(default_factory=list)
+    processor_s: list[float] = field(default_factory=list)
     bytes: int = 0
 
     def percentile_s(self, share: float) -> float:
@@ -41,28 +46,39 @@ class Times:
         return self.percentile_s(0.95) <= self.ask.goal_s
 
 
+@dataclass(frozen=True, slots=True)
+class Api:
+    """The API in a process of its own."""
+
+    client: httpx.Client
+    process_id: int
+
+    def get(self, path: str) -> tuple[float, float, int]:
+        """Return how long an answer took, how much of the processor [s], and how many bytes it has."""
+        used_s, begun_s = self._processor_s(), time.perf_counter()
+        answer = self.client.get(path)
+        took_s = time.perf_counter() - begun_s
+        assert answer.status_code == HTTPStatus.OK, f"{path}: {answer.status_code} {answer.text[:300]}"
+        return took_s, self._processor_s() - used_s, len(answer.content)
+
+    def _processor_s(self) -> float:
+        return time.clock_gettime((~self.process_id << 3) | 2)  # the process's own clock, as Linux numbers it
+
+
 @contextmanager
-def serving(url: str) -> Iterator[httpx.Client]:
-    """Run the API on this database in a process of its own, and yield a client of it."""
+def serving(url: str) -> Iterator[Api]:
+    """Run the API on this database, and yield it."""
     command = [sys.executable, "-m", "benchmarks.storage.server", url]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout is not None
             port = int(process.stdout.readline())
             with httpx.Client(base_url=f"http://127.0.0.1:{port}", trust_env=False, timeout=600.0) as client:
-                get(client, "/healthz")
-                yield client
+                api = Api(client, process.pid)
+                api.get("/healthz")
+                yield api
         finally:
             process.terminate()
-
-
-def get(client: httpx.Client, path: str) -> tuple[float, int]:
-    """Return how long an answer took [s], and how many bytes it has."""
-    begun = time.perf_counter()
-    answer = client.get(path)
-    took_s = time.perf_counter() - begun
-    assert answer.status_code == HTTPStatus.OK, f"{path}: {answer.status_code} {answer.text[:300]}"
-    return took_s, len(answer.content)
 
 
 def measure(
@@ -74,16 +90,18 @@ def measure(
     out of the system's memory before each of these; None where that is not possible.
     """
     times = [Times(ask) for ask in asked]
-    with serving(url) as client:
+    with serving(url) as api:
         for one in times:
             if file is not None:
                 _forget(file)
-            one.cold_s, one.bytes = get(client, one.ask.at(0.5, amounts))
+            one.cold_s, _, one.bytes = api.get(one.ask.at(0.5, amounts))
         progress("each request once, cold")
         for turn in range(turns):
             for one in times:
                 if sum(one.warm_s) < LONGEST_S:
-                    one.warm_s.append(get(client, one.ask.at((turn + 0.5) / turns, amounts))[0])
+                    warm_s, processor_s, _ = api.get(one.ask.at((turn + 0.5) / turns, amounts))
+                    one.warm_s.append(warm_s)
+                    one.processor_s.append(processor_s)
             if turn % 10 == 9:
                 progress(f"{turn + 1} of {turns} turns")
     return times

@@ -30,6 +30,7 @@ from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
 from service.plant import Plant, read_plant
 from service.process.disk_space import disk_problem
+from service.process.garbage_collection import spare_what_stays
 from service.process.installation import installation_id
 from service.process.single_instance import exclusive
 from service.recording_store.store import RecordingStore
@@ -116,6 +117,7 @@ def _plant(settings: Settings) -> Plant:
 def _answer(context: ApiContext, listener: socket.socket) -> None:
     """Answer requests until a signal comes."""
     server = ApiServer(create_app(context), connection_limits(context.settings))
+    spare_what_stays()
     try:
         server.run(sockets=[listener])
     except KeyboardInterrupt:

@@ -111,13 +111,13 @@ class LinkRows(Sessions):
     def all_link_figures(self) -> tuple[LinkFigures, ...]:
         """Return the figures of every relay in service that was ever spoken to, by name."""
         query = (
-            select(LinkFiguresRow)
+            select(*columns_of(LinkFigures, LinkFiguresRow))
             .join(IedRow, IedRow.name == LinkFiguresRow.ied)
             .where(IedRow.in_service)
             .order_by(LinkFiguresRow.ied)
         )
         with self._read() as session:
-            return tuple(record_of(LinkFigures, row) for row in session.scalars(query))
+            return tuple(LinkFigures(*row) for row in session.execute(query))
 
 
 def change_link(session: Session, row: IedRow, state: LinkState, reason: str | None, now_ns: int) -> None:

@@ -3,7 +3,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from service.process.garbage_collection import collection_paused
+from service.process.garbage_collection import collection_paused, spare_what_stays
 
 
 @pytest.fixture(autouse=True)
@@ -38,3 +38,9 @@ def test_one_that_was_off_stays_off() -> None:
         assert not gc.isenabled()
     finally:
         gc.enable()
+
+
+def test_a_service_looks_through_its_libraries_no_more() -> None:
+    spare_what_stays()
+    assert gc.isenabled()
+    assert len(gc.get_objects()) < gc.get_freeze_count() / 10
