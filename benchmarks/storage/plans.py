@@ -23,6 +23,8 @@ GROWING = frozenset(
         "measurements",
         "alarms",
         "link_changes",
+        "deletions",
+        "deleted_remote_records",
     }
 )
 """Tables that have more rows every day."""

@@ -93,6 +93,14 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/recordings/{recording_id}": ("{recording}",),
     "/api/v1/recordings/{recording_id}/diagnoses": ("{recording}", "{recording}?limit=1&cursor={deep}"),
     "/api/v1/recordings/{recording_id}/diagnoses/{diagnosis_id}": ("{recording} {job}",),
+    "/api/v1/deletions": (
+        "",
+        "?limit=1000",
+        "?cursor={deep}",
+        *(f"?motor={motor}" for motor in _MOTOR),
+        "?motor={busy}&cursor={deep}",
+    ),
+    "/api/v1/deletions/{recording_id}": ("{deletion}",),
     "/readyz": ("",),
     "/metrics": ("",),
 }
@@ -169,5 +177,6 @@ def _places(position: float, amounts: rows.Amounts) -> Mapping[str, str]:
         "to": rfc3339(time_ns + rows.SPAN_NS // 4),
         "recording": rows.id_of(rows.RECORDING, diagnosed),
         "job": rows.id_of(rows.JOB, diagnosed),
+        "deletion": rows.id_of(rows.DELETION, int(position * amounts.deletions)),
         "report": rows.id_of(rows.REQUEST, int(position * amounts.recording_requests)),
     }

@@ -56,6 +56,7 @@ class Amounts:
     recording_requests: int
     alarms: int
     link_changes: int
+    deletions: int
     measurements: int
 
     @classmethod
@@ -68,17 +69,18 @@ class Amounts:
             recording_requests=rows * 5 // 100,
             alarms=rows * 2 // 100,
             link_changes=rows // 100,
-            measurements=rows - 5 * recordings - rows * 8 // 100,
+            deletions=rows // 200,
+            measurements=rows - 5 * recordings - rows * 9 // 100,
         )
 
 
 def id_of(kind: int, number: int) -> str:
     """Return the id of a row: it looks like a random UUID, and is scattered like one."""
-    digits = f"{((number * 8 + kind + 1) * _SCATTER) & _MASK:032x}"
+    digits = f"{((number * 16 + kind + 1) * _SCATTER) & _MASK:032x}"
     return f"{digits[:8]}-{digits[8:12]}-4{digits[13:16]}-8{digits[17:20]}-{digits[20:]}"
 
 
-RECORDING, JOB, DIAGNOSIS, REQUEST, ALARM, CHANGE, SECOND_JOB, SECOND_DIAGNOSIS = range(8)
+RECORDING, JOB, DIAGNOSIS, REQUEST, ALARM, CHANGE, SECOND_JOB, SECOND_DIAGNOSIS, DELETION = range(9)
 
 
 def motor_of(number: int, of: int, motors: int) -> int:
@@ -102,6 +104,10 @@ def tables(amounts: Amounts) -> Iterator[Table]:
     yield Table("recording_requests", _REQUEST_COLUMNS, _requests(amounts))
     yield Table("alarms", _ALARM_COLUMNS, _alarms(amounts))
     yield Table("link_changes", ("id", "ied", "changed_ns", "state", "reason"), _link_changes(amounts))
+    yield Table("deletions", _DELETION_COLUMNS, _deletions(amounts))
+    yield Table(
+        "deleted_remote_records", ("ied", "name", "size_bytes", "modified_ns", "deletion_id"), _gone(amounts)
+    )
     yield Table("link_figures", _FIGURE_COLUMNS, _link_figures(amounts.motors))
     yield Table("measurements", _MEASUREMENT_COLUMNS, _measurements(amounts))
 
@@ -256,6 +262,30 @@ def _link_changes(amounts: Amounts) -> Iterator[Row]:
     for number in range(of):
         state, reason = ("down", "the relay does not answer") if number % 2 else ("up", None)
         yield id_of(CHANGE, number), relay_name(number % amounts.motors), time_of(number, of), state, reason
+
+
+_DELETION_COLUMNS = (
+    "id", "motor", "ied", "source", "name", "digest", "waveform", "size_bytes", "state", "verdict",
+    "announced_ns", "recorded_ns", "deleted_ns", "deleted_by", "reason",
+)  # fmt: skip
+
+
+def _deletions(amounts: Amounts) -> Iterator[Row]:
+    of = amounts.deletions
+    for number in range(of):
+        motor, time_ns = motor_of(number, of, amounts.motors), time_of(number, of)
+        yield (
+            id_of(DELETION, number), motor_name(motor), relay_name(motor), "relay", f"OLD_{number:08d}",
+            f"{number:064x}", f"{number:064x}", 204_800, "diagnosed", "healthy", time_ns - SPAN_NS,
+            time_ns - SPAN_NS, time_ns, "retention", "older than the rule keeps",
+        )  # fmt: skip
+
+
+def _gone(amounts: Amounts) -> Iterator[Row]:
+    of = amounts.deletions
+    for number in range(of):
+        relay = relay_name(motor_of(number, of, amounts.motors))
+        yield relay, f"OLD_{number:08d}", 204_800, time_of(number, of) - SPAN_NS, id_of(DELETION, number)
 
 
 _FIGURE_COLUMNS = (
