@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from sqlalchemy import Select, func, null, or_, select
+from sqlalchemy import Select, func, null, select, union_all
 from sqlalchemy.orm import Session, aliased
 
 from core.diagnosis.verdict import Verdict
@@ -152,7 +152,7 @@ def _latest_recordings(session: Session, motors: Sequence[str]) -> dict[str, Rec
     time_ns = func.coalesce(RecordingRow.recorded_ns, RecordingRow.announced_ns)
     latest = (
         select(*columns_of(RecordingEntry, RecordingRow))
-        .where(or_(*(RecordingRow.id.in_(_for_each(motors, one)) for one in (timed, untimed))))
+        .where(RecordingRow.id.in_(union_all(*(_for_each(motors, one) for one in (timed, untimed)))))
         .order_by(time_ns, RecordingRow.id)
     )
     return {row.motor: RecordingEntry(*row) for row in session.execute(latest)}
