@@ -115,8 +115,10 @@ def variable_name(reference: str, constraint: FunctionalConstraint) -> tuple[byt
 
     Returns
     -------
-    domain, item : bytes
-        The names in ASCII.
+    domain : bytes
+        Name of the domain in ASCII.
+    item : bytes
+        Name of the item in ASCII.
 
     Raises
     ------

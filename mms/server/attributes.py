@@ -121,7 +121,13 @@ class Attributes:
 
     @contextmanager
     def held_by_library(self) -> Iterator[None]:
-        """Mark that the library has locked its model. What is posted meanwhile is applied at the end."""
+        """Mark that the library has locked its model. What is posted meanwhile is applied at the end.
+
+        Yields
+        ------
+        None
+            Nothing.
+        """
         self._library_holds_model = True
         try:
             yield

@@ -35,16 +35,36 @@ class Handlers:
         self._readable: dict[int, ReadHandler] = {}
 
     def authenticate(self, authenticator: object) -> None:
-        """Let an authenticator decide who may associate."""
+        """Let an authenticator decide who may associate.
+
+        Parameters
+        ----------
+        authenticator : object
+            The callback for C.
+        """
         self._callbacks.append(authenticator)
         self._lib.IedServer_setAuthenticator(self._server, authenticator, None)
 
     def guard_files(self, guard: FileGuard) -> None:
-        """Let a guard decide each file request."""
+        """Let a guard decide each file request.
+
+        Parameters
+        ----------
+        guard : FileGuard
+            The guard.
+        """
         self._callbacks.append(install_file_guard(self._lib, self._server, guard))
 
     def on_operate(self, reference: str, handler: OperateHandler) -> None:
-        """Set the handler for Operate of the data object at a reference "LD/LN.DO"."""
+        """Set the handler for Operate of a data object.
+
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO".
+        handler : OperateHandler
+            Decides about each Operate.
+        """
 
         def operated(action: ControlAction) -> bool | AddCause:
             with self._attributes.held_by_library():
@@ -58,7 +78,15 @@ class Handlers:
         )
 
     def on_read(self, reference: str, handler: ReadHandler) -> None:
-        """Set the handler that is asked before the data object at a reference "LD/LN.DO" is read."""
+        """Set the handler that is asked before a data object is read.
+
+        Parameters
+        ----------
+        reference : str
+            Reference "LD/LN.DO".
+        handler : ReadHandler
+            Says whether it may be read.
+        """
         if not self._readable:
             self._callbacks.append(install_read_handlers(self._lib, self._server, self._readable))
         self._readable[self._model.node(reference, Node.DATA_OBJECT)] = handler
