@@ -19,13 +19,13 @@ from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
 from service.jobs.worker_process import follow_service
 from service.recording_store.store import RecordingStore, RecordingStoreError
-from service.storage.engine import NO_ANSWER
 from service.storage.errors import NotFoundError, RunnerEndedError, UnstorableDiagnosisError
 from service.storage.records import ClaimedJob
 from service.storage.repository import Repository
 from service.storage.texts import storable
 from service.timing.backoff import Backoff
 from service.timing.boot_clock import boot_time_s
+from service.timing.database_silence import does_not_answer
 from service.timing.peer_liveness import PeerLiveness
 from service.timing.periodic_worker import PeriodicWorker
 
@@ -197,20 +197,20 @@ class JobRunner:
         self._worker.wake()
 
     def _settle(self, claimed: ClaimedJob, future: "Future[Outcome]") -> None:
-        """Write a result back, whatever it holds. Raises SQLAlchemyError: try again.
+        """Write a result back, whatever it holds. Raises SQLAlchemyError: the caller tries again.
 
         A result that the database refuses costs its own job an attempt, and holds up none of the others.
         """
         job_id = claimed.job.id
-        if self._in_flight.get(job_id) is not future:  # late word of workers whose jobs were given back
-            return
+        if self._in_flight.get(job_id) is not future:
+            return  # the job went back to the queue before its worker ended: another attempt counts now
         try:
             self._write_back(claimed, future)
-        except NO_ANSWER:
-            raise
         except NotFoundError:
             log.warning("a diagnosis came whose recording is gone", recording=claimed.job.recording_id)
         except Exception as error:
+            if does_not_answer(error):
+                raise
             log.exception("a result cannot be stored", recording=claimed.job.recording_id)
             self._retry(claimed, f"the result cannot be stored: {type(error).__name__}: {error}")
         self._in_flight.pop(job_id, None)

@@ -8,8 +8,6 @@ from functools import partial
 
 from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine.interfaces import DBAPIConnection
-from sqlalchemy.exc import InterfaceError, OperationalError
-from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.pool import ConnectionPoolEntry
 
 from service.storage.database_url import parsed_url
@@ -17,9 +15,6 @@ from service.storage.errors import StorageError
 
 BUSY_TIMEOUT_S = 30.0
 """A transaction waits at most this long while others write to an SQLite file."""
-
-NO_ANSWER = (OperationalError, InterfaceError, PoolTimeoutError)
-"""Errors of a database that is locked, full or away: what was asked of it may be asked again."""
 
 LOOK_S = 0.003
 """A waiting writer looks this often whether SQLite's write lock is free."""

@@ -6,7 +6,7 @@ from sqlalchemy.exc import DBAPIError, InterfaceError, OperationalError, SQLAlch
 from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 
 
-def does_not_answer(error: SQLAlchemyError) -> bool:
+def does_not_answer(error: BaseException) -> bool:
     """Tell whether the same request may succeed later: the database is away, locked or out of room.
 
     SQLite calls a wrong statement operational too; that one is ours to mend.

@@ -13,8 +13,8 @@ import structlog
 from sqlalchemy.exc import DBAPIError
 
 from service.storage import Repository
-from service.storage.engine import NO_ANSWER
 from service.storage.records import LinkNote, Sample
+from service.timing.database_silence import does_not_answer
 from service.timing.periodic_worker import PeriodicWorker
 
 log = structlog.get_logger(__name__)
@@ -107,10 +107,10 @@ class _Batch(Generic[Item]):
             part = parts.pop()
             try:
                 self._write(part)
-            except NO_ANSWER:
-                self._unwritten = _joined([*parts, part])
-                raise
-            except Exception as error:  # noqa: BLE001 - raised below, once the others are written
+            except Exception as error:
+                if does_not_answer(error):
+                    self._unwritten = _joined([*parts, part])
+                    raise
                 if len(part) == 1:
                     refused.append(error)
                 else:

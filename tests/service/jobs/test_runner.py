@@ -4,9 +4,10 @@ import errno
 import multiprocessing.util
 import os
 import signal
+import sqlite3
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, closing, contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -23,7 +24,7 @@ from service.storage import Repository, connect
 from service.storage.records import RemoteRecord
 from service.storage.states import JobState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
-from testing.service.plants import motor
+from testing.service.plants import motor, two_motor_plant
 from testing.waiting import wait_until
 from tests.service.jobs.stand_ins import GO, RESULTS, STRANGE, act_as_told, fail_to_start, prepare_when_told
 
@@ -263,15 +264,46 @@ def test_two_services_share_the_jobs_and_one_takes_over_from_a_killed_one(
     assert (found.job.state, found.job.attempts) == (JobState.DONE, 2)
 
 
-def test_a_database_that_does_not_answer_is_a_problem_not_the_end(
-    repository: Repository, store: RecordingStore, engine: Engine, tmp_path: Path
+@contextmanager
+def locked(engine: Engine) -> Iterator[None]:
+    """Nobody else can write: the database does not answer in time."""
+    with closing(sqlite3.connect(str(engine.url.database))) as other:
+        other.execute("BEGIN IMMEDIATE")
+        yield
+        other.rollback()
+
+
+@contextmanager
+def without_its_table(engine: Engine) -> Iterator[None]:
+    """The database answers, and refuses every statement about jobs."""
+    with engine.begin() as connection:
+        connection.exec_driver_sql("ALTER TABLE jobs RENAME TO jobs_away")
+    yield
+    with engine.begin() as connection:
+        connection.exec_driver_sql("ALTER TABLE jobs_away RENAME TO jobs")
+
+
+@pytest.mark.parametrize(
+    ("trouble", "problem"),
+    [
+        (locked, "the database does not answer"),
+        (without_its_table, "the database refused a statement of this service"),
+    ],
+)
+def test_a_database_in_trouble_is_a_problem_not_the_end(
+    database_url: str,
+    store: RecordingStore,
+    engine: Engine,
+    trouble: Callable[[Engine], AbstractContextManager[None]],
+    problem: str,
 ) -> None:
+    repository = Repository(connect(database_url, busy_timeout_s=0.2))
+    repository.sync_plant(two_motor_plant())
     with running(repository, store) as runner:
-        with engine.begin() as connection:
-            connection.exec_driver_sql("ALTER TABLE jobs RENAME TO jobs_away")
-        wait_until(lambda: "the database does not answer" in (runner.problem() or ""))
-        with engine.begin() as connection:
-            connection.exec_driver_sql("ALTER TABLE jobs_away RENAME TO jobs")
+        with trouble(engine):
+            wait_until(lambda: problem in (runner.problem() or ""))
+        recording_id = add(repository, store, "fine")
+        wait_until(lambda: ended(repository, recording_id))
         wait_until(lambda: runner.problem() is None)
 
 
