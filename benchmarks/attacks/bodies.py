@@ -92,6 +92,7 @@ ATTACKS = (
     Attack("baseline, 3 MB of `[{},{},...]`", _once("PUT", BASELINE, lambda: _list_of_objects(3 * MB))),
     Attack("baseline, 66 MB of `{}` among the ids", _once("PUT", BASELINE, lambda: _objects(66 * MB))),
     Attack("baseline, 66 MB in chunks", _once("PUT", BASELINE, _endless)),
+    Attack("health, 66 MB in chunks", _once("GET", "/healthz", _endless)),
     Attack("baseline, a million lists in one another", _once("PUT", BASELINE, lambda: _nested(MB))),
     Attack("baseline, an integer of 400 digits", _once("PUT", BASELINE, lambda: _integer(400))),
     Attack("baseline, an integer of 3 million digits", _once("PUT", BASELINE, lambda: _integer(3 * MB))),

@@ -1,11 +1,13 @@
-"""Bounds the body of every request before anything is read of it.
+"""Bounds the body of every request, also where the route reads none.
 
 Routes that take files have the limit of the settings (max_upload_bytes), and few of them at once, because the
-files lie in the temporary folder meanwhile. All others take small JSON documents, or nothing.
+files lie in the temporary folder meanwhile. All others take small JSON documents, or nothing: their bodies
+are read here to the end, before the route begins.
 """
 
 from collections.abc import Mapping
 from http import HTTPStatus
+from typing import NoReturn
 
 import anyio
 from starlette.datastructures import Headers
@@ -44,18 +46,16 @@ class BodyLimits:
             return
         is_upload = (scope["method"], scope["path"]) in self._upload_routes
         exchange = _Exchange(receive, send, *self._limit(is_upload=is_upload))
-        if exchange.is_too_long(Headers(scope=scope)):
-            refusal = problem_response(
-                scope["path"],
-                HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
-                exchange.refusal,
-                headers={"Connection": "close"},
+        try:
+            exchange.check_length(Headers(scope=scope))
+            if is_upload:
+                await self._upload(scope, exchange)
+            elif await exchange.read_ahead():
+                await self._app(scope, exchange.receive, exchange.send)
+        except _TooLongError as error:
+            await problem_response(scope["path"], error.status_code, error.detail, headers=error.headers)(
+                scope, exchange.receive, exchange.send
             )
-            await refusal(scope, exchange.receive, exchange.send)
-        elif is_upload:
-            await self._upload(scope, exchange)
-        else:
-            await self._app(scope, exchange.receive, exchange.send)
 
     async def _upload(self, scope: Scope, exchange: "_Exchange") -> None:
         try:
@@ -78,6 +78,17 @@ def document(operations: Mapping[str, Mapping[str, dict[str, object]]], limits: 
                 operation["x-max-body-bytes"] = limits.get((method.upper(), path), MAX_JSON_BYTES)
 
 
+class _TooLongError(HTTPException):
+    """The body of a request is longer than its route takes."""
+
+    def __init__(self, limit: int, advice: str) -> None:
+        super().__init__(
+            HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+            f"expected at most {limit} bytes{advice}",
+            headers={"Connection": "close"},
+        )
+
+
 class _Exchange:
     """The messages of one request, of which no more than `limit` bytes of body are let through."""
 
@@ -85,25 +96,43 @@ class _Exchange:
         self._receive = receive
         self._send = send
         self._limit = limit
+        self._advice = advice
         self._received = 0
         self._refused = False
-        self.refusal = f"expected at most {limit} bytes{advice}"
+        self._body: bytes | None = None
 
-    def is_too_long(self, headers: Headers) -> bool:
-        """Whether the body says of itself that it is too long; then its answer is a refusal."""
+    def check_length(self, headers: Headers) -> None:
+        """Refuse a body that says of itself that it is too long."""
         length = headers.get("content-length", "0")
-        self._refused = length.isdecimal() and int(length) > self._limit
-        return self._refused
+        if length.isdecimal() and int(length) > self._limit:
+            self._refuse()
+
+    async def read_ahead(self) -> bool:
+        """Read the whole body, to be received as one message. Return False if the client went away."""
+        parts = []
+        more = True
+        while more:
+            message = await self.receive()
+            if message["type"] == "http.disconnect":
+                return False
+            parts.append(message.get("body", b""))
+            more = message.get("more_body", False)
+        self._body = b"".join(parts)
+        return True
 
     async def receive(self) -> Message:
+        if self._body is not None:
+            body, self._body = self._body, None
+            return {"type": "http.request", "body": body, "more_body": False}
         message = await self._receive()
         self._received += len(message.get("body", b""))
         if self._received > self._limit:
-            self._refused = True
-            raise HTTPException(
-                HTTPStatus.REQUEST_ENTITY_TOO_LARGE, self.refusal, headers={"Connection": "close"}
-            )
+            self._refuse()
         return message
+
+    def _refuse(self) -> NoReturn:
+        self._refused = True
+        raise _TooLongError(self._limit, self._advice)
 
     async def send(self, message: Message) -> None:
         if not self._refused or message["type"] != "http.response.body" or message.get("more_body", False):

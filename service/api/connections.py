@@ -34,6 +34,9 @@ DISPLACED_AT_ONCE = 16
 SETTLED_S = 0.25
 """A client that has kept the service waiting for less has probably sent already what it has to send."""
 
+UNREAD_BYTES = 1 << 20
+"""So much of a body may still come after its request has been answered; then the connection is closed."""
+
 OVERLOADED = "as many connections are open as there may be; try again"
 
 
@@ -126,6 +129,7 @@ class LimitedConnection(H11Protocol):
         self.wait: Wait | None = Wait.HEADER
         self._since_s = self.loop.time()
         self._received_bytes = 0
+        self._unread_bytes = 0
         self._left_bytes = 0
 
     def is_gone(self) -> bool:
@@ -175,9 +179,15 @@ class LimitedConnection(H11Protocol):
         self._header_begun = True
         self._received_bytes += len(data)
         super().data_received(data)
+        if self._is_dropping_a_body():
+            self._unread_bytes += len(data)
+            if self._unread_bytes > UNREAD_BYTES:
+                self._open.tally.add("bodies_not_read")
+                self.transport.close()
         self._look()
 
     def on_response_complete(self) -> None:
+        self._unread_bytes = 0
         super().on_response_complete()
         self._header_begun = bool(self.conn.trailing_data[0])
         self._look()
@@ -190,6 +200,10 @@ class LimitedConnection(H11Protocol):
 
     def _unsupported_upgrade_warning(self) -> None:
         """Say nothing: the request is answered as if it asked for no upgrade, as RFC 9110 wants it."""
+
+    def _is_dropping_a_body(self) -> bool:
+        """Tell whether the request was answered without its body, which nobody reads any more."""
+        return self.conn.our_state is h11.DONE and self.conn.their_state is h11.SEND_BODY
 
     def _look(self) -> None:
         """Note what the service waits for, and since when."""

@@ -13,6 +13,9 @@ import pytest
 from service.api import ApiContext, create_app
 from service.api.body_limits import MAX_JSON_BYTES, UPLOADS_AT_ONCE
 from service.api.problems import MAX_ERRORS
+from service.storage import Repository
+from testing.service.plants import NOW_NS
+from testing.service.small_record import CFG, DAT
 from testing.waiting import wait_until
 from tests.service.api.serving import serving
 
@@ -100,10 +103,8 @@ def test_every_route_refuses_a_body_beyond_its_limit(
             with_files.append((method, path))
         url = path.format(name="PUMP-A1", **dict.fromkeys(IDS, NO_SUCH_ID))
         (kind,) = operation.get("requestBody", {}).get("content", {"application/json": None})
-        bodies: list[bytes | Iterator[bytes]] = [b"x" * (limit + 1)]
-        if "requestBody" in operation:  # in chunks
-            bodies.append(iter([BEGINNING if "form" in kind else b"", b"x" * limit, b"x"]))
-        for body in bodies:
+        in_chunks = iter([BEGINNING if "form" in kind else b"", b"x" * limit, b"x"])
+        for body in (b"x" * (limit + 1), in_chunks):
             refused = client.request(
                 method, url, content=body, headers={"Content-Type": f"{kind}; boundary=b"}
             )
@@ -111,6 +112,35 @@ def test_every_route_refuses_a_body_beyond_its_limit(
             assert refused.headers["content-type"] == "application/problem+json"
             assert str(limit) in refused.json()["detail"]
     assert with_files == [("POST", "/api/v1/recordings")]
+
+
+@pytest.mark.parametrize(
+    ("method", "path"),
+    [("GET", "/api/v1/openapi.json"), ("GET", "/nothing"), ("PATCH", "/healthz"), ("POST", "/api/v1/motors")],
+)
+def test_a_long_body_is_refused_where_there_is_no_route(client: httpx.Client, method: str, path: str) -> None:
+    refused = client.request(method, path, content=iter([b"x" * MAX_JSON_BYTES, b"x"]))
+    assert refused.status_code == 413
+    assert refused.headers["connection"] == "close"
+
+
+@pytest.mark.parametrize("what", ["waveform", "file"])
+def test_a_long_body_does_not_break_an_answer_that_is_streamed(
+    client: httpx.Client,
+    context: ApiContext,
+    repository: Repository,
+    caplog: pytest.LogCaptureFixture,
+    what: str,
+) -> None:
+    stored = context.store.store({"EVENT.CFG": CFG, "EVENT.DAT": DAT})
+    recording_id = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS).recording.id
+    path = f"/api/v1/recordings/{recording_id}/{what}"
+    refused = client.request("GET", path, content=iter([b"x" * MAX_JSON_BYTES, b"x"]))
+    assert refused.status_code == 413
+    answer = client.request("GET", path, content=iter([b"x" * 100, b"x"]))
+    assert answer.status_code == 200
+    assert answer.content == client.get(path).content
+    assert [record for record in caplog.records if record.levelname == "ERROR"] == []
 
 
 def test_a_body_that_says_it_is_too_large_is_refused_before_it_comes(client: httpx.Client) -> None:

@@ -182,6 +182,18 @@ def test_where_all_are_being_answered_health_alone_is_told(application: Applicat
         )
 
 
+def test_a_body_that_nobody_reads_has_an_end(application: Application) -> None:
+    """The route answers at once, and the client goes on sending."""
+    chunk = b"10000\r\n" + b"x" * 0x10000 + b"\r\n"
+    with (
+        listening(application.asgi, PATIENT) as port,
+        connected(port, HEALTH.removesuffix(b"\r\n") + b"Transfer-Encoding: chunked\r\n\r\n") as client,
+    ):
+        assert client.recv(1 << 16).startswith(b"HTTP/1.1 200")
+        with pytest.raises(ConnectionError):
+            client.sendall(chunk * 1000)
+
+
 @pytest.mark.parametrize(
     "request_line_and_lengths",
     [
