@@ -26,8 +26,9 @@ class SplitWinding:
     circulating current j / 3 that the terminals never see: the phase voltages of a delta add up to zero, so
     the zero-sequence part of the shunt current has no other way to go.
 
-    At one slip the terminals see a shunt across the phase whose resistance is r_f / mu^2 + R_s / mu (beside
-    terms of order 1), so the level is given as the equivalent one, mu_eq = mu / (1 + r_f / (mu R_s)).
+    At one slip the terminals see a shunt across the phase whose impedance is r_f / mu^2 + (R_s + j X_ls) / mu
+    (beside terms of order 1). The level is given as that of the dead-shorted turns with the same resistance,
+    mu_eq = mu / (1 + r_f / (mu R_s)).
 
     The fifth row below is -psi_x2: at mu = 0 it is the idle winding of the healthy machine, and its rate
     R_s / L_ls stays finite for every mu, so nothing is stiff.

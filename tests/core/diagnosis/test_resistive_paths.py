@@ -9,8 +9,8 @@ from benchmarks.accuracy.resistive_paths import GOOD, LOADS, PathDraw, judge_pat
 from core.diagnosis.stator import diagnose
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import Motor
-from testing.machines.motors import ALL, LARGE, REFERENCE
-from testing.machines.phase_circuits import Fault, recording, running
+from testing.machines.motors import ALL, LARGE, REFERENCE, VERY_LARGE
+from testing.machines.phase_circuits import FORTESCUE, Fault, recording, running
 
 IDS = [motor.name for motor in ALL]
 GAINS = (1.005, 0.995, 1.003)
@@ -49,6 +49,38 @@ def test_the_interval_covers_paths_and_dead_shorts_where_both_hold() -> None:
         assert result.mu_f_ci95 is not None
         assert result.mu_f_ci95[0] <= level <= result.mu_f_ci95[1]
         assert result.mu_f_ci95[1] - result.mu_f_ci95[0] > 0.1 * level
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.5, 1.0, 2.0])
+def test_phase_verdict_and_interval_hold_where_the_leakage_limits_the_current(ratio: float) -> None:
+    """A path hardly changes the current there, so the level alone says little."""
+    turns = 0.08
+    path = Fault(turns, 1, ratio * turns * VERY_LARGE.parameters.stator_resistance_ohm)
+    truth = running(VERY_LARGE, 0.6, fault=path, unbalance=0.02j)
+    result = diagnose(recording(truth, noise=0.002, current_delay_s=30e-6, current_gains=GAINS), VERY_LARGE)
+    level = turns / (1.0 + ratio)
+    assert result.verdict is Verdict.FAULT
+    assert result.phase == "b"
+    assert result.load_level == pytest.approx(0.6, abs=0.05)
+    assert result.mu_f_ci95 is not None
+    low, high = result.mu_f_ci95
+    assert low <= level <= high
+    assert high - low > 0.4 * level
+
+
+@pytest.mark.parametrize(
+    ("motor", "share"), [(REFERENCE, 0.675), (VERY_LARGE, 0.985)], ids=["0.8 kW", "250 kW"]
+)
+def test_the_current_of_bridged_turns_goes_with_the_impedance_of_their_loop(
+    motor: Motor, share: float
+) -> None:
+    """The page on the diagnosis gives |R_s + j X_ls| / |R_s (1 + p) + j X_ls|, and these shares for p = 1."""
+    turns = 0.002
+    found = []
+    for path_ohm in (0.0, turns * motor.parameters.stator_resistance_ohm):
+        truth = running(motor, 0.5, fault=Fault(turns, 0, path_ohm))
+        found.append(abs((np.linalg.inv(FORTESCUE) @ truth.line_current)[2]))
+    assert found[1] / found[0] == pytest.approx(share, abs=0.01)
 
 
 def test_dead_shorted_turns_stay_dead_shorted_with_parameters_off() -> None:
