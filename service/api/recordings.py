@@ -20,7 +20,7 @@ from service.api.problems import FieldError, ProblemError, problems
 from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile
 from service.api.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
-from service.retention.deletion import remove_discarded_folders_if_possible
+from service.retention.deletion import remove_discarded_folder_if_possible
 from service.storage.errors import FolderGoneError, TooManyWaitingError
 from service.storage.records import RecordingEntry
 from service.storage.repository.recordings import AddedRecording
@@ -85,7 +85,6 @@ def upload_recording(
     context.on_new_job()
     if not added.created:
         response.status_code = HTTPStatus.OK
-        remove_discarded_folders_if_possible(context.repository, context.store)
     response.headers["Location"] = request.url_for("get_recording", recording_id=added.recording.id).path
     return _details(context, added.recording)
 
@@ -152,13 +151,16 @@ def _add(context: ApiContext, motor: str, files: list[UploadFile]) -> AddedRecor
     stored = _store_upload(context, files)
     now_ns = time.time_ns()
     try:
-        return context.repository.add_recording(
+        added = context.repository.add_recording(
             stored, motor=motor, now_ns=now_ns, most_queued=context.settings.max_queued_diagnoses
         )
     except TooManyWaitingError:
         context.repository.discard_stored(stored.digest, now_ns=now_ns)
-        remove_discarded_folders_if_possible(context.repository, context.store)
+        remove_discarded_folder_if_possible(context.repository, context.store, stored.digest)
         raise
+    if not added.created:
+        remove_discarded_folder_if_possible(context.repository, context.store, stored.digest)
+    return added
 
 
 def _digest(entry: RecordingEntry) -> str:

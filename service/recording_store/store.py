@@ -174,11 +174,11 @@ class RecordingStore:
         _sync_directory(aside)
         _sync_directory(directory.parent)
 
-    def remove_set_aside(self) -> None:
-        """Remove what was set aside, also by others and before a crash."""
+    def remove_set_aside(self, digest: str | None = None) -> None:
+        """Remove what was set aside of a digest, or of all, also by others and before a crash."""
         aside = self.root / ASIDE
         if aside.is_dir():
-            for directory in aside.iterdir():
+            for directory in aside.glob("*" if digest is None else f"{digest}.*"):
                 shutil.rmtree(directory, ignore_errors=True)
 
     def _present(self, digest: str) -> Path:

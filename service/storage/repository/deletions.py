@@ -19,7 +19,9 @@ from service.storage.models import (
     DeletionRow,
     DiagnosisRow,
     DiscardedFolderRow,
+    IedRow,
     JobRow,
+    LeaseRow,
     MotorRow,
     RecordingFileRow,
     RecordingRequestRow,
@@ -165,7 +167,7 @@ def to_delete(session: Session, motor: str, recording_id: str) -> RecordingRow |
 
 def in_use(session: Session, row: RecordingRow) -> str | None:
     """Return what keeps a locked recording from being deleted; None where nothing does."""
-    if row.state is RecordingState.ANNOUNCED:
+    if row.state is RecordingState.ANNOUNCED and _is_followed(session, row.ied):
         return "it is announced, and its relay still has its files; wait until they are pulled or refused"
     baseline = select(BaselineRecordingRow).where(BaselineRecordingRow.recording_id == row.id)
     if only(session, baseline) is not None:
@@ -219,6 +221,12 @@ def delete_row(
 
 def _jobs_of(recording_id: str) -> Select[JobRow]:
     return select(JobRow).where(JobRow.recording_id == recording_id).order_by(JobRow.id).with_for_update()
+
+
+def _is_followed(session: Session, relay: str | None) -> bool:
+    """Tell whether a gateway visits the relay, or will: it is in the plant, or held by one still."""
+    row = None if relay is None else session.get(IedRow, relay)
+    return row is not None and (row.in_service or session.get(LeaseRow, row.name) is not None)
 
 
 def _verdict(session: Session, recording_id: str) -> Verdict | None:

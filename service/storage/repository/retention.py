@@ -20,7 +20,7 @@ from service.storage.models import (
     RecordingRow,
 )
 from service.storage.records import Amount, DeletedRows
-from service.storage.repository.deletions import delete_row, in_use, to_delete
+from service.storage.repository.deletions import delete_row, to_delete
 from service.storage.repository.recording_requests import ENDED
 from service.storage.repository.sessions import Sessions
 from service.storage.states import DeletedBy, JobState, RecordingState
@@ -62,22 +62,37 @@ class RetentionRows(Sessions):
     def forget_recordings(
         self, motor: str, rows: int, *, expired: ExpiredRecordings, reason: str, now_ns: int
     ) -> DeletedRows:
-        """Delete the oldest of a motor's expired recordings, at most so many, as one deletes one by hand."""
+        """Delete the oldest of a motor's expired recordings, at most so many, as one deletes one by hand.
+
+        Each is looked at again once nobody else can change it: it may have another verdict by then, or have
+        become one of the newest.
+        """
+        while ids := self._oldest_expired(motor, expired, rows):
+            deleted = self._delete_expired(motor, ids, expired=expired, reason=reason, now_ns=now_ns)
+            if deleted.rows:
+                return deleted
+        return DeletedRows(0, 0.0)
+
+    def _oldest_expired(self, motor: str, expired: ExpiredRecordings, rows: int) -> Sequence[str]:
         with self._read() as session:
             condition = _expired(session, motor, expired)
             if condition is None:
-                return DeletedRows(0, 0.0)
+                return ()
             order = (RecordingRow.announced_ns, RecordingRow.id)
-            ids = session.scalars(select(RecordingRow.id).where(condition).order_by(*order).limit(rows)).all()
-        if not ids:
-            return DeletedRows(0, 0.0)
+            return session.scalars(
+                select(RecordingRow.id).where(condition).order_by(*order).limit(rows)
+            ).all()
+
+    def _delete_expired(
+        self, motor: str, ids: Sequence[str], *, expired: ExpiredRecordings, reason: str, now_ns: int
+    ) -> DeletedRows:
         number = 0
         with self._write() as session:
             session.connection()
             began_s = monotonic()
             for recording_id in ids:
                 row = to_delete(session, motor, recording_id)
-                if row is not None and row.state is expired.state and in_use(session, row) is None:
+                if row is not None and _is_expired(session, row, expired):
                     delete_row(session, row, reason, DeletedBy.RETENTION, now_ns)
                     number += 1
         return DeletedRows(number, monotonic() - began_s)
@@ -165,6 +180,13 @@ def _amount(
     row: Sequence[int | None] = session.execute(query).one()
     number, oldest_ns, newest_ns, *size = row
     return Amount(int(number or 0), int(size[0] or 0) if size else 0, oldest_ns, newest_ns)
+
+
+def _is_expired(session: Session, row: RecordingRow, expired: ExpiredRecordings) -> bool:
+    condition = _expired(session, row.motor, expired)
+    if condition is None:
+        return False
+    return session.scalar(select(RecordingRow.id).where(condition, RecordingRow.id == row.id)) is not None
 
 
 def _expired(session: Session, motor: str, expired: ExpiredRecordings) -> ColumnElement[bool] | None:

@@ -9,6 +9,7 @@ from core.diagnosis.verdict import Verdict
 from service.collector.records.ledger import RecordLedger
 from service.collector.records.life import Life, RecordState
 from service.collector.records.listing import ListedRecord, understand
+from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.retention.deletion import delete_recording, remove_discarded_folders
 from service.storage import NotFoundError, Repository
@@ -16,7 +17,7 @@ from service.storage.errors import FolderGoneError, RecordingInUseError
 from service.storage.records import RecordingEntry, RemoteRecord
 from service.storage.states import DeletedBy, RecordingRequestState, RecordingState
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS, fault
+from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant
 from tests.service.collector.records.test_listing import Entry
 
 RELAY, MOTOR = "A1_SEL710", "PUMP-A1"
@@ -145,6 +146,47 @@ def test_files_that_another_recording_has_too_stay(repository: Repository, store
     assert folders(store) == set()
 
 
+def test_an_announced_record_of_a_relay_that_left_the_plant_is_deleted(
+    repository: Repository, store: RecordingStore
+) -> None:
+    announced = repository.announce_recording(RELAY, MOTOR, REMOTE, now_ns=NOW_NS)
+    repository.register_gateway("ours", host="here", process_id=1, now_ns=NOW_NS)
+    repository.share_relays("ours", [RELAY], most=9, problem=None)
+    repository.sync_plant(Plant(sites=(), relays=(), motors=()))
+    with pytest.raises(RecordingInUseError, match="is announced"):
+        delete_recording(repository, store, announced.id, "its relay is gone", now_ns=NOW_NS)
+    repository.give_back_relays("ours", [RELAY])
+    deletion = delete_recording(repository, store, announced.id, "its relay is gone", now_ns=NOW_NS)
+    assert (deletion.state, deletion.size_bytes, deletion.digest) == (RecordingState.ANNOUNCED, 0, None)
+    assert repository.recordings(limit=10).items == ()
+    repository.sync_plant(two_motor_plant())
+    (state,) = RecordLedger(RELAY, MOTOR, repository).follow([listed("HR_1")])
+    assert life(state) is Life.REFUSED, "it is not pulled, also when the relay comes back"
+
+
+def test_whoever_deletes_a_recording_removes_no_files_of_others(
+    repository: Repository, store: RecordingStore
+) -> None:
+    """Thousands of folders may be waiting: they are the background's work, not that of one request."""
+    ids = [pulled(repository, store, name, name.encode()) for name in ("HR_1", "HR_2", "HR_3")]
+    digests = [repository.recording(recording_id).digest for recording_id in ids]
+    for recording_id in ids[:2]:
+        repository.delete_recording(recording_id, "a test", now_ns=NOW_NS)
+    assert digests[1] is not None
+    store.set_aside(digests[1])
+    delete_recording(repository, store, ids[2], "a test", now_ns=NOW_NS)
+    assert set(repository.discarded_folders()) == set(digests[:2])
+    assert [path.name for path in store.root.glob("??/*")] == [digests[0]]
+    assert len(list(store.root.glob("deleted/*"))) == 1
+    stopping = Event()
+    stopping.set()
+    remove_discarded_folders(repository, store, stopping)
+    assert len(repository.discarded_folders()) == 2, "the service stops"
+    remove_discarded_folders(repository, store)
+    assert repository.discarded_folders() == ()
+    assert folders(store) == set()
+
+
 def test_its_relay_is_not_asked_for_it_again(repository: Repository, store: RecordingStore) -> None:
     recording_id = pulled(repository, store)
     ledger = RecordLedger(RELAY, MOTOR, repository)
@@ -206,7 +248,7 @@ def test_a_new_record_that_looks_like_a_deleted_one_is_pulled(
     assert life(state) is Life.STORED
 
 
-def test_who_uploads_it_again_means_it(repository: Repository, store: RecordingStore) -> None:
+def test_a_deleted_recording_can_be_uploaded_again(repository: Repository, store: RecordingStore) -> None:
     recording_id = pulled(repository, store)
     delete_recording(repository, store, recording_id, "a test", now_ns=NOW_NS)
     again = repository.add_recording(

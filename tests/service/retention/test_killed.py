@@ -28,13 +28,13 @@ class KilledStore(RecordingStore):
         if self.step == "set aside":
             kill_myself()
 
-    def remove_set_aside(self) -> None:
+    def remove_set_aside(self, digest: str | None = None) -> None:
         if self.step == "released":
             kill_myself()
         if self.step == "half removed":
             next(path for path in self.root.glob("deleted/*/*")).unlink()
             kill_myself()
-        super().remove_set_aside()
+        super().remove_set_aside(digest)
 
 
 def kill_myself() -> None:

@@ -1,9 +1,13 @@
 """Old recordings, and what belongs to them, are deleted by rules: never the newest, never a baseline."""
 
 import json
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from sqlalchemy import Engine
+from sqlalchemy.orm import Session
 
 from core.diagnosis.verdict import Diagnosis
 from core.units import NANOSECONDS_PER_DAY as DAY_NS
@@ -110,6 +114,49 @@ def test_an_old_record_that_comes_late_pushes_no_newer_one_out(
     repository.finish_job(claimed.job.id, healthy(), recorded_ns=recorded_ns, now_ns=NOW_NS, runner=RUNNER)
     assert apply(settings_of(tmp_path, healthy_days=1), repository, 1000)["healthy_days"][1] == 0
     assert left(repository) == [late, newest]
+
+
+class InterruptedRepository(Repository):
+    """Something happens after the expired recordings were chosen, and before the first is deleted."""
+
+    def __init__(self, engine: Engine, happens: Callable[[], object]) -> None:
+        super().__init__(engine)
+        self._happens: Callable[[], object] | None = happens
+
+    @contextmanager
+    def _write(self) -> Iterator[Session]:
+        happens, self._happens = self._happens, None
+        if happens is not None:
+            happens()
+        with super()._write() as session:
+            yield session
+
+
+def test_a_recording_whose_verdict_changes_meanwhile_stays(
+    repository: Repository, store: RecordingStore, engine: Engine, tmp_path: Path
+) -> None:
+    ids = [uploaded(repository, store, day, healthy()) for day in range(3)]
+
+    def diagnose_again() -> None:
+        repository.request_diagnosis(ids[0], now_ns=NOW_NS)
+        claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
+        assert claimed is not None
+        repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+
+    interrupted = InterruptedRepository(engine, diagnose_again)
+    assert apply(settings_of(tmp_path, healthy_days=1), interrupted, 1000)["healthy_days"][1] == 1
+    assert left(repository) == [ids[2], ids[0]]
+
+
+def test_a_recording_that_becomes_the_newest_meanwhile_stays(
+    repository: Repository, store: RecordingStore, engine: Engine, tmp_path: Path
+) -> None:
+    ids = [uploaded(repository, store, day, healthy()) for day in range(2)]
+    interrupted = InterruptedRepository(
+        engine, lambda: repository.delete_recording(ids[1], "of another motor", now_ns=NOW_NS)
+    )
+    assert apply(settings_of(tmp_path, healthy_days=1), interrupted, 1000)["healthy_days"][1] == 0
+    assert left(repository) == ids[:1]
 
 
 def test_what_is_no_recording_has_its_times_too(
