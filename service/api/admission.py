@@ -24,6 +24,10 @@ class Admission:
         self._turns = asyncio.Semaphore(most)
         self._wait_s = wait_s
 
+    def is_full(self) -> bool:
+        """Tell whether whoever comes now has to wait."""
+        return self._turns.locked()
+
     @asynccontextmanager
     async def admitted(self) -> AsyncIterator[None]:
         """Hold one turn while the block runs. Raises BusyError."""

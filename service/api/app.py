@@ -20,6 +20,7 @@ from service.api import (
     recordings,
     relays,
 )
+from service.api.arrivals import Arrivals
 from service.api.body_limits import BodyLimits, Route, document
 from service.api.context import ApiContext
 from service.api.host_guard import HostGuard
@@ -48,10 +49,14 @@ def create_app(context: ApiContext) -> FastAPI:
     app.include_router(api)
     app.include_router(probes.router)
     problems.install(app)
-    max_upload_bytes = context.settings.max_upload_bytes
+    settings = context.settings
+    max_upload_bytes = settings.max_upload_bytes
+    arrivals = Arrivals(grace_s=settings.transfer_timeout_s, least_rate=settings.min_upload_rate)
     uploads = frozenset((method, PREFIX + path) for method, path in recordings.UPLOAD_ROUTES)
-    app.add_middleware(BodyLimits, upload_routes=uploads, max_upload_bytes=max_upload_bytes)
-    hosts = [str(context.settings.bind_address), *context.settings.allowed_hosts]
+    app.add_middleware(
+        BodyLimits, upload_routes=uploads, max_upload_bytes=max_upload_bytes, arrivals=arrivals
+    )
+    hosts = [str(settings.bind_address), *settings.allowed_hosts]
     app.add_middleware(HostGuard, hosts=hosts)
     _complete_document(app, dict.fromkeys(uploads, max_upload_bytes))
     return app

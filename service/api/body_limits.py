@@ -1,8 +1,8 @@
 """Bounds the body of every request, also where the route reads none.
 
 Routes that take files have the limit of the settings (max_upload_bytes), and few of them at once, because the
-files lie in the temporary folder meanwhile. All others take small JSON documents, or nothing: their bodies
-are read here to the end, before the route begins.
+files lie in the temporary folder meanwhile; they take forms with files only. All others take small JSON
+documents, or nothing: their bodies are read here to the end, before the route begins.
 """
 
 from collections.abc import Mapping
@@ -14,14 +14,14 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.api.admission import Admission, BusyError
+from service.api.admission import BusyError
+from service.api.arrivals import Arrivals
 from service.api.problems import busy_response, problem_response
 
 MAX_JSON_BYTES = 8 * 1024
 """Twice the largest document that a route takes, a baseline of a hundred recordings."""
 
-UPLOADS_AT_ONCE = 3
-UPLOAD_WAIT_S = 10.0
+UPLOAD_TYPE = "multipart/form-data"
 
 DISCARDED_BYTES = 1 << 20
 DISCARDING_S = 1.0
@@ -34,11 +34,13 @@ Route = tuple[str, str]
 class BodyLimits:
     """ASGI middleware. `upload_routes`: those that take files of up to `max_upload_bytes`."""
 
-    def __init__(self, app: ASGIApp, *, upload_routes: frozenset[Route], max_upload_bytes: int) -> None:
+    def __init__(
+        self, app: ASGIApp, *, upload_routes: frozenset[Route], max_upload_bytes: int, arrivals: Arrivals
+    ) -> None:
         self._app = app
         self._upload_routes = upload_routes
         self._max_upload_bytes = max_upload_bytes
-        self._uploads = Admission("uploads", UPLOADS_AT_ONCE, wait_s=UPLOAD_WAIT_S)
+        self._arrivals = arrivals
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -46,21 +48,23 @@ class BodyLimits:
             return
         is_upload = (scope["method"], scope["path"]) in self._upload_routes
         exchange = _Exchange(receive, send, *self._limit(is_upload=is_upload))
+        headers = Headers(scope=scope)
         try:
-            exchange.check_length(Headers(scope=scope))
+            exchange.check_length(headers)
             if is_upload:
+                exchange.check_type(headers, UPLOAD_TYPE)
                 await self._upload(scope, exchange)
             elif await exchange.read_ahead():
                 await self._app(scope, exchange.receive, exchange.send)
-        except _TooLongError as error:
+        except _RefusalError as error:
             await problem_response(scope["path"], error.status_code, error.detail, headers=error.headers)(
                 scope, exchange.receive, exchange.send
             )
 
     async def _upload(self, scope: Scope, exchange: "_Exchange") -> None:
         try:
-            async with self._uploads.admitted():
-                await self._app(scope, exchange.receive, exchange.send)
+            async with self._arrivals.arriving(exchange.receive) as receive:
+                await self._app(scope, receive, exchange.send)
         except BusyError as error:
             await busy_response(scope["path"], str(error))(scope, exchange.receive, exchange.send)
 
@@ -78,15 +82,11 @@ def document(operations: Mapping[str, Mapping[str, dict[str, object]]], limits: 
                 operation["x-max-body-bytes"] = limits.get((method.upper(), path), MAX_JSON_BYTES)
 
 
-class _TooLongError(HTTPException):
-    """The body of a request is longer than its route takes."""
+class _RefusalError(HTTPException):
+    """The body of a request is none that its route takes; it is not read."""
 
-    def __init__(self, limit: int, advice: str) -> None:
-        super().__init__(
-            HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
-            f"expected at most {limit} bytes{advice}",
-            headers={"Connection": "close"},
-        )
+    def __init__(self, status: HTTPStatus, detail: str) -> None:
+        super().__init__(status, detail, headers={"Connection": "close"})
 
 
 class _Exchange:
@@ -105,7 +105,13 @@ class _Exchange:
         """Refuse a body that says of itself that it is too long."""
         length = headers.get("content-length", "0")
         if length.isdecimal() and int(length) > self._limit:
-            self._refuse()
+            self._refuse_length()
+
+    def check_type(self, headers: Headers, expected: str) -> None:
+        """Refuse a body of another media type."""
+        found = headers.get("content-type", "").partition(";")[0].strip().lower()
+        if found != expected:
+            self._refuse(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, f"expected {expected}, found {found[:100]!r}")
 
     async def read_ahead(self) -> bool:
         """Read the whole body, to be received as one message. Return False if the client went away."""
@@ -127,12 +133,16 @@ class _Exchange:
         message = await self._receive()
         self._received += len(message.get("body", b""))
         if self._received > self._limit:
-            self._refuse()
+            self._refuse_length()
         return message
 
-    def _refuse(self) -> NoReturn:
+    def _refuse_length(self) -> NoReturn:
+        detail = f"expected at most {self._limit} bytes{self._advice}"
+        self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, detail)
+
+    def _refuse(self, status: HTTPStatus, detail: str) -> NoReturn:
         self._refused = True
-        raise _TooLongError(self._limit, self._advice)
+        raise _RefusalError(status, detail)
 
     async def send(self, message: Message) -> None:
         if not self._refused or message["type"] != "http.response.body" or message.get("more_body", False):

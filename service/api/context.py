@@ -23,6 +23,7 @@ def _nothing() -> None:
 class ApiContext:
     """readiness: a check for each part besides the database. on_new_job: tells the runner not to wait.
 
+    uploads: those stored at a time, after they have arrived.
     waveforms_read: one at a time, because each may have much to read. waveforms_sent: to slow clients, too.
     """
 
@@ -31,6 +32,7 @@ class ApiContext:
     store: RecordingStore
     readiness: Mapping[str, Problem] = field(default_factory=dict)
     on_new_job: Callable[[], None] = _nothing
+    uploads: Admission = field(default_factory=lambda: Admission("uploads", 3, wait_s=10.0))
     waveforms_read: Admission = field(default_factory=lambda: Admission("waveforms", 1, wait_s=10.0))
     waveforms_sent: Admission = field(default_factory=lambda: Admission("waveforms", 16, wait_s=10.0))
 

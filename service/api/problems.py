@@ -18,6 +18,7 @@ from service.api.admission import BusyError
 from service.process.disk_space import is_disk_full
 from service.recording_store.store import RecordingStoreError
 from service.storage.errors import (
+    FolderGoneError,
     NotFoundError,
     OutOfServiceError,
     RecordingInUseError,
@@ -209,6 +210,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(DataError, _unstorable)
     app.add_exception_handler(TooManyWaitingError, _too_many)
     app.add_exception_handler(BusyError, _busy)
+    app.add_exception_handler(FolderGoneError, _busy)
     app.add_exception_handler(OSError, _full)
 
     @app.exception_handler(RecordingStoreError)

@@ -54,7 +54,7 @@ def list_recordings(
     status_code=HTTPStatus.CREATED,
     # Beyond these the parser gives up; up to them the route says which field is wrong.
     form_limits={"max_files": 2 * MAX_UPLOAD_FILES, "max_fields": 4, "max_part_size": 4096},
-    responses=problems(400, 404, 413, 429)
+    responses=problems(400, 404, 408, 413, 415, 429)
     | {
         200: {
             "model": RecordingDetails,
@@ -63,7 +63,7 @@ def list_recordings(
         201: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The recording."}}},
     },
 )
-def upload_recording(
+async def upload_recording(
     context: Context,
     request: Request,
     response: Response,
@@ -77,16 +77,12 @@ def upload_recording(
     ],
 ) -> RecordingDetails:
     """Store the files of one recording and queue its diagnosis; one the motor has stays as it is."""
-    context.repository.motor(motor)
-    try:
-        added = _add(context, motor, files)
-    except FolderGoneError:  # a recording of the same content was deleted just now
-        added = _add(context, motor, files)
-    context.on_new_job()
+    async with context.uploads.admitted():
+        added, details = await run_in_threadpool(_upload, context, motor, files)
     if not added.created:
         response.status_code = HTTPStatus.OK
     response.headers["Location"] = request.url_for("get_recording", recording_id=added.recording.id).path
-    return _details(context, added.recording)
+    return details
 
 
 @router.get("/recordings/{recording_id}", responses=problems(404))
@@ -145,6 +141,18 @@ def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
         return read_envelope(path, intervals_within(points, context.settings.max_waveform_values))
     except RecordingError as error:
         raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
+
+
+def _upload(
+    context: ApiContext, motor: str, files: list[UploadFile]
+) -> tuple[AddedRecording, RecordingDetails]:
+    context.repository.motor(motor)
+    try:
+        added = _add(context, motor, files)
+    except FolderGoneError:  # a recording of the same content was deleted just now
+        added = _add(context, motor, files)
+    context.on_new_job()
+    return added, _details(context, added.recording)
 
 
 def _add(context: ApiContext, motor: str, files: list[UploadFile]) -> AddedRecording:

@@ -52,6 +52,7 @@ class Settings(BaseSettings):
     port: int = Field(default=8710, ge=0, le=65535)
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "::1")
     max_upload_bytes: int = Field(default=64 * MIB, ge=1, le=GIB)
+    min_upload_rate: int = Field(default=32_768, ge=1, le=GIB)
     max_waveform_values: int = Field(default=250_000, ge=40_000, le=10_000_000)
     max_connections: int = Field(default=400, ge=1, le=65_536)
     header_timeout_s: float = Field(default=10.0, ge=0.1, le=600)

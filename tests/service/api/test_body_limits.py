@@ -2,7 +2,6 @@
 
 import json
 import socket
-import threading
 from collections.abc import Iterator
 from typing import Any
 from urllib.parse import urlsplit
@@ -10,14 +9,12 @@ from urllib.parse import urlsplit
 import httpx
 import pytest
 
-from service.api import ApiContext, create_app
-from service.api.body_limits import MAX_JSON_BYTES, UPLOADS_AT_ONCE
+from service.api import ApiContext
+from service.api.body_limits import MAX_JSON_BYTES
 from service.api.problems import MAX_ERRORS
 from service.storage import Repository
 from testing.service.plants import NOW_NS
 from testing.service.small_record import CFG, DAT
-from testing.waiting import wait_until
-from tests.service.api.serving import serving
 
 NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
 BASELINE = "/api/v1/motors/PUMP-A1/baseline"
@@ -192,37 +189,3 @@ def test_a_document_of_many_fields_is_not_described_field_by_field(client: httpx
     assert [error["location"] for error in errors] == ["body"]
     assert "at most 20 fields, found 21" in errors[0]["message"]
     assert len(client.post(DIAGNOSES, json=dict.fromkeys(map(str, range(20)), 1)).json()["errors"]) == 20
-
-
-def test_uploads_wait_for_one_another(context: ApiContext, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.api.body_limits.UPLOAD_WAIT_S", 0.2)
-    begun, end = threading.Semaphore(0), threading.Event()
-
-    def slow() -> Iterator[bytes]:
-        yield b"--b\r\n"
-        begun.release()
-        end.wait(10)
-        yield b"--b--\r\n"
-
-    headers = {"Content-Type": "multipart/form-data; boundary=b"}
-    with serving(create_app(context)) as client:
-        uploads = [
-            threading.Thread(
-                target=client.post,
-                args=["/api/v1/recordings"],
-                kwargs={"content": slow(), "headers": headers},
-            )
-            for _ in range(UPLOADS_AT_ONCE)
-        ]
-        for upload in uploads:
-            upload.start()
-            begun.acquire()
-        wait_until(lambda: client.post("/api/v1/recordings", content=b"", headers=headers).status_code == 503)
-        refused = client.post("/api/v1/recordings", content=b"", headers=headers)
-        assert refused.headers["content-type"] == "application/problem+json"
-        assert int(refused.headers["retry-after"]) > 0
-        assert client.get("/api/v1/motors").status_code == 200
-        end.set()
-        for upload in uploads:
-            upload.join(10)
-        assert client.post("/api/v1/recordings", content=b"", headers=headers).status_code == 422
