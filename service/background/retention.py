@@ -10,7 +10,7 @@ from service.recording_store.store import RecordingStore
 from service.recording_store.unknown_folders import UnknownFolders
 from service.retention.batches import Batches
 from service.retention.deletion import remove_discarded_folders
-from service.retention.rules import Rule, other_rules, recording_rules
+from service.retention.rules import Rule, rules
 from service.retention.unknown_folders import UnknownFolderSweep
 from service.storage import Repository
 from service.timing.wall_clock import WallClock
@@ -56,10 +56,7 @@ class Retention:
             if self._next_ns is not None and monotonic_ns < self._next_ns:
                 return
             self._next_ns = monotonic_ns + NANOSECONDS_PER_DAY
-            every = (
-                *recording_rules(self._settings, self._repository, now_ns),
-                *other_rules(self._settings, self._repository, now_ns),
-            )
+            every = rules(self._settings, self._repository, now_ns)
             self._left = [rule for rule in every if rule.days is not None]
         batches = Batches(stop=self._stopping)
         while self._left:

@@ -295,7 +295,10 @@ def retention(
     ] = False,
     as_json: Json = False,
 ) -> None:
-    """Delete what the table [retention] of the settings says is old enough, now instead of once a day."""
+    """Delete the recordings and the like that the settings of retention call old, now instead of once a day.
+
+    Measured values are left to the service, which averages them before it deletes them.
+    """
     from service.cli.retention import apply_retention
 
     apply_retention(config, dry_run=dry_run, as_json=as_json)

@@ -20,6 +20,7 @@ from service.retention.deletion import remove_discarded_folders
 from service.retention.rules import Rule, rules
 from service.retention.unknown_folders import KEPT_DAYS, UnknownFolderSweep
 from service.storage import Repository, StorageError, connect
+from service.storage.migrations import require_current_tables
 from service.storage.records import Amount
 
 MB = 1e6
@@ -39,6 +40,7 @@ def apply_retention(config: Path | None, *, dry_run: bool, as_json: bool) -> Non
     """Print what every rule would delete and, unless it is a dry run, delete that. Raises CommandError."""
     with failing_clearly(SettingsError, StorageError, SQLAlchemyError, OSError):
         settings = Settings.load(config)
+        require_current_tables(settings.database_url)
         engine = connect(settings.database_url)
         try:
             repository = Repository(engine)

@@ -33,15 +33,17 @@ class Rule:
 
 
 def rules(settings: Settings, repository: Repository, now_ns: int) -> tuple[Rule, ...]:
-    """Return all rules of the settings, also those that keep everything."""
+    """Return the rules of the table [retention], also those that keep everything.
+
+    The rules of the measured values are not among them: values are averaged before they are deleted.
+    """
     return (
-        *recording_rules(settings, repository, now_ns),
-        *other_rules(settings, repository, now_ns),
-        *measurement_rules(settings, repository, now_ns),
+        *_recording_rules(settings, repository, now_ns),
+        *_other_rules(settings, repository, now_ns),
     )
 
 
-def recording_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
+def _recording_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
     """Yield the rules of recordings, by verdict or, where there is none, by state."""
     kept = settings.retention
     kinds: tuple[tuple[str, float | None, RecordingState, Verdict | None], ...] = (
@@ -62,7 +64,7 @@ def recording_rules(settings: Settings, repository: Repository, now_ns: int) -> 
         yield Rule(setting, days, partial(repository.expired_recordings, expired), forget)
 
 
-def other_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
+def _other_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
     """Yield the rules of what is no recording: diagnoses, jobs, recording requests, deletions."""
     kept = settings.retention
     kinds: tuple[tuple[str, float | None, str, Callable[..., Amount], Callable[..., DeletedRows]], ...] = (
@@ -110,7 +112,7 @@ def other_rules(settings: Settings, repository: Repository, now_ns: int) -> Iter
 
 
 def measurement_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
-    """Yield the rules of the measured values, by averaging step."""
+    """Yield the rules of the measured values, by averaging step; for whoever has averaged them before."""
     kinds = (
         ("metering_sample_days", settings.metering_sample_days, AveragingStep.AS_SAMPLED),
         ("metering_minute_days", settings.metering_minute_days, AveragingStep.MINUTE),

@@ -8,8 +8,11 @@ from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
 from sqlalchemy import Connection
 
+from service.storage.database_url import parsed_url
 from service.storage.engine import connect, one_at_a_time
 from service.storage.errors import StorageError
+
+START_ONCE = "start the service once with these settings (mcc serve), which makes the tables"
 
 
 def migrate(url: str) -> None:
@@ -27,6 +30,31 @@ def migrate(url: str) -> None:
             command.upgrade(settings, "head")
     finally:
         engine.dispose()
+
+
+def require_current_tables(url: str) -> None:
+    """Raise StorageError unless the database is there and has the tables of this version. Change nothing.
+
+    For a program that uses the database beside the service, which makes the tables. Raises
+    sqlalchemy.exc.SQLAlchemyError (the database does not answer).
+    """
+    parsed = parsed_url(url)
+    file = parsed.database or ""
+    # To connect to an SQLite file makes it.
+    if parsed.get_backend_name() == "sqlite" and not file.startswith("file:") and not Path(file).is_file():
+        raise StorageError(f"database_url: expected an SQLite file, found none at {file}: {START_ONCE}")
+    engine = connect(url)
+    try:
+        with engine.connect() as connection:
+            settings = config(connection)
+            _require_known(connection, settings)
+            present = MigrationContext.configure(connection).get_current_revision()
+    finally:
+        engine.dispose()
+    newest = ScriptDirectory.from_config(settings).get_current_head()
+    if present != newest:
+        found = "none" if present is None else f"those of revision {present}"
+        raise StorageError(f"database_url: expected tables of revision {newest}, found {found}: {START_ONCE}")
 
 
 def _require_known(connection: Connection, settings: Config) -> None:

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from alembic import command
 from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
@@ -18,8 +19,8 @@ from service.configuration.settings import Settings, SettingsError
 from service.recording_store.store import RecordingStore
 from service.retention.batches import Batches
 from service.retention.rules import rules
-from service.storage import Repository
-from service.storage.records import Amount
+from service.storage import Repository, migrate, migrations
+from service.storage.records import Amount, Sample
 from service.storage.states import DeletedBy
 from service.timing.wall_clock import SETTLING_S
 from testing.service.job_runner import RUNNER
@@ -190,8 +191,7 @@ def test_without_settings_everything_is_kept(
     uploaded(repository, store, 0, fault())
     uploaded(repository, store, 1, None)
     assert RetentionSettings().model_dump(exclude={"keep_newest"}, exclude_none=True) == {}
-    done = apply(Settings(data_directory=tmp_path), repository, 3000)
-    assert all(name.startswith("metering_") for name in done)
+    assert apply(Settings(data_directory=tmp_path), repository, 3000) == {}
     assert len(left(repository)) == 2
 
 
@@ -232,6 +232,50 @@ def test_the_command_shows_what_would_go_and_deletes_it(
     assert (rule["rule"], rule["days"], rule["rows"], rule["deleted"]) == ("retention.healthy_days", 30, 2, 2)
     assert left(repository) == ids[2:]
     assert len(list(store.root.glob("??/*"))) == 1
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+def test_the_command_deletes_no_measured_value_that_was_not_averaged(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The service was off for longer than samples are kept; it averages them when it starts."""
+    samples = [Sample(MOTOR, NOW_NS + number * SECOND_NS, {"ia_A": 1.0}) for number in range(3)]
+    repository.add_samples(samples)
+    config = tmp_path / "mcc.toml"
+    config.write_text('data_directory = "."\nmetering_sample_days = 1\n')
+    assert main(["retention", "--config", str(config)]) == 0
+    assert "metering" not in capsys.readouterr().out
+    assert len(repository.measurements(MOTOR, 0, limit=10).items) == 3
+
+
+def test_the_command_makes_no_database(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text('data_directory = "."\n')
+    for more in ([], ["--dry-run"]):
+        assert main(["retention", *more, "--config", str(config)]) == 1
+        told = capsys.readouterr().err
+        assert "database_url: expected an SQLite file, found none at " in told
+        assert "start the service once" in told
+        assert "sqlalche.me" not in told
+    assert list(tmp_path.iterdir()) == [config]
+    (tmp_path / "statorwatch.sqlite").touch()
+    assert main(["retention", "--dry-run", "--config", str(config)]) == 1
+    assert "found none: start the service once" in " ".join(capsys.readouterr().err.split())
+
+
+@pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
+def test_the_command_needs_the_tables_of_its_version(
+    database_url: str, engine: Engine, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text('data_directory = "."\n')
+    with engine.begin() as connection:
+        command.downgrade(migrations.config(connection), "0012")
+    assert main(["retention", "--dry-run", "--config", str(config)]) == 1
+    told = capsys.readouterr().err
+    assert "found those of revision 0012: start the service once" in " ".join(told.split())
+    migrate(database_url)
+    assert main(["retention", "--dry-run", "--config", str(config)]) == 0
 
 
 @pytest.mark.parametrize(

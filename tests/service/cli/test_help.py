@@ -1,0 +1,20 @@
+"""What `--help` prints is what the commands' docstrings say, in full."""
+
+import pytest
+
+from service.cli.app import app, main
+
+COMMANDS = {
+    command.name or command.callback.__name__: command.callback.__doc__ or ""
+    for command in app.registered_commands
+    if command.callback is not None
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_no_word_of_a_command_is_taken_for_mark_up(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    assert main([name, "--help"]) == 0
+    assert " ".join(COMMANDS[name].split()) in " ".join(capsys.readouterr().out.split())
