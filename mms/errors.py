@@ -255,7 +255,7 @@ _MMS_ERRORS: dict[int, tuple[type[MmsError], str]] = {
     5: (ValueRefused, "hardware fault"),
     6: (ProtocolError, "the end of the association was rejected"),
     7: (ProtocolError, "invalid arguments"),
-    8: (ProtocolError, "too many outstanding requests"),
+    8: (ServiceFailed, "too many outstanding requests"),
     10: (TemporarilyUnavailable, "the relay is not in a state for this"),
     31: (NotFound, "invalid address"),
     32: (ValueRefused, "the data type is not supported"),

@@ -8,7 +8,7 @@ import hashlib
 import io
 import queue
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import iec61850
@@ -37,7 +37,7 @@ def results() -> Iterator[Result]:
 
 
 def of_profile(name: str, directory: Path) -> Iterator[Result]:
-    """Yield every check of one profile: the first client stops the motor, the second has it started.
+    """Yield every check of one profile: the first client stops the motor, the second starts it.
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ def of_profile(name: str, directory: Path) -> Iterator[Result]:
     scenario = scenario_of(name)
     with simulated(directory, scenario) as served:
         yield from _by_open61850(scenario.profile, served)
-        yield from _by_py61850(scenario.profile, served)
         yield from asyncio.run(_by_iec61850(scenario.profile, served))
+        yield from _by_py61850(scenario.profile, served)
 
 
 def _by_open61850(profile: Profile, served: Simulated) -> Iterator[Result]:
@@ -148,8 +148,10 @@ async def _by_iec61850(profile: Profile, served: Simulated) -> list[Result]:
             served.reference(str(profile.points.start)), iec61850.ControlModel.DIRECT_NORMAL
         )
         outcome = await control.operate(True)  # noqa: FBT003 (theirs)
-        seen = "accepted" if outcome.success else f"refused: {outcome.add_cause}"
-        found.append(Result(profile.name, "iec61850: operate", seen, outcome.success))
+        runs = outcome.success and await asyncio.to_thread(_is_running, profile, served)
+        found.append(
+            Result(profile.name, "iec61850: operate", "motor started" if runs else "not started", runs)
+        )
     finally:
         await client.disconnect()
     return found
@@ -188,10 +190,19 @@ def _report_block(profile: Profile, served: Simulated) -> tuple[str, int]:
 
 
 def _is_stopped(profile: Profile, served: Simulated) -> bool:
+    return _comes_to(profile, served, lambda current_A: current_A < STANDSTILL_A)
+
+
+def _is_running(profile: Profile, served: Simulated) -> bool:
+    return _comes_to(profile, served, lambda current_A: current_A > STANDSTILL_A)
+
+
+def _comes_to(profile: Profile, served: Simulated, condition: Callable[[float], bool]) -> bool:
+    """Wait until the metered current meets a condition; return whether it did."""
     reference = f"{_meter(profile, served)}.A.phsA.cVal.mag.f"
     with served.client() as client:
         return eventually(
-            lambda: float(str(client.read(reference, FunctionalConstraint.MX))) < STANDSTILL_A,
+            lambda: condition(float(str(client.read(reference, FunctionalConstraint.MX)))),
             STANDSTILL_PATIENCE_S,
         )
 

@@ -179,7 +179,9 @@ PROTOTYPES: Final[dict[str, tuple[object, list[object]]]] = {
     "ClientReport_getReasonForInclusion": (c_int, [c_void_p, c_int]),
     "ClientReport_getMoreSeqmentsFollow": (c_bool, [c_void_p]),
     # client: controls
-    "ControlObjectClient_create": (c_void_p, [c_char_p, c_void_p]),
+    "MmsConnection_getVariableAccessAttributes": (c_void_p, [c_void_p, _ERROR, c_char_p, c_char_p]),
+    "MmsVariableSpecification_destroy": (None, [c_void_p]),
+    "ControlObjectClient_createEx": (c_void_p, [c_char_p, c_void_p, c_int, c_void_p]),
     "ControlObjectClient_destroy": (None, [c_void_p]),
     "ControlObjectClient_getControlModel": (c_int, [c_void_p]),
     "ControlObjectClient_setOrigin": (None, [c_void_p, c_char_p, c_int]),

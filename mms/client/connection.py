@@ -7,9 +7,9 @@ through `request` and `exclusive`.
 
 import atexit
 import ctypes
+import secrets
 import threading
 import time
-from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from enum import Enum
@@ -22,6 +22,8 @@ from mms.client.association import Association, resolve
 from mms.client.credentials import Credentials
 from mms.client.limits import DEFAULT_LIMITS, ClientLimits
 from mms.security.tls import TlsConfiguration
+
+_CONTROL_NUMBERS: Final = 256
 
 
 class _State(Enum):
@@ -87,7 +89,7 @@ class Connection:
         self.lib: Final = library()
         self._lock = threading.RLock()
         self.round_trip_s: float | None = None
-        self._commands: Counter[str] = Counter()
+        self._commands: dict[str, int] = {}
         addresses = resolve(host, port)
         self._credentials = Credentials(self.lib, tls, password)
         self._association = Association(self.lib, self._credentials, limits, on_closed)
@@ -134,6 +136,8 @@ class Connection:
     def count_command(self, reference: str) -> int:
         """Count a command on a control object: each has a control number (ctlNum) one above the last.
 
+        The first of an association is any: a relay may take the latest command's number for a repetition.
+
         Parameters
         ----------
         reference : str
@@ -148,8 +152,8 @@ class Connection:
         ----------
         IEC 61850-7-2 clause 20, ctlNum.
         """
-        before = self._commands[reference]
-        self._commands[reference] = (before + 1) % 256
+        before = self._commands.setdefault(reference, secrets.randbelow(_CONTROL_NUMBERS))
+        self._commands[reference] = (before + 1) % _CONTROL_NUMBERS
         return before
 
     def keep_callback(self, handler: object) -> None:

@@ -17,12 +17,14 @@ from mms.binding.value_conversion import decode
 from mms.client.connection import Connection
 from mms.client.data_values import request_value
 from mms.control_model import AddCause, ControlModel, words_of
-from mms.references import FunctionalConstraint, object_reference
+from mms.references import FunctionalConstraint, object_reference, variable_name
+from mms.values import DataAccessError
 
 _REMOTE_CONTROL: Final = 3
 _CONTROL_ROOM: Final = len("$CO$SBOw")
 _LONGEST_ORIGINATOR: Final = 16  # a long orIdent has rebooted relays in the field
 _LOOK_FOR_LOSS_S: Final = 0.1
+_PATIENCE_S: Final = (0.2, 0.5, 1.0)
 
 
 def operate(connection: Connection, reference: str, *, value: bool, originator: str) -> None:
@@ -71,37 +73,54 @@ def operate(connection: Connection, reference: str, *, value: bool, originator: 
 
 
 def _create(connection: Connection, operation: str, reference: str, object_name: bytes, pointer: int) -> int:
-    """Make the library's control object, which asks the relay for its description.
+    """Make the library's control object from the relay's description of it.
 
-    The relay is asked again if its description came too late.
+    A relay that is busy is asked again.
     """
-    for _ in range(2):
-        began_s = time.monotonic()
-        control = connection.lib.ControlObjectClient_create(object_name, pointer)
-        if control:
-            return int(control)
-        is_late = time.monotonic() - began_s >= connection.request_timeout_s
-        why = _no_control(connection, operation, reference)
-        if not is_late or not isinstance(why, errors.ProtocolError):
-            raise why
-    raise errors.Timeout(connection.host, operation, 0, "no answer in time")
-
-
-def _no_control(connection: Connection, operation: str, reference: str) -> errors.MmsError:
-    """Find out why the library made no control object: it does not pass on the error of what it asked for."""
     lib = connection.lib
+    for pause_s in (*_PATIENCE_S, None):
+        try:
+            model = _control_model(connection, operation, reference)
+            domain, item = variable_name(reference, FunctionalConstraint.CO)
+            description = connection.request(
+                operation, lib.MmsConnection_getVariableAccessAttributes, domain, item
+            )
+            break
+        except errors.TemporarilyUnavailable:
+            if pause_s is None:
+                raise
+            time.sleep(pause_s)
+    if description is None:
+        raise errors.ProtocolError(connection.host, operation, 0, "no description of the object came")
+    try:
+        control = lib.ControlObjectClient_createEx(object_name, pointer, model, description)
+    finally:
+        lib.MmsVariableSpecification_destroy(description)
+    if not control:
+        raise errors.ProtocolError(connection.host, operation, 0, "the object has no Oper with ctlVal and T")
+    return int(control)
+
+
+def _control_model(connection: Connection, operation: str, reference: str) -> ControlModel:
     model = request_value(connection, operation, f"{reference}.ctlModel", FunctionalConstraint.CF)
     try:
-        found = decode(lib, model)
+        found = decode(connection.lib, model)
     except ValueError as error:
-        return errors.ProtocolError(connection.host, operation, 0, str(error))
+        raise errors.ProtocolError(connection.host, operation, 0, str(error)) from error
     finally:
-        lib.MmsValue_delete(model)
+        connection.lib.MmsValue_delete(model)
+    if found == DataAccessError.TEMPORARILY_UNAVAILABLE:
+        raise errors.TemporarilyUnavailable(
+            connection.host, operation, 0, "the relay gives no ctlModel for now"
+        )
+    if isinstance(found, bool | DataAccessError) or not isinstance(found, int):
+        reason = "no such controllable object: it has no ctlModel"
+        raise errors.NotFound(connection.host, operation, 0, reason)
     if found == ControlModel.STATUS_ONLY:
-        return _status_only(connection, operation)
-    if isinstance(found, int):
-        return errors.ProtocolError(connection.host, operation, 0, "the object has no Oper with ctlVal and T")
-    return errors.NotFound(connection.host, operation, 0, "no such controllable object: it has no ctlModel")
+        raise _status_only(connection, operation)
+    if found not in set(ControlModel):
+        raise errors.ProtocolError(connection.host, operation, 0, f"unknown ctlModel {found}")
+    return ControlModel(found)
 
 
 def _status_only(connection: Connection, operation: str) -> errors.ControlRefused:
@@ -118,16 +137,10 @@ class _Command:
         self._operation = operation
         self._control = control
         self._terminated = threading.Event()
+        self._asked_s = 0.0
 
     def execute(self, *, value: bool) -> None:
-        number = int(self._lib.ControlObjectClient_getControlModel(self._control))
-        if number not in set(ControlModel):
-            raise errors.ProtocolError(
-                self._connection.host, self._operation, 0, f"unknown ctlModel {number}"
-            )
-        model = ControlModel(number)
-        if model is ControlModel.STATUS_ONLY:
-            raise _status_only(self._connection, self._operation)
+        model = ControlModel(int(self._lib.ControlObjectClient_getControlModel(self._control)))
         enhanced = model in (ControlModel.DIRECT_ENHANCED, ControlModel.SBO_ENHANCED)
         handler = CommandTerminationHandler(guarded(self._on_termination, None))
         control_value = self._lib.MmsValue_newBoolean(value)
@@ -135,6 +148,7 @@ class _Command:
             if enhanced:
                 self._lib.ControlObjectClient_setCommandTerminationHandler(self._control, handler, None)
             self._select(model, control_value)
+            self._asked_s = time.monotonic()
             if (
                 not self._lib.ControlObjectClient_operate(self._control, control_value, 0)
                 or self._last_error()
@@ -146,6 +160,7 @@ class _Command:
             self._lib.MmsValue_delete(control_value)
 
     def _select(self, model: ControlModel, control_value: int) -> None:
+        self._asked_s = time.monotonic()
         if model is ControlModel.SBO_NORMAL and not self._lib.ControlObjectClient_select(self._control):
             raise self._refusal("select")
         if model is ControlModel.SBO_ENHANCED and not self._lib.ControlObjectClient_selectWithValue(
@@ -170,6 +185,10 @@ class _Command:
     def _on_termination(self, _parameter: int | None, _control: int | None) -> None:
         self._terminated.set()
 
+    def _is_late(self) -> bool:
+        """Return whether the latest request took as long as an answer is waited for."""
+        return time.monotonic() - self._asked_s >= self._connection.request_timeout_s
+
     def _last_error(self) -> int:
         return int(self._lib.ControlObjectClient_getLastError(self._control))
 
@@ -178,6 +197,10 @@ class _Command:
         error = self._connection.resolve_timeout(
             errors.client_error(self._connection.host, self._operation, code)
         )
+        if isinstance(error, errors.Timeout) and not self._is_late():
+            # The library says so, too, of a ServiceError in answer to the write.
+            reason = f"the relay answered with a service error to {step}: it may be busy"
+            return errors.ServiceFailed(self._connection.host, self._operation, code, reason)
         if isinstance(error, errors.ConnectionLost | errors.Timeout):
             return error
         applied = self._lib.ControlObjectClient_getLastApplError(self._control)

@@ -133,6 +133,7 @@ class RecordDirectory:
         self._ledger = RecordLedger(relay.name, motor, repository)
         self._wrong_listings = WrongListings()
         self._view: _View | None = None
+        self._not_listed_since_s: float | None = None
         self.listing_s = 0.0
 
     def scan(self, client: Client, claim: ClaimRequest, *, expected: bool) -> Scan:
@@ -145,13 +146,13 @@ class RecordDirectory:
         try:
             contents = self._folder.contents(client, expected=expected)
         except (ServiceFailed, TemporarilyUnavailable) as error:
-            log.info("the relay lists no files for now", relay=self._relay, reason=str(error))
-            return Scan(busy=str(error))
+            return self._not_listed(str(error), began_s)
         finally:
             self.listing_s = time.monotonic() - began_s
         if contents.directory is None:
             unreachable = self._folder.missing if self._folder.no_files else None
             return Scan(unreachable=unreachable, no_folder=self._folder.missing)
+        self._not_listed_since_s = None
         view = self._view = self._view_of(contents, contents.directory)
         self._ledger.give_up_all_but(view.chosen.states)
         self._settle(view, expected=expected)
@@ -160,6 +161,20 @@ class RecordDirectory:
         self._end_incomplete(view, contents.directory, claim)
         held_back = self._take_all(client, in_turn(ready, time.monotonic()), claim)
         return self._outcome(view, unsteady, held_back)
+
+    def _not_listed(self, reason: str, now_s: float) -> Scan:
+        """Note that the relay lists no files for now; it is an alarm when that lasts."""
+        if self._not_listed_since_s is None:
+            self._not_listed_since_s = now_s
+            log.info("the relay lists no files for now", relay=self._relay, reason=reason)
+        if now_s - self._not_listed_since_s > self._record_timeout_s:
+            self._alarms.raise_alarm(
+                AlarmKind.FILE_UNSTEADY,
+                "",
+                f"expected a listing of the relay's files, found none for {self._record_timeout_s:g} s: "
+                f"{reason}; no recording is fetched meanwhile",
+            )
+        return Scan(busy=reason)
 
     def pull_untimed_again(self) -> None:
         """Pull once more what is stored and has no time, at the next scan.

@@ -158,9 +158,10 @@ class EventFolder:
                 continue
             except ServiceFailed:
                 # A folder that was listed before is there, and cannot be listed for now, or has gone.
-                self._refusals += 1
-                if directory in self._candidates and self._refusals < MOST_REFUSALS:
-                    raise
+                if directory in self._candidates:
+                    self._refusals += 1
+                    if self._refusals < MOST_REFUSALS:
+                        raise
                 continue
             except RequestRejected:
                 if directory in self._candidates:

@@ -1,37 +1,28 @@
 """Finds out what a relay offers, by browsing it at each connection, and compares that with its SCL.
 
-Browsing makes one request after the other: one listing of names for each logical device, then one request for
-each logical device's data sets, for each data set and for each report control block. Differences from the SCL
-are stored. A difference in what the service uses raises an alarm. None ends a connection.
+Differences from the SCL are stored. A difference in what the service uses raises an alarm. None ends a
+connection.
 """
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
-from itertools import islice
-from typing import TypeVar
 
 import structlog
 
 from mms import (
-    AccessDenied,
     Client,
     ControlModel,
     FunctionalConstraint,
-    NotFound,
-    ProtocolError,
-    ServiceFailed,
-    TemporarilyUnavailable,
 )
 from service.collector.records.event_folder import ROOT
 from service.collector.records.listing import RefusedFile
+from service.collector.session.browsing import BUSY, REFUSALS, browse
 from service.collector.session.relay_alarms import RelayAlarms
 from service.plant import (
     Acquisition,
     Difference,
-    Offer,
     Relay,
-    ReportBlock,
     acquisition_from_offer,
     acquisition_from_scl,
     differences,
@@ -42,18 +33,7 @@ from service.storage.states import AlarmKind
 
 log = structlog.get_logger(__name__)
 
-_Names = TypeVar("_Names", list[str], tuple[str, ...])
-
 NOT_BROWSED = "the relay does not tell what it offers: its SCL is taken at its word"
-
-REFUSALS = (AccessDenied, NotFound, ProtocolError, ServiceFailed, TemporarilyUnavailable, ValueError)
-"""These errors concern one request, and the link is fine. ValueError stands for a name that is none."""
-
-PATIENCE_S = (0.1, 0.5)
-"""Pauses after which a relay that is busy is asked again for a list of names."""
-
-MOST_DEVICES, MOST_NODES, MOST_DATA_SETS, MOST_BLOCKS = 64, 4000, 64, 128
-"""No more of one relay is browsed. Protection relays have fewer; a faulty one may list any number."""
 
 
 class Discovery:
@@ -81,7 +61,7 @@ class Discovery:
             self._acquisition = acquisition_from_scl(self._relay)
         else:
             self._acquisition = acquisition_from_offer(
-                self._relay, offer, lambda control: bool(_control_model(client, control))
+                self._relay, offer, lambda control: _may_be_control(client, control)
             )
             if self._relay.expected is not None:
                 self._differences = [
@@ -160,113 +140,30 @@ def _difference_document(difference: Difference) -> dict[str, object]:
     return {"kind": str(difference.kind), "expected": difference.expected, "found": difference.found}
 
 
-def browse(client: Client, expected: Offer | None) -> Offer | None:
-    """Return what the relay offers; None where it cannot be browsed. Raises MmsError (the link).
-
-    expected: what its SCL promises. Data sets are looked for where the SCL has some, and in every LLN0.
-    """
-    try:
-        devices = _patiently(client.logical_devices)[:MOST_DEVICES]
-    except REFUSALS as error:
-        log.warning("the relay cannot be browsed", host=client.host, reason=str(error))
-        return None
-    nodes = dict(islice(_nodes(client, devices, expected), MOST_NODES))
-    if not nodes:
-        return None
-    promised = () if expected is None else expected.data_sets
-    with_data_sets = {reference.rpartition(".")[0] for reference in promised}
-    return Offer(
-        nodes=nodes,
-        data_sets=dict(
-            islice(
-                _data_sets(
-                    client, [node for node in nodes if node.endswith("/LLN0") or node in with_data_sets]
-                ),
-                MOST_DATA_SETS,
-            )
-        ),
-        report_blocks=tuple(islice(_report_blocks(client, nodes), MOST_BLOCKS)),
-    )
-
-
 def _control_model(client: Client, reference: str) -> ControlModel | None:
-    """Return the control model of a data object as the relay has it; None where it is no control.
+    """Return the control model of a data object; None where it is no control, or the relay is busy.
 
     Raises MmsError (the link).
     """
     try:
+        return _read_control_model(client, reference)
+    except BUSY:
+        return None
+
+
+def _may_be_control(client: Client, reference: str) -> bool:
+    """Return whether a data object is a control, or the relay is too busy to say. Raises MmsError."""
+    try:
+        return _read_control_model(client, reference) is not None
+    except BUSY:
+        return True
+
+
+def _read_control_model(client: Client, reference: str) -> ControlModel | None:
+    try:
         model = client.read(f"{reference}.ctlModel", FunctionalConstraint.CF)
+    except BUSY:
+        raise
     except REFUSALS:
         return None
     return ControlModel(model) if isinstance(model, int) and model in tuple(ControlModel) else None
-
-
-def _nodes(
-    client: Client, devices: list[str], expected: Offer | None
-) -> Iterator[tuple[str, tuple[str, ...]]]:
-    """Yield the logical nodes with their data objects; those of the SCL for a device that is busy."""
-    for device in devices:
-        try:
-            names = _patiently(client.logical_nodes, device)
-        except (ServiceFailed, TemporarilyUnavailable) as error:
-            log.warning(
-                "a logical device does not tell its nodes: its SCL is taken at its word",
-                host=client.host, device=device, reason=str(error)[:200],
-            )  # fmt: skip
-            promised = {} if expected is None else expected.nodes
-            yield from ((node, what) for node, what in promised.items() if node.startswith(f"{device}/"))
-            continue
-        except REFUSALS as error:
-            log.warning("a logical device is passed over", host=client.host, reason=str(error)[:200])
-            continue
-        for name in names:
-            node = f"{device}/{name}"
-            try:
-                yield node, tuple(client.data_objects(node))
-            except REFUSALS as error:
-                log.info("a logical node is passed over", host=client.host, reason=str(error)[:200])
-
-
-def _patiently(list_names: Callable[..., _Names], *arguments: str) -> _Names:
-    """Return a list of names; ask again, after a pause, a relay that is busy."""
-    for pause_s in PATIENCE_S:
-        try:
-            return list_names(*arguments)
-        except TemporarilyUnavailable as error:
-            log.info("busy, asked again", reason=str(error), pause_s=pause_s)
-            time.sleep(pause_s)
-    return list_names(*arguments)
-
-
-def _data_sets(client: Client, nodes: list[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
-    for node in nodes:
-        try:
-            names = _patiently(client.data_sets, node)
-        except REFUSALS:
-            continue
-        for name in names:
-            reference = f"{node}.{name}"
-            try:
-                yield reference, _patiently(client.data_set_directory, reference)
-            except REFUSALS as error:
-                log.info("a data set is passed over", host=client.host, reason=str(error)[:200])
-
-
-def _report_blocks(client: Client, nodes: dict[str, tuple[str, ...]]) -> Iterator[ReportBlock]:
-    for node in nodes:
-        try:
-            blocks = [("BR", name) for name in client.buffered_reports(node)]
-            blocks += [("RP", name) for name in client.unbuffered_reports(node)]
-        except REFUSALS:
-            continue
-        for kind, name in blocks:
-            yield ReportBlock(f"{node}.{kind}.{name}", _data_set_of(client, f"{node}.{name}", kind))
-
-
-def _data_set_of(client: Client, block: str, kind: str) -> str | None:
-    """Return the data set of a report control block. Relays name it as MMS does: LD/LLN0$DSet01."""
-    try:
-        data_set = client.read(f"{block}.DatSet", FunctionalConstraint[kind])
-    except REFUSALS:
-        return None
-    return data_set.replace("$", ".") if isinstance(data_set, str) and data_set else None

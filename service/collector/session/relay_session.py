@@ -123,6 +123,7 @@ class RelaySession:
         self._wake_up = Event()
         self._requested = Event()
         self._record_expected_until_s = 0.0
+        self._busy: str | None = None
 
     def wake(self) -> None:
         """Look for requests now: somebody has requested a recording."""
@@ -245,7 +246,8 @@ class RelaySession:
 
     def _remarks(self) -> list[str]:
         """Return what cannot be had of the relay at present."""
-        reasons = (self._subscription.refusal, self._folder.missing, self._folder.unread)
+        busy = None if self._busy is None else f"no recording is fetched for now: {self._busy}"
+        reasons = (self._subscription.refusal, busy, self._folder.missing, self._folder.unread)
         return [reason for reason in reasons if reason is not None]
 
     def _wait(self, client: Client, longest_s: float) -> None:
@@ -282,6 +284,7 @@ class RelaySession:
             self._directory.pull_untimed_again()
             self._record_expected_until_s = 0.0
         scan = self._directory.scan(client, self._triggers.claim, expected=expected)
+        self._busy = scan.busy
         if scan.busy is not None:
             self._triggers.link_failed(f"lists no files for now: {scan.busy}")
             return expected

@@ -193,9 +193,25 @@ class TriggerQueue:
             return self._trigger(client, request, control, scan.listed)
         return False
 
+    def _is_busy(self, client: Client, request: RecordingRequest, control: str) -> bool:
+        """Return whether the relay cannot tell of the control for now: the request then waits its time."""
+        try:
+            client.read(f"{control}.ctlModel", FunctionalConstraint.CF)
+        except TemporarilyUnavailable as error:
+            log.info(
+                "trigger put off", relay=self._relay.name, recording_request=request.id, reason=str(error)
+            )
+            self._unanswered.fail_overdue(f"is not triggered: {error}")
+            return True
+        except REFUSALS:
+            return False  # the trigger itself says why
+        return False
+
     def _trigger(
         self, client: Client, request: RecordingRequest, control: str, listed: frozenset[str]
     ) -> bool:
+        if self._is_busy(client, request, control):
+            return True
         try:
             if _is_set(client, control):
                 client.operate(control, False)  # noqa: FBT003 - the value of a control

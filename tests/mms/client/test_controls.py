@@ -20,6 +20,7 @@ from mms import (
     Server,
     Timeout,
 )
+from mms.client import controls
 from mms.control_model import words_of
 from testing.ports import LOOPBACK
 
@@ -60,7 +61,8 @@ def test_control_numbers_count_up(relay: Server, client: Client, controllable: s
     relay.on_operate(controllable, _obey(relay, seen))
     for number in range(258):
         client.operate(controllable, value=number % 2 == 0)
-    assert [action.control_number for action in seen] == [(k + 1) % 256 for k in range(258)]
+    first = seen[0].control_number
+    assert [action.control_number for action in seen] == [(first + k) % 256 for k in range(258)]
 
 
 @pytest.mark.parametrize(
@@ -112,7 +114,7 @@ def test_an_object_another_client_selected_is_refused(relay: Server, client: Cli
     lib = client._connection.lib
     reference = OBJECT.format(2)
     with client._connection.exclusive("select") as pointer:
-        control = lib.ControlObjectClient_create(reference.encode(), pointer)
+        control = controls._create(client._connection, "select", reference, reference.encode(), pointer)
         assert lib.ControlObjectClient_select(control)
         with Client.connect(LOOPBACK, relay.port) as second, pytest.raises(ControlRefused, match="select"):
             second.operate(reference, value=True)

@@ -10,7 +10,10 @@ from testing.ports import LOOPBACK
 from tests.hostile.background import background_loop
 from tests.hostile.dialogue import CONFIRMED_REQUEST, framed, message, pdu_of, tlv
 
-LIST_OF_NAMES, READ, FILE_DIRECTORY = b"\xa1", b"\xa4", b"\xbf\x4d"
+LIST_OF_NAMES, READ, WRITE, VARIABLE_DESCRIPTION, DATA_SET_MEMBERS, FILE_DIRECTORY = (
+    *(b"\xa1", b"\xa4", b"\xa5", b"\xa6", b"\xac"),
+    b"\xbf\x4d",
+)
 CONFIRMED_ERROR = 0xA2
 RESOURCE_OTHER = (0x83, 0)
 """Error class and code of ISO 9506-2, ServiceError: resource, other."""

@@ -152,6 +152,6 @@ def test_an_error_of_the_file_service_is_that_of_one_file(code: int) -> None:
     assert type(errors.file_error("relay", "download", code)) is errors.ServiceFailed
 
 
-@pytest.mark.parametrize("code", [4, 7, 8, 100, 109])
+@pytest.mark.parametrize("code", [4, 7, 100, 109])
 def test_nonsense_and_rejects_are_not(code: int) -> None:
     assert isinstance(errors.file_error("relay", "download", code), errors.ProtocolError)

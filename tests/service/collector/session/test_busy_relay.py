@@ -4,15 +4,25 @@ from dataclasses import replace
 
 import pytest
 
+import scl
 from mms import Client, FunctionalConstraint, ServiceFailed, TemporarilyUnavailable
 from service.collector.session.session_policy import SESSION_POLICY, SessionPolicy
-from service.storage.states import LinkState, RecordingRequestState
+from service.plant.offer import offer_from_scl
+from service.storage.states import AlarmKind, LinkState, RecordingRequestState
 from service.timing.backoff import Backoff
 from testing.ports import LOOPBACK
 from testing.waiting import eventually
-from tests.service.collector.busy_front import FILE_DIRECTORY, LIST_OF_NAMES, READ, busy_front
+from tests.service.collector.busy_front import (
+    DATA_SET_MEMBERS,
+    FILE_DIRECTORY,
+    LIST_OF_NAMES,
+    READ,
+    VARIABLE_DESCRIPTION,
+    WRITE,
+    busy_front,
+)
 from tests.service.collector.conftest import Bench
-from tests.service.collector.scripted_relay import FAULT_NUMBER, NAME, ScriptedRelay
+from tests.service.collector.scripted_relay import CONTROL, FAULT_NUMBER, NAME, ScriptedRelay
 
 QUICK = SessionPolicy(reconnect=Backoff(first_s=0.01, longest_s=0.02))
 MANY = 4 * SESSION_POLICY.faults_in_a_row
@@ -57,6 +67,71 @@ def test_a_request_to_a_relay_that_lists_nothing_ends_with_the_reason(
             assert bench.reaches(request, RecordingRequestState.FAILED)
     assert "lists no files for now" in (bench.requested(request).reason or "")
     assert relay.edges == 0
+
+
+def test_files_that_are_never_listed_show_at_the_relay(bench: Bench, relay: ScriptedRelay) -> None:
+    """Nobody need ask for a recording to be told."""
+    with busy_front(bench.relay.port, {FILE_DIRECTORY: 1_000_000}) as front:
+        bench.relay = replace(bench.relay, port=front.port)
+        bench.with_settings(poll_period_s=0.05, record_timeout_s=0.5)
+        with bench.session():
+            assert eventually(lambda: bench.alarms() == {AlarmKind.FILE_UNSTEADY: [""]})
+            assert "no recording is fetched for now" in (bench.repository.relay(NAME).link_reason or "")
+            front.refused.clear()
+            assert eventually(lambda: bench.alarms() == {})
+            assert eventually(lambda: bench.repository.relay(NAME).link_reason is None)
+
+
+@pytest.mark.parametrize("service", [DATA_SET_MEMBERS, READ])
+def test_what_a_busy_relay_does_not_tell_is_taken_from_its_scl(
+    bench: Bench, relay: ScriptedRelay, service: bytes
+) -> None:
+    ied = scl.read(scl.DEMO_PLANT_SCD).ied(NAME)
+    with busy_front(bench.relay.port, {service: 60}) as front:
+        bench.relay = replace(bench.relay, port=front.port, expected=offer_from_scl(ied))
+        bench.policy = replace(QUICK, report_retry_s=0.05)
+        bench.with_settings(poll_period_s=0.05)
+        with bench.session():
+            assert eventually(lambda: bench.link() is LinkState.UP)
+            assert front.refused.pop(service) < 60
+            assert bench.alarms() == {}
+            relay.write_record("HR_10001")
+            assert eventually(lambda: bench.is_stored("HR_10001"))
+            found = bench.repository.relay_findings(NAME)
+            assert found is not None
+            assert found.acquisition["records_told_by"] == "buffered-report"
+
+
+@pytest.mark.parametrize("service", [READ, VARIABLE_DESCRIPTION])
+def test_a_control_is_described_when_the_relay_has_time(relay: ScriptedRelay, service: bytes) -> None:
+    with busy_front(relay.port, {}) as front, Client.connect(LOOPBACK, front.port) as client:
+        front.refused[service] = 2
+        client.operate(CONTROL, value=True)
+        assert relay.edges == 1
+        front.refused[service] = 1_000
+        with pytest.raises(TemporarilyUnavailable, match="resources are used up"):
+            client.operate(CONTROL, value=False)
+
+
+def test_a_command_that_is_answered_by_a_service_error_is_no_timeout(relay: ScriptedRelay) -> None:
+    with busy_front(relay.port, {WRITE: 1}) as front, Client.connect(LOOPBACK, front.port) as client:
+        with pytest.raises(ServiceFailed, match="service error to operate: it may be busy"):
+            client.operate(CONTROL, value=True)
+        client.operate(CONTROL, value=True)
+        assert relay.edges == 1
+
+
+def test_a_trigger_waits_until_the_relay_tells_of_its_control(bench: Bench, relay: ScriptedRelay) -> None:
+    with busy_front(bench.relay.port, {}) as front:
+        bench.relay = replace(bench.relay, port=front.port)
+        bench.with_settings(metering_period_s=0.0)
+        with bench.session() as session:
+            assert eventually(lambda: bench.link() is LinkState.UP)
+            front.refused[READ] = 6
+            request = bench.request()
+            session.wake()
+            assert bench.reaches(request, RecordingRequestState.FETCHED)
+    assert relay.edges == 1
 
 
 def test_a_service_error_is_told_from_a_reject(relay: ScriptedRelay) -> None:

@@ -11,7 +11,7 @@ import scl
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, DataAccessError, FunctionalConstraint, ProtocolError, Server, Value
 from scl.model_text import model_text
-from service.collector.session.discovery import browse
+from service.collector.session.browsing import browse
 from service.collector.session.metering import Metering
 from service.collector.session.relay_session import RelaySession
 from service.plant import Measurand, MeteredQuantity, Relay
