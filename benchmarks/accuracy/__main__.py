@@ -38,6 +38,7 @@ from benchmarks.accuracy.cells import (
     random_trials,
 )
 from benchmarks.accuracy.intervals import intervals
+from benchmarks.accuracy.level_choices import level_choices
 from benchmarks.accuracy.resistive_paths import resistive_paths
 from benchmarks.reporting import Section, spread, table, write_sections
 from testing.machines.motors import REFERENCE
@@ -157,6 +158,18 @@ def _paths(effort: Effort, pool: Executor) -> Iterator[str]:
     yield from resistive_paths(records=effort.paths, pool=pool)
 
 
+def _level_choices(effort: Effort, pool: Executor) -> Iterator[str]:
+    yield "Where dead-shorted turns and a path both hold, the diagnosis gives the level of the likelier one."
+    yield "Beside it: the median and the mean of the posterior over all paths, and dead-shorted turns only if"
+    yield "they have two thirds of the probability. Each has the median of the relative error of mu_f and"
+    yield "the error that nine records of ten do not exceed. The probability of dead-shorted turns is that"
+    yield "of eight records of ten. Ampere-turns are the mean of the posterior, with their errors; they go"
+    yield "with mu / |R_s (1 + path) + j X_ls|. Records as in the section before, all loads together:"
+    yield f"{3 * effort.paths} a row."
+    yield ""
+    yield from level_choices(records=effort.paths, pool=pool)
+
+
 def _baseline(effort: Effort, pool: Executor) -> Iterator[str]:
     yield f"A baseline learnt from {BASELINE_RECORDS} healthy records of the same motor and sensors, at other"
     yield "loads, voltages and frequencies."
@@ -214,6 +227,7 @@ SUBJECTS = {
     "alarms": Subject("False alarms and faults found", _alarms),
     "baseline": Subject("The same, with a baseline", _baseline),
     "paths": Subject("Turns bridged by a resistance", _paths),
+    "level-choices": Subject("Other choices of the level of bridged turns", _level_choices),
     "causes": Subject("Where false alarms come from", _causes),
     "relays": Subject("Relays' rates and lengths", _relays),
     "windows": Subject("Shorter and longer windows", _windows),

@@ -20,6 +20,7 @@ from core.machines.candidates import Candidates
 from core.machines.parameters import Motor
 from core.machines.running import SteadyRunning
 from core.machines.split_winding import SplitWinding
+from core.recordings import Recording
 from testing.machines.disturbed_records import (
     Disturbances,
     disturbed_record,
@@ -69,6 +70,7 @@ class PathDraw:
     sensors: Sensors
     index: int
     motors: tuple[Motor, ...] = ALL
+    turns: tuple[float, float] = (LEAST_TURNS, MOST_TURNS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +119,7 @@ def draw_condition(draw: PathDraw) -> tuple[Motor, Condition, Disturbances, floa
     """Motor, condition, disturbances and the time the window starts at.
 
     Motors, both sequences and V2/V1 of 0 and 3 % in turn, so that each cell has all of them; windings at
-    random; turns 6 to 12 %, load, gains, delays and the angle of V2 uniform.
+    random; turns, load, gains, delays and the angle of V2 uniform.
     """
     random = np.random.default_rng(
         [SEED, draw.index, round(100 * draw.path_ratio), round(100 * draw.loads[0])]
@@ -127,7 +129,7 @@ def draw_condition(draw: PathDraw) -> tuple[Motor, Condition, Disturbances, floa
     condition = Condition(
         load_level=float(random.uniform(*draw.loads)),
         unbalance=complex(UNBALANCES[draw.index // 6 % 2] * np.exp(1j * angle)),
-        level=float(random.uniform(LEAST_TURNS, MOST_TURNS)),
+        level=float(random.uniform(*draw.turns)),
         winding=int(random.integers(3)),
         path_ratio=draw.path_ratio,
         reverse=bool(draw.index // 3 % 2),
@@ -143,12 +145,18 @@ def draw_condition(draw: PathDraw) -> tuple[Motor, Condition, Disturbances, floa
     return motor, condition, disturbances, float(random.uniform(0.0, 1_000.0))
 
 
-def judge_path(draw: PathDraw) -> PathOutcome:
-    """Make the record, 0.5 s at 10 kHz, and diagnose it."""
+def record_path(draw: PathDraw) -> tuple[Motor, Condition, Recording]:
+    """Make the record of a draw, 0.5 s at 10 kHz."""
     motor, condition, disturbances, start_s = draw_condition(draw)
     record = disturbed_record(
         motor, condition, disturbances, start_s=start_s, cycles=25.0, sample_rate_hz=10_000.0, seed=draw.index
     )
+    return motor, condition, record
+
+
+def judge_path(draw: PathDraw) -> PathOutcome:
+    """Make the record of a draw and diagnose it."""
+    motor, condition, record = record_path(draw)
     return PathOutcome(motor, condition, diagnose(record, motor))
 
 
@@ -163,9 +171,9 @@ def resistive_paths(*, records: int, pool: Executor) -> Iterator[str]:
     for motors, sensors in product(MOTORS, (GOOD, PROTECTION)):
         cells = list(product(RATIOS, LOADS))
         draws = [PathDraw(ratio, loads, sensors, k, motors) for ratio, loads in cells for k in range(records)]
-        described = _described(motors)
-        outcomes = list(spread(judge_path, draws, f"paths, {described}, {sensors.name}", pool))
-        yield f"{described}. Sensors: {sensors.name}."
+        title = described(motors)
+        outcomes = list(spread(judge_path, draws, f"paths, {title}, {sensors.name}", pool))
+        yield f"{title}. Sensors: {sensors.name}."
         yield ""
         rows = []
         for k, (ratio, loads) in enumerate(cells):
@@ -176,13 +184,15 @@ def resistive_paths(*, records: int, pool: Executor) -> Iterator[str]:
     yield from _agreement()
 
 
-def _described(motors: Sequence[Motor]) -> str:
+def described(motors: Sequence[Motor]) -> str:
+    """Return the ratings of motors and their X_ls/R_s in words."""
     power = ", ".join(f"{motor.nameplate.rated_power_W / 1e3:g} kW" for motor in motors)
-    ratio = ", ".join(f"{_leakage_ratio(motor):.1f}" for motor in motors)
+    ratio = ", ".join(f"{leakage_ratio(motor):.1f}" for motor in motors)
     return f"{power} with X_ls/R_s of {ratio}"
 
 
-def _leakage_ratio(motor: Motor) -> float:
+def leakage_ratio(motor: Motor) -> float:
+    """Return X_ls/R_s at the rated frequency."""
     machine = motor.parameters
     w = motor.nameplate.rated_angular_frequency
     return w * machine.stator_leakage_H / machine.stator_resistance_ohm

@@ -155,6 +155,11 @@ class PathPosterior:
         weight = np.exp(logarithm - logarithm.max())
         return np.asarray(weight / weight.sum())
 
+    @property
+    def levels(self) -> Array:
+        """Likeliest level of each of PATH_SHARES."""
+        return self._paths.values[:, UNKNOWNS.index(FAULT_LEVEL)]
+
     def interval(self, name: str) -> tuple[float, float]:
         """Return the 95 % interval of an unknown over all paths, each with its own noise.
 
@@ -168,14 +173,30 @@ class PathPosterior:
         tuple of float
             Lower and upper end.
         """
+        return self.quantile(name, TAIL), self.quantile(name, 1.0 - TAIL)
+
+    def quantile(self, name: str, probability: float) -> float:
+        """Return the value of an unknown that is not exceeded with a probability, over all paths.
+
+        Parameters
+        ----------
+        name : str
+            FAULT_LEVEL, LOAD_LEVEL or TIME_OFFSET.
+        probability : float
+            Between 0 and 1.
+
+        Returns
+        -------
+        float
+            The value.
+        """
         k = UNKNOWNS.index(name)
         points = self._paths.values[:, k, np.newaxis] + self._paths.scatter[:, k, np.newaxis] * _NORMAL_POINTS
         weights = np.repeat(self.probability / POINTS, POINTS)
         order = np.argsort(points, axis=None)
         below = np.cumsum(weights[order])
-        low, high = np.searchsorted(below, [TAIL, 1.0 - TAIL])
-        ordered = points.ravel()[order]
-        return float(ordered[low]), float(ordered[min(high, ordered.size - 1)])
+        at = min(int(np.searchsorted(below, probability)), order.size - 1)
+        return float(points.ravel()[order[at]])
 
     def holds(self, fit: Fit) -> bool:
         """Return whether a fit of dead-shorted turns is what the posterior finds likeliest.
