@@ -23,9 +23,9 @@ BUSY_SHARE = 10
 QUIET_ROWS = 20
 
 BAD_MONTH = 60
-"""The first sixtieth of the time: what failed, and what stands, is of then."""
+"""What failed, and the alarms that still stand, are of the first sixtieth of the time."""
 BAD = 21
-"""Of then, every so many rows failed, or stand."""
+"""In that time, one row of so many failed, or is an alarm that still stands."""
 
 WAITING = 20
 """So many of the latest recordings are announced, and so many fetched."""

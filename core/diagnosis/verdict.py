@@ -97,7 +97,7 @@ class Diagnosis:
     speed_rpm : float or None, optional
         Speed of the shaft, from the fit [rpm].
     detection_limit : float or None, optional
-        Least mu_f that this recording would have shown.
+        Level of which nine of ten such recordings show a fault.
     indicators : Indicators or None, optional
         Model-free figures beside the fit.
     currents_only : bool, default False

@@ -83,7 +83,8 @@ class Diagnosis(Document):
     mu_f: equivalent fault level, fraction of the phase turns. theta_f: 0, 1, 2 = winding on terminals
     a, b, c. load_level: load torque over rated torque. ..._ci95: 95 % interval from noise, sensors and
     parameters. ..._scatter95: from the record's own scatter alone. speed_rpm: of the shaft, from the fit.
-    detection_limit: least mu_f this recording would have shown. currents_only: the voltages are assumed.
+    detection_limit: nine of ten such recordings show a fault of that mu_f. currents_only: the voltages are
+    assumed.
     Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
@@ -241,7 +242,7 @@ class TrendPoint(Document):
     """One recording's figure; `value` is null where the recording does not tell it.
 
     ci95: 95 % interval from noise, sensors and parameters, of mu_f and load_level. Of mu_f only: scatter95,
-    from the record's own scatter alone; detection_limit, the least level that it would have shown.
+    from the record's own scatter alone; detection_limit, the level that nine of ten such recordings show.
     """
 
     time: Time = Field(validation_alias="recorded_ns")

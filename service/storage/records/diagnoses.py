@@ -73,7 +73,7 @@ class TrendPoint:
     """One recording's figure; `value` is None where the recording does not tell it.
 
     ci95: 95 % interval from all causes, of mu_f and load_level.  Of mu_f only: scatter95, from the record's
-    own scatter; detection_limit, the least level that the recording would have shown.
+    own scatter; detection_limit, the level that nine of ten such recordings show.
     """
 
     recorded_ns: int

@@ -15,6 +15,7 @@ from service.storage.repository.plant import PlantRows
 from service.storage.repository.quarantines import QuarantineRows
 from service.storage.repository.recording_requests import RecordingRequestRows
 from service.storage.repository.recordings import RecordingRows
+from service.storage.repository.remote_records import RemoteRecordRows
 from service.storage.repository.retention import RetentionRows
 from service.storage.repository.state_counts import StateCounts
 
@@ -28,6 +29,7 @@ class Repository(
     QuarantineRows,
     RecordingRequestRows,
     RecordingRows,
+    RemoteRecordRows,
     JobRows,
     JobRunnerRows,
     MotorHealthRows,

@@ -31,7 +31,8 @@ from service.storage.models import (
 from service.storage.records import Cursor, Deletion, Page, RemoteRecord
 from service.storage.repository.folders import discard_folder, lock_folder
 from service.storage.repository.recording_requests import KIND, fail_row, fail_rows
-from service.storage.repository.recordings import RECORDS_A_QUERY, listed_in, remote_link, stored_before
+from service.storage.repository.recordings import stored_before
+from service.storage.repository.remote_records import RECORDS_A_QUERY, listed_in, remote_link
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import DeletedBy, JobState, RecordingState
 

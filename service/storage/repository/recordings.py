@@ -1,29 +1,27 @@
-"""Recordings: announced by a relay or uploaded, stored, and queued for diagnosis in the same transaction."""
+"""Recordings: stored records of relays and uploads, queued for diagnosis in the same transaction."""
 
 import uuid
-from collections.abc import Collection
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
-from sqlalchemy import ColumnElement, and_, delete, func, literal_column, select, tuple_
+from sqlalchemy import ColumnElement, delete, func, literal_column, select
 from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from service.recording_store.store import StoredRecording
 from service.storage.errors import TooManyWaitingError
 from service.storage.models import (
-    DeletedRemoteRecordRow,
     IedRow,
     JobRow,
     MotorRow,
     RecordingFileRow,
     RecordingRequestRow,
     RecordingRow,
-    RemoteRecordRow,
 )
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
 from service.storage.repository.clocks import give_clock
 from service.storage.repository.folders import discard_folder, require_folder
-from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_row, fail_rows, fetch_row
+from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_rows, fetch_row
+from service.storage.repository.remote_records import link_remote_record, recording_to_fill
 from service.storage.repository.sessions import (
     Order,
     Sessions,
@@ -35,10 +33,6 @@ from service.storage.repository.sessions import (
     record_of,
 )
 from service.storage.states import JobPriority, JobState, RecordingSource, RecordingState
-from service.storage.texts import storable
-
-RECORDS_A_QUERY = 500
-"""Databases limit how many values a query may hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,105 +44,6 @@ class AddedRecording:
 
 
 class RecordingRows(Sessions):
-    def remote_recordings(
-        self, relay: str, remotes: Collection[RemoteRecord]
-    ) -> dict[RemoteRecord, RecordingEntry]:
-        """Return the recordings of those of a relay's records that were seen before.
-
-        What is read grows with the records asked for, not with what the relay listed in all its years.
-        """
-        query = select(RemoteRecordRow, RecordingRow).join(
-            RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id
-        )
-        asked = list(remotes)
-        known: dict[RemoteRecord, RecordingEntry] = {}
-        with self._read() as session:
-            for first in range(0, len(asked), RECORDS_A_QUERY):
-                some = asked[first : first + RECORDS_A_QUERY]
-                of_these = query.where(listed_in(RemoteRecordRow, relay, some))
-                for row, held in session.execute(of_these):
-                    known[record_of(RemoteRecord, row)] = recording(held)
-        return known
-
-    def announced_remote_records(self, relay: str) -> frozenset[RemoteRecord]:
-        """Return a relay's records that were seen and are neither stored nor refused."""
-        query = (
-            select(RemoteRecordRow)
-            .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
-            .where(RemoteRecordRow.ied == relay, RecordingRow.state == RecordingState.ANNOUNCED)
-        )
-        with self._read() as session:
-            return frozenset(record_of(RemoteRecord, row) for row in session.scalars(query))
-
-    def unfetched_names(self, relay: str, *, seen_before_ns: int) -> frozenset[str]:
-        """Return the names of records seen before a time that are neither stored nor refused yet."""
-        query = (
-            select(RemoteRecordRow.name)
-            .join(RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id)
-            .where(
-                RemoteRecordRow.ied == relay,
-                RecordingRow.state == RecordingState.ANNOUNCED,
-                RecordingRow.announced_ns < seen_before_ns,
-            )
-        )
-        with self._read() as session:
-            return frozenset(session.scalars(query))
-
-    def give_up_remote_record(self, relay: str, remote: RemoteRecord, reason: str) -> None:
-        """Reject an announced record that its relay no longer lists; it is new if listed again."""
-        with self._write() as session:
-            link = remote_link(session, relay, remote)
-            if link is None:
-                return
-            row = found(session, RecordingRow, link.recording_id, "recording")
-            if row.state is RecordingState.ANNOUNCED:
-                row.state = RecordingState.REJECTED
-                row.reason = storable(reason)
-                session.delete(link)
-
-    def announce_recording(
-        self, relay: str, motor: str, remote: RemoteRecord, *, now_ns: int
-    ) -> RecordingEntry:
-        """Return the recording of what a relay lists, announced unless known. Raises NotFoundError."""
-        with self._write() as session:
-            return recording(_announced(session, relay, motor, remote, now_ns))
-
-    def note_failed_pull(
-        self, relay: str, motor: str, remote: RemoteRecord, reason: str, *, now_ns: int
-    ) -> int:
-        """Count a pull that failed and will be tried again; return how many there were."""
-        with self._write() as session:
-            row = _announced(session, relay, motor, remote, now_ns)
-            if row.state is RecordingState.ANNOUNCED:
-                row.attempts += 1
-                row.reason = storable(reason)
-            return row.attempts
-
-    def reject_remote_record(
-        self,
-        relay: str,
-        motor: str,
-        remote: RemoteRecord,
-        reason: str,
-        *,
-        now_ns: int,
-        recording_request_id: str | None = None,
-    ) -> RecordingEntry:
-        """Refuse a record for good without storing it (too large, incomplete): it is not pulled again.
-
-        The request that waited for it fails with the same reason.
-        """
-        with self._write() as session:
-            row = _announced(session, relay, motor, remote, now_ns)
-            if row.state is RecordingState.ANNOUNCED:
-                row.state = RecordingState.REJECTED
-                row.reason = storable(reason)
-            if recording_request_id is not None:
-                fail_row(
-                    found(session, RecordingRequestRow, recording_request_id, KIND, lock=True), reason, now_ns
-                )
-            return recording(row)
-
     def add_recording(
         self,
         stored: StoredRecording,
@@ -187,12 +82,12 @@ class RecordingRows(Sessions):
                 if relay is None or remote is None:
                     row = _uploaded(session, motor, stored.name, now_ns)
                 else:
-                    row = _to_fill(session, relay, motor, remote, now_ns)
+                    row = recording_to_fill(session, relay, motor, remote, now_ns)
                 _fill(session, row, stored, now_ns)
                 priority = JobPriority.UPLOAD if relay is None else JobPriority.RELAY_RECORD
                 session.add(new_job(row, method, model, priority, now_ns))
             elif relay is not None and remote is not None:
-                _link_remote(session, relay, remote, row)
+                link_remote_record(session, relay, remote, row)
                 if row.ied == relay:
                     _complete(session, row, stored, now_ns)
             if not created:
@@ -245,18 +140,6 @@ def require_room(session: Session, motor: str, most_queued: int) -> None:
         raise TooManyWaitingError(motor, "queued diagnoses", most_queued, "max_queued_diagnoses")
 
 
-def listed_in(
-    table: type[RemoteRecordRow | DeletedRemoteRecordRow], relay: str, remotes: Collection[RemoteRecord]
-) -> ColumnElement[bool]:
-    """Return the condition that a row of the table is one of these records of the relay."""
-    # The names let the primary key be searched; the whole key keeps out others of these names.
-    return and_(
-        table.ied == relay,
-        table.name.in_({remote.name for remote in remotes}),
-        tuple_(table.name, table.size_bytes, table.modified_ns).in_([astuple(remote) for remote in remotes]),
-    )
-
-
 def new_job(row: RecordingRow, method: str, model: str, priority: JobPriority, now_ns: int) -> JobRow:
     return JobRow(
         id=str(uuid.uuid4()),
@@ -302,70 +185,6 @@ def _of_the_same_waveform(
     )
     query = select(RecordingRow).where(RecordingRow.motor == motor, RecordingRow.id.in_(holders), *further)
     return only(session, query.order_by(RecordingRow.announced_ns, RecordingRow.id))
-
-
-def _announced(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
-    """Return the recording of what the relay lists, whatever became of it; announce it the first time."""
-    found(session, MotorRow, motor, "motor", lock=True)
-    link = remote_link(session, relay, remote)
-    if link is None:
-        return _announce(session, relay, motor, remote, now_ns)
-    return found(session, RecordingRow, link.recording_id, "recording")
-
-
-def _to_fill(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
-    """Return the recording that new content belongs to: not one that holds other content already."""
-    row = _announced(session, relay, motor, remote, now_ns)
-    return row if row.digest is None else _announce(session, relay, motor, remote, now_ns)
-
-
-def _announce(session: Session, relay: str, motor: str, remote: RemoteRecord, now_ns: int) -> RecordingRow:
-    found(session, IedRow, relay, "relay")
-    row = RecordingRow(
-        id=str(uuid.uuid4()),
-        motor=motor,
-        ied=relay,
-        source=RecordingSource.RELAY,
-        name=remote.name,
-        size_bytes=remote.size_bytes,
-        remote_modified_ns=remote.modified_ns,
-        state=RecordingState.ANNOUNCED,
-        attempts=0,
-        announced_ns=now_ns,
-    )
-    session.add(row)
-    session.flush()
-    _link_remote(session, relay, remote, row)
-    deleted = session.get(DeletedRemoteRecordRow, (relay, *astuple(remote)))
-    if deleted is not None:  # a relay without times: this record only looks like the one that was deleted
-        session.delete(deleted)
-    return row
-
-
-def remote_link(session: Session, relay: str, remote: RemoteRecord) -> RemoteRecordRow | None:
-    return session.get(RemoteRecordRow, (relay, remote.name, remote.size_bytes, remote.modified_ns))
-
-
-def _link_remote(session: Session, relay: str, remote: RemoteRecord, row: RecordingRow) -> None:
-    """Link what the relay lists to the recording; an announcement that this replaces is deleted."""
-    link = remote_link(session, relay, remote)
-    if link is None:
-        session.add(
-            RemoteRecordRow(
-                ied=relay,
-                name=remote.name,
-                size_bytes=remote.size_bytes,
-                modified_ns=remote.modified_ns,
-                recording_id=row.id,
-            )
-        )
-    elif link.recording_id != row.id:
-        replaced = found(session, RecordingRow, link.recording_id, "recording")
-        link.recording_id = row.id
-        session.flush()
-        if replaced.state is RecordingState.ANNOUNCED:
-            session.delete(replaced)
-    session.flush()
 
 
 def _uploaded(session: Session, motor: str, name: str, now_ns: int) -> RecordingRow:

@@ -164,7 +164,7 @@ def test_an_announced_record_of_a_relay_that_left_the_plant_is_deleted(
     assert life(state) is Life.REFUSED, "it is not pulled, also when the relay comes back"
 
 
-def test_whoever_deletes_a_recording_removes_no_files_of_others(
+def test_deleting_a_recording_removes_no_files_of_others(
     repository: Repository, store: RecordingStore
 ) -> None:
     """Thousands of folders may be waiting: they are the background's work, not that of one request."""
