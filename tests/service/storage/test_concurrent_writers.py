@@ -55,7 +55,7 @@ ON_SQLITE = pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
 
 
 @ON_SQLITE
-def test_who_waits_for_the_writer_goes_on_as_soon_as_it_is_done(
+def test_a_waiting_writer_goes_on_as_soon_as_the_other_is_done(
     database_url: str, repository: Repository
 ) -> None:
     """Looks 100 ms apart would take 50 ms on the average and miss most gaps of a busy process."""

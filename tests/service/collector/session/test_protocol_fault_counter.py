@@ -23,7 +23,7 @@ PAUSE_S = 60.0
 POLICY = QuarantinePolicy.starting_with(PAUSE_S)
 
 
-def test_who_breaks_the_protocol_again_and_again_is_set_aside(repository: Repository) -> None:
+def test_a_relay_that_breaks_the_protocol_again_and_again_is_set_aside(repository: Repository) -> None:
     counter = ProtocolFaultCounter(A, repository, POLICY)
     told = [counter.count_fault("nonsense") for _ in range(SESSION_POLICY.faults_in_a_row)]
     assert told == [False] * (SESSION_POLICY.faults_in_a_row - 1) + [True]
