@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 
 ANSWER_LIMIT_S = 120.0
 """An attacker gives up after so long; what the service does afterwards still counts."""
@@ -19,10 +20,11 @@ Statuses = Counter[str]
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """The address of a service, and the recording that a preparation left in it."""
+    """The address of a service, its SQLite database, and the recording that a preparation left in it."""
 
     host: str
     port: int
+    database: Path
     recording: str = ""
 
     def ask(

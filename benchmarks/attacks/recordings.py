@@ -3,6 +3,7 @@
 import json
 import time
 from collections import Counter
+from dataclasses import replace
 from functools import cache, partial
 from urllib.request import urlopen
 
@@ -59,7 +60,7 @@ def _blank() -> tuple[bytes, bytes]:
     return _configuration("ASCII", channels, samples, 0), "\r\n".join(lines).encode("ascii")
 
 
-def _form(configuration: bytes, data: bytes) -> bytes:
+def form_of(configuration: bytes, data: bytes) -> bytes:
     part = b'--b\r\nContent-Disposition: form-data; name="%s"%s\r\n\r\n%s\r\n'
     return b"".join(
         [
@@ -71,9 +72,9 @@ def _form(configuration: bytes, data: bytes) -> bytes:
     )
 
 
-def _uploaded(target: Target, form: bytes | None = None) -> Target:
+def uploaded(target: Target, form: bytes | None = None) -> Target:
     """Upload the record, and wait until its diagnosis has come to an end."""
-    status = target.ask("POST", RECORDINGS, form or _form(*_wide()), FORM)
+    status = target.ask("POST", RECORDINGS, form or form_of(*_wide()), FORM)
     assert status == "201", status
     deadline = time.monotonic() + SETTLED_WITHIN_S
     while time.monotonic() < deadline:
@@ -82,7 +83,7 @@ def _uploaded(target: Target, form: bytes | None = None) -> Target:
         if recording["state"] not in ("announced", "fetched"):
             break
         time.sleep(0.2)
-    return Target(target.host, target.port, recording["id"])
+    return replace(target, recording=recording["id"])
 
 
 def _waveforms(times: int, points: int, target: Target) -> Statuses:
@@ -95,7 +96,7 @@ def _files(times: int, target: Target) -> Statuses:
 
 
 def _upload(times: int, target: Target) -> Statuses:
-    forms = [_form(*_wide(seed)) for seed in range(2)]
+    forms = [form_of(*_wide(seed)) for seed in range(2)]
     found = at_once(times, lambda: target.ask("POST", RECORDINGS, forms[0], FORM))
     return found + Counter([target.ask("POST", RECORDINGS, forms[1], FORM)])
 
@@ -103,27 +104,27 @@ def _upload(times: int, target: Target) -> Statuses:
 def _upload_longest(target: Target) -> Statuses:
     """Four of them one after another, so that both workers have one, and waveforms are asked for beside."""
     answers: Statuses = Counter()
-    first = _uploaded(target, _form(*_long(0)))
+    first = uploaded(target, form_of(*_long(0)))
     for seed in range(1, 5):
-        form = _form(*_long(seed))
+        form = form_of(*_long(seed))
         answers[target.ask("POST", RECORDINGS, form, FORM)] += 1
         answers += _waveforms(4, 20_000, first)
     return answers
 
 
 def _upload_blank(target: Target) -> Statuses:
-    return Counter([target.ask("POST", RECORDINGS, _form(*_blank()), FORM)])
+    return Counter([target.ask("POST", RECORDINGS, form_of(*_blank()), FORM)])
 
 
 ATTACKS = (
-    Attack("waveform, 1600 channels x 20,000 points", partial(_waveforms, 1, 20_000), _uploaded),
-    Attack("60 of these at once", partial(_waveforms, 60, 20_000), _uploaded),
+    Attack("waveform, 1600 channels x 20,000 points", partial(_waveforms, 1, 20_000), uploaded),
+    Attack("60 of these at once", partial(_waveforms, 60, 20_000), uploaded),
     Attack(
         "waveform, 63 million blank values",
         partial(_waveforms, 1, 20_000),
-        lambda target: _uploaded(target, _form(*_blank())),
+        lambda target: uploaded(target, form_of(*_blank())),
     ),
-    Attack("files of 64 MB, 20 at once", partial(_files, 20), _uploaded),
+    Attack("files of 64 MB, 20 at once", partial(_files, 20), uploaded),
     Attack("upload and diagnosis, 64 MB, 8 at once", partial(_upload, 8)),
     Attack("upload and diagnosis, 4 x 8 million values, and waveforms", _upload_longest),
     Attack("upload and diagnosis, 63 million blank values", _upload_blank),

@@ -49,7 +49,7 @@ def victim(source: Path, **settings: str) -> Iterator[tuple[int, Target]]:
                 preexec_fn=_bound,
             ) as process,
         ):
-            target = Target("127.0.0.1", port)
+            target = Target("127.0.0.1", port, directory / "data" / "statorwatch.sqlite")
             try:
                 _wait_until_ready(process, target, directory / "log")
                 yield process.pid, target

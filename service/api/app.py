@@ -24,6 +24,7 @@ from service.api.arrivals import Arrivals
 from service.api.body_limits import BodyLimits, Route, document
 from service.api.context import ApiContext
 from service.api.host_guard import HostGuard
+from service.api.long_lists import LongLists
 
 PREFIX = "/api/v1"
 DESCRIPTION = """Stator condition of every motor of the plant, from the protection relays it already has.
@@ -53,6 +54,7 @@ def create_app(context: ApiContext) -> FastAPI:
     max_upload_bytes = settings.max_upload_bytes
     arrivals = Arrivals(grace_s=settings.transfer_timeout_s, least_rate=settings.min_upload_rate)
     uploads = frozenset((method, PREFIX + path) for method, path in recordings.UPLOAD_ROUTES)
+    app.add_middleware(LongLists)
     app.add_middleware(
         BodyLimits, upload_routes=uploads, max_upload_bytes=max_upload_bytes, arrivals=arrivals
     )

@@ -2,15 +2,19 @@
 
 import time
 from http import HTTPStatus
+from typing import Annotated
 from uuid import UUID
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 
 from service.api.context import Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.schemas import Diagnosis, DiagnosisRequest, DiagnosisRun
 from service.storage.records import JobResult
+
+MOST_DIAGNOSES = 100
+"""Most items of a page: each may have a result of some kilobytes."""
 
 router = APIRouter(prefix="/recordings/{recording_id}/diagnoses", tags=["recordings"])
 
@@ -45,7 +49,10 @@ def request_diagnosis(
 
 @router.get("", responses=problems(404))
 def list_diagnoses(
-    context: Context, recording_id: UUID, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
+    context: Context,
+    recording_id: UUID,
+    limit: Annotated[Limit, Query(le=MOST_DIAGNOSES)] = DEFAULT_LIMIT,
+    cursor: CursorText = None,
 ) -> Page[DiagnosisRun]:
     """Return the diagnoses of a recording, latest first."""
     jobs = context.repository.jobs(str(recording_id), limit=limit, after=decode(cursor, int, str))
