@@ -67,6 +67,9 @@ of their sequences too. No unbiased estimator has a smaller standard deviation. 
 standard deviation on the three currents: 0.1 of their rms value at 20 dB.
 
 **Rates** are given with their 95 % intervals after Clopper and Pearson.
+
+**Sections** are measured one by one. Those on the bound, the scatter, baselines, relays, windows and measured
+records were measured before turns bridged by a resistance were weighed against dead-shorted ones.
 """
 
 

@@ -120,9 +120,12 @@ def _diagnosed(
         )
     if baseline is not None:
         reasons.append(f"relative to a baseline of {baseline.recordings} healthy recordings")
-    named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and is_explained(explanation, tolerance))
-    # Load and speed are those of the accepted hypothesis; an insignificant level would bias them.
-    running = fit if named else explanation.healthy
+    explained = is_explained(explanation, tolerance)
+    named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and explained)
+    # Load and speed are those of the accepted hypothesis; an insignificant level would bias them. They do not
+    # depend on the motor's limit: a level below a high limit is there all the same.
+    faulted = named or (explained and level_ci95[0] > 0.0)
+    running = fit if faulted else explanation.healthy
     return Diagnosis(
         verdict=verdict,
         mu_f=max(0.0, fit.value(FAULT_LEVEL)),
@@ -138,7 +141,7 @@ def _diagnosed(
         model=str(model),
         method=str(method),
         mu_f_scatter95=_not_below_zero(fit.interval(FAULT_LEVEL)),
-        load_level_ci95=_load_interval(case, playback, explanation, known, named=named),
+        load_level_ci95=_load_interval(case, playback, explanation, known, faulted=faulted),
         load_level_scatter95=running.interval(LOAD_LEVEL),
         speed_rpm=_speed_rpm(case, playback, running),
         detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),
@@ -261,14 +264,14 @@ def _level_interval(
 
 
 def _load_interval(
-    case: Case, playback: Playback, explanation: Explanation, known: Known, *, named: bool
+    case: Case, playback: Playback, explanation: Explanation, known: Known, *, faulted: bool
 ) -> tuple[float, float]:
     """95 % interval of the load from all causes.
 
     Where shorted turns are neither found nor excluded, it holds the loads of both hypotheses.
     """
     scatter = [(explanation.fit, explanation.load_interval)]
-    if not named:
+    if not faulted:
         scatter.append((explanation.healthy, explanation.healthy.interval(LOAD_LEVEL)))
     found = []
     for fit, interval in scatter:

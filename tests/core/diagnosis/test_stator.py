@@ -218,6 +218,14 @@ def test_levels_at_the_detection_limit_are_found_in_most_records() -> None:
     assert found >= 7
 
 
+def test_the_load_does_not_depend_on_the_limit() -> None:
+    record = recording(running(REFERENCE, 0.6, fault=Fault(0.05, 1)), noise=0.002)
+    limits = [replace(REFERENCE.limits, fault_level=level) for level in (0.005, 0.049, 0.2)]
+    results = [diagnose(record, replace(REFERENCE, limits=each)) for each in limits]
+    assert [each.verdict for each in results] == [Verdict.FAULT, Verdict.WATCH, Verdict.HEALTHY]
+    assert len({(each.mu_f, each.load_level, each.load_level_ci95) for each in results}) == 1
+
+
 def test_missing_voltages_are_a_recording_error() -> None:
     record = healthy_record()
     currents_only = replace(record, samples=record.samples[:3], channels=record.channels[:3])
