@@ -57,7 +57,8 @@ def judge(
         f"forward one; shorted turns in phase {phase} leave {explanation.unexplained:.2%}",
         f"sensors and parameters within their tolerances can feign {tolerance.backward:.2%} of the forward "
         f"current, {tolerance.level:.2%} of the turns (standard deviation); a fault below {detectable:.2%} "
-        f"could not be seen here for sure; the record's own scatter is {scatter_low:.2%} to {scatter_high:.2%}",
+        "could not be seen here for sure; the record's own scatter is "
+        f"{scatter_low:.2%} to {scatter_high:.2%}",
     ]
     figures.append(_unknowns(case, fit))
     offset = fit.value(TIME_OFFSET)

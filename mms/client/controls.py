@@ -75,21 +75,27 @@ def operate(connection: Connection, reference: str, *, value: bool, originator: 
 def _create(connection: Connection, operation: str, reference: str, object_name: bytes, pointer: int) -> int:
     """Make the library's control object from the relay's description of it.
 
-    A relay that is busy is asked again.
+    A relay that is busy is asked again, one that answers too late once more.
     """
     lib = connection.lib
-    for pause_s in (*_PATIENCE_S, None):
+    domain, item = variable_name(reference, FunctionalConstraint.CO)
+    pauses_s, was_late = iter(_PATIENCE_S), False
+    while True:
         try:
             model = _control_model(connection, operation, reference)
-            domain, item = variable_name(reference, FunctionalConstraint.CO)
             description = connection.request(
                 operation, lib.MmsConnection_getVariableAccessAttributes, domain, item
             )
             break
         except errors.TemporarilyUnavailable:
+            pause_s = next(pauses_s, None)
             if pause_s is None:
                 raise
             time.sleep(pause_s)
+        except errors.Timeout:
+            if was_late:
+                raise
+            was_late = True
     if description is None:
         raise errors.ProtocolError(connection.host, operation, 0, "no description of the object came")
     try:

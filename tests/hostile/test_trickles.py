@@ -154,6 +154,7 @@ def test_a_session_puts_the_trickle_off_and_says_so(dialogue: Dialogue, bench: B
     assert "expected at least 100 bytes a second" in reason
 
 
+@pytest.mark.campaign
 def test_a_file_that_breaks_the_protocol_is_refused_at_last_and_the_relay_visited(
     bench: Bench, dialogue: Dialogue
 ) -> None:

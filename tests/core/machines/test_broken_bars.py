@@ -55,6 +55,7 @@ def lower_sideband(motor: Motor, w: float) -> tuple[float, float]:
     return float(current[0]), float(current[2])
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize("motor", [REFERENCE, MEDIUM], ids=lambda motor: motor.name)
 def test_the_lower_sideband_is_that_of_theory_at_constant_speed(motor: Motor) -> None:
     heavy = replace(motor, parameters=replace(motor.parameters, inertia_kgm2=1e4))

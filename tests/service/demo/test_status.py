@@ -43,6 +43,7 @@ def test_right_is_verdict_and_phase(found: Document, truth: Truth, right: bool |
     assert MotorStatus(found, truth).is_right is right
 
 
+@pytest.mark.campaign
 @pytest.mark.timeout(300)
 def test_a_demo_elsewhere_is_played_and_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with simulated_plant(tmp_path) as plant, running_service(tmp_path, plant.scd) as service:

@@ -4,6 +4,8 @@ import os
 import time
 from dataclasses import replace
 
+import pytest
+
 from service.collector.records.policy import RECORD_POLICY, Attempts, Failure
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState, RecordingState
 from testing.waiting import eventually
@@ -186,6 +188,7 @@ def untime(relay: ScriptedRelay) -> None:
         os.utime(path, (0, 0))
 
 
+@pytest.mark.campaign
 def test_a_record_that_looks_like_the_one_it_overwrites_is_pulled_once_announced(
     bench: Bench, relay: ScriptedRelay
 ) -> None:

@@ -3,6 +3,8 @@
 import os
 import time
 
+import pytest
+
 from service.storage.states import LinkState, RecordingRequestState
 from testing.waiting import eventually
 from tests.service.collector.conftest import Bench
@@ -43,6 +45,7 @@ def test_a_record_that_comes_while_old_ones_are_fetched_again_is_not_missed(
     assert bench.requested(request_id).recording_id == made.id
 
 
+@pytest.mark.campaign
 def test_requests_wait_while_a_relay_gives_what_it_has_with_cuts_in_between(
     bench: Bench, relay: ScriptedRelay
 ) -> None:

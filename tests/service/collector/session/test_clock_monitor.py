@@ -110,7 +110,7 @@ def test_what_a_stamp_tells(octet: int, quality: ClockQuality, uncertainty_ns: i
     assert (found.offset_ns, found.uncertainty_ns, found.quality) == (490, uncertainty_ns, quality)
 
 
-@pytest.mark.parametrize("period_s", [0.1, 2.0])
+@pytest.mark.parametrize("period_s", [0.1, pytest.param(2.0, marks=pytest.mark.campaign)])
 def test_a_clock_is_read_though_nobody_triggers(bench: Bench, relay: ScriptedRelay, period_s: float) -> None:
     """Of a relay that refreshes what it measures within the close look, and of one that does not."""
     stamps = Stamps(relay)

@@ -137,6 +137,7 @@ def test_a_record_of_a_motor_start_is_stored_though_nobody_asked(bench: Bench, t
     assert after.max() > 3 * before.max(), "the current of the start"
 
 
+@pytest.mark.campaign
 def test_a_record_of_a_high_load_is_stored_though_nobody_asked(bench: Bench, tmp_path: Path) -> None:
     """A relay that anybody could trigger, and that records a rising load by itself (ER)."""
     scenario = scenario_of("sel-710-ed2")
