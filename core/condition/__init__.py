@@ -1,0 +1,1 @@
+"""The condition of a motor over time, judged from its records in their order."""

@@ -1,0 +1,123 @@
+"""What the filter and its bank of changes make of a motor's records so far."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from core.condition.kinds import Kind
+from core.machines.winding_frame import Winding
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """An equivalent fault level with its standard deviation from all causes.
+
+    Parameters
+    ----------
+    value, deviation : float
+        Level and its standard deviation, a fraction of the phase turns.
+    winding : {0, 1, 2}
+        Terminal winding of the fault.
+    path_ratio : float
+        Resistance of the path over that of the shorted turns.
+    """
+
+    value: float
+    deviation: float
+    winding: Winding
+    path_ratio: float
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change that the detector has raised.
+
+    Parameters
+    ----------
+    since_ns : int
+        Time of the first record that likeliest shows it, UTC [ns].
+    detected_ns : int
+        Time of the record with which the detector crossed its threshold, UTC [ns].
+    probabilities : mapping of Kind to float
+        Posterior probability of each kind; they sum to one.
+    named : tuple of Kind
+        The kind once it is certain; two kinds where the records cannot tell them apart; empty while open.
+    level : Level
+        Change of the fault level if it is shorted turns, beside what the motor had before.
+    channel : {0, 1, 2} or None
+        Likeliest phase of a channel or a joint, at the terminals; None for other kinds.
+    size : float
+        Size of the likeliest kind: relative error of the channel, voltage drop of the joint over rated
+        voltage, or level.
+    """
+
+    since_ns: int
+    detected_ns: int
+    probabilities: Mapping[Kind, float]
+    named: tuple[Kind, ...]
+    level: Level
+    channel: Winding | None
+    size: float
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """What the motor was like before any change, as learnt.
+
+    Parameters
+    ----------
+    records : int
+        Number of records it is learnt from.
+    complete : bool
+        Whether changes are looked for.
+    since_ns : int or None
+        Time of its first record, UTC [ns].
+    detectable : float or None
+        Least step of the fault level that nine of ten times would be seen within ten records of today's
+        kind, a fraction of the phase turns; None before it is complete.
+    standing : Level
+        Level that the standing asymmetry would mean if it were shorted turns.
+    standing_score : float
+        Standard deviations by which it lies beyond what sensors of this class leave.
+    from_bus : bool
+        Whether other motors of the bus took part in judging it.
+    """
+
+    records: int
+    complete: bool
+    since_ns: int | None
+    detectable: float | None
+    standing: Level
+    standing_score: float
+    from_bus: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Assessment:
+    """All that the records so far tell.
+
+    Parameters
+    ----------
+    as_of_ns : int
+        Time of the latest record, UTC [ns].
+    reference : Reference
+        The reference.
+    change : Change or None
+        The change that is seen; None where there is none.
+    standing_fault : bool
+        Whether the standing asymmetry is a fault from the first record on.
+    statistic : float
+        Log of the detector's statistic.
+    threshold : float
+        Log of its threshold.
+    levels : tuple of tuple of int and float
+        Time [ns] and change of the level at each of the latest records since the change, oldest first: what
+        a forecast is made of. Empty where no change is seen.
+    """
+
+    as_of_ns: int
+    reference: Reference
+    change: Change | None
+    standing_fault: bool
+    statistic: float
+    threshold: float
+    levels: tuple[tuple[int, float], ...] = ()
