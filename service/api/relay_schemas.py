@@ -66,9 +66,10 @@ class LinkChange(Document):
 
 
 class Alarm(Document):
-    """What somebody has to look after at a relay; it stands while `cleared_time` is null.
+    """What somebody has to look after at a relay or a motor; it stands while `cleared_time` is null.
 
-    subject: the record or file it is about, as printable text, empty where it is about the relay.
+    subject: the record or file it is about, as printable text, empty where it is about the relay; of a
+    motor's condition (`condition-...`), its cause. motor, advice: of a motor's condition, and null otherwise.
     """
 
     id: str
@@ -78,6 +79,8 @@ class Alarm(Document):
     reason: str
     raised_time: Time = Field(validation_alias="raised_ns")
     cleared_time: Time | None = Field(validation_alias="cleared_ns")
+    motor: str | None
+    advice: str | None
 
 
 class Quarantine(Document):

@@ -91,15 +91,20 @@ def list_gateways(context: Context) -> Page[Gateway]:
 @router.get("/alarms", responses=problems())
 def list_alarms(
     context: Context,
-    ied: Annotated[str | None, Query(max_length=200, description="Only alarms of this relay.")] = None,
+    ied: Annotated[
+        str | None, Query(max_length=200, description="Only alarms of this relay and its motors.")
+    ] = None,
+    motor: Annotated[
+        str | None, Query(max_length=200, description="Only alarms of this motor's condition.")
+    ] = None,
     standing: Annotated[
         bool | None, Query(description="true: those not cleared; false: those cleared; without: both.")
     ] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[Alarm]:
-    """Return the alarms of the relays, latest first."""
+    """Return the alarms of the relays and of the motors' conditions, latest first."""
     alarms = context.repository.alarms(
-        relay=ied, standing=standing, limit=limit, after=decode(cursor, int, str)
+        relay=ied, motor=motor, standing=standing, limit=limit, after=decode(cursor, int, str)
     )
     return page(alarms, Alarm.model_validate)

@@ -13,7 +13,7 @@ class LinkState(StrEnum):
 
 
 class AlarmKind(StrEnum):
-    """What somebody has to look after at a relay."""
+    """What somebody has to look after: at a relay, or (`condition-...`) at a motor."""
 
     FILE_REFUSED = "file-refused"
     FILE_TOO_LARGE = "file-too-large"
@@ -21,6 +21,8 @@ class AlarmKind(StrEnum):
     DAILY_LIMIT = "daily-limit"
     QUARANTINED = "quarantined"
     RELAY_DIFFERS = "relay-differs"
+    CONDITION_WATCH = "condition-watch"
+    CONDITION_FAULT = "condition-fault"
 
 
 class ClockQuality(StrEnum):

@@ -84,7 +84,11 @@ class LinkFiguresRow(Base):
 
 
 class AlarmRow(Base):
-    """What somebody has to look after at a relay; it stands until it is cleared. `subject`: a file's name."""
+    """What somebody has to look after; it stands until it is cleared.
+
+    subject: a file's name; of a motor's condition, its cause.
+    motor, advice: of a motor's condition, whose relay is `ied`; empty for what is about the relay itself.
+    """
 
     __tablename__ = "alarms"
 
@@ -95,6 +99,8 @@ class AlarmRow(Base):
     reason: Mapped[str]
     raised_ns: Mapped[int]
     cleared_ns: Mapped[int | None]
+    motor: Mapped[str | None]
+    advice: Mapped[str | None]
 
     __table_args__ = (
         Index("ix_alarms_ied_cleared_ns", "ied", "cleared_ns"),
@@ -106,6 +112,9 @@ class AlarmRow(Base):
         _of_alarms("ix_alarms_standing_ied_raised_ns_id", STANDING, "ied", "raised_ns", "id"),
         _of_alarms("ix_alarms_cleared_raised_ns_id", CLEARED, "raised_ns", "id"),
         _of_alarms("ix_alarms_cleared_ied_raised_ns_id", CLEARED, "ied", "raised_ns", "id"),
+        Index("ix_alarms_motor_raised_ns_id", "motor", "raised_ns", "id"),
+        _of_alarms("ix_alarms_standing_motor_raised_ns_id", STANDING, "motor", "raised_ns", "id"),
+        _of_alarms("ix_alarms_cleared_motor_raised_ns_id", CLEARED, "motor", "raised_ns", "id"),
     )
 
 

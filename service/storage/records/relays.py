@@ -114,7 +114,10 @@ class LinkFigures:
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
-    """What somebody has to look after at a relay; standing until `cleared_ns` is set."""
+    """What somebody has to look after at a relay or a motor; standing until `cleared_ns` is set.
+
+    motor, advice: None for what is about the relay itself.
+    """
 
     id: str
     ied: str
@@ -123,6 +126,8 @@ class Alarm:
     reason: str
     raised_ns: int
     cleared_ns: int | None
+    motor: str | None = None
+    advice: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,7 @@
-"""What somebody has to look after at a relay: raised once, standing until cleared, kept afterwards."""
+"""What somebody has to look after: raised once, standing until cleared, kept afterwards.
+
+Alarms of relays are raised and cleared here, those of motors with their condition (`condition_alarms`).
+"""
 
 import uuid
 from collections.abc import Collection
@@ -13,7 +16,7 @@ from service.storage.repository.standing_alarm_counts import count_cleared, coun
 from service.storage.states import AlarmKind
 
 MOST_CLEARED = 1000
-"""So many cleared alarms are kept of each relay; older ones are deleted."""
+"""So many cleared alarms are kept of each relay and of each motor; older ones are deleted."""
 
 
 class AlarmRows(Sessions):
@@ -29,16 +32,14 @@ class AlarmRows(Sessions):
     def clear_alarms(self, relay: str, alarm_ids: Collection[str], *, now_ns: int) -> None:
         """Clear alarms; those that were cleared before stay as they are."""
         with self._write() as session:
-            _clear(session, now_ns, AlarmRow.id.in_(alarm_ids))
-            cleared = select(AlarmRow.id).where(AlarmRow.ied == relay, AlarmRow.cleared_ns.is_not(None))
-            too_old = cleared.order_by(AlarmRow.cleared_ns.desc(), AlarmRow.id.desc()).offset(MOST_CLEARED)
-            session.execute(delete(AlarmRow).where(AlarmRow.id.in_(session.scalars(too_old).all())))
+            clear(session, now_ns, AlarmRow.id.in_(alarm_ids))
+            forget_cleared(session, AlarmRow.ied == relay, AlarmRow.motor.is_(None))
 
     def standing_alarms(self, relay: str) -> tuple[Alarm, ...]:
-        """Return a relay's alarms that are not cleared, oldest first."""
+        """Return the alarms about a relay itself that are not cleared, oldest first."""
         query = (
             select(AlarmRow)
-            .where(AlarmRow.ied == relay, AlarmRow.cleared_ns.is_(None))
+            .where(AlarmRow.ied == relay, AlarmRow.motor.is_(None), AlarmRow.cleared_ns.is_(None))
             .order_by(AlarmRow.raised_ns, AlarmRow.id)
         )
         with self._read() as session:
@@ -50,16 +51,19 @@ class AlarmRows(Sessions):
         limit: int,
         after: Cursor | None = None,
         relay: str | None = None,
+        motor: str | None = None,
         standing: bool | None = None,
     ) -> Page[Alarm]:
         """Return a page of alarms, latest first.
 
-        relay: None for all relays. standing: True for alarms that stand, False for cleared ones, None for
+        relay, motor: None for all. standing: True for alarms that stand, False for cleared ones, None for
         both.
         """
         query = select(*columns_of(Alarm, AlarmRow))
         if relay is not None:
             query = query.where(AlarmRow.ied == relay)
+        if motor is not None:
+            query = query.where(AlarmRow.motor == motor)
         if standing is not None:
             query = query.where(
                 AlarmRow.cleared_ns.is_(None) if standing else AlarmRow.cleared_ns.is_not(None)
@@ -91,10 +95,11 @@ def raised(session: Session, relay: str, kind: AlarmKind, subject: str, reason: 
 
 def clear_standing(session: Session, relay: str, kind: AlarmKind, now_ns: int) -> None:
     """Clear a relay's standing alarms of a kind."""
-    _clear(session, now_ns, AlarmRow.ied == relay, AlarmRow.kind == kind)
+    clear(session, now_ns, AlarmRow.ied == relay, AlarmRow.kind == kind)
 
 
-def _clear(session: Session, now_ns: int, *which: ColumnElement[bool]) -> None:
+def clear(session: Session, now_ns: int, *which: ColumnElement[bool]) -> None:
+    """Clear the standing alarms that meet all conditions."""
     cleared = session.execute(
         update(AlarmRow)
         .where(*which, AlarmRow.cleared_ns.is_(None))
@@ -102,6 +107,13 @@ def _clear(session: Session, now_ns: int, *which: ColumnElement[bool]) -> None:
         .returning(AlarmRow.ied, AlarmRow.kind)
     )
     count_cleared(session, [(ied, kind) for ied, kind in cleared])
+
+
+def forget_cleared(session: Session, *of: ColumnElement[bool]) -> None:
+    """Delete the oldest cleared alarms of a relay or a motor, beyond those that are kept."""
+    cleared = select(AlarmRow.id).where(*of, AlarmRow.cleared_ns.is_not(None))
+    too_old = cleared.order_by(AlarmRow.cleared_ns.desc(), AlarmRow.id.desc()).offset(MOST_CLEARED)
+    session.execute(delete(AlarmRow).where(AlarmRow.id.in_(session.scalars(too_old).all())))
 
 
 def alarm(row: AlarmRow) -> Alarm:

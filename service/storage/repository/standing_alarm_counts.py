@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterable
 
 from sqlalchemy import update
+from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.orm import Session
 
 from service.storage.models import StandingAlarmCountRow
@@ -11,23 +12,23 @@ from service.storage.states import AlarmKind
 
 
 def count_raised(session: Session, relay: str, kind: AlarmKind) -> None:
-    """Count an alarm that stands now. Whoever calls it has locked the relay's row."""
-    row = session.get(StandingAlarmCountRow, (relay, kind))
-    if row is None:
-        session.add(StandingAlarmCountRow(ied=relay, kind=kind, number=1))
-    else:
-        _add(session, relay, kind, 1)
+    """Count an alarm that stands now; whoever else counts one of this kind at this relay waits."""
+    insert = sqlite.insert if session.get_bind().dialect.name == "sqlite" else postgresql.insert
+    session.execute(
+        insert(StandingAlarmCountRow)
+        .values(ied=relay, kind=kind, number=1)
+        .on_conflict_do_update(
+            index_elements=[StandingAlarmCountRow.ied, StandingAlarmCountRow.kind],
+            set_={"number": StandingAlarmCountRow.number + 1},
+        )
+    )
 
 
 def count_cleared(session: Session, cleared: Iterable[tuple[str, AlarmKind]]) -> None:
     """Count alarms, by relay and kind, that do not stand any more."""
     for (relay, kind), number in sorted(Counter(cleared).items()):
-        _add(session, relay, kind, -number)
-
-
-def _add(session: Session, relay: str, kind: AlarmKind, change: int) -> None:
-    session.execute(
-        update(StandingAlarmCountRow)
-        .where(StandingAlarmCountRow.ied == relay, StandingAlarmCountRow.kind == kind)
-        .values(number=StandingAlarmCountRow.number + change)
-    )
+        session.execute(
+            update(StandingAlarmCountRow)
+            .where(StandingAlarmCountRow.ied == relay, StandingAlarmCountRow.kind == kind)
+            .values(number=StandingAlarmCountRow.number - number)
+        )
