@@ -66,6 +66,9 @@ TIMED: Mapping[str, tuple[str, ...]] = {
         "?ied={some_relay}&cursor={deep}",
         "?ied={some_relay}&standing=true",
         "?ied={some_relay}&standing=false&cursor={deep}",
+        "?motor={some}",
+        "?motor={some}&standing=true",
+        "?motor={busy}&standing=false&cursor={deep}",
     ),
     "/api/v1/event-reports": (
         "",

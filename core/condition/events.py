@@ -17,6 +17,8 @@ class EventKind(StrEnum):
     """Somebody worked at the motor: a change that was open is closed, the standing errors are less sure."""
     REFERENCE_RESTARTED = "reference-restarted"
     """A person declares the motor healthy as it is: the standing asymmetry is learnt anew."""
+    NOTE = "note"
+    """A remark of a person, for people: it resets nothing."""
 
 
 @dataclass(frozen=True, slots=True)
