@@ -10,8 +10,8 @@ from fastapi import FastAPI
 
 from benchmarks.storage import rows
 from benchmarks.storage.plant import BUSY, IDLE, QUIET, motor_name, relay_name
+from core.time_stamps import rfc3339
 from service.api.pages import encode
-from service.api.times import rfc3339
 
 LIST_GOAL_S = 0.050
 GOALS_S = {"/api/v1/motors/{name}/trend": 0.030, "/metrics": 0.100}

@@ -2,9 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Final, Literal
 
 from core.condition.kinds import Kind
 from core.machines.winding_frame import Winding
+
+Phase = Literal["a", "b", "c"]
+PHASES: Final[tuple[Phase, Phase, Phase]] = ("a", "b", "c")
+NORMAL_95: Final = 1.96
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +30,17 @@ class Level:
     deviation: float
     winding: Winding
     path_ratio: float
+
+    @property
+    def phase(self) -> Phase:
+        """Phase of the fault at the terminals: "a", "b", "c"."""
+        return PHASES[self.winding]
+
+    @property
+    def ci95(self) -> tuple[float, float]:
+        """95 % interval, not below zero."""
+        half = NORMAL_95 * self.deviation
+        return max(0.0, self.value - half), max(0.0, self.value + half)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,6 +128,8 @@ class Assessment:
     levels : tuple of tuple of int and float
         Time [ns] and change of the level at each of the latest records since the change, oldest first: what
         a forecast is made of. Empty where no change is seen.
+    unconfirmed : bool
+        Whether the latest record surprises so much that another has to confirm it.
     """
 
     as_of_ns: int
@@ -121,3 +139,4 @@ class Assessment:
     statistic: float
     threshold: float
     levels: tuple[tuple[int, float], ...] = ()
+    unconfirmed: bool = False

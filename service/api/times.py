@@ -1,45 +1,12 @@
-"""Times: integer nanoseconds inside, RFC 3339 in UTC outside."""
+"""Times of the REST API: integer nanoseconds inside, RFC 3339 in UTC outside."""
 
-import re
-from datetime import UTC, datetime
 from typing import Annotated
 
 from pydantic import BeforeValidator, WithJsonSchema
 
-from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
+from core.time_stamps import MAX_LENGTH, MAX_NS, nanoseconds, rfc3339
 
-MAX_NS = 2**63 - 1
-"""This is the largest time the database can hold, in the year 2262."""
-
-SECONDS_END = len("2026-01-31T12:00:00")
-
-MAX_LENGTH = 64
-"""Of the text of a time: all digits of a nanosecond and a few more."""
-
-_RFC3339 = re.compile(r"(\d{4}-\d\d-\d\d)[Tt](\d\d:\d\d:\d\d)(?:\.(\d+))?([Zz]|[+-]\d\d:\d\d)", re.ASCII)
-
-
-def rfc3339(time_ns: int) -> str:
-    """Return a time as 2026-01-31T12:00:00.123456789Z; all nine digits, so that nothing is lost."""
-    seconds, nanoseconds = divmod(time_ns, NANOSECONDS_PER_SECOND)
-    return f"{datetime.fromtimestamp(seconds, UTC).isoformat()[:SECONDS_END]}.{nanoseconds:09d}Z"
-
-
-def nanoseconds(text: str) -> int:
-    """Return an RFC 3339 time as UTC [ns].
-
-    Times the database cannot hold are moved to the first or last it can. Raises ValueError.
-    """
-    match = _RFC3339.fullmatch(text) if len(text) <= MAX_LENGTH else None
-    if match is None:
-        raise ValueError("expected an RFC 3339 time such as 2026-01-31T12:00:00Z")
-    date, clock, fraction, zone = match.groups()
-    leap = clock.endswith(":60")
-    whole = datetime.fromisoformat(f"{date}T{clock[:-2] + '59' if leap else clock}{zone.upper()}")
-    since_1970 = whole - datetime(1970, 1, 1, tzinfo=UTC)
-    seconds = since_1970.days * SECONDS_PER_DAY + since_1970.seconds + leap
-    time_ns = seconds * NANOSECONDS_PER_SECOND + int((fraction or "0")[:9].ljust(9, "0"))
-    return max(-MAX_NS, min(MAX_NS, time_ns))
+__all__ = ["MAX_NS", "Time", "TimeParameter", "nanoseconds", "rfc3339"]
 
 
 def _outside(value: object) -> object:

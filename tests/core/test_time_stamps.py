@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.api.times import MAX_NS, nanoseconds, rfc3339
+from core.time_stamps import MAX_NS, nanoseconds, rfc3339
 
 
 @given(st.integers(min_value=-(2**62), max_value=MAX_NS))
@@ -33,5 +33,5 @@ def test_forms_of_a_time(text: str, same: str) -> None:
 
 @pytest.mark.parametrize("text", ["", "2026-01-31", "2026-01-31T12:00:00", "2026-02-31T12:00:00Z", "1"])
 def test_what_is_no_time(text: str) -> None:
-    with pytest.raises(ValueError):  # noqa: PT011  # any ValueError is what pydantic asks for
+    with pytest.raises(ValueError):  # noqa: PT011  # any ValueError is what the contract says
         nanoseconds(text)

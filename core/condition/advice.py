@@ -1,0 +1,143 @@
+"""What to do about a motor's condition, in words for who plans the work."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from core.condition.kinds import Kind, State
+
+HEALTHY = ("Nothing needs to be done.",)
+UNKNOWN = (
+    "Have the motor recorded while it runs: there is no usable record yet.",
+    "If records exist, look why they were refused: wrong channels, a wrong ratio, or no steady running.",
+)
+FAULT_URGENCY = (
+    "Stop the motor at the next opportunity, within days: shorted turns run hot and take others with them."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """What a kind of change asks for.
+
+    Parameters
+    ----------
+    check : str
+        What to check first; {where} stands for "in phase b" or the like.
+    urgency : str
+        How urgent it is while the motor is on watch.
+    surer : str
+        What would make it surer.
+    """
+
+    check: str
+    urgency: str
+    surer: str
+
+
+_TASKS = {
+    Kind.NONE: _Task(
+        "Check the winding{where} by a surge test and by the resistance of its phases.",
+        "It can wait for the next planned stop.",
+        "Further records tell whether it stays.",
+    ),
+    Kind.SHORTED_TURNS: _Task(
+        "Check the winding{where}: surge test, resistance of the phases, insulation to earth.",
+        "The level is not surely above the motor's limit: plan the check for the next stop and record the "
+        "motor more often until then.",
+        "Further records narrow the interval of the level.",
+    ),
+    Kind.VOLTAGE_CHANNEL: _Task(
+        "Check the voltage transformer{where}: secondary terminals, fuses, burden, and the relay's input.",
+        "The motor itself need not stop, but until it is mended a fault{where} may hide behind it.",
+        "Compare with the other motors of the bus: on common transformers they all see it, and the "
+        "voltages of a healthy channel agree.",
+    ),
+    Kind.CURRENT_CHANNEL: _Task(
+        "Check the current transformer{where}: secondary terminals, shorting links, burden, and the relay's "
+        "input.",
+        "Check soon, because the relay protects the motor by the same current.",
+        "A clamp meter on the secondary beside the relay's reading tells.",
+    ),
+    Kind.CONNECTION: _Task(
+        "Check the joints{where}, from the contactor to the terminal box, by a thermal image under load and "
+        "by the voltage drop of each phase.",
+        "Check within days: a joint that heats gets worse by itself.",
+        "A record at another load tells, because the drop over a joint grows with the current.",
+    ),
+    Kind.SUPPLY: _Task(
+        "Check the supply of the bus: tap changers, capacitor banks, single-phase loads, fuses.",
+        "The motor itself need not stop; above 2 % of unbalance run it at less than its rated load.",
+        "The other motors of the bus see it too.",
+    ),
+    Kind.PARAMETERS: _Task(
+        "Check whether the motor, its rotor or its winding was exchanged, or its file edited.",
+        "Not urgent, but until it is told, changes are seen less well.",
+        "Enter what was done as an event of the motor; if it was exchanged, commission it again.",
+    ),
+    Kind.ROTOR: _Task(
+        "Check the rotor's bars: look at the sidebands in a record of several seconds near rated load.",
+        "Plan it within weeks, and avoid repeated starts until then.",
+        "A longer record at a higher load tells.",
+    ),
+    Kind.UNCLEAR: _Task(
+        "Look first whether somebody worked at the motor, its relay or its supply, and enter that as an "
+        "event.",
+        "Not urgent yet: what has changed is not told.",
+        "Have the motor recorded a few times more, at another load if possible.",
+    ),
+}
+
+_TELLING = {
+    frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION)): _Task(
+        "Check the joints from the contactor to the terminal box first (thermal image, voltage drop of each "
+        "phase), then the winding{where} (surge test, resistance of the phases).",
+        "Check within days: either gets worse by itself.",
+        "A record at another load tells: the drop over a joint grows with the current, that of shorted turns "
+        "does not.",
+    ),
+    frozenset((Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL)): _Task(
+        "Check the voltage transformer's secondary and fuses first, then the winding{where} (surge test, "
+        "resistance of the phases).",
+        "Plan it for the next stop, and record the motor more often until then.",
+        "Compare with the other motors of the bus: a fault is seen by this motor alone in its currents, a "
+        "voltage channel in its voltages.",
+    ),
+    frozenset((Kind.SHORTED_TURNS, Kind.CURRENT_CHANNEL)): _Task(
+        "Check the current transformer's secondary first, then the winding{where} (surge test, resistance of "
+        "the phases).",
+        "Plan it for the next stop, and record the motor more often until then.",
+        "A record at another load tells: the error of a channel grows with the current, that of shorted "
+        "turns does not.",
+    ),
+}
+
+
+def advice(state: State, kind: Kind, *, phase: str | None = None, candidates: Iterable[Kind] = ()) -> str:
+    """Say what to check first, how urgent it is, and what would make it surer.
+
+    Parameters
+    ----------
+    state : State
+        State of the motor.
+    kind : Kind
+        What has changed.
+    phase : str or None, optional
+        Phase that it is seen in.
+    candidates : iterable of Kind, optional
+        What it may be, likeliest first, where the kind is unclear.
+
+    Returns
+    -------
+    str
+        Two or three sentences; one for a healthy motor.
+    """
+    if state is State.HEALTHY:
+        return " ".join(HEALTHY)
+    if state is State.UNKNOWN:
+        return " ".join(UNKNOWN)
+    task = _TASKS[kind]
+    if kind is Kind.UNCLEAR:
+        task = _TELLING.get(frozenset(tuple(candidates)[:2]), task)
+    urgency = FAULT_URGENCY if state is State.FAULT else task.urgency
+    where = "" if phase is None else f" of phase {phase}"
+    return " ".join((task.check, urgency, task.surer)).replace("{where}", where)
