@@ -4,6 +4,16 @@ The code says relay; the tables, their columns and the REST API say IED, as IEC 
 """
 
 from service.storage.models.base import Base
+from service.storage.models.conditions import (
+    ConditionChangeRow,
+    ConditionCheckpointRow,
+    ConditionEventRow,
+    ConditionRow,
+    FoldMarkRow,
+    MotorVersionRow,
+    ObservationRow,
+    UnobservedRecordingRow,
+)
 from service.storage.models.counts import StandingAlarmCountRow, StateCountRow
 from service.storage.models.deletions import DeletedRemoteRecordRow, DeletionRow, DiscardedFolderRow
 from service.storage.models.diagnoses import DiagnosisRow, JobRow, JobRunnerRow
@@ -30,10 +40,15 @@ __all__ = [
     "AlarmRow",
     "Base",
     "BaselineRecordingRow",
+    "ConditionChangeRow",
+    "ConditionCheckpointRow",
+    "ConditionEventRow",
+    "ConditionRow",
     "DeletedRemoteRecordRow",
     "DeletionRow",
     "DiagnosisRow",
     "DiscardedFolderRow",
+    "FoldMarkRow",
     "GatewayRow",
     "IedRow",
     "JobRow",
@@ -43,6 +58,8 @@ __all__ = [
     "LinkFiguresRow",
     "MeasurementRow",
     "MotorRow",
+    "MotorVersionRow",
+    "ObservationRow",
     "QuarantineRow",
     "RecordingFileRow",
     "RecordingRequestRow",
@@ -52,4 +69,5 @@ __all__ = [
     "SiteRow",
     "StandingAlarmCountRow",
     "StateCountRow",
+    "UnobservedRecordingRow",
 ]

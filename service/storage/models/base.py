@@ -6,7 +6,11 @@ from enum import StrEnum
 from sqlalchemy import JSON, BigInteger, Enum, MetaData
 from sqlalchemy.orm import DeclarativeBase
 
+from core.condition.events import EventKind
+from core.condition.kinds import Kind, State
+from core.condition.observation import VoltageChannels
 from core.diagnosis.verdict import Verdict
+from core.signals.sequence import PhaseSequence
 from service.storage.states import (
     AlarmKind,
     ClockQuality,
@@ -20,7 +24,7 @@ from service.storage.states import (
 )
 
 
-def _words(enum: type[StrEnum]) -> Enum:
+def _words(enum: type[StrEnum], length: int = 16) -> Enum:
     """Return a column of the enum's values as text.
 
     Any database tool can read it, and a new value needs no migration.
@@ -30,7 +34,7 @@ def _words(enum: type[StrEnum]) -> Enum:
         values_callable=lambda members: [member.value for member in members],
         native_enum=False,
         create_constraint=False,
-        length=16,
+        length=length,
     )
 
 
@@ -56,6 +60,11 @@ class Base(DeclarativeBase):
         DeletedBy: _words(DeletedBy),
         JobState: _words(JobState),
         Verdict: _words(Verdict),
+        State: _words(State),
+        Kind: _words(Kind),
+        EventKind: _words(EventKind, 32),
+        PhaseSequence: _words(PhaseSequence),
+        VoltageChannels: _words(VoltageChannels),
         Mapping[str, object]: JSON,
         list[Mapping[str, object]]: JSON,
     }

@@ -46,3 +46,4 @@ class MotorRow(Base):
     ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"), index=True)
     in_service: Mapped[bool]
     schedule: Mapped[str | None]
+    bus: Mapped[str | None]

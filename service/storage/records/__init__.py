@@ -1,5 +1,19 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
+from service.storage.records.conditions import (
+    Backlog,
+    Checkpoint,
+    ConditionChange,
+    ConditionEntry,
+    ConditionEvent,
+    ConditionFigures,
+    ConditionPoint,
+    FoldInput,
+    FoldResult,
+    MotorVersion,
+    RecordObservation,
+    ToObserve,
+)
 from service.storage.records.deletions import Amount, DeletedRows, Deletion
 from service.storage.records.diagnoses import (
     ClaimedJob,
@@ -32,13 +46,22 @@ from service.storage.records.relays import (
 __all__ = [
     "Alarm",
     "Amount",
+    "Backlog",
+    "Checkpoint",
     "ClaimedJob",
     "ClockReading",
+    "ConditionChange",
+    "ConditionEntry",
+    "ConditionEvent",
+    "ConditionFigures",
+    "ConditionPoint",
     "Counts",
     "Cursor",
     "DeletedRows",
     "Deletion",
     "DiagnosisEntry",
+    "FoldInput",
+    "FoldResult",
     "GatewayEntry",
     "IedEntry",
     "Job",
@@ -51,9 +74,11 @@ __all__ = [
     "Measurement",
     "MotorEntry",
     "MotorHealth",
+    "MotorVersion",
     "Page",
     "Quantity",
     "Quarantine",
+    "RecordObservation",
     "RecordingEntry",
     "RecordingFile",
     "RecordingRequest",
@@ -61,6 +86,7 @@ __all__ = [
     "RemoteRecord",
     "Sample",
     "SiteEntry",
+    "ToObserve",
     "TrendPoint",
     "interval_of",
 ]

@@ -2,15 +2,19 @@
 
 from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
+from service.storage.repository.condition_events import ConditionEventRows
+from service.storage.repository.conditions import ConditionRows
 from service.storage.repository.deletions import DeletionRows
 from service.storage.repository.findings import FindingsRows
 from service.storage.repository.folders import FolderRows
+from service.storage.repository.folding import FoldingRows
 from service.storage.repository.job_runners import JobRunnerRows
 from service.storage.repository.jobs import JobRows
 from service.storage.repository.leases import LeaseRows
 from service.storage.repository.links import LinkRows
 from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.motor_health import MotorHealthRows
+from service.storage.repository.observations import ObservationRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.quarantines import QuarantineRows
 from service.storage.repository.recording_requests import RecordingRequestRows
@@ -33,6 +37,10 @@ class Repository(
     JobRows,
     JobRunnerRows,
     MotorHealthRows,
+    ObservationRows,
+    ConditionEventRows,
+    ConditionRows,
+    FoldingRows,
     StateCounts,
     MeasurementRows,
     BaselineRows,

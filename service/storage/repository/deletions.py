@@ -27,9 +27,11 @@ from service.storage.models import (
     RecordingRequestRow,
     RecordingRow,
     RemoteRecordRow,
+    UnobservedRecordingRow,
 )
 from service.storage.records import Cursor, Deletion, Page, RemoteRecord
 from service.storage.repository.folders import discard_folder, lock_folder
+from service.storage.repository.observations import forget_observation
 from service.storage.repository.recording_requests import KIND, fail_row, fail_rows
 from service.storage.repository.recordings import stored_before
 from service.storage.repository.remote_records import RECORDS_A_QUERY, listed_in, remote_link
@@ -182,7 +184,11 @@ def in_use(session: Session, row: RecordingRow) -> str | None:
 def delete_row(
     session: Session, row: RecordingRow, reason: str, deleted_by: DeletedBy, now_ns: int
 ) -> Deletion:
-    """Delete a locked recording that nothing uses, and return what is remembered of it."""
+    """Delete a locked recording that nothing uses, and return what is remembered of it.
+
+    What it tells of its motor's condition goes where a person deletes it. Where a rule does, it stays: what
+    later recordings are compared with rests on it.
+    """
     files = session.scalars(select(RecordingFileRow).where(RecordingFileRow.recording_id == row.id)).all()
     deletion = DeletionRow(
         id=row.id,
@@ -207,6 +213,9 @@ def delete_row(
     for link in session.scalars(select(RemoteRecordRow).where(RemoteRecordRow.recording_id == row.id)):
         _remember_listing(session, link.ied, record_of(RemoteRecord, link), deletion.id)
         session.delete(link)
+    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == row.id))
+    if deleted_by is DeletedBy.PERSON:
+        forget_observation(session, row.id)
     session.execute(delete(DiagnosisRow).where(DiagnosisRow.recording_id == row.id))
     session.execute(delete(RecordingFileRow).where(RecordingFileRow.recording_id == row.id))
     for job in session.scalars(_jobs_of(row.id)):

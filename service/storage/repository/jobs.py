@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from sqlalchemy import Select, func, or_, select, update
 from sqlalchemy.orm import Session, joinedload
 
+from core.condition.observation import Observation
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, not_finite
 from core.units import NANOSECONDS_PER_SECOND
@@ -20,6 +21,7 @@ from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, Recording
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
+from service.storage.repository.observations import keep_observation
 from service.storage.repository.recording_requests import diagnose_rows, fail_rows
 from service.storage.repository.recordings import new_job, require_room
 from service.storage.repository.sessions import Order, Sessions, found, only, page_of, record_of
@@ -112,11 +114,13 @@ class JobRows(Sessions):
         recorded_ns: int,
         now_ns: int,
         runner: str,
+        observation: Observation | None = None,
     ) -> bool:
-        """Keep the result: diagnosis, job, recording and requests in one transaction; again changes nothing.
+        """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
 
-        recorded_ns: trigger time written in the record. Returns False, and keeps nothing, where the job is
-        not the runner's any more. Raises NotFoundError, UnstorableDiagnosisError.
+        Again changes nothing. recorded_ns: trigger time written in the record.  observation: what the record
+        tells of its motor's condition; None where it tells nothing. Returns False, and keeps nothing, where
+        the job is not the runner's any more. Raises NotFoundError, UnstorableDiagnosisError.
         """
         with self._write() as session:
             row = found(session, JobRow, job_id, "job", lock=True)
@@ -136,6 +140,7 @@ class JobRows(Sessions):
             withdraw_clock(recording)
             session.flush()
             diagnose_rows(session, recording.id, now_ns)
+            keep_observation(session, recording.id, recording.motor, observation)
             return True
 
     def reject_recording(self, job_id: str, reason: str, *, now_ns: int, runner: str) -> None:

@@ -4,8 +4,9 @@ from sqlalchemy import select, update
 
 from service.plant import Plant
 from service.storage.engine import one_at_a_time
-from service.storage.models import IedRow, MotorRow, SiteRow
+from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow
 from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
+from service.storage.repository.conditions import new_condition
 from service.storage.repository.sessions import Sessions, columns_of, found, page_of, record_of
 from service.storage.states import LinkState
 
@@ -42,6 +43,10 @@ class PlantRows(Sessions):
                         schedule=None if motor.schedule is None else motor.schedule.expression,
                     )
                 )
+            session.flush()
+            for motor in plant.motors:
+                if session.get(ConditionRow, motor.name) is None:
+                    session.add(new_condition(motor.name))
 
     def note_clock(self, relay: str, reading: ClockReading) -> None:
         """Note how far a relay's clock is from ours. Raises NotFoundError."""

@@ -18,6 +18,7 @@ from service.storage.models import (
     MotorRow,
     RecordingRequestRow,
     RecordingRow,
+    UnobservedRecordingRow,
 )
 from service.storage.records import Amount, DeletedRows
 from service.storage.repository.deletions import delete_row, to_delete
@@ -206,6 +207,7 @@ def _expired(session: Session, motor: str, expired: ExpiredRecordings) -> Column
         RecordingRow.state == expired.state,
         RecordingRow.announced_ns < min(expired.before_ns, seen),
         ~exists().where(BaselineRecordingRow.recording_id == RecordingRow.id),
+        ~exists().where(UnobservedRecordingRow.recording_id == RecordingRow.id),
         ~exists().where(JobRow.recording_id == RecordingRow.id, JobRow.state == JobState.RUNNING),
     ]
     untimed = RecordingRow.recorded_ns.is_(None)

@@ -1,0 +1,171 @@
+"""Tables of the motors' conditions: what each record tells, what follows from all, and what is due."""
+
+from collections.abc import Mapping
+
+from sqlalchemy import Double, ForeignKey, Index, LargeBinary, String
+from sqlalchemy.orm import Mapped, mapped_column
+
+from core.condition.events import EventKind
+from core.condition.kinds import Kind, State
+from core.condition.observation import VoltageChannels
+from core.signals.sequence import PhaseSequence
+from service.storage.models.base import Base
+
+
+class Figures:
+    """The columns of what is said of a motor at a time. phase: "a", "b" or "c".  mu_f, change: levels."""
+
+    phase: Mapped[str | None] = mapped_column(String(1))
+    mu_f: Mapped[float | None] = mapped_column(Double)
+    mu_f_ci95_low: Mapped[float | None] = mapped_column(Double)
+    mu_f_ci95_high: Mapped[float | None] = mapped_column(Double)
+    change: Mapped[float | None] = mapped_column(Double)
+    change_ci95_low: Mapped[float | None] = mapped_column(Double)
+    change_ci95_high: Mapped[float | None] = mapped_column(Double)
+
+
+class ObservationRow(Figures, Base):
+    """What one recording tells (core.condition.observation), and what is said of its motor from it on.
+
+    It outlives a recording that a rule of retention deletes, because the motor's reference rests on it.
+    Phasors are peak values in volts and amperes. state and the figures: null until it is folded.
+    """
+
+    __tablename__ = "observations"
+
+    recording_id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    time_ns: Mapped[int]
+    recorder: Mapped[str]
+    sequence: Mapped[PhaseSequence]
+    voltage_channels: Mapped[VoltageChannels]
+    frequency_hz: Mapped[float] = mapped_column(Double)
+    positive_voltage_re: Mapped[float] = mapped_column(Double)
+    positive_voltage_im: Mapped[float] = mapped_column(Double)
+    negative_voltage_re: Mapped[float] = mapped_column(Double)
+    negative_voltage_im: Mapped[float] = mapped_column(Double)
+    zero_voltage_re: Mapped[float | None] = mapped_column(Double)
+    zero_voltage_im: Mapped[float | None] = mapped_column(Double)
+    positive_current_re: Mapped[float] = mapped_column(Double)
+    positive_current_im: Mapped[float] = mapped_column(Double)
+    negative_current_re: Mapped[float] = mapped_column(Double)
+    negative_current_im: Mapped[float] = mapped_column(Double)
+    zero_current_re: Mapped[float] = mapped_column(Double)
+    zero_current_im: Mapped[float] = mapped_column(Double)
+    scatter: Mapped[float] = mapped_column(Double)
+    cycles: Mapped[int]
+    load_level: Mapped[float | None] = mapped_column(Double)
+    state: Mapped[State | None]
+    kind: Mapped[Kind | None]
+
+    __table_args__ = (
+        Index("ix_observations_motor_time_ns_recording_id", "motor", "time_ns", "recording_id"),
+    )
+
+
+class ConditionRow(Figures, Base):
+    """A motor's condition: one row for each motor.
+
+    version: counts the folds; who folded from an older version writes nothing.  document: what
+    `Condition.as_dict()` gave; null before the first fold, as is as_of_ns.
+    """
+
+    __tablename__ = "conditions"
+
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
+    version: Mapped[int]
+    state: Mapped[State]
+    kind: Mapped[Kind]
+    since_ns: Mapped[int | None]
+    as_of_ns: Mapped[int | None]
+    document: Mapped[Mapping[str, object] | None]
+
+
+class ConditionChangeRow(Figures, Base):
+    """A time at which a motor's state, kind or phase changed, or an event happened; with what is said then.
+
+    id: that of the recording or the event that caused it.
+    """
+
+    __tablename__ = "condition_changes"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    time_ns: Mapped[int]
+    recording_id: Mapped[str | None] = mapped_column(String(36))
+    event_id: Mapped[str | None] = mapped_column(String(36))
+    state: Mapped[State]
+    kind: Mapped[Kind]
+
+    __table_args__ = (Index("ix_condition_changes_motor_time_ns_id", "motor", "time_ns", "id"),)
+
+
+class ConditionEventRow(Base):
+    """What somebody told of a motor, or what its files tell (core.condition.events)."""
+
+    __tablename__ = "condition_events"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    time_ns: Mapped[int]
+    kind: Mapped[EventKind]
+    reason: Mapped[str]
+    by: Mapped[str]
+    made_ns: Mapped[int]
+
+    __table_args__ = (Index("ix_condition_events_motor_time_ns_id", "motor", "time_ns", "id"),)
+
+
+class ConditionCheckpointRow(Base):
+    """What is known of a motor once all up to and with `time_ns` is folded, to go on from there.
+
+    records: how many observations that are.
+    """
+
+    __tablename__ = "condition_checkpoints"
+
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
+    time_ns: Mapped[int] = mapped_column(primary_key=True)
+    records: Mapped[int]
+    state: Mapped[bytes] = mapped_column(LargeBinary)
+
+
+class FoldMarkRow(Base):
+    """From which time on a motor's observations or events have changed, and are to be folded again.
+
+    A row for each change: who makes one waits for nobody, and a fold takes away those that it knew of.
+    """
+
+    __tablename__ = "fold_marks"
+
+    id: Mapped[str] = mapped_column(String(36), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    from_ns: Mapped[int]
+
+    __table_args__ = (Index("ix_fold_marks_motor_from_ns", "motor", "from_ns"),)
+
+
+class MotorVersionRow(Base):
+    """What the motors file said of a motor from a time on: nameplate, parameters, classes of its sensors."""
+
+    __tablename__ = "motor_versions"
+
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
+    from_ns: Mapped[int] = mapped_column(primary_key=True)
+    document: Mapped[Mapping[str, object]]
+
+
+class UnobservedRecordingRow(Base):
+    """A recording that was diagnosed before there were observations: it is yet to be observed."""
+
+    __tablename__ = "unobserved_recordings"
+
+    recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), primary_key=True)
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
+    recorded_ns: Mapped[int]
+
+    __table_args__ = (
+        Index(
+            "ix_unobserved_recordings_motor_recorded_ns_recording_id", "motor", "recorded_ns", "recording_id"
+        ),
+    )

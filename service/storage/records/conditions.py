@@ -1,0 +1,183 @@
+"""Conditions of motors: what is said of them, since when, and what it follows from."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from core.condition.events import Event, EventKind
+from core.condition.kinds import Kind, State
+from core.condition.observation import Observation
+from service.storage.records.diagnoses import interval_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConditionFigures:
+    """What is said of a motor at a time.
+
+    phase: "a", "b" or "c".  mu_f: total level.  change: level since the reference; each with its 95 %
+    interval from all causes, and None where it is not known.
+    """
+
+    state: State
+    kind: Kind
+    phase: str | None = None
+    mu_f: float | None = None
+    mu_f_ci95_low: float | None = None
+    mu_f_ci95_high: float | None = None
+    change: float | None = None
+    change_ci95_low: float | None = None
+    change_ci95_high: float | None = None
+
+    @property
+    def mu_f_ci95(self) -> tuple[float, float] | None:
+        """Return the 95 % interval of the total level."""
+        return interval_of(self.mu_f_ci95_low, self.mu_f_ci95_high)
+
+    @property
+    def change_ci95(self) -> tuple[float, float] | None:
+        """Return the 95 % interval of the change."""
+        return interval_of(self.change_ci95_low, self.change_ci95_high)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConditionEntry(ConditionFigures):
+    """A motor's condition now.
+
+    version: how often it was folded; 0 where it never was.  document: `Condition.as_dict()`, with what was
+    stale when it was made; None before the first fold.  as_of_ns: time of the latest record in it.
+    """
+
+    motor: str
+    version: int
+    since_ns: int | None
+    as_of_ns: int | None
+    document: Mapping[str, object] | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConditionPoint(ConditionFigures):
+    """What is said of a motor from one of its records on."""
+
+    recording_id: str
+    time_ns: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConditionChange(ConditionFigures):
+    """A time at which a motor's state, kind or phase changed, or an event happened.
+
+    recording_id, event_id: what caused it; one of them is None.
+    """
+
+    motor: str
+    time_ns: int
+    recording_id: str | None
+    event_id: str | None
+
+    @property
+    def id(self) -> str:
+        """Return the id of what caused the change, which is the change's own too."""
+        cause = self.recording_id or self.event_id
+        assert cause is not None  # noqa: S101 - every change has a cause
+        return cause
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionEvent:
+    """An event of a motor, by whom and when it was told. `by` is a person, or what noticed it."""
+
+    id: str
+    motor: str
+    time_ns: int
+    kind: EventKind
+    reason: str
+    by: str
+    made_ns: int
+
+    @property
+    def event(self) -> Event:
+        """Return the event as the core knows it."""
+        return Event(self.time_ns, self.kind, self.reason)
+
+
+@dataclass(frozen=True, slots=True)
+class RecordObservation:
+    """The observation of a recording, and the motor it is of."""
+
+    recording_id: str
+    motor: str
+    observation: Observation
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """What is known once all up to and with `time_ns` is folded; `records` observations."""
+
+    time_ns: int
+    records: int
+    state: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class MotorVersion:
+    """What the motors file said of a motor from a time on."""
+
+    from_ns: int
+    document: Mapping[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class FoldInput:
+    """All that a fold of a motor needs, as it is in the database when it begins.
+
+    version, marks: to tell afterwards whether another was quicker, and which changes are folded.
+    checkpoint: where to go on; None at the beginning.  earlier: numbers of records of that checkpoint and
+    those before it, by their times.
+    observations: the next ones, in their order.  next_ns: time of the first one beyond them; None at the end.
+    events: those up to next_ns, in their order.
+    neighbours: observations of other motors on the bus at about the same times.
+    latest_change: the last change before; None where there is none.
+    """
+
+    motor: str
+    version: int
+    marks: tuple[str, ...]
+    checkpoint: Checkpoint | None
+    earlier: Mapping[int, int]
+    observations: tuple[RecordObservation, ...]
+    next_ns: int | None
+    events: tuple[ConditionEvent, ...]
+    neighbours: tuple[RecordObservation, ...]
+    motor_versions: tuple[MotorVersion, ...]
+    latest_change: ConditionChange | None
+
+
+@dataclass(frozen=True, slots=True)
+class FoldResult:
+    """What a fold found: what is said from each record on, the changes, and the motor's condition at the end.
+
+    checkpoints: new ones.  kept_checkpoints: times of the earlier ones that are kept; the others go.
+    condition: None where more is to be folded.
+    """
+
+    points: Sequence[ConditionPoint]
+    changes: Sequence[ConditionChange]
+    checkpoints: Sequence[Checkpoint]
+    kept_checkpoints: Sequence[int]
+    condition: ConditionEntry | None
+
+
+@dataclass(frozen=True, slots=True)
+class ToObserve:
+    """A recording that is yet to be observed, and the digest of its files."""
+
+    recording_id: str
+    motor: str
+    digest: str
+
+
+@dataclass(frozen=True, slots=True)
+class Backlog:
+    """How much the conditions are behind: recordings without an observation, motors with changes."""
+
+    unobserved_recordings: int
+    motors_to_fold: int

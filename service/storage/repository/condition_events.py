@@ -1,0 +1,40 @@
+"""Events of motors: notes of people, and what the plant's files tell."""
+
+import uuid
+
+from sqlalchemy import select
+
+from core.condition.events import Event
+from service.storage.models import ConditionEventRow, MotorRow
+from service.storage.records import ConditionEvent, Cursor, Page
+from service.storage.repository.fold_marks import mark
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
+from service.storage.texts import storable
+
+
+class ConditionEventRows(Sessions):
+    def add_event(self, motor: str, event: Event, *, by: str, now_ns: int) -> ConditionEvent:
+        """Keep what somebody tells of a motor, and have its condition follow. Raises NotFoundError."""
+        with self._write() as session:
+            found(session, MotorRow, motor, "motor", lock=True)
+            row = ConditionEventRow(
+                id=str(uuid.uuid4()),
+                motor=motor,
+                time_ns=event.time_ns,
+                kind=event.kind,
+                reason=storable(event.reason),
+                by=storable(by),
+                made_ns=now_ns,
+            )
+            session.add(row)
+            session.flush()
+            mark(session, motor, event.time_ns)
+            return record_of(ConditionEvent, row)
+
+    def events(self, motor: str, *, limit: int, after: Cursor | None = None) -> Page[ConditionEvent]:
+        """Return a page of a motor's events, latest first. Raises NotFoundError."""
+        query = select(*columns_of(ConditionEvent, ConditionEventRow)).where(ConditionEventRow.motor == motor)
+        order: Order = [ConditionEventRow.time_ns, ConditionEventRow.id]
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            return page_of(session, query, order, ConditionEvent, limit=limit, after=after, descending=True)

@@ -1,0 +1,51 @@
+"""The conditions of motors, and how they came to be."""
+
+from collections.abc import Collection, Mapping
+
+from sqlalchemy import Select, select
+
+from core.condition.kinds import Kind, State
+from service.storage.models import ConditionChangeRow, ConditionRow, MotorRow
+from service.storage.records import ConditionChange, ConditionEntry, Cursor, Page
+from service.storage.repository.sessions import Order, Sessions, found, page_of, record_of
+
+
+class ConditionRows(Sessions):
+    def condition(self, motor: str) -> ConditionEntry:
+        """Return a motor's condition. Raises NotFoundError."""
+        with self._read() as session:
+            return record_of(ConditionEntry, found(session, ConditionRow, motor, "motor"))
+
+    def conditions(self, motors: Collection[str] | None = None) -> Mapping[str, ConditionEntry]:
+        """Return the conditions of these motors, or of all in service, by name."""
+        query: Select[ConditionRow] = select(ConditionRow)
+        if motors is None:
+            query = query.join(MotorRow, MotorRow.name == ConditionRow.motor).where(MotorRow.in_service)
+        else:
+            query = query.where(ConditionRow.motor.in_(motors))
+        with self._read() as session:
+            rows = session.scalars(query.order_by(ConditionRow.motor))
+            return {row.motor: record_of(ConditionEntry, row) for row in rows}
+
+    def condition_history(
+        self, motor: str, *, limit: int, after: Cursor | None = None
+    ) -> Page[ConditionChange]:
+        """Return a page of the changes of a motor's condition, latest first. Raises NotFoundError."""
+        query = select(ConditionChangeRow).where(ConditionChangeRow.motor == motor)
+        order: Order = [ConditionChangeRow.time_ns, ConditionChangeRow.id]
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            return page_of(
+                session,
+                query,
+                order,
+                lambda row, *_: record_of(ConditionChange, row),
+                limit=limit,
+                after=after,
+                descending=True,
+            )
+
+
+def new_condition(motor: str) -> ConditionRow:
+    """Return the condition of a motor of which nothing is known."""
+    return ConditionRow(motor=motor, version=0, state=State.UNKNOWN, kind=Kind.NONE)

@@ -1,0 +1,257 @@
+"""Folding: what of a motor has changed, and what follows from it.
+
+Whoever changes something leaves a mark. A fold takes the marks, goes on from the last checkpoint before the
+earliest, and takes those marks away when it is done: a mark that comes meanwhile stays. Of two that fold the
+same motor at the same time, the first to end is kept, for the other began from an older version.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+
+from sqlalchemy import bindparam, delete, func, insert, or_, select, update
+from sqlalchemy.orm import Session, aliased
+
+from service.storage.models import (
+    Base,
+    ConditionChangeRow,
+    ConditionCheckpointRow,
+    ConditionEventRow,
+    ConditionRow,
+    FoldMarkRow,
+    MotorRow,
+    MotorVersionRow,
+    ObservationRow,
+)
+from service.storage.records import (
+    Checkpoint,
+    ConditionChange,
+    ConditionEvent,
+    FoldInput,
+    FoldResult,
+    MotorVersion,
+    RecordObservation,
+)
+from service.storage.repository.fold_marks import EARLIEST_NS, NEIGHBOURS_WITHIN_NS, mark
+from service.storage.repository.observations import record_observation
+from service.storage.repository.sessions import Sessions, found, only, record_of
+
+_OBSERVATIONS = Base.metadata.tables["observations"]
+"""The table, not the class: statements for many rows at once look at no object of the session."""
+
+IDS_A_STATEMENT = 500
+"""Databases limit how many values a statement may hold."""
+
+
+class FoldingRows(Sessions):
+    def motors_to_fold(self) -> tuple[str, ...]:
+        """Return the motors of which something has changed."""
+        with self._read() as session:
+            return tuple(session.scalars(select(FoldMarkRow.motor).distinct().order_by(FoldMarkRow.motor)))
+
+    def begin_fold(self, motor: str, most_records: int) -> FoldInput | None:
+        """Return what a fold of a motor needs, with about so many observations; None where none is due.
+
+        Records of one time are not parted. Raises NotFoundError.
+        """
+        with self._read() as session:
+            version = found(session, ConditionRow, motor, "motor").version
+            # Marks before what they are for: what comes in between has a mark of its own, which stays.
+            marks = session.execute(
+                select(FoldMarkRow.id, FoldMarkRow.from_ns).where(FoldMarkRow.motor == motor)
+            ).all()
+            if not marks:
+                return None
+            checkpoint = _checkpoint_before(session, motor, min(from_ns for _, from_ns in marks))
+            done_ns = EARLIEST_NS if checkpoint is None else checkpoint.time_ns
+            observations, next_ns = _observations(session, motor, done_ns, most_records)
+            return FoldInput(
+                motor=motor,
+                version=version,
+                marks=tuple(id_ for id_, _ in marks),
+                checkpoint=checkpoint,
+                earlier=_earlier_checkpoints(session, motor, done_ns),
+                observations=observations,
+                next_ns=next_ns,
+                events=_events(session, motor, done_ns, next_ns),
+                neighbours=_neighbours(session, motor, observations),
+                motor_versions=tuple(_versions(session, motor)),
+                latest_change=_latest_change(session, motor, done_ns),
+            )
+
+    def finish_fold(self, fold: FoldInput, result: FoldResult) -> bool:
+        """Keep what a fold found, all of it or nothing; have the rest folded, if there is one.
+
+        Returns False, and keeps nothing, where another fold of the motor has ended since this one began.
+        """
+        done_ns = EARLIEST_NS if fold.checkpoint is None else fold.checkpoint.time_ns
+        with self._write() as session:
+            row = found(session, ConditionRow, fold.motor, "motor", lock=True)
+            if row.version != fold.version:
+                return False
+            row.version += 1
+            for some in _in_parts(fold.marks):
+                session.execute(delete(FoldMarkRow).where(FoldMarkRow.id.in_(some)))
+            if fold.next_ns is not None:
+                mark(session, fold.motor, fold.next_ns)
+            _write_points(session, result)
+            _write_changes(session, fold, result.changes, done_ns)
+            _write_checkpoints(session, fold.motor, result)
+            if result.condition is not None:
+                figures = asdict(result.condition)
+                for name in set(figures) - {"motor", "version"}:
+                    setattr(row, name, figures[name])
+            return True
+
+    def checkpoints(self, motor: str) -> tuple[Checkpoint, ...]:
+        """Return a motor's checkpoints, oldest first."""
+        query = (
+            select(ConditionCheckpointRow)
+            .where(ConditionCheckpointRow.motor == motor)
+            .order_by(ConditionCheckpointRow.time_ns)
+        )
+        with self._read() as session:
+            return tuple(record_of(Checkpoint, row) for row in session.scalars(query))
+
+
+def _checkpoint_before(session: Session, motor: str, from_ns: int) -> Checkpoint | None:
+    query = (
+        select(ConditionCheckpointRow)
+        .where(ConditionCheckpointRow.motor == motor, ConditionCheckpointRow.time_ns < from_ns)
+        .order_by(ConditionCheckpointRow.time_ns.desc())
+    )
+    row = only(session, query)
+    return None if row is None else record_of(Checkpoint, row)
+
+
+def _earlier_checkpoints(session: Session, motor: str, done_ns: int) -> Mapping[int, int]:
+    """Return the numbers of records of the checkpoints up to a time, by their times."""
+    query = select(ConditionCheckpointRow.time_ns, ConditionCheckpointRow.records).where(
+        ConditionCheckpointRow.motor == motor, ConditionCheckpointRow.time_ns <= done_ns
+    )
+    return dict(session.execute(query).all())
+
+
+def _observations(
+    session: Session, motor: str, done_ns: int, most: int
+) -> tuple[tuple[RecordObservation, ...], int | None]:
+    """Return the next observations of a motor, whole times only, and the time of the first one beyond."""
+    following = (
+        select(ObservationRow)
+        .where(ObservationRow.motor == motor, ObservationRow.time_ns > done_ns)
+        .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
+    )
+    rows = session.scalars(following.limit(most + 1)).all()
+    next_ns = None
+    if len(rows) > most:
+        next_ns = rows[most].time_ns
+        rows = [row for row in rows if row.time_ns < next_ns]
+        if not rows:
+            rows = session.scalars(following.where(ObservationRow.time_ns == next_ns)).all()
+            next_ns = session.scalar(
+                select(func.min(ObservationRow.time_ns)).where(
+                    ObservationRow.motor == motor, ObservationRow.time_ns > rows[0].time_ns
+                )
+            )
+    return tuple(record_observation(row) for row in rows), next_ns
+
+
+def _events(session: Session, motor: str, done_ns: int, next_ns: int | None) -> tuple[ConditionEvent, ...]:
+    query = select(ConditionEventRow).where(
+        ConditionEventRow.motor == motor, ConditionEventRow.time_ns > done_ns
+    )
+    if next_ns is not None:
+        query = query.where(ConditionEventRow.time_ns < next_ns)
+    order = (ConditionEventRow.time_ns, ConditionEventRow.made_ns, ConditionEventRow.id)
+    return tuple(record_of(ConditionEvent, row) for row in session.scalars(query.order_by(*order)))
+
+
+def _neighbours(
+    session: Session, motor: str, observations: Sequence[RecordObservation]
+) -> tuple[RecordObservation, ...]:
+    """Return the observations of other motors of the bus in the time of these, in their order."""
+    if not observations:
+        return ()
+    own = aliased(MotorRow)
+    first_ns, last_ns = (observations[at].observation.time_ns for at in (0, -1))
+    query = (
+        select(ObservationRow)
+        .join(MotorRow, MotorRow.name == ObservationRow.motor)
+        .join(own, own.bus == MotorRow.bus)
+        .where(
+            own.name == motor,
+            MotorRow.name != motor,
+            ObservationRow.time_ns.between(first_ns - NEIGHBOURS_WITHIN_NS, last_ns + NEIGHBOURS_WITHIN_NS),
+        )
+        .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
+    )
+    return tuple(record_observation(row) for row in session.scalars(query))
+
+
+def _versions(session: Session, motor: str) -> Iterator[MotorVersion]:
+    query = select(MotorVersionRow).where(MotorVersionRow.motor == motor).order_by(MotorVersionRow.from_ns)
+    return (record_of(MotorVersion, row) for row in session.scalars(query))
+
+
+def _latest_change(session: Session, motor: str, done_ns: int) -> ConditionChange | None:
+    query = (
+        select(ConditionChangeRow)
+        .where(ConditionChangeRow.motor == motor, ConditionChangeRow.time_ns <= done_ns)
+        # Of one time, events come before records.
+        .order_by(ConditionChangeRow.time_ns.desc(), ConditionChangeRow.event_id.is_not(None))
+    )
+    row = only(session, query)
+    return None if row is None else record_of(ConditionChange, row)
+
+
+def _write_points(session: Session, result: FoldResult) -> None:
+    """Write what is said from each record on; one that was deleted meanwhile is left out."""
+    if not result.points:
+        return
+    points = [asdict(point) for point in result.points]
+    names = set(points[0]) - {"recording_id", "time_ns"}
+    statement = (
+        update(_OBSERVATIONS)
+        .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
+        .values({name: bindparam(name) for name in names})
+    )
+    session.connection().execute(
+        statement,
+        [
+            {"of_recording": point["recording_id"], **{name: point[name] for name in names}}
+            for point in points
+        ],
+    )
+
+
+def _write_changes(
+    session: Session, fold: FoldInput, changes: Sequence[ConditionChange], done_ns: int
+) -> None:
+    """Replace the changes of the times that were folded. Those of deleted recordings are anywhere later."""
+    old = delete(ConditionChangeRow).where(
+        ConditionChangeRow.motor == fold.motor, ConditionChangeRow.time_ns > done_ns
+    )
+    if fold.next_ns is not None:
+        ids = [change.id for change in changes]
+        old = old.where(or_(ConditionChangeRow.time_ns < fold.next_ns, ConditionChangeRow.id.in_(ids)))
+    session.execute(old)
+    if changes:
+        session.execute(
+            insert(ConditionChangeRow), [{"id": change.id, **asdict(change)} for change in changes]
+        )
+
+
+def _write_checkpoints(session: Session, motor: str, result: FoldResult) -> None:
+    session.execute(
+        delete(ConditionCheckpointRow).where(
+            ConditionCheckpointRow.motor == motor,
+            ConditionCheckpointRow.time_ns.not_in(result.kept_checkpoints),
+        )
+    )
+    if result.checkpoints:
+        rows = [{"motor": motor, **asdict(one)} for one in result.checkpoints]
+        session.execute(insert(ConditionCheckpointRow), rows)
+
+
+def _in_parts(ids: Sequence[str]) -> Iterator[Sequence[str]]:
+    for first in range(0, len(ids), IDS_A_STATEMENT):
+        yield ids[first : first + IDS_A_STATEMENT]

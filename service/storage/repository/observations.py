@@ -1,0 +1,202 @@
+"""Observations: what each record tells of its motor's condition."""
+
+from collections.abc import Sequence
+from math import isfinite
+
+from sqlalchemy import delete, func, select
+from sqlalchemy.orm import Session
+
+from core.condition.observation import Observation
+from service.storage.errors import UnstorableDiagnosisError
+from service.storage.models import FoldMarkRow, MotorRow, ObservationRow, RecordingRow, UnobservedRecordingRow
+from service.storage.records import (
+    Backlog,
+    ConditionPoint,
+    Cursor,
+    Page,
+    RecordObservation,
+    ToObserve,
+)
+from service.storage.repository.fold_marks import mark_with_bus
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of
+from service.storage.texts import storable
+
+PHASORS = (
+    ("positive_voltage", "positive_voltage_V"),
+    ("negative_voltage", "negative_voltage_V"),
+    ("zero_voltage", "zero_voltage_V"),
+    ("positive_current", "positive_current_A"),
+    ("negative_current", "negative_current_A"),
+    ("zero_current", "zero_current_A"),
+)
+"""Columns without their suffix, and the fields of an Observation."""
+
+OTHERS = (
+    "time_ns",
+    "sequence",
+    "voltage_channels",
+    "frequency_hz",
+    "scatter",
+    "cycles",
+    "load_level",
+)
+"""Columns that are called as the fields are."""
+
+
+class ObservationRows(Sessions):
+    def observation(self, recording_id: str) -> RecordObservation | None:
+        """Return what a recording tells of its motor's condition; None where it tells nothing."""
+        with self._read() as session:
+            row = session.get(ObservationRow, recording_id)
+            return None if row is None else record_observation(row)
+
+    def condition_trend(
+        self,
+        motor: str,
+        *,
+        limit: int,
+        from_ns: int | None = None,
+        to_ns: int | None = None,
+        after: Cursor | None = None,
+    ) -> Page[ConditionPoint]:
+        """Return what was said from each record on, oldest first, from_ns <= time < to_ns.
+
+        A record that is not folded yet is not there. Raises NotFoundError.
+        """
+        query = select(*columns_of(ConditionPoint, ObservationRow)).where(
+            ObservationRow.motor == motor, ObservationRow.state.is_not(None)
+        )
+        if from_ns is not None:
+            query = query.where(ObservationRow.time_ns >= from_ns)
+        if to_ns is not None:
+            query = query.where(ObservationRow.time_ns < to_ns)
+        names = [column.key for column in columns_of(ConditionPoint, ObservationRow)]
+        order: Order = [ObservationRow.time_ns, ObservationRow.recording_id]
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            return page_of(
+                session,
+                query,
+                order,
+                lambda *values: ConditionPoint(**dict(zip(names, values, strict=True))),
+                limit=limit,
+                after=after,
+            )
+
+    def motors_to_observe(self) -> tuple[str, ...]:
+        """Return the motors that have recordings from before there were observations."""
+        with self._read() as session:
+            query = select(UnobservedRecordingRow.motor).distinct().order_by(UnobservedRecordingRow.motor)
+            return tuple(session.scalars(query))
+
+    def recordings_to_observe(self, motor: str, limit: int) -> tuple[ToObserve, ...]:
+        """Return some of a motor's recordings that are yet to be observed, oldest first."""
+        query = (
+            select(RecordingRow.id, RecordingRow.motor, RecordingRow.digest)
+            .join(UnobservedRecordingRow, UnobservedRecordingRow.recording_id == RecordingRow.id)
+            .where(UnobservedRecordingRow.motor == motor)
+            .order_by(UnobservedRecordingRow.recorded_ns, UnobservedRecordingRow.recording_id)
+            .limit(limit)
+        )
+        with self._read() as session:
+            return tuple(
+                ToObserve(recording_id, motor, digest)
+                for recording_id, motor, digest in session.execute(query)
+                if digest is not None
+            )
+
+    def add_observations(self, observed: Sequence[tuple[str, Observation | None]]) -> int:
+        """Keep what recordings that were to be observed tell, by their ids; return how many it were.
+
+        None: the recording tells nothing. One that was observed, diagnosed again or deleted meanwhile is
+        left as it is. Raises UnstorableDiagnosisError.
+        """
+        number = 0
+        with self._write() as session:
+            for recording_id, observation in observed:
+                row = session.get(UnobservedRecordingRow, recording_id, with_for_update=True)
+                if row is not None:
+                    keep_observation(session, recording_id, row.motor, observation)
+                    number += 1
+        return number
+
+    def backlog(self) -> Backlog:
+        """Return how much the conditions are behind the recordings."""
+        unobserved = select(func.count()).select_from(UnobservedRecordingRow)
+        marked = select(func.count(FoldMarkRow.motor.distinct()))
+        with self._read() as session:
+            return Backlog(session.scalar(unobserved) or 0, session.scalar(marked) or 0)
+
+
+def keep_observation(
+    session: Session, recording_id: str, motor: str, observation: Observation | None
+) -> None:
+    """Keep what a recording tells instead of what it told before, if anything, and have it folded.
+
+    Raises UnstorableDiagnosisError.
+    """
+    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == recording_id))
+    before = session.get(ObservationRow, recording_id)
+    row = None if observation is None else _row(recording_id, motor, observation)
+    if before is not None:
+        if row is not None and record_observation(before) == record_observation(row):
+            return
+        forget_observation(session, recording_id)
+    if row is not None:
+        session.add(row)
+        session.flush()
+        mark_with_bus(session, motor, row.time_ns)
+
+
+def forget_observation(session: Session, recording_id: str) -> None:
+    """Delete what a recording told, as if it had never been, and have its motor folded without it."""
+    session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == recording_id))
+    row = session.get(ObservationRow, recording_id)
+    if row is not None:
+        mark_with_bus(session, row.motor, row.time_ns)
+        session.delete(row)
+        session.flush()
+
+
+def record_observation(row: ObservationRow) -> RecordObservation:
+    """Return what is in a row."""
+    zero_voltage = (
+        None
+        if row.zero_voltage_re is None or row.zero_voltage_im is None
+        else complex(row.zero_voltage_re, row.zero_voltage_im)
+    )
+    observation = Observation(
+        time_ns=row.time_ns,
+        recorder=row.recorder,
+        sequence=row.sequence,
+        voltage_channels=row.voltage_channels,
+        frequency_hz=row.frequency_hz,
+        positive_voltage_V=complex(row.positive_voltage_re, row.positive_voltage_im),
+        negative_voltage_V=complex(row.negative_voltage_re, row.negative_voltage_im),
+        zero_voltage_V=zero_voltage,
+        positive_current_A=complex(row.positive_current_re, row.positive_current_im),
+        negative_current_A=complex(row.negative_current_re, row.negative_current_im),
+        zero_current_A=complex(row.zero_current_re, row.zero_current_im),
+        scatter=row.scatter,
+        cycles=row.cycles,
+        load_level=row.load_level,
+    )
+    return RecordObservation(row.recording_id, row.motor, observation)
+
+
+def _row(recording_id: str, motor: str, observation: Observation) -> ObservationRow:
+    row = ObservationRow(recording_id=recording_id, motor=motor, recorder=storable(observation.recorder))
+    for column, field in PHASORS:
+        value: complex | None = getattr(observation, field)
+        setattr(row, f"{column}_re", None if value is None else _finite(field, value.real))
+        setattr(row, f"{column}_im", None if value is None else _finite(field, value.imag))
+    for name in OTHERS:
+        value = getattr(observation, name)
+        setattr(row, name, _finite(name, value) if isinstance(value, float) else value)
+    return row
+
+
+def _finite(field: str, value: float) -> float:
+    if not isfinite(value):
+        raise UnstorableDiagnosisError(f"the observation's {field} is {value}, no finite number")
+    return value + 0.0  # SQLite does not keep the sign of a zero
