@@ -19,6 +19,7 @@ from benchmarks.accuracy.resistive_paths import (
 )
 from benchmarks.reporting import spread, table
 from core.diagnosis.case import case_of
+from core.diagnosis.fundamental import fundamental_of
 from core.diagnosis.methods import DEFAULT_METHOD
 from core.diagnosis.paths import DEAD_SHORTED, PATH_SHARES, PathPosterior
 from core.diagnosis.propagation import Known
@@ -124,7 +125,7 @@ def _posterior(record: Recording, motor: Motor) -> PathPosterior | None:
     )
     model = SplitWinding()
     starts = search(case, model, DEFAULT_METHOD)
-    return PathPosterior(case, Refinement(case, model, starts.best), Known())
+    return PathPosterior(case, Refinement(case, fundamental_of(case), model, starts.best), Known())
 
 
 def _ampere_turns(motor: Motor, level: Array, path_ratio: Array) -> Array:

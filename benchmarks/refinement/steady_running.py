@@ -11,6 +11,7 @@ from scipy.optimize import least_squares
 
 from benchmarks.stopwatch import best_of
 from core.diagnosis.case import Case, case_of
+from core.diagnosis.fundamental import fundamental_of
 from core.diagnosis.methods import Method
 from core.diagnosis.refinement import (
     FAULT_LEVEL,
@@ -145,7 +146,7 @@ def measure() -> Iterator[str]:
     for record, motor in _records():
         case = _case(record, motor)
         starts = search(case, model, Method.HYBRID)
-        prepared.append((ScipyRefinement(case, model, starts.best), starts))
+        prepared.append((ScipyRefinement(case, fundamental_of(case), model, starts.best), starts))
     begins = [(refinement, start) for refinement, found in prepared for start in found.by_winding]
     pairs = np.array([_compared(refinement, start) for refinement, start in begins])
     fits, levels = len(pairs), pairs[:, 2]

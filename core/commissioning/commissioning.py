@@ -222,7 +222,7 @@ def _result(
         _start_found(start, fit.residuals[k], point.starts[k], half, k, why)
         for k, start in enumerate(records.starts)
     )
-    motor = Motor(plate.name, plate.nameplate, point.machine, plate.channels, plate.limits)
+    motor = Motor(plate.name, plate.nameplate, point.machine, plate.channels, plate.limits, plate.sensors)
     return Commissioning(
         motor=motor,
         parameters=estimates,

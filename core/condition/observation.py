@@ -47,7 +47,8 @@ class Observation:
     cycles : int
         Number of cycles that the phasors are taken from.
     load_level : float or None
-        Load torque over rated torque, from the record's own diagnosis; None where that gives none.
+        Load torque over rated torque, from the power that crosses the air gap; losses of shorted turns count
+        as load. None where it is not known.
     """
 
     time_ns: int

@@ -43,11 +43,14 @@ class Phasors:
         Covariance of their noise if cycles were independent.
     growth : ndarray, shape (4,)
         Growth of each one's standard deviation because cycles are not independent.
+    by_cycle : ndarray of complex, shape (2, cycles)
+        What single cycles have beside the components, forwards and backwards.
     """
 
     components: Array
     scatter: Array
     growth: Array
+    by_cycle: ComplexArray
 
     @property
     def forward(self) -> complex:
@@ -95,12 +98,31 @@ class Fundamental:
         Angular frequency w_s [rad/s].
     cycles : int
         Number of cycles that the phasors are taken from.
+    weighting : float
+        Variance of a mean over the record, which fades in and out, over that of an even one.
     """
 
     current: Phasors
     voltage: Phasors
     angular_frequency: float
     cycles: int
+    weighting: float
+
+    def variance(self, by_cycle: ComplexArray) -> float:
+        """Return the variance of a record's value, whatever the colour of its noise.
+
+        Parameters
+        ----------
+        by_cycle : ndarray of complex, shape (cycles,)
+            What single cycles have beside it.
+
+        Returns
+        -------
+        float
+            Variance, both parts together.
+        """
+        variance = float(np.var(by_cycle, ddof=1)) / self.cycles
+        return self.weighting * variance * _growth(by_cycle)
 
 
 def fundamental_of(case: Case) -> Fundamental:
@@ -116,25 +138,41 @@ def fundamental_of(case: Case) -> Fundamental:
     Fundamental
         Phasors of currents and voltages.
     """
-    per_cycle = case.sample_rate_hz / case.frequency_hz
-    longest = min(case.current_ab.shape[1], round(LONGEST_WINDOW_S * case.sample_rate_hz))
-    cycles = int(longest / per_cycle + CYCLE_SHORT)
-    samples = min(round(cycles * per_cycle), case.current_ab.shape[1])
-    first = case.current_ab.shape[1] - samples
-    turning = np.exp(-2j * pi / per_cycle * np.arange(samples))
-    vectors = np.stack([x[0, first:] + 1j * x[1, first:] for x in (case.current_ab, case.voltage_ab)])
-    highest = max(1, min(HIGHEST_ORDER, int(0.45 * per_cycle)))
-    weight = tukey_window(samples, TAPERED)
-    found, beside = _periodic(vectors, turning, weight, highest)
+    window = _window(case)
+    samples, cycles, turning = window.turning.size, window.cycles, window.turning
+    vectors = np.stack([x[0, -samples:] + 1j * x[1, -samples:] for x in (case.current_ab, case.voltage_ab)])
+    found, beside = _periodic(vectors, window)
     edges = np.round(np.arange(cycles) * samples / cycles).astype(np.int64)
-    fewer = samples * float(weight @ weight) / float(weight.sum()) ** 2
+    weighting = samples * float(window.weight @ window.weight) / float(window.weight.sum()) ** 2
     phasors = []
     for k in (0, 1):
         single = _cycles(beside[k], turning, edges)
-        scatter = fewer * np.cov(_components(*single), rowvar=False) / cycles
+        scatter = weighting * np.cov(_components(*single), rowvar=False) / cycles
         growth = np.sqrt([_growth(one) for one in single]).repeat(2)
-        phasors.append(Phasors(_components(found[k, 0], found[k, 1]), np.asarray(scatter), growth))
-    return Fundamental(phasors[0], phasors[1], 2.0 * pi * case.frequency_hz, cycles=cycles)
+        phasors.append(Phasors(_components(found[k, 0], found[k, 1]), np.asarray(scatter), growth, single))
+    return Fundamental(
+        phasors[0], phasors[1], 2.0 * pi * case.frequency_hz, cycles=cycles, weighting=weighting
+    )
+
+
+def phasors_of(signals: Array, case: Case) -> ComplexArray:
+    """Find the phasors of further signals of a record, at the same instant and over the same cycles.
+
+    Parameters
+    ----------
+    signals : ndarray, shape (m, n)
+        Samples.
+    case : Case
+        The record in the winding frame.
+
+    Returns
+    -------
+    ndarray of complex, shape (m,)
+        Phasors, peak.
+    """
+    window = _window(case)
+    found, _ = _harmonics(signals[:, -window.turning.size :].astype(np.complex128), window)
+    return np.asarray(2.0 * found[:, window.highest + 1])
 
 
 def components(phasor: ComplexArray) -> Array:
@@ -175,13 +213,47 @@ def _components(forward: ComplexArray, backward: ComplexArray) -> Array:
     return np.stack([forward.real, forward.imag, backward.real, backward.imag], axis=-1)
 
 
-def _periodic(
-    vectors: ComplexArray, turning: ComplexArray, weight: Array, highest: int
-) -> tuple[ComplexArray, ComplexArray]:
+@dataclass(frozen=True, slots=True)
+class _Window:
+    """The last whole cycles of a record, and how they are weighed.
+
+    turning: exp(-j w t) of each sample (n,).  weight (n,).  highest: highest order that the sampling tells.
+    """
+
+    cycles: int
+    turning: ComplexArray
+    weight: Array
+    highest: int
+
+
+def _window(case: Case) -> _Window:
+    recorded, per_cycle = case.current_ab.shape[1], case.sample_rate_hz / case.frequency_hz
+    longest = min(recorded, round(LONGEST_WINDOW_S * case.sample_rate_hz))
+    cycles = int(longest / per_cycle + CYCLE_SHORT)
+    samples = min(round(cycles * per_cycle), recorded)
+    return _Window(
+        cycles=cycles,
+        turning=np.exp(-2j * pi / per_cycle * np.arange(samples)),
+        weight=tukey_window(samples, TAPERED),
+        highest=max(1, min(HIGHEST_ORDER, int(0.45 * per_cycle))),
+    )
+
+
+def _periodic(vectors: ComplexArray, window: _Window) -> tuple[ComplexArray, ComplexArray]:
     """Weighted least-squares fit of the harmonics -highest to highest.
 
     Returns coefficients of orders 1 and -1 (m, 2), and what of the vectors (m, n) is beside all harmonics.
     """
+    highest = window.highest
+    found, powers = _harmonics(vectors, window)
+    periodic = np.einsum("mk,kn->mn", found[:, highest:].conj(), powers).conj()
+    periodic += np.einsum("mk,kn->mn", found[:, highest - 1 :: -1], powers[1:])
+    return found[:, [highest + 1, highest - 1]], vectors - periodic
+
+
+def _harmonics(vectors: ComplexArray, window: _Window) -> tuple[ComplexArray, ComplexArray]:
+    """Return the coefficients of the harmonics -highest to highest (m, orders), and the powers of turning."""
+    turning, weight, highest = window.turning, window.weight, window.highest
     powers = np.empty((highest + 1, turning.size), dtype=np.complex128)
     powers[0] = 1.0
     for order in range(highest):
@@ -194,10 +266,7 @@ def _periodic(
     # The basis turns the other way than `powers`: order k of it is their conjugate.
     forwards, backwards = _sums(powers, weight * vectors), _sums(powers, weight * vectors.conj()).conj()
     products = np.concatenate([backwards[:, :0:-1], forwards], axis=1)
-    found = np.asarray(np.linalg.solve(gram, products.T).T, dtype=np.complex128)
-    periodic = np.einsum("mk,kn->mn", found[:, highest:].conj(), powers).conj()
-    periodic += np.einsum("mk,kn->mn", found[:, highest - 1 :: -1], powers[1:])
-    return found[:, [highest + 1, highest - 1]], vectors - periodic
+    return np.asarray(np.linalg.solve(gram, products.T).T, dtype=np.complex128), powers
 
 
 # einsum, not @: see core/signals/phasors.py.

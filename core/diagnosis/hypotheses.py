@@ -81,7 +81,9 @@ class Explanation:
     in_direction: bool
 
 
-def explain(case: Case, model: StatorModel, starts: Starts, known: Known = NOTHING_KNOWN) -> Explanation:
+def explain(
+    case: Case, phasors: Fundamental, model: StatorModel, starts: Starts, known: Known = NOTHING_KNOWN
+) -> Explanation:
     """Refine every winding's best point and the healthy machine; choose the winding that leaves least.
 
     All windings have equally many unknowns, so the least residual is also the greatest likelihood. Turns
@@ -94,6 +96,8 @@ def explain(case: Case, model: StatorModel, starts: Starts, known: Known = NOTHI
     ----------
     case : Case
         The record in the winding frame.
+    phasors : Fundamental
+        Its phasors at supply frequency.
     model : StatorModel
         Machine model of the fault.
     starts : Starts
@@ -107,7 +111,7 @@ def explain(case: Case, model: StatorModel, starts: Starts, known: Known = NOTHI
         The chosen winding's fit and what it leaves.
     """
     unknowns = (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
-    refinement = Refinement(case, model, starts.best)
+    refinement = Refinement(case, phasors, model, starts.best)
     fits, tried = [], []
     for winding, found in enumerate(starts.by_winding):
         tried.append(refinement.fit(found, unknowns))

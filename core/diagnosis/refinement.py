@@ -16,7 +16,7 @@ from math import log1p, sqrt
 import numpy as np
 
 from core.diagnosis.case import Case
-from core.diagnosis.fundamental import axis_phasors, components, fundamental_of
+from core.diagnosis.fundamental import Fundamental, axis_phasors, components
 from core.diagnosis.student_t import student_t_quantile
 from core.machines.base import Array, StatorModel
 from core.machines.candidates import Candidates
@@ -187,15 +187,17 @@ class Refinement:
     ----------
     case : Case
         The record in the winding frame.
+    record : Fundamental
+        Its phasors at supply frequency.
     model : StatorModel
         Machine model of the fault.
     near : Candidates
         A candidate near the truth, which tells how voltages become currents.
     """
 
-    def __init__(self, case: Case, model: StatorModel, near: Candidates) -> None:
+    def __init__(self, case: Case, record: Fundamental, model: StatorModel, near: Candidates) -> None:
         self._case = case
-        self.record = fundamental_of(case)
+        self.record = record
         current, voltage = self.record.current, self.record.voltage
         self.running = SteadyRunning(
             model, case.motor, case.supply.angular_frequency, axis_phasors(voltage.components)

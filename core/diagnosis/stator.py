@@ -1,14 +1,15 @@
 """Diagnosis of one recording: quality gate, global search, refinement, choice of hypothesis, verdict."""
 
 from collections.abc import Iterable
-from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
 
+from core.diagnosis.acceptance import Acceptance, accept, not_computable
 from core.diagnosis.baseline import Baseline, baseline_of, standing
-from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
+from core.diagnosis.case import Case
 from core.diagnosis.errors import DiagnosisError
+from core.diagnosis.fundamental import fundamental_of
 from core.diagnosis.hypotheses import Explanation, explain, is_explained
 from core.diagnosis.indicators import indicators
 from core.diagnosis.judgement import identified, judge
@@ -23,11 +24,9 @@ from core.machines.parameters import Motor
 from core.machines.playback import Playback, electrical_to_rpm
 from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
-from core.quality import examine
 from core.quality.assumed_supply import SUPPLY_UNBALANCE
-from core.quality.finding import QualityFinding, finding
-from core.recordings import Quantity, Recording, RecordingError
-from core.signals.terminals import terminals
+from core.quality.finding import QualityFinding
+from core.recordings import Recording
 
 MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
 
@@ -74,37 +73,73 @@ def diagnose(
     """
     begun = perf_counter()
     _check_known(method, model)
+    acceptance = accept(recording, motor, currents_only=currents_only)
+    return diagnose_accepted(acceptance, method=method, model=model, baseline=baseline, begun=begun)
+
+
+def diagnose_accepted(
+    acceptance: Acceptance,
+    *,
+    method: str = DEFAULT_METHOD,
+    model: str = DEFAULT_MODEL,
+    baseline: Baseline | None = None,
+    begun: float | None = None,
+) -> Diagnosis:
+    """Diagnose the stator winding from a record that has been through the quality gate.
+
+    Parameters
+    ----------
+    acceptance : Acceptance
+        What `accept` says of the record.
+    method : str, optional
+        Global search, one of `core.diagnosis.methods.Method`.
+    model : str, optional
+        Fault model, one of `core.diagnosis.methods.Model`.
+    baseline : Baseline or None, optional
+        The motor's standing asymmetry, taken off the currents first.
+    begun : float or None, optional
+        Time of `time.perf_counter` from which `compute_seconds` counts; now if None [s].
+
+    Returns
+    -------
+    Diagnosis
+        Verdict, figures and reasons.
+
+    Raises
+    ------
+    DiagnosisError
+        If the method or the model is unknown.
+    """
+    begun = perf_counter() if begun is None else begun
+    _check_known(method, model)
     try:
-        result = _diagnosed(recording, motor, method, model, baseline, begun, currents_only=currents_only)
+        result = _diagnosed(acceptance, method, model, baseline, begun)
         impossible = not_finite(result.as_dict())
     except (np.linalg.LinAlgError, ArithmeticError) as error:
         impossible = str(error)
     if impossible is None:
         return result
-    refusal = _not_computable(impossible)
-    return _refused([refusal], perf_counter() - begun, model, method, currents_only=currents_only)
+    refusal = not_computable(impossible)
+    seconds = perf_counter() - begun
+    return _refused([refusal], seconds, model, method, currents_only=acceptance.voltages_assumed)
 
 
 def _diagnosed(
-    recording: Recording,
-    motor: Motor,
-    method: str,
-    model: str,
-    baseline: Baseline | None,
-    begun: float,
-    *,
-    currents_only: bool,
+    acceptance: Acceptance, method: str, model: str, baseline: Baseline | None, begun: float
 ) -> Diagnosis:
-    """Diagnose; figures may not be finite. Raises numpy.linalg.LinAlgError, ArithmeticError too."""
-    case, quality, assumed = _accept(recording, motor, currents_only=currents_only)
-    if case is None:
+    """Diagnose; figures may not be finite. Raises numpy.linalg.LinAlgError, ArithmeticError."""
+    quality, assumed, accepted = list(acceptance.quality), acceptance.voltages_assumed, acceptance.accepted
+    if accepted is None:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
+    case, phasors = accepted.case, accepted.phasors
+    motor = case.motor
     if baseline is not None:
         case = baseline.taken_off(case)
+        phasors = fundamental_of(case)
     playback = Playback(MODELS[model], motor, case.supply, case.window)
     starts = search(case, playback.model, method)
     known = _known(baseline, SUPPLY_UNBALANCE if assumed else 0.0)
-    explanation = explain(case, playback.model, starts, known)
+    explanation = explain(case, phasors, playback.model, starts, known)
     quality.append(identified(explanation))
     if not quality[-1].passed:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
@@ -176,15 +211,17 @@ def learn_baseline(recordings: Iterable[Recording], motor: Motor, *, currents_on
     """
     seen: list[tuple[complex, complex]] = []
     for recording in recordings:
-        case, quality, _ = _accept(recording, motor, currents_only=currents_only)
-        if case is None:
-            failed = ", ".join(finding.name for finding in quality if not finding.passed)
+        acceptance = accept(recording, motor, currents_only=currents_only)
+        accepted = acceptance.accepted
+        if accepted is None:
+            failed = ", ".join(finding.name for finding in acceptance.quality if not finding.passed)
             raise DiagnosisError(f"{recording.source or 'recording'}: not fit for a baseline: {failed}")
         model = SplitWinding()
         try:
-            seen.append(standing(explain(case, model, search(case, model, DEFAULT_METHOD))))
+            starts = search(accepted.case, model, DEFAULT_METHOD)
+            seen.append(standing(explain(accepted.case, accepted.phasors, model, starts)))
         except (np.linalg.LinAlgError, ArithmeticError) as error:
-            what = _not_computable(str(error)).message
+            what = not_computable(str(error)).message
             raise DiagnosisError(
                 f"{recording.source or 'recording'}: not fit for a baseline: {what}"
             ) from error
@@ -196,53 +233,6 @@ def _check_known(method: str, model: str) -> None:
         raise DiagnosisError(f"model {model!r} is unknown; known: {', '.join(MODELS)}")
     if method not in METHODS:
         raise DiagnosisError(f"method {method!r} is unknown; known: {', '.join(METHODS)}")
-
-
-def _accept(
-    recording: Recording, motor: Motor, *, currents_only: bool
-) -> tuple[Case | None, list[QualityFinding], bool]:
-    """Check a recording and bring it into the winding frame.
-
-    Returned are the record in that frame, or None where a check fails; every check's finding; and whether the
-    voltages are assumed.
-    """
-    measured = terminals(
-        _currents_of(recording) if currents_only else recording,
-        currents=motor.channels.currents,
-        phase_voltages=None if currents_only else motor.channels.phase_voltages,
-        line_voltages=None if currents_only else motor.channels.line_voltages,
-        longest_s=LONGEST_RECORD_S,
-    )
-    assumed = measured.voltage_ab is None
-    if assumed and not currents_only:
-        raise RecordingError(
-            recording.source,
-            "voltages",
-            expected="three phase voltages or two line voltages beside the currents",
-            found="none: without them an unbalanced supply cannot be told from a fault",
-        )
-    quality, passed = examine(measured, motor)
-    if passed is None:
-        return None, quality, assumed
-    rate, frequency = measured.sample_rate_hz, passed.frequency_hz
-    case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
-    return replace(case, voltages_assumed=assumed), quality, assumed
-
-
-def _not_computable(what: str) -> QualityFinding:
-    return finding(
-        "computability", 1, 0, "figures", passed=False,
-        message=f"the motor's equations give no finite figures ({what}): nameplate and parameters, or the "
-        "recording, are not those of a motor",
-    )  # fmt: skip
-
-
-def _currents_of(recording: Recording) -> Recording:
-    """Return the recording as if its voltages had not been recorded."""
-    kept = [k for k, channel in enumerate(recording.channels) if channel.quantity is Quantity.CURRENT]
-    return replace(
-        recording, samples=recording.samples[kept], channels=tuple(recording.channels[k] for k in kept)
-    )
 
 
 def _known(baseline: Baseline | None, supply_unbalance: float) -> Known:

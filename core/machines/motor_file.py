@@ -1,4 +1,4 @@
-"""MOTOR.toml: nameplate, parameters with their intervals, channel names and limits of one motor."""
+"""MOTOR.toml: nameplate, parameters with their intervals, channels, limits and sensors of one motor."""
 
 import tomllib
 from collections.abc import Mapping
@@ -8,9 +8,11 @@ from pathlib import Path
 
 from core.machines import plausibility
 from core.machines.parameters import ChannelNames, Connection, Limits, MachineParameters, Motor, Nameplate
+from core.machines.sensors import SensorClass
 
-TABLES = ("nameplate", "parameters", "intervals", "channels", "limits")
+TABLES = ("nameplate", "parameters", "intervals", "channels", "limits", "sensors")
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))
+DEFAULT_SENSORS = SensorClass()
 FAULT_LEVELS = (0.0, 0.2)
 """To the upper end of the search. A higher limit would never be reached and would switch the alarm off."""
 
@@ -59,6 +61,8 @@ class Plate:
         Names of the channels in the record.
     limits : Limits
         Limits of the motor's condition.
+    sensors : SensorClass
+        Class of the relay's channels with their transformers.
     """
 
     name: str
@@ -66,6 +70,7 @@ class Plate:
     parameters: MachineParameters | None
     channels: ChannelNames
     limits: Limits
+    sensors: SensorClass
 
 
 def read_motor(path: Path | str) -> Motor:
@@ -112,10 +117,12 @@ def read_plate(path: Path | str) -> Plate:
     return _plate_from_table(_table_of(path), name=path.stem, source=path)
 
 
-def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | str) -> Motor:
-    """Make a motor from the tables [nameplate], [parameters], [intervals], [channels] and [limits].
+def motor_from_table(
+    table: Mapping[str, object], *, name: str, source: Path | str, typical: SensorClass = DEFAULT_SENSORS
+) -> Motor:
+    """Make a motor from the tables of its file.
 
-    The last three are optional.
+    [nameplate] and [parameters] must be there; [intervals], [channels], [limits] and [sensors] are optional.
 
     Parameters
     ----------
@@ -125,6 +132,8 @@ def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | s
         Name of the motor.
     source : pathlib.Path or str
         Where the tables come from, for messages.
+    typical : SensorClass, optional
+        Class of the motor's relay, for what [sensors] does not say.
 
     Returns
     -------
@@ -136,10 +145,10 @@ def motor_from_table(table: Mapping[str, object], *, name: str, source: Path | s
     MotorFileError
         If a value is missing or impossible, or a key is unknown.
     """
-    plate = _plate_from_table(table, name=name, source=source)
+    plate = _plate_from_table(table, name=name, source=source, typical=typical)
     if plate.parameters is None:
         raise MotorFileError(source, "[parameters]", expected="a table", found="nothing")
-    return Motor(plate.name, plate.nameplate, plate.parameters, plate.channels, plate.limits)
+    return Motor(plate.name, plate.nameplate, plate.parameters, plate.channels, plate.limits, plate.sensors)
 
 
 def _table_of(path: Path) -> dict[str, object]:
@@ -155,7 +164,9 @@ def _table_of(path: Path) -> dict[str, object]:
         ) from error
 
 
-def _plate_from_table(table: Mapping[str, object], *, name: str, source: Path | str) -> Plate:
+def _plate_from_table(
+    table: Mapping[str, object], *, name: str, source: Path | str, typical: SensorClass = DEFAULT_SENSORS
+) -> Plate:
     unknown = sorted(set(table) - set(TABLES))
     if unknown:
         raise MotorFileError(
@@ -170,6 +181,7 @@ def _plate_from_table(table: Mapping[str, object], *, name: str, source: Path | 
     intervals = _Table(table, "intervals", source, optional=True)
     limits = _Table(table, "limits", source, optional=True)
     channels = _Table(table, "channels", source, optional=True)
+    sensors = _Table(table, "sensors", source, optional=True)
     rated = _nameplate(nameplate)
     plate = Plate(
         name=name,
@@ -188,11 +200,12 @@ def _plate_from_table(table: Mapping[str, object], *, name: str, source: Path | 
                 default=Limits().fault_level,
             )
         ),
+        sensors=_sensors(sensors, typical),
     )
     for parameter in PARAMETERS:
         # The intervals are for readers of the file; the models use the values alone.
         intervals.interval(parameter)
-    for section in (nameplate, machine, intervals, limits, channels):
+    for section in (nameplate, machine, intervals, limits, channels, sensors):
         if section is not None:
             section.reject_unknown()
     return plate
@@ -215,6 +228,17 @@ def _parameters(table: "_Table", nameplate: Nameplate) -> MachineParameters:
         **{
             one.field: table.number(one.field, (one.least, one.most), str(one))
             for one in plausibility.plausible_parameters(nameplate)
+        }
+    )
+
+
+def _sensors(table: "_Table", typical: SensorClass) -> SensorClass:
+    return SensorClass(
+        **{
+            one.field: table.number(
+                one.field, (one.least, one.most), str(one), default=getattr(typical, one.field)
+            )
+            for one in plausibility.plausible_sensors()
         }
     )
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from core.machines.motor_file import MotorFileError, motor_from_table
 from core.machines.parameters import ChannelNames, Limits, Motor
+from core.machines.sensors import SensorClass
 
 Interval = tuple[float, float]
 
@@ -99,6 +100,9 @@ def motor_text(
     lines += _channels(motor.channels)
     if motor.limits != Limits():
         lines += ["", "[limits]", f"fault_level = {_number(motor.limits.fault_level)}"]
+    if motor.sensors != SensorClass():
+        lines += ["", "[sensors]"]
+        lines += [f"{name} = {_number(span)}" for name, span in asdict(motor.sensors).items()]
     return "\n".join(lines) + "\n"
 
 

@@ -1,8 +1,10 @@
-"""Description of a motor: nameplate, equivalent-circuit parameters, channel names and limits."""
+"""Description of a motor: nameplate, equivalent-circuit parameters, channels, limits and sensors."""
 
 from dataclasses import dataclass, field
 from enum import StrEnum
 from math import pi
+
+from core.machines.sensors import SensorClass
 
 
 class Connection(StrEnum):
@@ -129,6 +131,8 @@ class Motor:
         Names of the channels in the record.
     limits : Limits, optional
         Limits of the motor's condition.
+    sensors : SensorClass, optional
+        Class of the relay's channels with their transformers.
     """
 
     name: str
@@ -136,3 +140,4 @@ class Motor:
     parameters: MachineParameters
     channels: ChannelNames = field(default_factory=ChannelNames)
     limits: Limits = field(default_factory=Limits)
+    sensors: SensorClass = field(default_factory=SensorClass)

@@ -21,6 +21,10 @@ RESISTANCE_PU = (0.0005, 0.5)
 LEAKAGE_REACTANCE_PU = (0.005, 1.0)
 MAGNETISING_REACTANCE_PU = (0.1, 30.0)
 INERTIA_CONSTANT_S = (0.003, 500.0)
+GAIN_SPAN = (1e-4, 0.1)
+"""From a revenue meter's to that of a transformer for protection of class 10P [share]."""
+DELAY_SPAN_S = (1e-7, 500e-6)
+"""Up to 9 degrees at 50 Hz [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +109,19 @@ def plausible_parameters(nameplate: Nameplate) -> Iterator[Plausible]:
     # The magnetising inductance is 1.5 times the self-inductance.
     yield _scaled("stator_self_inductance_H", MAGNETISING_REACTANCE_PU, base_H / 1.5, "H", of_rating)
     yield _scaled("inertia_kgm2", INERTIA_CONSTANT_S, base_kgm2, "kg m^2", "s of inertia constant")
+
+
+def plausible_sensors() -> Iterator[Plausible]:
+    """Yield the range of each span of a sensor class.
+
+    Yields
+    ------
+    Plausible
+        Range of a field of `SensorClass`.
+    """
+    for quantity in ("voltage", "current"):
+        yield Plausible(f"{quantity}_gain", *GAIN_SPAN, "as a fraction", "0.01 is +-1 %")
+        yield Plausible(f"{quantity}_delay_s", *DELAY_SPAN_S, "s", "25e-6 is +-25 us")
 
 
 def _scaled(field: str, ends: tuple[float, float], base: float, unit: str, of: str) -> Plausible:

@@ -27,7 +27,7 @@ def channels_of(configuration: Configuration, roles: tuple[ChannelRole, ...]) ->
         The channels, in the order of the file.
     """
     return tuple(
-        Channel(c.name, role.quantity, role.phase, role.unit, _full_scale(c, role.scale))
+        Channel(c.name, role.quantity, role.phase, role.unit, _full_scale(c, role.scale), c.ratio)
         for c, role in zip(configuration.analog, roles, strict=True)
     )
 

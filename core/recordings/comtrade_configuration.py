@@ -24,6 +24,7 @@ MAX_CHANNELS = 20_000
 """The standard allows 999 999; no recorder comes near, and a file of so many would take seconds to refuse."""
 MAX_SAMPLES = 9_999_999_999
 MAX_RATES = 999
+MOST_RATIO = 1e12
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _YEAR = re.compile(r"199[1-9]|20[0-9]{2}", re.ASCII)
@@ -56,6 +57,8 @@ class AnalogChannel:
     to_primary : float
         Transformer ratio if the values are secondary ("S"), 1 if they are primary ("P"). The 1991 edition has
         neither: its values are taken in the unit as written.
+    ratio : float or None
+        Transformer ratio as written; None where there is none, or it is 1 or no ratio.
     """
 
     name: str
@@ -67,6 +70,7 @@ class AnalogChannel:
     minimum: float
     maximum: float
     to_primary: float
+    ratio: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -247,11 +251,12 @@ def _analog_channel(line: Line, number: int, revision: int, repairs: Repairs) ->
         skew_us=line.real(7, "skew") if line.fields[7] else 0.0,
         minimum=minimum,
         maximum=maximum,
-        to_primary=1.0 if revision == 1991 else _ratio(line),
+        to_primary=1.0 if revision == 1991 else _to_primary(line),
+        ratio=None if revision == 1991 else _written_ratio(line),
     )
 
 
-def _ratio(line: Line) -> float:
+def _to_primary(line: Line) -> float:
     """Return the factor that makes the channel's values primary ones (5.3.3.11 to 5.3.3.13)."""
     primary, secondary = line.real(10, "primary ratio"), line.real(11, "secondary ratio")
     scaling = line.fields[12].upper()
@@ -266,9 +271,17 @@ def _ratio(line: Line) -> float:
             f"{primary:g}:{secondary:g}",
         )
     ratio = primary / secondary
-    if not 0 < ratio < 1e12:
+    if not 0 < ratio < MOST_RATIO:
         raise line.refuse("transformer ratio", "a ratio below 1e12", f"{ratio:g}")
     return ratio
+
+
+def _written_ratio(line: Line) -> float | None:
+    primary, secondary = line.real(10, "primary ratio"), line.real(11, "secondary ratio")
+    if primary <= 0 or secondary <= 0:
+        return None
+    ratio = primary / secondary
+    return ratio if 0 < ratio < MOST_RATIO and ratio != 1 else None
 
 
 def _status_channel(line: Line, number: int, revision: int, repairs: Repairs) -> str:

@@ -1,7 +1,8 @@
 """Writer of COMTRADE records: editions 1991, 1999 and 2013, every data format, and the combined file.
 
 Like a relay's own memory, counts have 16 bits (32 in BINARY32): count = round((x - b) / a), clipped at full
-scale, missing samples marked as the edition does. Values are written as primary ("P"), so the ratio is 1:1.
+scale, missing samples marked as the edition does. Values are written as primary ("P"), beside the
+transformer's ratio where the channel has one.
 Samples that are not evenly spaced are written with their time stamps as the only time base (0 rates).
 """
 
@@ -334,7 +335,8 @@ def _channel_line(number: int, channel: Channel, revision: Revision, data_format
         f"{number},{_field(channel.name)},{phase},,{_field(channel.unit)},"
         f"{scale.step!r},{_plain(scale.offset)},0,{_plain(scale.lowest)},{_plain(scale.highest)}"
     )
-    return line if revision == 1991 else line + ",1,1,P"
+    ratio = 1.0 if channel.transformer_ratio is None else channel.transformer_ratio
+    return line if revision == 1991 else f"{line},{_plain(ratio)},1,P"
 
 
 def _plain(value: float) -> str:

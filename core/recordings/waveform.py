@@ -34,6 +34,9 @@ class Channel:
         SI unit of the samples after scaling ("A", "V"; otherwise as written in the file).
     full_scale : float or None, optional
         Largest magnitude the recorder can represent [unit], None if the file does not tell.
+    transformer_ratio : float or None, optional
+        Primary over secondary value of its instrument transformer, as the file tells it; None where it tells
+        none, or a ratio of 1, which many a recorder writes for want of knowledge.
     """
 
     name: str
@@ -41,6 +44,7 @@ class Channel:
     phase: str | None
     unit: str
     full_scale: float | None = None
+    transformer_ratio: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

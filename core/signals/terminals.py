@@ -43,6 +43,8 @@ class Terminals:
         Samples of the voltage channels [V].
     voltage_axes : ndarray, shape (2, channels)
         Matrix that makes voltage_ab of the voltages.
+    voltage_quantity : Quantity or None
+        Whether they are phase or line voltages; None without voltages.
     """
 
     current_abc: NDArray[np.float64]
@@ -52,6 +54,7 @@ class Terminals:
     voltage_channels: tuple[Channel, ...]
     voltages: NDArray[np.float64]
     voltage_axes: NDArray[np.float64]
+    voltage_quantity: Quantity | None
 
 
 def terminals(
@@ -103,7 +106,7 @@ def terminals(
     chosen_currents = (
         _by_name(recording, Quantity.CURRENT, currents) if currents else _find_currents(recording)
     )
-    voltage_rows, voltage_axes = _voltages(recording, phase_voltages, line_voltages)
+    voltage_quantity, voltage_rows, voltage_axes = _voltages(recording, phase_voltages, line_voltages)
     longest = min(longest_s * recording.sample_rate_hz, recording.samples.shape[1])
     first = recording.samples.shape[1] - ceil(longest)
     voltages = _rows(recording, voltage_rows, first)
@@ -117,6 +120,7 @@ def terminals(
         voltage_channels=tuple(recording.channels[row] for row in voltage_rows),
         voltages=voltages,
         voltage_axes=voltage_axes,
+        voltage_quantity=voltage_quantity,
     )
 
 
@@ -128,18 +132,19 @@ def _voltages(
     recording: Recording,
     phase_voltages: tuple[str, str, str] | None,
     line_voltages: tuple[str, str, str] | None,
-) -> tuple[tuple[int, ...], NDArray[np.float64]]:
-    """Rows of the voltage channels and the matrix that makes Clarke axes of them."""
+) -> tuple[Quantity | None, tuple[int, ...], NDArray[np.float64]]:
+    """Find what voltages there are, rows of their channels, and the matrix that makes Clarke axes of them."""
+    phase, line = Quantity.PHASE_VOLTAGE, Quantity.LINE_VOLTAGE
     if phase_voltages:
-        return _by_name(recording, Quantity.PHASE_VOLTAGE, phase_voltages), CLARKE
+        return phase, _by_name(recording, phase, phase_voltages), CLARKE
     if line_voltages:
-        return _by_name(recording, Quantity.LINE_VOLTAGE, line_voltages), CLARKE_FROM_LINE
-    by_phase = _find(recording, Quantity.PHASE_VOLTAGE, PHASES)
+        return line, _by_name(recording, line, line_voltages), CLARKE_FROM_LINE
+    by_phase = _find(recording, phase, PHASES)
     if len(by_phase) == len(PHASES):
-        return tuple(by_phase[phase] for phase in PHASES), CLARKE
-    by_line = _find(recording, Quantity.LINE_VOLTAGE, LINES)
+        return phase, tuple(by_phase[name] for name in PHASES), CLARKE
+    by_line = _find(recording, line, LINES)
     if len(by_line) >= 2:
-        return tuple(by_line.values()), CLARKE_FROM_LINE @ _closed_triangle(by_line)
+        return line, tuple(by_line.values()), CLARKE_FROM_LINE @ _closed_triangle(by_line)
     if by_phase or by_line:
         raise RecordingError(
             recording.source,
@@ -147,7 +152,7 @@ def _voltages(
             expected="three phase voltages, or at least two line voltages",
             found=_listing(recording, [*by_phase.values(), *by_line.values()]),
         )
-    return (), np.zeros((2, 0))
+    return None, (), np.zeros((2, 0))
 
 
 def _closed_triangle(by_line: dict[str, int]) -> NDArray[np.float64]:

@@ -10,6 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from core.machines.motor_file import Plate
 from core.machines.parameters import ChannelNames, Limits, MachineParameters, Motor
+from core.machines.sensors import SensorClass
 from core.recordings import Channel, Quantity, Recording
 from ied_sim.motor.load import Load
 from ied_sim.motor.plant import MotorPlant
@@ -76,7 +77,7 @@ class StartRecord:
 
 def plate_of(motor: Motor, parameters: MachineParameters | None = None) -> Plate:
     """The motor's nameplate with what is known of its parameters."""
-    return Plate(motor.name, motor.nameplate, parameters, ChannelNames(), Limits())
+    return Plate(motor.name, motor.nameplate, parameters, ChannelNames(), Limits(), SensorClass())
 
 
 def with_parameters(motor: Motor, **values: float) -> Motor:

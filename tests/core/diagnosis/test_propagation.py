@@ -45,7 +45,9 @@ def case(record: Recording, motor: Motor, *, reverse: bool) -> Case:
 
 def refined(seen: Case, near: Candidates) -> Fit:
     """The same hypothesis, dead-shorted turns of one winding, whatever else explains the record."""
-    return Refinement(seen, SplitWinding(), near).fit(near, (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET))
+    return Refinement(seen, fundamental_of(seen), SplitWinding(), near).fit(
+        near, (FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET)
+    )
 
 
 def with_channel_error(record: Recording, number: int) -> Recording:
@@ -71,9 +73,11 @@ def test_every_cause_moves_level_and_load_as_told(motor: Motor, reverse: bool) -
     truth = operation(motor, reverse=reverse)
     record = recording(truth, noise=1e-5)
     seen = case(record, motor, reverse=reverse)
-    start = explain(seen, SplitWinding(), search(seen, SplitWinding(), DEFAULT_METHOD)).fit.candidate
+    phasors = fundamental_of(seen)
+    starts = search(seen, SplitWinding(), DEFAULT_METHOD)
+    start = explain(seen, phasors, SplitWinding(), starts).fit.candidate
     before = refined(seen, replace(start, path_ratio=np.zeros(1)))
-    errors = errors_of(seen, SplitWinding(), fundamental_of(seen), before.candidate, Known())
+    errors = errors_of(seen, SplitWinding(), phasors, before.candidate, Known())
     assert errors.shape == (4, len(CHANNELS) + len(PARAMETER_NAMES))
     scale = {
         name: float(np.linalg.norm(before.response[name] @ errors)) for name in (FAULT_LEVEL, LOAD_LEVEL)

@@ -1,5 +1,6 @@
 """MOTOR.toml: what it accepts, and how it says what it refuses."""
 
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.machines.motor_file import MotorFileError, read_motor, read_plate
+from core.machines.motor_file import MotorFileError, motor_from_table, read_motor, read_plate
 from core.machines.motor_file_writer import write_motor
 from core.machines.parameters import (
     ChannelNames,
@@ -16,6 +17,7 @@ from core.machines.parameters import (
     MachineParameters,
     Motor,
 )
+from core.machines.sensors import SensorClass
 from testing.machines.motors import REFERENCE
 from testing.machines.plausible_motors import plausible_motors
 
@@ -45,6 +47,10 @@ ic = "I3"
 
 [limits]
 fault_level = 0.01
+
+[sensors]
+voltage_gain = 0.002
+current_delay_s = 10e-6
 """
 
 
@@ -63,6 +69,14 @@ def test_reads_every_field(tmp_path: Path) -> None:
     assert motor.channels.currents == ("I1", "I2", "I3")
     assert motor.channels.phase_voltages is None
     assert motor.limits.fault_level == 0.01
+    assert motor.sensors == SensorClass(voltage_gain=0.002, current_delay_s=10e-6)
+
+
+def test_what_the_file_does_not_say_of_the_sensors_is_typical_of_the_relay() -> None:
+    table = tomllib.loads(COMPLETE)
+    typical = SensorClass(0.02, 0.03, 40e-6, 50e-6)
+    motor = motor_from_table(table, name="PUMP-7", source="motors.toml", typical=typical)
+    assert motor.sensors == SensorClass(0.002, 0.03, 40e-6, 10e-6)
 
 
 @pytest.mark.parametrize(
@@ -87,6 +101,14 @@ def test_reads_every_field(tmp_path: Path) -> None:
         ("[8.3, 8.5]", "[8.3, true]", "[intervals] stator_resistance_ohm", "[low, high]"),
         ("[intervals]", "[intervals]\nslip = [1, 2]", "[intervals] slip", "one of inertia_kgm2"),
         ("fault_level", "fault_levle", "[limits] fault_levle", "one of fault_level"),
+        (
+            "voltage_gain = 0.002",
+            "voltage_gain = 0.2",
+            "[sensors] voltage_gain",
+            "0.0001 to 0.1 as a fraction",
+        ),
+        ("_s = 10e-6", "_s = 10", "[sensors] current_delay_s", "1e-07 to 0.0005 s (25e-6 is +-25 us)"),
+        ("voltage_gain", "gain", "[sensors] gain", "one of current_delay_s, current_gain, voltage_delay_s"),
         ("fault_level = 0.01", "fault_level = 3", "[limits] fault_level", "a fraction of at most 0.2"),
         (
             'ib = "I2"',
@@ -173,13 +195,16 @@ names = st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() 
 @given(
     plausible=plausible_motors(),
     currents=st.one_of(st.none(), st.tuples(names, names, names)),
+    sensors=st.sampled_from([SensorClass(), SensorClass(0.002, 0.003, 1e-5, 2e-5)]),
 )
 def test_what_is_written_is_read_again(
     tmp_path_factory: pytest.TempPathFactory,
     plausible: Motor,
     currents: tuple[str, str, str] | None,
+    sensors: SensorClass,
 ) -> None:
-    motor = replace(plausible, channels=ChannelNames(currents=currents), limits=Limits(0.02))
+    channels = ChannelNames(currents=currents)
+    motor = replace(plausible, channels=channels, limits=Limits(0.02), sensors=sensors)
     inertia = motor.parameters.inertia_kgm2
     path = tmp_path_factory.mktemp("motor") / "PUMP-7.toml"
     write_motor(
@@ -193,6 +218,8 @@ def test_what_is_written_is_read_again(
     assert again.channels == motor.channels
     assert again.nameplate.connection is motor.nameplate.connection
     assert again.limits == motor.limits
+    assert again.sensors == motor.sensors
+    assert ("[sensors]" in path.read_text()) is (sensors != SensorClass())
     for name in MachineParameters.__slots__:
         assert getattr(again.parameters, name) == pytest.approx(getattr(motor.parameters, name), rel=1e-6)
 

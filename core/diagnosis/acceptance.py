@@ -1,0 +1,138 @@
+"""What a recording is, before anybody asks what it tells: its terminals, the quality gate, its phasors.
+
+The diagnosis of a record and the observation of its motor's condition both begin here, so that a record is
+read, checked and taken to phasors once.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
+from core.diagnosis.errors import NoVoltagesError
+from core.diagnosis.fundamental import Fundamental, fundamental_of
+from core.machines.parameters import Motor
+from core.quality import examine
+from core.quality.finding import QualityFinding, finding
+from core.recordings import Quantity, Recording
+from core.signals.terminals import Terminals, terminals
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """A record that passed the quality gate.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Quantities at the motor's terminals.
+    case : Case
+        The record in the winding frame.
+    phasors : Fundamental
+        Its phasors at supply frequency.
+    """
+
+    terminals: Terminals
+    case: Case
+    phasors: Fundamental
+
+
+@dataclass(frozen=True, slots=True)
+class Acceptance:
+    """What the quality gate says of a record.
+
+    Parameters
+    ----------
+    quality : tuple of QualityFinding
+        Findings of all checks made.
+    voltages_assumed : bool
+        Whether no voltages were recorded, or none are used.
+    accepted : Accepted or None
+        The record; None where a check failed.
+    """
+
+    quality: tuple[QualityFinding, ...]
+    voltages_assumed: bool
+    accepted: Accepted | None
+
+
+def accept(recording: Recording, motor: Motor, *, currents_only: bool = False) -> Acceptance:
+    """Check a recording, bring it into the winding frame and find its phasors.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    motor : Motor
+        Nameplate, parameters, channel names and limits of the motor.
+    currents_only : bool, default False
+        Use no voltages, recorded or not; a balanced supply is assumed.
+
+    Returns
+    -------
+    Acceptance
+        Findings, and the record where it passed.
+
+    Raises
+    ------
+    RecordingError
+        If the recording lacks channels that the motor needs.
+    """
+    try:
+        return _accept(recording, motor, currents_only=currents_only)
+    except (np.linalg.LinAlgError, ArithmeticError) as error:
+        return Acceptance((not_computable(str(error)),), currents_only, None)
+
+
+def not_computable(what: str) -> QualityFinding:
+    """Return the finding that the motor's equations give no figures.
+
+    Parameters
+    ----------
+    what : str
+        What fails, in words.
+
+    Returns
+    -------
+    QualityFinding
+        The finding.
+    """
+    return finding(
+        "computability", 1, 0, "figures", passed=False,
+        message=f"the motor's equations give no finite figures ({what}): nameplate and parameters, or the "
+        "recording, are not those of a motor",
+    )  # fmt: skip
+
+
+def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Acceptance:
+    """Raise numpy.linalg.LinAlgError or ArithmeticError too, where no phasors can be computed."""
+    measured = terminals(
+        _currents_of(recording) if currents_only else recording,
+        currents=motor.channels.currents,
+        phase_voltages=None if currents_only else motor.channels.phase_voltages,
+        line_voltages=None if currents_only else motor.channels.line_voltages,
+        longest_s=LONGEST_RECORD_S,
+    )
+    assumed = measured.voltage_ab is None
+    if assumed and not currents_only:
+        raise NoVoltagesError(
+            recording.source,
+            "voltages",
+            expected="three phase voltages or two line voltages beside the currents",
+            found="none: without them an unbalanced supply cannot be told from a fault",
+        )
+    quality, passed = examine(measured, motor)
+    if passed is None:
+        return Acceptance(tuple(quality), assumed, None)
+    rate, frequency = measured.sample_rate_hz, passed.frequency_hz
+    case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
+    case = replace(case, voltages_assumed=assumed)
+    return Acceptance(tuple(quality), assumed, Accepted(measured, case, fundamental_of(case)))
+
+
+def _currents_of(recording: Recording) -> Recording:
+    """Return the recording as if its voltages had not been recorded."""
+    kept = [k for k, channel in enumerate(recording.channels) if channel.quantity is Quantity.CURRENT]
+    return replace(
+        recording, samples=recording.samples[kept], channels=tuple(recording.channels[k] for k in kept)
+    )
