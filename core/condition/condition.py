@@ -7,7 +7,7 @@ from typing import Any, Final, cast
 
 from core.condition.advice import advice
 from core.condition.assessment import NORMAL_95, PHASES, Assessment, Change, Level, Phase, Reference
-from core.condition.forecast import Forecast
+from core.condition.forecast import Forecast, forecast, limit_ahead
 from core.condition.kinds import Kind, State
 from core.condition.reasons import FEW, STANDING_SCORE, reasons_of
 from core.machines.parameters import Motor
@@ -210,6 +210,7 @@ def condition_of(
     phase = _phase(assessment)
     level = None if change is None or not _may_be_shorted_turns(change) else change.level
     mu_f, mu_f_ci95 = _total(assessment, level)
+    ahead = _forecast(assessment, level, mu_f, limit)
     return Condition(
         motor=motor.name,
         state=state,
@@ -222,12 +223,12 @@ def condition_of(
         change_ci95=None if level is None else level.ci95,
         size=None if change is None else change.size,
         since_ns=_since(assessment),
-        forecast=Forecast(limit),
+        forecast=ahead,
         reference=reference,
         as_of_ns=assessment.as_of_ns,
         stale=_is_stale(assessment.as_of_ns, now_ns, stale_after_ns),
         advice=advice(state, kind, phase=phase, candidates=candidates),
-        reasons=reasons_of(assessment, limit),
+        reasons=reasons_of(assessment, limit, ahead),
     )
 
 
@@ -337,6 +338,14 @@ def _total(assessment: Assessment, level: Level | None) -> tuple[float, Interval
         low += level.ci95[0] if _is_shorted_turns(assessment.change) else 0.0
         high = standing.value + level.value + NORMAL_95 * hypot(standing.deviation, level.deviation)
     return value, (min(low, value), max(high, value))
+
+
+def _forecast(assessment: Assessment, level: Level | None, mu_f: float, limit: float) -> Forecast:
+    limit = limit_ahead(mu_f, limit)
+    if level is None:
+        return Forecast(limit)
+    standing = mu_f - max(0.0, level.value)
+    return forecast(assessment.levels, limit, standing=standing, deviation=level.deviation)
 
 
 def _is_shorted_turns(change: Change | None) -> bool:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
+from core.condition.forecast import Forecast
 from core.condition.kinds import Kind
 from core.time_stamps import SECONDS_END, rfc3339
 
@@ -12,6 +13,8 @@ STANDING_SCORE: Final = 3.7
 
 FEW: Final = 0.02
 """A kind with less probability than this is no candidate."""
+
+HOURS_PER_DAY: Final = 24
 
 WORDS: Final = {
     Kind.NONE: "nothing",
@@ -27,7 +30,7 @@ WORDS: Final = {
 """Each kind as a part of a sentence."""
 
 
-def reasons_of(assessment: Assessment, limit: float) -> tuple[str, ...]:
+def reasons_of(assessment: Assessment, limit: float, forecast: Forecast) -> tuple[str, ...]:
     """Return the reasons of a condition.
 
     Parameters
@@ -36,6 +39,8 @@ def reasons_of(assessment: Assessment, limit: float) -> tuple[str, ...]:
         What the records tell.
     limit : float
         Limit of the motor, a fraction of the phase turns.
+    forecast : Forecast
+        Growth of the level.
 
     Returns
     -------
@@ -43,6 +48,7 @@ def reasons_of(assessment: Assessment, limit: float) -> tuple[str, ...]:
         The reasons, the most important first.
     """
     found = [*_of_change(assessment.change, limit)] if assessment.change is not None else []
+    found += _of_forecast(forecast)
     found += _of_standing(assessment)
     found += _of_reference(assessment.reference)
     if assessment.unconfirmed:
@@ -76,6 +82,20 @@ def _of_change(change: Change, limit: float) -> Iterator[str]:
         yield f"the interval {'lies above' if above else 'reaches below'} the motor's limit of {limit:.2%}"
 
 
+def _of_forecast(forecast: Forecast) -> Iterator[str]:
+    growth = forecast.growth_per_day
+    if growth is None:
+        return
+    if forecast.days is None:
+        yield f"the level shows no trend towards {forecast.limit:.2%}"
+    else:
+        low, mid, high = (_days(days) for days in forecast.days)
+        yield (
+            f"the level grows by {growth:.3%} a day; it reaches {forecast.limit:.2%} in about {mid}, between "
+            f"{low} and {high} with 80 %"
+        )
+
+
 def _of_standing(assessment: Assessment) -> Iterator[str]:
     reference = assessment.reference
     standing = reference.standing
@@ -107,6 +127,10 @@ def _of_reference(reference: Reference) -> Iterator[str]:
 def _interval(level: Level) -> str:
     low, high = level.ci95
     return f"{max(0.0, level.value):.2%} (95 % interval {low:.2%} to {high:.2%})"
+
+
+def _days(days: float) -> str:
+    return f"{days * HOURS_PER_DAY:.0f} hours" if days < 2.0 else f"{days:.0f} days"
 
 
 def _seconds(time_ns: int) -> str:

@@ -175,6 +175,19 @@ def test_time_ages_a_condition_and_nothing_else() -> None:
     assert late == condition_of(MOTOR, assessment(), AS_OF_NS + STALE_AFTER_NS + 1)
 
 
+def test_a_level_that_grows_has_a_forecast() -> None:
+    grows = tuple((AS_OF_NS - (99 - k) * NANOSECONDS_PER_DAY // 24, 3e-5 * k) for k in range(100))
+    named = change(Kind.SHORTED_TURNS, size=level(0.003, 0.0002))
+    condition = judged(assessment(named, levels=grows))
+    assert condition.forecast.limit == MOTOR.limits.fault_level
+    assert condition.forecast.days is not None
+    assert condition.forecast.days[1] == pytest.approx(0.002 / 3e-5 / 24, rel=0.2)
+    assert condition.forecast.growth_per_day == pytest.approx(24 * 3e-5, rel=0.05)
+    assert any("grows by" in reason for reason in condition.reasons)
+    above = judged(assessment(change(Kind.SHORTED_TURNS, size=level(0.012)), levels=grows))
+    assert above.forecast.limit == 0.02
+
+
 KINDS = st.sampled_from([kind for kind in Kind if kind is not Kind.NONE])
 LEVELS = st.builds(
     Level, st.floats(-0.01, 0.3), st.floats(1e-6, 0.05), st.sampled_from([0, 1, 2]), st.floats(0, 4)
