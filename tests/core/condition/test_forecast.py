@@ -57,7 +57,7 @@ def coverage(course: Course, *, trials: int = 600, irregular: bool = False) -> t
         t = np.cumsum(rng.exponential(1.0, RECORDS)) if irregular else hours
         m = np.interp(t, hours, true)
         seen = max(10, int(np.searchsorted(m, rng.uniform(0.3, 0.9) * LIMIT)))
-        if seen >= min(np.searchsorted(m, LIMIT), RECORDS - 1):
+        if seen >= min(int(np.searchsorted(m, LIMIT)), RECORDS - 1):
             continue
         days = told(t, m, rng, seen).days
         if days is None:
