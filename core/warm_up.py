@@ -1,16 +1,22 @@
-"""Compile the models once, so that the first diagnosis need not wait: python -m core.warm_up."""
+"""Compile the numbers' inner loops once, so that nothing waits for them: python -m core.warm_up."""
 
 import numpy as np
 
+from core.condition.follower import Follower
+from core.condition.observation import Observation, VoltageChannels
 from core.machines.candidates import Candidates
 from core.machines.parameters import MachineParameters, Motor, Nameplate
 from core.machines.playback import Playback, window_of_record
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import supply
+from core.signals.sequence import PhaseSequence
+
+FOLLOWED = 40
+"""Records that are followed."""
 
 
 def warm_up() -> None:
-    """Run a few cycles of the thesis's motor through every compiled function."""
+    """Run a few cycles, and a few records, of the thesis's motor through every compiled function."""
     motor = Motor(
         "warm-up",
         Nameplate(rated_power_W=800.0, rated_voltage_V=380.0, rated_frequency_Hz=50.0, pole_pairs=2),
@@ -25,6 +31,29 @@ def warm_up() -> None:
     candidate = Candidates(0.05 * one, np.zeros(1, np.int64), 0.5 * one, 0.0 * one, 0.0 * one)
     playback.squared_error(candidate, np.zeros((2, samples)))
     playback.trajectories(candidate)
+    follower = Follower(motor)
+    for k in range(FOLLOWED):
+        follower.fold(_record(k))
+    follower.assessment()
+
+
+def _record(k: int) -> Observation:
+    """Return one of a motor's records; the later half has an asymmetry that the first lacks."""
+    return Observation(
+        time_ns=k * 3_600_000_000_000,
+        recorder="",
+        sequence=PhaseSequence.ABC,
+        voltage_channels=VoltageChannels.PHASE,
+        frequency_hz=50.0,
+        positive_voltage_V=310.0 + 0.0j,
+        negative_voltage_V=0.31 + 0.0j,
+        zero_voltage_V=0.0j,
+        positive_current_A=1.5 - 0.7j,
+        negative_current_A=(0.001 + 0.3j * (k > FOLLOWED // 2)),
+        zero_current_A=0.0j,
+        scatter=1e-8,
+        cycles=20,
+    )
 
 
 if __name__ == "__main__":

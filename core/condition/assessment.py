@@ -1,7 +1,7 @@
 """What the filter and its bank of changes make of a motor's records so far."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 from core.condition.kinds import Kind
@@ -140,3 +140,18 @@ class Assessment:
     threshold: float
     levels: tuple[tuple[int, float], ...] = ()
     unconfirmed: bool = False
+
+    def seen_at(self, as_of_ns: int) -> "Assessment":
+        """Return the same assessment as of a later record that it does not depend on.
+
+        Parameters
+        ----------
+        as_of_ns : int
+            Time of the later record, UTC [ns].
+
+        Returns
+        -------
+        Assessment
+            The assessment.
+        """
+        return replace(self, as_of_ns=as_of_ns)
