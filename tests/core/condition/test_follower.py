@@ -30,8 +30,8 @@ def healthy_records(count: int, seed: int = 1) -> list[Observation]:
             Observation(
                 time_ns=k * HOUR_NS, recorder="relay", sequence=PhaseSequence.ABC,
                 voltage_channels=VoltageChannels.PHASE, frequency_hz=50.0,
-                positive_voltage_V=310.0 + 0.0j, negative_voltage_V=310.0 * (v2 + noise), zero_voltage_V=1.0 + 0.0j,
-                positive_current_A=complex(I1),
+                positive_voltage_V=310.0 + 0.0j, negative_voltage_V=310.0 * (v2 + noise),
+                zero_voltage_V=1.0 + 0.0j, positive_current_A=complex(I1),
                 negative_current_A=310.0 * v2 / Z2, zero_current_A=0.01 + 0.0j, scatter=1e-8, cycles=20,
             )
         )  # fmt: skip
