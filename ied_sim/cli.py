@@ -17,7 +17,8 @@ from ied_sim.errors import ScenarioError, SimulatorError, TableError
 from ied_sim.profiles.profile import DEFAULT, read_profile, shipped
 from ied_sim.profiles.standalone import IED_NAME, standalone
 from ied_sim.relay.configuration import RelayConfiguration
-from ied_sim.scenario.scenario import healthy_reference, read_scenario
+from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings
+from ied_sim.scenario.scenario import healthy_reference, read_clock, read_scenario
 from ied_sim.simulator import Simulator
 from mms import filter_tls_log_from_stderr
 from scl import Address
@@ -89,11 +90,12 @@ def ied_sim(
             document = scl.read(scd)
         names = ied or [found.name for found in document.ieds]
         scenarios = _scenarios(document, scenario, profile or DEFAULT)
+        clock = REAL_TIME if scenario is None else read_clock(scenario)
         if truth:
             told = {name: scenarios[name].truth(at) for name in names if document.ied(name)}
             _say(json.dumps(told))
             return
-        _serve(document, names, scenarios, files)
+        _serve(document, names, scenarios, files, clock)
     except (SimulatorError, TableError, scl.SclError, OSError) as error:
         typer.echo(f"ied-sim: {error}", err=True)
         raise typer.Exit(1) from error
@@ -120,7 +122,11 @@ def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, 
 
 
 def _serve(
-    document: scl.Scl, names: list[str], scenarios: dict[str, RelayConfiguration], files: Path | None
+    document: scl.Scl,
+    names: list[str],
+    scenarios: dict[str, RelayConfiguration],
+    files: Path | None,
+    clock: ClockSettings,
 ) -> None:
     # The signals are waited for, not handled. They are blocked before any thread starts, so all inherit that.
     signals = (signal.SIGTERM, signal.SIGINT)
@@ -130,7 +136,7 @@ def _serve(
     warm_up()
     with (
         tempfile.TemporaryDirectory(prefix="ied-sim-") as temporary,
-        Simulator(document, scenarios, files=files or Path(temporary), ieds=names) as simulator,
+        Simulator(document, scenarios, files=files or Path(temporary), ieds=names, clock=clock) as simulator,
     ):
         for name, address in simulator.addresses.items():
             _say(f"{name} {address.host} {address.port}")

@@ -10,6 +10,7 @@ from typing import Self
 from ied_sim.errors import SimulatorError
 from ied_sim.front import RelayProxies
 from ied_sim.relay.configuration import RelayConfiguration
+from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings, PlantClock
 from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import healthy_reference
 from mms import ServerPump, ServerStartFailed
@@ -32,6 +33,8 @@ class Simulator:
         Directory for the relays' files.
     ieds : sequence of str
         Names of the relays to serve. All of the file's by default.
+    clock : ClockSettings
+        How the plant's time runs.
 
     Raises
     ------
@@ -50,10 +53,11 @@ class Simulator:
         *,
         files: Path,
         ieds: Sequence[str] = (),
+        clock: ClockSettings = REAL_TIME,
     ) -> None:
         names = tuple(dict.fromkeys(ieds)) or tuple(ied.name for ied in document.ieds)
         self.addresses: dict[str, Address] = {name: document.address(name) for name in names}
-        epoch_ns = time.time_ns()
+        self._clock = PlantClock(time.time_ns(), clock)
         self._start_s = time.monotonic()
         self._proxies = RelayProxies()
         self.relays: dict[str, Relay] = {}
@@ -64,7 +68,7 @@ class Simulator:
                 scenarios.get(name) or healthy_reference(name),
                 address=address,
                 files=files,
-                epoch_ns=epoch_ns,
+                clock=self._clock,
                 proxies=self._proxies,
             )
             self.relays[name] = relay
@@ -116,7 +120,7 @@ class Simulator:
             now_s = time.monotonic() - self._start_s
             for k, relay in enumerate(relays):
                 if due_s[k] <= now_s or relay.needs_update_soon:
-                    due_s[k] = now_s + relay.update(time.time_ns())
+                    due_s[k] = now_s + relay.update(self._clock.now_ns())
 
     def _start_error(self, where: str) -> SimulatorError:
         for name, address in self.addresses.items():

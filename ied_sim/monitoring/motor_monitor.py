@@ -13,6 +13,8 @@ from ied_sim.monitoring.metering import METERING_CYCLES, Metering, meter, metere
 from ied_sim.motor.contactor import Closure
 from ied_sim.motor.plant import DISTURBANCE_MEMORY_S, METERING_STEP_RATE_HZ, START_MEMORY_S, MotorPlant
 
+Array = NDArray[np.float64]
+
 TRACE_RATE_HZ = 2_000.0
 
 RUNNING_BELOW = 1.5
@@ -22,6 +24,8 @@ NO_CURRENT = 0.05
 _NOTICEABLE_LEVEL = 0.002
 _NOTICEABLE_FAULT = 1e-4
 _NOTICEABLE_RESISTANCE = 0.002
+_NOTICEABLE_VOLTAGE = 2e-4
+_NOTICEABLE_GAIN = 2e-4
 _NOTICEABLE_HZ = 0.001
 
 
@@ -36,9 +40,9 @@ class Start:
 
     closed_s: float
     duration_s: float | None
-    time_s: NDArray[np.float64]
-    current_A: NDArray[np.float64]
-    voltage_V: NDArray[np.float64]
+    time_s: Array
+    current_A: Array
+    voltage_V: Array
 
 
 class MotorMonitor:
@@ -47,8 +51,8 @@ class MotorMonitor:
     def __init__(self, plant: MotorPlant, rated_current_A: float) -> None:
         self._plant = plant
         self._rated_A = rated_current_A
-        self._steady: tuple[tuple[float, float, float], Metering] | None = None
-        self._trace: tuple[Closure, NDArray[np.float64]] | None = None
+        self._steady: tuple[Array, Metering] | None = None
+        self._trace: tuple[Closure, Array] | None = None
 
     def closure(self, time_s: float) -> Closure | None:
         """Return since when the motor is connected, None while it is not."""
@@ -85,18 +89,37 @@ class MotorMonitor:
 
     def _running(self, time_s: float) -> Metering:
         plant = self._plant
-        fault = plant.fault_at(time_s)
-        resistance = 1.0 if plant.warming is None else plant.warming.resistance_factor(time_s)
-        condition = (plant.load.level_at(time_s), 0.0 if fault is None else fault.turns, resistance)
+        changes = self._over_noticeable(time_s)
         quiet = plant.supply.disturbed_since(time_s, DISTURBANCE_MEMORY_S) == time_s
         if self._steady is not None and quiet:
             before, metering = self._steady
-            limits = (_NOTICEABLE_LEVEL, _NOTICEABLE_FAULT, _NOTICEABLE_RESISTANCE)
-            if all(abs(a - b) <= most for a, b, most in zip(before, condition, limits, strict=True)):
+            if np.all(np.abs(changes - before) <= 1):
                 return self._at_frequency(metering, time_s)
         metering = meter(plant, time_s)
-        self._steady = (condition, metering) if quiet else None
+        self._steady = (changes, metering) if quiet else None
         return metering
+
+    def _over_noticeable(self, time_s: float) -> Array:
+        """Return all that develops slowly, each over the least change of it that is worth a simulation."""
+        plant = self._plant
+        fault = plant.fault_at(time_s)
+        R_s = plant.motor.parameters.stator_resistance_ohm
+        level = 0.0 if fault is None else fault.equivalent_level(R_s)
+        joint = 0.0 if plant.joint is None else plant.joint.resistance_ohm(time_s) / R_s
+        voltage, unbalance, zero_sequence = plant.supply.sequences(np.array([time_s]))
+        phasors = np.array([voltage[0], unbalance[0], zero_sequence[0]], complex)
+        delays = plant.sensors.delays(time_s) * 2 * np.pi * plant.supply.frequency_Hz
+        return np.array(
+            [
+                plant.load.level_at(time_s) / _NOTICEABLE_LEVEL,
+                level / _NOTICEABLE_FAULT,
+                joint / _NOTICEABLE_RESISTANCE,
+                *(np.array(plant.resistance_factors(time_s)) / _NOTICEABLE_RESISTANCE),
+                *(phasors.view(np.float64) / _NOTICEABLE_VOLTAGE),
+                *(plant.sensors.gains(time_s) / _NOTICEABLE_GAIN),
+                *(delays / _NOTICEABLE_GAIN),
+            ]
+        )
 
     def _at_frequency(self, metering: Metering, time_s: float) -> Metering:
         frequency_Hz = self._frequency(time_s)
@@ -107,7 +130,7 @@ class MotorMonitor:
     def _starting(self, closure: Closure, time_s: float) -> Metering:
         return self._metered(self._start_samples(closure), closure.closed_s, time_s)
 
-    def _metered(self, samples: NDArray[np.float64], closed_s: float, time_s: float) -> Metering:
+    def _metered(self, samples: Array, closed_s: float, time_s: float) -> Metering:
         """Meter the last few cycles before `time_s`, from samples that begin as long before the closing."""
         frequency_Hz = self._frequency(closed_s)
         span = round(METERING_CYCLES / frequency_Hz * TRACE_RATE_HZ)
@@ -115,7 +138,7 @@ class MotorMonitor:
         direction = self._plant.supply.direction
         return metered(samples[:, first : first + span], frequency_Hz, TRACE_RATE_HZ, direction)
 
-    def _start_samples(self, closure: Closure) -> NDArray[np.float64]:
+    def _start_samples(self, closure: Closure) -> Array:
         """Simulate the start as if the motor stayed connected: it is measured only while it does."""
         if self._trace is None or self._trace[0].closed_s != closure.closed_s:
             before_s = (

@@ -1,7 +1,8 @@
 """Shorted stator turns: their state at one moment, and how they develop."""
 
 from dataclasses import dataclass
-from itertools import pairwise
+
+from ied_sim.motor.course import Points, value_at
 
 NEGLIGIBLE_LEVEL = 1e-5
 """Equivalent level below which a fault draws less than the noise and would only stiffen the equations."""
@@ -32,19 +33,17 @@ class TurnFault:
 class FaultCourse:
     """Development of a fault of one phase over time.
 
-    The points are (time [s] since the simulator's start, mu), joined by lines.
+    The points are (time [s], mu), joined by lines. The path has `resistance_ohm` and, for each share mu of
+    the turns, mu times `turns_resistance_ohm`: a path of ratio p has p R_s there, and the equivalent level is
+    mu / (1 + p) however far the fault has grown.
     """
 
     phase: int
-    course: tuple[tuple[float, float], ...]
+    course: Points
     resistance_ohm: float = 0.0
+    turns_resistance_ohm: float = 0.0
 
     def at(self, time_s: float) -> TurnFault:
         """Return the fault at one moment; before the first and after the last point it stays constant."""
-        return TurnFault(self._level(time_s), self.phase, self.resistance_ohm)
-
-    def _level(self, time_s: float) -> float:
-        for (begin_s, begin), (end_s, end) in pairwise(self.course):
-            if begin_s <= time_s < end_s:
-                return begin + (end - begin) * (time_s - begin_s) / (end_s - begin_s)
-        return self.course[0][1] if time_s < self.course[0][0] else self.course[-1][1]
+        turns = value_at(self.course, time_s)
+        return TurnFault(turns, self.phase, self.resistance_ohm + turns * self.turns_resistance_ohm)

@@ -15,10 +15,12 @@ from core.machines.parameters import Connection, Motor
 from ied_sim.motor.contactor import Closure, Contactor
 from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
 from ied_sim.motor.integration import Drive, Loops, integrate
+from ied_sim.motor.interpolation import MARGIN, interpolated
+from ied_sim.motor.joint import JointCourse
 from ied_sim.motor.load import Load
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
-from ied_sim.motor.warming import Warming
+from ied_sim.motor.warming import COLD, ResistanceFactors, Warming
 from ied_sim.motor.windings import WindingCircuit, winding_circuit
 
 Array = NDArray[np.float64]
@@ -50,8 +52,9 @@ class MotorPlant:
     """A motor with its supply, load, sensors and contactor.
 
     `fault` is None for a healthy motor, and `seed` is that of the noise. With `warming` None the windings
-    keep the resistance of the parameters. `broken_bars` is the broken share of the cage's bars. The contactor
-    connects the motor, which then starts from rest; with None the motor always runs.
+    keep the resistance of the parameters. `broken_bars` is the broken share of the cage's bars, and `joint` a
+    bad one in a line. The contactor connects the motor, which then starts from rest; with None the motor
+    always runs.
     """
 
     motor: Motor
@@ -63,6 +66,7 @@ class MotorPlant:
     warming: Warming | None = None
     broken_bars: float = 0.0
     contactor: Contactor | None = None
+    joint: JointCourse | None = None
 
     def window(
         self, start_s: float, duration_s: float, sample_rate_hz: float, *, step_rate_hz: float = STEP_RATE_HZ
@@ -71,15 +75,40 @@ class MotorPlant:
 
         The motor is integrated in steps of 1 / step_rate_hz, or finer ones where its fault needs them.
         """
-        true = self.operation(
-            start_s,
-            duration_s,
-            sample_rate_hz,
-            current_delay_s=self.sensors.current_delay_s,
-            step_rate_hz=step_rate_hz,
-        )
+        delays_s = self.sensors.delays(start_s)
+        samples = round(duration_s * sample_rate_hz)
+        times = start_s + np.arange(samples) / sample_rate_hz
+        true = np.empty((6, samples))
+        true[:3] = self._delayed_currents(start_s, samples, sample_rate_hz, delays_s[:3], step_rate_hz)
+        for delay_s in np.unique(delays_s[3:]):
+            late = np.flatnonzero(delays_s[3:] == delay_s)
+            true[3 + late] = self.supply.phase_voltages(times - delay_s)[late]
         random = np.random.default_rng([self.seed, round(start_s * 1e6) % 2**63])
-        return self.sensors.measure(np.vstack((true.currents_A, true.voltages_V)), self.rated_values, random)
+        return self.sensors.measure(true, self.rated_values, random, start_s)
+
+    def _delayed_currents(
+        self, start_s: float, samples: int, sample_rate_hz: float, delays_s: Array, step_rate_hz: float
+    ) -> Array:
+        """Return line currents, shape (3, samples), each as it was its delay ago."""
+        if np.ptp(delays_s) == 0:
+            return self._line_currents(
+                start_s - float(delays_s[0]), samples, sample_rate_hz, SETTLING_S, step_rate_hz
+            )[0]
+        # Channels apart by less than a sample are read off a finer grid.
+        fineness = max(1, ceil(step_rate_hz / sample_rate_hz))
+        fine_hz = sample_rate_hz * fineness
+        begin_s = start_s - float(delays_s.max()) - MARGIN / fine_hz
+        spread = ceil(float(np.ptp(delays_s)) * fine_hz)
+        fine, _ = self._line_currents(
+            begin_s, samples * fineness + spread + 2 * MARGIN, fine_hz, SETTLING_S, step_rate_hz
+        )
+        firsts = (start_s - delays_s - begin_s) * fine_hz
+        return np.vstack(
+            [
+                interpolated(one, float(first), fineness, samples)
+                for one, first in zip(fine, firsts, strict=True)
+            ]
+        )
 
     @property
     def rated_values(self) -> Array:
@@ -100,8 +129,17 @@ class MotorPlant:
 
         With `current_delay_s` the currents are those of so much earlier than the voltages beside them.
         """
-        begin_s = start_s - current_delay_s
         samples = round(duration_s * sample_rate_hz)
+        currents, speed = self._line_currents(
+            start_s - current_delay_s, samples, sample_rate_hz, settling_s, step_rate_hz
+        )
+        times = start_s + np.arange(samples) / sample_rate_hz
+        return Operation(currents, self.supply.phase_voltages(times), speed)
+
+    def _line_currents(
+        self, begin_s: float, samples: int, sample_rate_hz: float, settling_s: float, step_rate_hz: float
+    ) -> tuple[Array, Array]:
+        """Return line currents, shape (3, samples), and speed from `begin_s` on."""
         end_s = begin_s + samples / sample_rate_hz
         always = (Closure(),)
         closures = always if self.contactor is None else self.contactor.closures(begin_s, end_s)
@@ -111,8 +149,7 @@ class MotorPlant:
             first, line_currents, turning = here
             currents[:, first : first + turning.size] = line_currents
             speed[first : first + turning.size] = turning
-        times = start_s + np.arange(samples) / sample_rate_hz
-        return Operation(currents, self.supply.phase_voltages(times), speed)
+        return currents, speed
 
     def _connected(
         self,
@@ -175,13 +212,31 @@ class MotorPlant:
 
     def circuit(self, time_s: float) -> WindingCircuit:
         """Return the winding circuit at one moment; a window uses that of its start."""
+        line_ohm = [0.0, 0.0, 0.0]
+        if self.joint is not None:
+            line_ohm[self.joint.phase] = self.joint.resistance_ohm(time_s)
         return winding_circuit(
             self.motor.parameters,
             self.motor.nameplate.connection,
             self.fault_at(time_s),
-            resistance_factor=1.0 if self.warming is None else self.warming.resistance_factor(time_s),
+            resistance_factors=self.resistance_factors(time_s),
             broken_bars=self.broken_bars,
+            line_resistance_ohm=(line_ohm[0], line_ohm[1], line_ohm[2]),
         )
+
+    def resistance_factors(self, time_s: float) -> ResistanceFactors:
+        """Return the windings' resistances at one moment over those of the parameters."""
+        return COLD if self.warming is None else self.warming.factors(time_s, self._levels_while_connected)
+
+    def _levels_while_connected(self, time_s: Array) -> Array:
+        """Return the load at the times [s], NaN where the motor is not connected."""
+        levels = self.load.levels(time_s)
+        if self.contactor is None:
+            return levels
+        connected = np.zeros(time_s.shape, bool)
+        for closure in self.contactor.closures(float(time_s.min()), float(time_s.max())):
+            connected |= (closure.closed_s <= time_s) & (time_s < closure.opened_s)
+        return np.where(connected, levels, np.nan)
 
     def _simulate(
         self,

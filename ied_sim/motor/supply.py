@@ -2,12 +2,15 @@
 
 from dataclasses import dataclass
 from math import pi, sqrt
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ied_sim.motor.wander import Wander
+
 Array = NDArray[np.float64]
+Phasors = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +57,50 @@ class SupplyEvent:
 
 
 @dataclass(frozen=True, slots=True)
+class SupplyStep:
+    """A lasting change at `at_s` [s]: relative, of the voltage; phasors over V1, of V2 and V0."""
+
+    at_s: float
+    voltage: float = 0.0
+    unbalance: complex = 0.0
+    zero_sequence: complex = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class SupplyWander:
+    """How far voltage, V2/V1 and V0/V1 wander.
+
+    Each is a standard deviation: that of the voltage relative, those of V2 and V0 of real and imaginary part.
+    """
+
+    voltage: float = 0.0
+    unbalance: float = 0.0
+    zero_sequence: float = 0.0
+    time_constant_s: float = 10_800.0
+    seed: int = 0
+
+    def at(self, time_s: Array) -> "Sequences":
+        """Return what the wander adds at the times [s]."""
+
+        def wander(stream: int) -> Array:
+            return Wander(self.seed, stream, self.time_constant_s).at(time_s)
+
+        return Sequences(
+            self.voltage * wander(0),
+            np.asarray(self.unbalance * (wander(1) + 1j * wander(2)), complex),
+            np.asarray(self.zero_sequence * (wander(3) + 1j * wander(4)), complex),
+        )
+
+
+class Sequences(NamedTuple):
+    """Voltage over its mean, V2/V1 and V0/V1, shape (n,), or (1,) where they are constant."""
+
+    voltage: Array
+    unbalance: Phasors
+    zero_sequence: Phasors
+
+
+@dataclass(frozen=True, slots=True)
 class Supply:
     """Voltages of a three-phase busbar.
 
@@ -73,6 +120,12 @@ class Supply:
         Order of the phases. With acb motors turn backwards.
     events : tuple of SupplyEvent
         Dips, swells and interruptions.
+    zero_sequence, zero_sequence_angle_rad : float
+        |V0| / |V1| and the angle of V0 to V1. It drives no current into three wires.
+    wander : SupplyWander, optional
+        How far voltage, V2 and V0 wander.
+    steps : tuple of SupplyStep
+        Lasting changes.
     """
 
     line_voltage_V: float
@@ -84,6 +137,10 @@ class Supply:
     harmonics: tuple[Harmonic, ...] = ()
     sequence: Literal["abc", "acb"] = "abc"
     events: tuple[SupplyEvent, ...] = ()
+    zero_sequence: float = 0.0
+    zero_sequence_angle_rad: float = 0.0
+    wander: SupplyWander | None = None
+    steps: tuple[SupplyStep, ...] = ()
 
     @property
     def direction(self) -> int:
@@ -96,19 +153,39 @@ class Supply:
             np.sin(2 * pi * time_s / self.drift_period_s)
         )
 
+    def sequences(self, time_s: Array) -> Sequences:
+        """Return voltage, V2 and V0 at the times [s], shape (n,)."""
+        voltage = np.ones(1)
+        unbalance = np.array([self.unbalance * np.exp(1j * self.unbalance_angle_rad)])
+        zero_sequence = np.array([self.zero_sequence * np.exp(1j * self.zero_sequence_angle_rad)])
+        for step in self.steps:
+            since = time_s >= step.at_s
+            voltage = voltage + step.voltage * since
+            unbalance = unbalance + step.unbalance * since
+            zero_sequence = zero_sequence + step.zero_sequence * since
+        if self.wander is not None:
+            wander = self.wander.at(time_s)
+            voltage = voltage + wander.voltage
+            unbalance = unbalance + wander.unbalance
+            zero_sequence = zero_sequence + wander.zero_sequence
+        return Sequences(voltage, unbalance, zero_sequence)
+
     def phase_voltages(self, time_s: Array) -> Array:
         """Return phase voltages of a, b, c [V], shape (3, n), at the times [s], shape (n,)."""
         swing = self.frequency_drift_Hz * self.drift_period_s / (2 * pi)
         turns = self.frequency_Hz * time_s - swing * np.cos(2 * pi * time_s / self.drift_period_s)
         angle = 2 * pi * turns
         behind = self.direction * np.array([[0.0], [2 * pi / 3], [4 * pi / 3]])
+        sequences = self.sequences(time_s)
         voltages: Array = np.cos(angle - behind)
-        if self.unbalance:
-            voltages += self.unbalance * np.cos(angle + self.unbalance_angle_rad + behind)
+        if np.any(sequences.unbalance):
+            voltages += _oscillation(sequences.unbalance, angle + behind)
+        if np.any(sequences.zero_sequence):
+            voltages += _oscillation(sequences.zero_sequence, angle)
         for harmonic in self.harmonics:
             h = harmonic.order
             voltages += harmonic.fraction * np.cos(h * (angle - behind) + harmonic.angle_rad)
-        voltages *= sqrt(2 / 3) * self.line_voltage_V
+        voltages *= sqrt(2 / 3) * self.line_voltage_V * sequences.voltage
         for event in self.events:
             happening = event.under_way(time_s)
             for phase in event.phases:
@@ -118,11 +195,18 @@ class Supply:
     def disturbed_since(self, time_s: float, memory_s: float) -> float:
         """Return when the earliest event felt at `time_s` began; `time_s` if there is none.
 
-        An event is felt up to `memory_s` after its end.
+        An event is felt up to `memory_s` after its end, a step so long after it.
         """
         begins = [time_s]
+        begins += [step.at_s for step in self.steps if step.at_s <= time_s < step.at_s + memory_s]
         for event in self.events:
             begin_s = event.latest_begin_s(time_s)
             if begin_s is not None and time_s < begin_s + event.duration_s + memory_s:
                 begins.append(begin_s)
         return min(begins)
+
+
+def _oscillation(phasor: Phasors, angle: Array) -> Array:
+    """Return the real part of a phasor that turns by `angle`."""
+    turned: Array = np.abs(phasor) * np.cos(angle + np.angle(phasor))
+    return turned

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from core.machines.parameters import Connection, MachineParameters
 from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, TurnFault
+from ied_sim.motor.warming import COLD, ResistanceFactors
 
 Matrix = NDArray[np.float64]
 
@@ -90,8 +91,9 @@ def winding_circuit(
     connection: Connection,
     fault: TurnFault | None = None,
     *,
-    resistance_factor: float = 1.0,
+    resistance_factors: ResistanceFactors = COLD,
     broken_bars: float = 0.0,
+    line_resistance_ohm: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> WindingCircuit:
     """Build the loops of a motor, healthy or with a part of one phase bridged.
 
@@ -105,11 +107,14 @@ def winding_circuit(
         Star or delta.
     fault : TurnFault, optional
         The bridged turns.
-    resistance_factor : float
-        Stator and rotor resistance over that of the parameters, for warm windings.
+    resistance_factors : ResistanceFactors
+        Stator and rotor resistance over those of the parameters, for warm windings.
     broken_bars : float
         Share k = n / N of the cage's bars that are broken, all in one place. One rotor coil then has R (1 + 3
         k / (1 - 2 k)): along its axis the cage has lost the share 2 k of its conductance, across it none.
+    line_resistance_ohm : tuple of float
+        Resistance in the lines to terminals a, b, c, as of bad joints. The line currents are E' q, so it adds
+        E diag(r) E' to the loops' resistance.
 
     Returns
     -------
@@ -149,7 +154,7 @@ def winding_circuit(
     on_rotor = np.arange(N.size) >= stator
     leakage = np.where(on_rotor, parameters.rotor_leakage_H, N * parameters.stator_leakage_H)
     resistance = np.where(on_rotor, parameters.rotor_resistance_ohm, N * parameters.stator_resistance_ohm)
-    resistance *= resistance_factor
+    resistance *= np.where(on_rotor, resistance_factors.rotor, resistance_factors.stator)
     resistance[stator] *= 1 + 3 * broken_bars / (1 - 2 * broken_bars)
 
     between = np.subtract.outer(axis, axis)
@@ -162,6 +167,7 @@ def winding_circuit(
         loop_resistance[stator_loops, stator_loops] += fault.resistance_ohm
     loop_drive = np.zeros((loops, 3))
     loop_drive[:stator_loops] = drive
+    loop_resistance += loop_drive @ np.diag(line_resistance_ohm) @ loop_drive.T
     return WindingCircuit(
         constant=incidence.T
         @ (np.where(same_side, coupling * np.cos(between), 0.0) + np.diag(leakage))

@@ -1,29 +1,33 @@
-"""The relay's own clock: UTC, with an error where the scenario says so."""
-
-import time
+"""The relay's own clock: that of the plant, with an error where the scenario says so."""
 
 from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.misbehaviour import Kind, MisbehaviourState
+from ied_sim.relay.plant_clock import PlantClock
 
 
 class RelayClock:
-    """Times as the relay sees them. Times inside the simulator are true UTC."""
+    """Times as the relay sees them. Times inside the simulator are those of the plant's clock.
 
-    def __init__(self, misbehaviour_state: MisbehaviourState) -> None:
+    While the plant lives through its past, records and text reports have the plant's time, as if they had
+    waited in the relay since. Time stamps of values have the real one: clients that compare clocks find the
+    relay's right.
+    """
+
+    def __init__(self, plant: PlantClock, misbehaviour_state: MisbehaviourState) -> None:
+        self._plant = plant
         self._misbehaviour_state = misbehaviour_state
 
-    @staticmethod
-    def now_ns() -> int:
-        """Return true UTC."""
-        return time.time_ns()
+    def now_ns(self) -> int:
+        """Return the plant's time."""
+        return self._plant.now_ns()
 
     def stamped(self, time_ns: int) -> int:
         """Return a time as time stamps of data attributes have it: UTC by the relay's clock."""
-        return time_ns + self._offset_ns(Kind.CLOCK_OFFSET)
+        return self._plant.real_ns(time_ns) + self._offset_ns(Kind.CLOCK_OFFSET)
 
     def written(self, time_ns: int) -> int:
         """Return a time as records and reports have it, perhaps in local time."""
-        return self.stamped(time_ns) + self._offset_ns(Kind.LOCAL_TIME)
+        return time_ns + self._offset_ns(Kind.CLOCK_OFFSET) + self._offset_ns(Kind.LOCAL_TIME)
 
     def _offset_ns(self, kind: Kind) -> int:
         return round((self._misbehaviour_state.number(kind) or 0.0) * NANOSECONDS_PER_SECOND)

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from ied_sim.misbehaviour import Misbehaviour
 from ied_sim.motor.plant import MotorPlant
+from ied_sim.motor.sensors import CHANNELS
 from ied_sim.profiles.profile import Profile, Triggers
 from ied_sim.relay.event_recorder import RecorderSettings
 from ied_sim.relay.protection import ProtectionSettings
@@ -59,10 +60,11 @@ class RelayConfiguration:
     metering_period_s: float = 1.0
     metering_refresh_s: float = 30.0
 
-    def truth(self, time_s: float) -> dict[str, float | int | None]:
-        """Return the motor's true condition at a time since the start.
+    def truth(self, time_s: float) -> dict[str, object]:
+        """Return the motor's true condition at a time since the scenario's beginning.
 
-        It is mu_f (the equivalent level), theta_f and load_level.
+        It is mu_f (the equivalent level), theta_f, load_level, joint_ohm, and of the channels that have
+        changed by then how much their gain errors and delays have.
         """
         plant = self.plant
         parameters = plant.motor.parameters
@@ -72,4 +74,10 @@ class RelayConfiguration:
             "mu_f": level,
             "theta_f": fault.phase if fault is not None and level > 0 else None,
             "load_level": plant.load.level_at(time_s),
+            "joint_ohm": 0.0 if plant.joint is None else plant.joint.resistance_ohm(time_s),
+            "channels": {
+                name: {"gain": gain, "delay_us": delay_s * 1e6}
+                for name, (gain, delay_s) in zip(CHANNELS, plant.sensors.changed(time_s), strict=True)
+                if gain or delay_s
+            },
         }

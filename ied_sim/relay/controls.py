@@ -6,7 +6,6 @@ from collections.abc import Callable
 from ied_sim.errors import SimulatorError
 from ied_sim.misbehaviour import Kind, MisbehaviourState
 from ied_sim.monitoring.relay_word import RelayWord
-from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.points import RelayPoints
 from mms import AddCause, ControlAction
 
@@ -15,7 +14,7 @@ class RelayControls:
     """Present state of all controls of one relay. Several threads may use it.
 
     `publish` tells clients the state of controls at a time. `on_rise` is called with a control that has
-    risen, and when. `pulse_s` gives the length of a pulse that begins at a time.
+    risen, and when. `pulse_s` gives the length of a pulse that begins at a time, `now_ns` the present time.
 
     Raises SimulatorError where the control that switches a misbehaviour is missing or has another meaning.
     """
@@ -30,6 +29,7 @@ class RelayControls:
         publish: Callable[[dict[str, bool], int], None],
         on_rise: Callable[[str, int], None],
         pulse_s: Callable[[int], float],
+        now_ns: Callable[[], int],
     ) -> None:
         self._points = points
         self._word = word
@@ -38,6 +38,7 @@ class RelayControls:
         self._publish = publish
         self._on_rise = on_rise
         self._pulse_s = pulse_s
+        self._now_ns = now_ns
         # Held from a change until it is published: clients of both servers then see the same last state.
         self._lock = threading.Lock()
         self._bits = dict.fromkeys(points.controls, False)
@@ -55,7 +56,7 @@ class RelayControls:
             return AddCause.BLOCKED_BY_INTERLOCKING
         if action.test:
             return True
-        now_ns = RelayClock.now_ns()
+        now_ns = self._now_ns()
         value = bool(action.value)
         rises = self._set(action.reference, now_ns, value=value)
         if switches is not None:
@@ -87,7 +88,7 @@ class RelayControls:
         return rises
 
     def _fall_later(self, reference: str, delay_s: float) -> None:
-        timer = threading.Timer(delay_s, lambda: self._set(reference, RelayClock.now_ns(), value=False))
+        timer = threading.Timer(delay_s, lambda: self._set(reference, self._now_ns(), value=False))
         timer.daemon = True
         with self._lock:
             self._timers = [each for each in self._timers if each.is_alive()]

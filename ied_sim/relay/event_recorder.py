@@ -10,6 +10,7 @@ from core.recordings import Channel, Quantity, Recording
 from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.motor.plant import MotorPlant
 from ied_sim.motor.sensors import CHANNELS
+from ied_sim.relay.plant_clock import PlantClock
 
 log = logging.getLogger(__name__)
 
@@ -36,7 +37,7 @@ class Capture:
 class EventRecorder:
     """Captures `plant` around each trigger and passes the capture to `store` after its last sample.
 
-    `epoch_ns` is the UTC of the plant's time zero. A capture ends the post-trigger time after its trigger, as
+    A capture ends the post-trigger time after its trigger, as
     in a relay that has to wait for its samples. A trigger meanwhile makes no second record. `store` is called
     in the capture's own thread.
     """
@@ -47,13 +48,13 @@ class EventRecorder:
         plant: MotorPlant,
         settings: RecorderSettings,
         *,
-        epoch_ns: int,
+        clock: PlantClock,
         store: Callable[[Capture], None],
     ) -> None:
         self._relay_name = relay_name
         self._plant = plant
         self._settings = settings
-        self._epoch_ns = epoch_ns
+        self._clock = clock
         self._store = store
         self._lock = threading.Lock()
         self._stopping = threading.Event()
@@ -61,7 +62,7 @@ class EventRecorder:
         self._capture = threading.Thread()
 
     def trigger(self, time_ns: int, kind: str, *, on_start: Callable[[], None]) -> bool:
-        """Start a capture at UTC `time_ns`; return False if one is under way or the recorder has stopped.
+        """Start a capture at `time_ns`; return False if one is under way or the recorder has stopped.
 
         `on_start` is called when the capture is sure to begin, and returns before its record can be complete.
         """
@@ -105,13 +106,14 @@ class EventRecorder:
         """
         switched = self._switching(trigger_ns)
         recording = self._record(trigger_ns)
-        complete_ns = trigger_ns + round(self._settings.post_trigger_s * NANOSECONDS_PER_SECOND)
+        length_ns = round(self._settings.post_trigger_s * NANOSECONDS_PER_SECOND)
+        complete_ns = self._clock.real_ns(trigger_ns) + length_ns
         if self._stopping.wait(max(0.0, (complete_ns - time.time_ns()) * 1e-9)):
             return None
         return recording if self._switching(trigger_ns) == switched else self._record(trigger_ns)
 
     def _switching(self, trigger_ns: int) -> object:
-        begin_s = (trigger_ns - self._epoch_ns) * 1e-9 - self._settings.pre_trigger_s
+        begin_s = (trigger_ns - self._clock.epoch_ns) * 1e-9 - self._settings.pre_trigger_s
         end_s = begin_s + self._settings.pre_trigger_s + self._settings.post_trigger_s
         return self._plant.contactor and self._plant.contactor.closures(begin_s, end_s)
 
@@ -122,7 +124,7 @@ class EventRecorder:
         start_ns = trigger_ns - round(before / rate_hz * NANOSECONDS_PER_SECOND)
         duration_s = settings.pre_trigger_s + settings.post_trigger_s
         return Recording(
-            samples=plant.window((start_ns - self._epoch_ns) * 1e-9, duration_s, rate_hz),
+            samples=plant.window((start_ns - self._clock.epoch_ns) * 1e-9, duration_s, rate_hz),
             sample_rate_hz=rate_hz,
             start_time_ns=start_ns,
             channels=_channels(plant),

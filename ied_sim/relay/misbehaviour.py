@@ -1,10 +1,10 @@
 """Misbehaviour of the relay itself: a report block taken, a report buffer flooded, a restart."""
 
 import logging
+from collections.abc import Callable
 from queue import SimpleQueue
 
 from ied_sim.misbehaviour import Kind, MisbehaviourState
-from ied_sim.relay.clock import RelayClock
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.server import RelayServer
 from mms import GOOD, Client, MmsError, Quality, Report, Validity
@@ -24,7 +24,9 @@ class RelayMisbehaviour:
         server: RelayServer,
         points: RelayPoints,
         buffer_bytes: int,
+        now_ns: Callable[[], int],
     ) -> None:
+        self._now_ns = now_ns
         self._misbehaviour_state = misbehaviour_state
         self._server = server
         self._points = points
@@ -87,9 +89,9 @@ class RelayMisbehaviour:
         trip = self._points.value_of("trip")
         if trip is None:
             return
-        now_ns = RelayClock.now_ns()
+        now_ns = self._now_ns()
         value = self._server.server.read(trip)
         questionable = Quality(Validity.QUESTIONABLE)
         for k in range(self._buffer_bytes // OCTETS_OF_A_REPORT):
             self._server.publish({trip: value}, now_ns + k, questionable if k % 2 == 0 else GOOD)
-        self._server.publish({trip: value}, RelayClock.now_ns())
+        self._server.publish({trip: value}, self._now_ns())

@@ -21,6 +21,7 @@ from ied_sim.relay.controls import RelayControls
 from ied_sim.relay.event_files import EventFiles
 from ied_sim.relay.event_recorder import Capture, EventRecorder
 from ied_sim.relay.misbehaviour import RelayMisbehaviour
+from ied_sim.relay.plant_clock import PlantClock
 from ied_sim.relay.points import RelayPoints
 from ied_sim.relay.protection import Protection
 from ied_sim.relay.record_archive import RecordArchive, RecordOrigin
@@ -61,8 +62,8 @@ class Relay:
         Where clients find it.
     files : pathlib.Path
         The simulator's directory. The relay's own files are in files/<IED>.
-    epoch_ns : int
-        UTC of the plant's time zero [ns].
+    clock : PlantClock
+        The plant's clock.
     proxies : RelayProxies, optional
         Where it gets a proxy if it needs one.
 
@@ -82,20 +83,18 @@ class Relay:
         *,
         address: Address,
         files: Path,
-        epoch_ns: int,
+        clock: PlantClock,
         proxies: RelayProxies | None = None,
     ) -> None:
         profile = configuration.profile
         self.name = ied_name
         self._configuration = configuration
-        self._epoch_ns = epoch_ns
+        self._epoch_ns = clock.epoch_ns
         self._rated_A = rated_current(configuration.plant.motor)
         ied = document.ied(ied_name)
         self._points = RelayPoints(ied, profile, str(document.path))
-        self.misbehaviour_state = MisbehaviourState(
-            configuration.misbehaviour, lambda: self._seconds(RelayClock.now_ns())
-        )
-        self._clock = RelayClock(self.misbehaviour_state)
+        self.misbehaviour_state = MisbehaviourState(configuration.misbehaviour, clock.running_s)
+        self._clock = RelayClock(clock, self.misbehaviour_state)
         self._word = RelayWord()
         self._acting = threading.Lock()
         """Held while a control or a trip does its work: one at a time, whichever thread it is on."""
@@ -109,16 +108,19 @@ class Relay:
             pulse_s=lambda now_ns: (
                 _PULSE_CYCLES / configuration.plant.supply.frequency(self._seconds(now_ns))
             ),
+            now_ns=self._clock.now_ns,
         )
         self._journal = Journal(
-            configuration.recorder.capacity, since_ns=epoch_ns, profile_every_s=configuration.load_profile_s
+            configuration.recorder.capacity,
+            since_ns=clock.epoch_ns,
+            profile_every_s=configuration.load_profile_s,
         )
         self._monitor = MotorMonitor(configuration.plant, self._rated_A)
         self._protection = Protection(configuration.protection, self._rated_A)
         self._closure: Closure | None = None
         self._start_noted = True
         self._load_is_above = False
-        self._updated_ns = epoch_ns
+        self._updated_ns = clock.now_ns()
         self.needs_update_soon = False
         """Something has happened that the next look should not be late for."""
         self._settings = relay_settings(ied_name, configuration)
@@ -132,7 +134,7 @@ class Relay:
             origin, self._event_files, self._journal, self._word, self._clock, self.misbehaviour_state
         )
         self._recorder = EventRecorder(
-            ied_name, configuration.plant, configuration.recorder, epoch_ns=epoch_ns, store=self._store
+            ied_name, configuration.plant, configuration.recorder, clock=clock, store=self._store
         )
         self._relay_server = RelayServer(
             ied_name,
@@ -157,9 +159,13 @@ class Relay:
             refresh_s=configuration.metering_refresh_s,
         )
         self._misbehaviour = RelayMisbehaviour(
-            self.misbehaviour_state, self._relay_server, self._points, profile.report_buffer_bytes
+            self.misbehaviour_state,
+            self._relay_server,
+            self._points,
+            profile.report_buffer_bytes,
+            self._clock.now_ns,
         )
-        self._publish_initial_values(RelayClock.now_ns())
+        self._publish_initial_values(self._clock.now_ns())
         self._relay_server.apply_published()
 
     @property
@@ -316,7 +322,7 @@ class Relay:
         number = self._archive.store(capture)
         log.info("%s: event record %d is complete", self.name, number)
         self._values.publish_status(
-            {"record_number": number, "record_made": True, "record_started": False}, RelayClock.now_ns()
+            {"record_number": number, "record_made": True, "record_started": False}, self._clock.now_ns()
         )
 
     def _publish_initial_values(self, now_ns: int) -> None:
@@ -375,7 +381,7 @@ class Relay:
         )
 
     def _text(self, maker: TextMaker) -> Callable[[], bytes]:
-        return lambda: maker(self._snapshot(RelayClock.now_ns()))
+        return lambda: maker(self._snapshot(self._clock.now_ns()))
 
     def _snapshot(self, now_ns: int) -> RelaySnapshot:
         return RelaySnapshot(

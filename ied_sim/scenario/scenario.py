@@ -13,19 +13,15 @@ from core.machines.parameters import MachineParameters, Motor, Nameplate
 from ied_sim.errors import ScenarioError
 from ied_sim.motor.contactor import Contactor
 from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant
+from ied_sim.motor.supply import Supply
 from ied_sim.motor.windings import highest_fault_resistance
 from ied_sim.profiles.profile import DEFAULT, Profile, Record, Triggers, read_profile
 from ied_sim.relay.configuration import Access, RelayConfiguration
 from ied_sim.relay.event_recorder import RecorderSettings
-from ied_sim.scenario.tables import (
-    FileTable,
-    LoadTable,
-    MotorTable,
-    RecorderTable,
-    SensorsTable,
-    SupplyTable,
-    TriggersTable,
-)
+from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings
+from ied_sim.scenario.motor_tables import SensorsTable
+from ied_sim.scenario.supply_tables import BusTable, SupplyTable
+from ied_sim.scenario.tables import FileTable, LoadTable, MotorTable, RecorderTable, TriggersTable
 from ied_sim.toml_tables import first_error, read_table
 from mms import CredentialFileError
 
@@ -35,19 +31,42 @@ def read_scenario(path: Path, profile: str = DEFAULT) -> dict[str, RelayConfigur
 
     Raises ScenarioError, ProfileError.
     """
-    table = read_table(path, ScenarioError)
-    try:
-        motors = FileTable.model_validate(table).motor
-    except ValidationError as error:
-        raise first_error(path, _place(table, error), error, ScenarioError) from error
+    file = _file(path)
+    buses = _buses(path, file)
     scenarios: dict[str, RelayConfiguration] = {}
-    for motor in motors:
+    for motor in file.motor:
         if motor.ied in scenarios:
             raise ScenarioError(
                 path, f"[motor {motor.ied}] ied", expected="each IED once", found="a second motor"
             )
-        scenarios[motor.ied] = _relay_scenario(path, motor, profile)
+        scenarios[motor.ied] = _relay_scenario(path, motor, buses, profile)
     return scenarios
+
+
+def read_clock(path: Path) -> ClockSettings:
+    """Return how the plant's time runs. Raises ScenarioError."""
+    clock = _file(path).clock
+    return REAL_TIME if clock is None else clock.settings()
+
+
+def _file(path: Path) -> FileTable:
+    table = read_table(path, ScenarioError)
+    try:
+        return FileTable.model_validate(table)
+    except ValidationError as error:
+        raise first_error(path, _place(table, error), error, ScenarioError) from error
+
+
+def _buses(path: Path, file: FileTable) -> dict[str, BusTable]:
+    """Return the buses by name."""
+    buses: dict[str, BusTable] = {}
+    for bus in file.bus:
+        if bus.name in buses:
+            raise ScenarioError(
+                path, f"[bus {bus.name}] name", expected="each bus once", found="a second one"
+            )
+        buses[bus.name] = bus
+    return buses
 
 
 def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayConfiguration:
@@ -61,7 +80,7 @@ def healthy_reference(ied: str, profile: str = DEFAULT) -> RelayConfiguration:
     return RelayConfiguration(
         MotorPlant(
             motor=motor,
-            supply=SupplyTable().supply(motor.nameplate),
+            supply=SupplyTable().busbar(motor.nameplate, "abc", name=ied, seed=0),
             load=LoadTable().load(),
             sensors=SensorsTable(noise=0.002).sensors(motor),
             contactor=Contactor(),
@@ -101,11 +120,30 @@ def _motor(path: Path, section: MotorTable) -> Motor:
         ) from error
 
 
-def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> RelayConfiguration:
+def _supply(path: Path, section: MotorTable, motor: Motor, buses: Mapping[str, BusTable]) -> Supply:
+    """Return the supply of the motor's bus, or its own."""
+    sequence = section.supply.sequence
+    if section.bus is None:
+        return section.supply.busbar(motor.nameplate, sequence, name=section.ied, seed=section.seed)
+    if section.bus not in buses:
+        raise ScenarioError(
+            path,
+            f"[motor {section.ied}] bus",
+            expected=f"the name of a [[bus]] ({', '.join(buses) or 'there is none'})",
+            found=section.bus,
+        )
+    bus = buses[section.bus]
+    return bus.busbar(motor.nameplate, sequence, name=bus.name, seed=bus.seed)
+
+
+def _relay_scenario(
+    path: Path, section: MotorTable, buses: Mapping[str, BusTable], profile_name: str
+) -> RelayConfiguration:
     where = f"[motor {section.ied}]"
     motor = _motor(path, section)
-    course = None if section.fault is None else section.fault.course()
-    if course is not None:
+    course = None
+    if section.fault is not None:
+        course = section.fault.course(motor.parameters.stator_resistance_ohm)
         highest_ohm = highest_fault_resistance(motor.parameters, HIGHEST_STEP_RATE_HZ * RATE_PER_STEP)
         if course.resistance_ohm > highest_ohm:
             raise ScenarioError(
@@ -118,7 +156,7 @@ def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> Relay
     return RelayConfiguration(
         plant=MotorPlant(
             motor=motor,
-            supply=section.supply.supply(motor.nameplate),
+            supply=_supply(path, section, motor, buses),
             load=section.load.load(),
             sensors=section.sensors.sensors(motor),
             fault=course,
@@ -126,6 +164,7 @@ def _relay_scenario(path: Path, section: MotorTable, profile_name: str) -> Relay
             warming=None if section.warming is None else section.warming.warming(),
             broken_bars=section.broken_bars,
             contactor=Contactor(open_at_first=section.stopped),
+            joint=None if section.joint is None else section.joint.course(),
         ),
         profile=profile,
         recorder=_recorder(profile.record, section.recorder, motor.nameplate.rated_frequency_Hz),
@@ -186,12 +225,13 @@ def _triggers(of_profile: Triggers, section: TriggersTable) -> Triggers:
 
 
 def _place(table: Mapping[str, object], error: ValidationError) -> str:
-    """Return where the first error is, with the motor called by its IED where it has one."""
+    """Return where the first error is: a motor is called by its IED, a bus by its name, where it has one."""
     location = list(error.errors()[0]["loc"])
     if len(location) < 2 or not isinstance(location[1], int):
         return ".".join(str(part) for part in location)
-    motors = table.get("motor")
-    motor = motors[location[1]] if isinstance(motors, list) else None
-    name = motor.get("ied") if isinstance(motor, dict) else None
+    kind = str(location[0])
+    rows = table.get(kind)
+    row = rows[location[1]] if isinstance(rows, list) else None
+    name = row.get("ied" if kind == "motor" else "name") if isinstance(row, dict) else None
     field = ".".join(str(part) for part in location[2:])
-    return f"[motor {name if isinstance(name, str) else location[1] + 1}] {field}".rstrip()
+    return f"[{kind} {name if isinstance(name, str) else location[1] + 1}] {field}".rstrip()

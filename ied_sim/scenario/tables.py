@@ -3,95 +3,35 @@
 docs/reference/scenario.md explains them to users.
 """
 
-from math import inf, radians, sqrt
-from typing import Annotated, Literal, Self
+from math import inf
+from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from core.machines.parameters import Motor, Nameplate
 from ied_sim.misbehaviour import BUILT_IN, PARAMETERS, Kind, Misbehaviour
-from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.load import Load, LoadCycle
-from ied_sim.motor.plant import rated_current
-from ied_sim.motor.sensors import Sensors
-from ied_sim.motor.supply import Harmonic, Supply, SupplyEvent
-from ied_sim.motor.warming import Warming
+from ied_sim.relay.plant_clock import ClockSettings
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
 from ied_sim.scenario.access import AccessTable
+from ied_sim.scenario.moments import require_rising
+from ied_sim.scenario.motor_tables import FaultTable, JointTable, SensorsTable, WarmingTable
+from ied_sim.scenario.supply_tables import BusTable, SupplyTable
 from ied_sim.toml_tables import Table
 
-CURRENT_HEADROOM = 12
-"""Full scale of the current channels over the peak of the rated current; a starting current must fit."""
-VOLTAGE_HEADROOM = 2
-
-Share = Annotated[float, Field(ge=-0.5, le=0.5)]
-SixShares = tuple[Share, Share, Share, Share, Share, Share]
-Turns = Annotated[float, Field(ge=0, le=0.5)]
 Level = Annotated[float, Field(ge=0, le=1.5)]
 Duration = Annotated[float, Field(gt=0)]
 
 
-class HarmonicTable(Table):
-    """A harmonic voltage of the supply."""
+class ClockTable(Table):
+    """The plant's clock."""
 
-    order: Annotated[int, Field(ge=2, le=50)]
-    fraction: Annotated[float, Field(ge=0, le=0.5)]
-    angle_deg: float = 0.0
+    start_days_ago: Annotated[float, Field(gt=0, le=3650)]
+    speed_up: Annotated[float, Field(gt=1, le=1e6)]
+    leap_every_s: Annotated[float, Field(ge=1)] = 5.0
 
-    @model_validator(mode="after")
-    def _has_a_sequence(self) -> Self:
-        if self.order % 3 == 0:
-            raise ValueError(f"order {self.order} has no sequence and drives no current into three wires")
-        return self
-
-
-class SupplyEventTable(Table):
-    """A dip, swell or interruption of the supply."""
-
-    at_s: float
-    duration_s: Duration
-    factor: Annotated[float, Field(ge=0, le=1.5)]
-    phases: Annotated[str, Field(pattern="^[abc]{1,3}$")] = "abc"
-    every_s: Duration | None = None
-
-    @model_validator(mode="after")
-    def _ends_before_it_comes_again(self) -> Self:
-        if self.every_s is not None and self.duration_s >= self.every_s:
-            raise ValueError("duration_s must be less than every_s")
-        return self
-
-    def event(self) -> SupplyEvent:
-        """Return the event."""
-        phases = tuple(sorted({"abc".index(phase) for phase in self.phases}))
-        return SupplyEvent(self.at_s, self.duration_s, self.factor, phases, self.every_s)
-
-
-class SupplyTable(Table):
-    """The supply; voltage and frequency are the motor's rated ones by default."""
-
-    line_voltage_V: Duration | None = None
-    frequency_Hz: Annotated[float, Field(gt=10, lt=500)] | None = None
-    frequency_drift_Hz: Annotated[float, Field(ge=0, le=2)] = 0.0
-    drift_period_s: Annotated[float, Field(ge=10)] = 300.0
-    unbalance: Annotated[float, Field(ge=0, le=0.3)] = 0.0
-    unbalance_angle_deg: float = 0.0
-    harmonics: tuple[HarmonicTable, ...] = ()
-    sequence: Literal["abc", "acb"] = "abc"
-    events: tuple[SupplyEventTable, ...] = ()
-
-    def supply(self, nameplate: Nameplate) -> Supply:
-        """Return the supply of a motor."""
-        return Supply(
-            line_voltage_V=self.line_voltage_V or nameplate.rated_voltage_V,
-            frequency_Hz=self.frequency_Hz or nameplate.rated_frequency_Hz,
-            frequency_drift_Hz=self.frequency_drift_Hz,
-            drift_period_s=self.drift_period_s,
-            unbalance=self.unbalance,
-            unbalance_angle_rad=radians(self.unbalance_angle_deg),
-            harmonics=tuple(Harmonic(h.order, h.fraction, radians(h.angle_deg)) for h in self.harmonics),
-            sequence=self.sequence,
-            events=tuple(event.event() for event in self.events),
-        )
+    def settings(self) -> ClockSettings:
+        """Return the settings."""
+        return ClockSettings(self.start_days_ago, self.speed_up, self.leap_every_s)
 
 
 class CyclePointTable(Table):
@@ -115,7 +55,7 @@ class LoadTable(Table):
         if (self.cycle is None) != (self.cycle_period_s is None):
             raise ValueError("cycle and cycle_period_s belong together")
         if self.cycle is not None and self.cycle_period_s is not None:
-            _rising([point.at_s for point in self.cycle], "cycle")
+            require_rising([point.at_s for point in self.cycle], "cycle")
             if self.cycle[0].at_s != 0 or self.cycle[-1].at_s >= self.cycle_period_s:
                 raise ValueError("cycle begins at 0 and its last point lies before cycle_period_s")
         return self
@@ -126,70 +66,6 @@ class LoadTable(Table):
         if self.cycle is not None and self.cycle_period_s is not None:
             cycle = LoadCycle(tuple((point.at_s, point.level) for point in self.cycle), self.cycle_period_s)
         return Load(self.level, self.swing, self.swing_period_s, cycle)
-
-
-class TimelinePointTable(Table):
-    """One point of a fault's development."""
-
-    at_s: float
-    level: Turns
-
-
-class FaultTable(Table):
-    """Shorted turns, of a constant level or one that develops."""
-
-    phase: Literal["a", "b", "c"]
-    level: Turns | None = None
-    timeline: Annotated[tuple[TimelinePointTable, ...], Field(min_length=1)] | None = None
-    resistance_ohm: Annotated[float, Field(ge=0)] = 0.0
-
-    @model_validator(mode="after")
-    def _is_one_course_in_time(self) -> Self:
-        if (self.level is None) == (self.timeline is None):
-            raise ValueError("give either level or timeline")
-        _rising([point.at_s for point in self.timeline or ()], "timeline")
-        return self
-
-    def course(self) -> FaultCourse:
-        """Return the fault's development."""
-        constant = ((0.0, self.level or 0.0),)
-        points = tuple((p.at_s, p.level) for p in self.timeline) if self.timeline else constant
-        return FaultCourse("abc".index(self.phase), points, self.resistance_ohm)
-
-
-class WarmingTable(Table):
-    """The warming of the windings."""
-
-    rise_K: Annotated[float, Field(ge=0, le=300)]
-    time_constant_s: Duration = 1800.0
-    begin_s: float = 0.0
-
-    def warming(self) -> Warming:
-        """Return the warming."""
-        return Warming(self.rise_K, self.time_constant_s, self.begin_s)
-
-
-class SensorsTable(Table):
-    """The sensors; their ranges follow from the motor by default."""
-
-    gain_errors: SixShares = (0.0,) * 6
-    offsets: SixShares = (0.0,) * 6
-    current_delay_us: Annotated[float, Field(ge=0, le=20_000)] = 0.0
-    noise: Annotated[float, Field(ge=0, le=0.5)] = 0.0
-    full_scale_A: Duration | None = None
-    full_scale_V: Duration | None = None
-
-    def sensors(self, motor: Motor) -> Sensors:
-        """Return the sensors at a motor."""
-        phase_peak_V = sqrt(2 / 3) * motor.nameplate.rated_voltage_V
-        return Sensors(
-            full_scale_A=self.full_scale_A or CURRENT_HEADROOM * sqrt(2) * rated_current(motor),
-            full_scale_V=self.full_scale_V or VOLTAGE_HEADROOM * phase_peak_V,
-            gain_errors=self.gain_errors,
-            offsets=self.offsets,
-            current_delay_s=self.current_delay_us * 1e-6,
-            noise=self.noise,
-        )
 
 
 class RecorderTable(Table):
@@ -299,11 +175,13 @@ class MotorTable(Table):
     seed: Annotated[int, Field(ge=0)] = 0
     stopped: bool = False
     broken_bars: Annotated[float, Field(ge=0, le=0.3)] = 0.0
+    bus: str | None = None
     nameplate: dict[str, object] | None = None
     parameters: dict[str, object] | None = None
     supply: SupplyTable = SupplyTable()
     load: LoadTable = LoadTable()
     fault: FaultTable | None = None
+    joint: JointTable | None = None
     warming: WarmingTable | None = None
     sensors: SensorsTable = SensorsTable()
     recorder: RecorderTable = RecorderTable()
@@ -312,13 +190,16 @@ class MotorTable(Table):
     misbehaviour: tuple[MisbehaviourTable, ...] = ()
     access: AccessTable = AccessTable()
 
+    @model_validator(mode="after")
+    def _has_one_supply(self) -> Self:
+        if self.bus is not None and self.supply.model_fields_set - {"sequence"}:
+            raise ValueError("a motor on a bus has no supply of its own; supply.sequence alone may be given")
+        return self
+
 
 class FileTable(Table):
     """A whole scenario file."""
 
     motor: tuple[MotorTable, ...]
-
-
-def _rising(times: list[float], field: str) -> None:
-    if times != sorted(set(times)):
-        raise ValueError(f"at_s must rise from each point of {field} to the next")
+    bus: tuple[BusTable, ...] = ()
+    clock: ClockTable | None = None

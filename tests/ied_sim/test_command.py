@@ -27,6 +27,8 @@ from testing.waiting import wait_until
 DEMO_SCENARIO = Path(__file__).parents[2] / "service" / "demo" / "scenario.toml"
 RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")
 
+HEALTHY: dict[str, object] = {"mu_f": 0.0, "theta_f": None, "joint_ohm": 0.0, "channels": {}}
+
 
 @pytest.fixture
 def plant(tmp_path: Path) -> Path:
@@ -94,14 +96,14 @@ def test_tells_the_truth(plant: Path) -> None:
     assert code == 0
     truth = json.loads(answer)
     assert tuple(truth) == RELAYS
-    assert truth["A2_SEL710"] == {"mu_f": 0.05, "theta_f": 1, "load_level": 0.65}
+    assert truth["A2_SEL710"] == {**HEALTHY, "mu_f": 0.05, "theta_f": 1, "load_level": 0.65}
     assert truth["A1_SEL710"]["theta_f"] is None
 
 
 def test_the_truth_without_a_scenario_is_healthy_and_may_be_of_one_relay(plant: Path) -> None:
     code, answer, _ = run("--scd", plant, "--truth", "--ied", "A3_SEL710", "--at", "5")
     assert code == 0
-    assert json.loads(answer) == {"A3_SEL710": {"mu_f": 0.0, "theta_f": None, "load_level": 0.5}}
+    assert json.loads(answer) == {"A3_SEL710": {**HEALTHY, "load_level": 0.5}}
 
 
 def test_a_taken_port_is_named_with_its_relay(plant: Path) -> None:

@@ -14,7 +14,7 @@ from ied_sim.motor.contactor import Contactor
 from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import MotorPlant, rated_current
 from ied_sim.motor.supply import Supply, SupplyEvent
-from ied_sim.motor.warming import COPPER_PER_K, Warming
+from ied_sim.motor.warming import ALUMINIUM_PER_K, COPPER_PER_K, Warming
 from ied_sim.motor.windings import winding_circuit
 from testing.machines.motors import MEDIUM, REFERENCE
 from tests.ied_sim.motor.plants import plant
@@ -94,13 +94,17 @@ def test_a_start_is_seen_with_its_peak_and_its_length() -> None:
 
 def test_warm_windings_have_more_resistance() -> None:
     warming = Warming(rise_K=80.0, time_constant_s=600.0, begin_s=100.0)
-    assert warming.resistance_factor(50.0) == 1.0
-    assert warming.resistance_factor(700.0) == pytest.approx(1 + COPPER_PER_K * 80 * (1 - np.exp(-1)))
-    warm = replace(plant(), warming=Warming(80.0, 1.0, -1000.0))
-    power_W = [meter(each, 100.0).complex_power_VA.real for each in (plant(), warm)]
+    assert warming.factors(50.0, np.ones_like) == (1.0, 1.0)
+    rise_K = 80 * (1 - np.exp(-1))
+    assert warming.factors(700.0, np.ones_like) == pytest.approx(
+        (1 + COPPER_PER_K * rise_K, 1 + ALUMINIUM_PER_K * rise_K)
+    )
+    warm = replace(plant(level=1.0), warming=Warming(80.0, 1.0, -1000.0))
+    power_W = [meter(each, 100.0).complex_power_VA.real for each in (plant(level=1.0), warm)]
     assert power_W[1] > power_W[0]
-    cold_R, warm_R = (each.circuit(100.0).resistance for each in (plant(), warm))
-    assert warm_R == pytest.approx(cold_R * (1 + COPPER_PER_K * 80), rel=1e-6)
+    cold, hot = (each.circuit(100.0).resistance for each in (plant(), warm))
+    assert hot[:2, :2] == pytest.approx(cold[:2, :2] * (1 + COPPER_PER_K * 80), rel=1e-6)
+    assert hot[2:, 2:] == pytest.approx(cold[2:, 2:] * (1 + ALUMINIUM_PER_K * 80), rel=1e-6)
 
 
 def test_a_load_cycle_repeats_in_straight_lines() -> None:

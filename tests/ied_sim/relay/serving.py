@@ -10,6 +10,7 @@ from pathlib import Path
 
 import scl
 from ied_sim.relay.event_recorder import RecorderSettings
+from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings, PlantClock
 from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import healthy_reference
 from mms import MOST_CONNECTIONS, Client, Report, ServerPump, ServerStartFailed, Value
@@ -66,9 +67,11 @@ class ServedRelay:
 
 
 @contextmanager
-def served_relay(files: Path, settings: RecorderSettings = SHORT_RECORD) -> Iterator[ServedRelay]:
+def served_relay(
+    files: Path, settings: RecorderSettings = SHORT_RECORD, clock: ClockSettings = REAL_TIME
+) -> Iterator[ServedRelay]:
     """A1_SEL710 of the demo plant with the reference motor and, unless told otherwise, short records."""
-    relay, pump = _start(files, settings)
+    relay, pump = _start(files, settings, clock)
     try:
         with Client.connect(LOOPBACK, relay.server.port) as client:
             reports: queue.SimpleQueue[Report] = queue.SimpleQueue()
@@ -79,7 +82,7 @@ def served_relay(files: Path, settings: RecorderSettings = SHORT_RECORD) -> Iter
         pump.stop()
 
 
-def _start(files: Path, settings: RecorderSettings) -> tuple[Relay, ServerPump]:
+def _start(files: Path, settings: RecorderSettings, clock: ClockSettings) -> tuple[Relay, ServerPump]:
     """On a free port; another one where somebody was faster."""
     document = scl.read(scl.DEMO_PLANT_SCD)
     scenario = healthy_reference(IED)
@@ -92,7 +95,7 @@ def _start(files: Path, settings: RecorderSettings) -> tuple[Relay, ServerPump]:
             scenario,
             address=Address(LOOPBACK, free_port()),
             files=files,
-            epoch_ns=time.time_ns(),
+            clock=PlantClock(time.time_ns(), clock),
         )
         pump = ServerPump([relay.server])
         try:

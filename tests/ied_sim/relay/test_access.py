@@ -9,6 +9,7 @@ from ied_sim.errors import ScenarioError, SimulatorError
 from ied_sim.misbehaviour import Kind, Misbehaviour
 from ied_sim.profiles.standalone import standalone
 from ied_sim.relay.configuration import Access
+from ied_sim.relay.plant_clock import PlantClock
 from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import read_scenario
 from mms import AssociationRejected, Client, MmsError, TlsRequired
@@ -105,4 +106,4 @@ def test_a_relay_behind_a_front_cannot_have_tls(tmp_path: Path) -> None:
     with pytest.raises(
         SimulatorError, match=r"R1: .*needs a front.*could not read TLS; take another profile"
     ):
-        Relay(document, IED, scenario, address=address, files=tmp_path, epoch_ns=0)
+        Relay(document, IED, scenario, address=address, files=tmp_path, clock=PlantClock(0))

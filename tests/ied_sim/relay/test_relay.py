@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from core.recordings import Quantity, Recording, read
+from core.units import NANOSECONDS_PER_DAY
 from ied_sim.errors import SimulatorError
+from ied_sim.relay.plant_clock import ClockSettings, PlantClock
 from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import healthy_reference
 from mms import FunctionalConstraint, Timestamp
@@ -100,6 +102,19 @@ def test_announcements_carry_their_time(served: ServedRelay) -> None:
         value = served.client.read(f"{IED}PRO/FLTRDRE1.{name}.t", FunctionalConstraint.ST)
         assert isinstance(value, Timestamp)
         assert begin_ns < value.ns < time.time_ns()
+
+
+def test_a_relay_of_the_past_writes_the_past_and_stamps_the_present(tmp_path: Path) -> None:
+    days_ago = ClockSettings(start_days_ago=2.0, speed_up=2.0, leap_every_s=1000.0)
+    with served_relay(tmp_path / "relay", clock=days_ago) as served:
+        begin_ns = time.time_ns()
+        served.pulse()
+        served.next_record()
+        stamp = served.client.read(f"{IED}PRO/FLTRDRE1.RcdMade.t", FunctionalConstraint.ST)
+        assert isinstance(stamp, Timestamp)
+        assert begin_ns < stamp.ns < time.time_ns()
+        recording = fetch(served, tmp_path)
+        assert (begin_ns - recording.trigger_time_ns) / NANOSECONDS_PER_DAY == pytest.approx(2.0, abs=1e-4)
 
 
 def test_a_pickup_during_a_capture_makes_no_second_record(tmp_path: Path) -> None:
@@ -214,5 +229,5 @@ def test_an_ied_that_is_no_sel_710_is_refused(tmp_path: Path) -> None:
             healthy_reference(IED),
             address=Address("127.0.0.1", 10_102),
             files=tmp_path,
-            epoch_ns=0,
+            clock=PlantClock(0),
         )

@@ -5,14 +5,16 @@ import tomllib
 from math import sqrt
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import scl
 from core.machines.parameters import Connection
 from ied_sim.errors import ScenarioError
 from ied_sim.misbehaviour import Kind
-from ied_sim.scenario import tables as scenario_tables
-from ied_sim.scenario.scenario import healthy_reference, read_scenario
+from ied_sim.relay.plant_clock import ClockSettings
+from ied_sim.scenario import moments, motor_tables, supply_tables, tables
+from ied_sim.scenario.scenario import healthy_reference, read_clock, read_scenario
 from ied_sim.toml_tables import Table
 
 REPOSITORY = Path(__file__).parents[3]
@@ -36,6 +38,22 @@ stator_self_inductance_H = 0.4377
 inertia_kgm2 = 0.0229
 """
 
+HEALTHY: dict[str, object] = {
+    "mu_f": 0.0,
+    "theta_f": None,
+    "load_level": 0.5,
+    "joint_ohm": 0.0,
+    "channels": {},
+}
+
+BUS = """
+[[bus]]
+name = "MCC"
+line_voltage_V = 400
+frequency_Hz = 50
+wander = { unbalance = 0.001 }
+"""
+
 
 def write(directory: Path, text: str) -> Path:
     path = directory / "scenario.toml"
@@ -50,7 +68,7 @@ def test_a_motor_without_more_is_healthy_at_half_load_on_its_rated_supply(tmp_pa
     assert relay.plant.supply.line_voltage_V == 380
     assert relay.plant.supply.frequency_Hz == 50
     assert relay.recorder.capacity == 20
-    assert relay.truth(0.0) == {"mu_f": 0.0, "theta_f": None, "load_level": 0.5}
+    assert relay.truth(0.0) == HEALTHY
 
 
 def test_a_fault_of_the_relay_alone_needs_no_motor(tmp_path: Path) -> None:
@@ -72,15 +90,24 @@ def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
     assert relay.plant.sensors.current_delay_s == pytest.approx(41e-6)
     assert relay.plant.sensors.full_scale_A == 260
     assert relay.truth(0.0)["theta_f"] == 1
+    late = relay.truth(30 * 86400.0)
+    assert late["joint_ohm"] == 0.01
+    assert late["channels"] == {
+        "IB": {"gain": 0.005, "delay_us": pytest.approx(10.0)},
+        "VC": {"gain": pytest.approx(-0.005), "delay_us": pytest.approx(5.0)},
+    }
+    assert read_clock(write(tmp_path, example)) == ClockSettings(30.0, 8640.0, 5.0)
+    assert read_clock(write(tmp_path, MINIMAL)) == ClockSettings()
     developing = read_scenario(write(tmp_path, MINIMAL + timeline))["R1"]
-    assert developing.truth(0.0) == {"mu_f": 0.0, "theta_f": None, "load_level": 0.5}
+    assert developing.truth(0.0) == HEALTHY
     assert developing.truth(900.0)["mu_f"] == pytest.approx(8.4 / (0.1 / 0.08**2 + 8.4 / 0.08))
 
 
 def test_every_field_is_documented() -> None:
     page = (REPOSITORY / "docs" / "reference" / "scenario.md").read_text(encoding="utf-8")
-    sections = [found for found in vars(scenario_tables).values() if _is_table(found)]
-    assert len(sections) > 10
+    modules = (moments, motor_tables, supply_tables, tables)
+    sections = [found for module in modules for found in vars(module).values() if _is_table(found)]
+    assert len(sections) > 20
     fields = {name for section in sections for name in section.model_fields}
     assert {name for name in fields if not re.search(rf"\b{name}\b", page)} == set()
 
@@ -123,6 +150,19 @@ def test_the_demo_motors_are_within_a_percent_of_the_motors_file() -> None:
             assert getattr(plant.parameters, name) == pytest.approx(value, rel=0.0101)
 
 
+def test_motors_of_a_bus_share_its_supply(tmp_path: Path) -> None:
+    first = MINIMAL.replace('"R1"', '"R1"\nbus = "MCC"')
+    second = MINIMAL.replace('"R1"', '"R2"\nbus = "MCC"').replace("= 380", "= 400")
+    turned = second.replace('"R2"', '"R3"') + '[motor.supply]\nsequence = "acb"\n'
+    other = MINIMAL.replace('"R1"', '"R4"\nbus = "ELSEWHERE"') + BUS.replace("MCC", "ELSEWHERE")
+    relays = read_scenario(write(tmp_path, first + second + turned + other + BUS))
+    times = 5e5 + np.arange(200) / 10_000
+    volts = {name: relay.plant.supply.phase_voltages(times) for name, relay in relays.items()}
+    assert np.array_equal(volts["R1"], volts["R2"])
+    assert volts["R3"] == pytest.approx(volts["R1"][[0, 2, 1]], abs=1e-4)
+    assert np.abs(volts["R4"] - volts["R1"]).max() > 0.01
+
+
 def test_full_scales_leave_room_for_a_start(tmp_path: Path) -> None:
     sensors = read_scenario(write(tmp_path, MINIMAL))["R1"].plant.sensors
     assert sensors.full_scale_A > 8 * 1.7 * sqrt(2)
@@ -160,8 +200,39 @@ def test_the_reference_motor_needs_no_file() -> None:
         (
             MINIMAL + '[motor.fault]\nphase = "a"\ntimeline = [{at_s=5, level=0.1}, {at_s=5, level=0.2}]',
             "[motor R1] fault",
-            "at_s must rise",
+            "times must rise",
         ),
+        (
+            MINIMAL + '[motor.fault]\nphase = "a"\ntimeline = [{at_s=5, at_days=1, level=0.1}]',
+            "[motor R1] fault.timeline.0",
+            "either at_s or at_days",
+        ),
+        (
+            MINIMAL + '[motor.fault]\nphase = "a"\nlevel = 0.1\nresistance_ohm = 1\npath_ratio = 1',
+            "[motor R1] fault",
+            "either resistance_ohm or path_ratio",
+        ),
+        (MINIMAL + '[motor.joint]\nphase = "a"', "[motor R1] joint", "either resistance_ohm or timeline"),
+        (
+            MINIMAL + '[motor.sensors]\nchanges = [{ channel = "VA", at_days = 1 }]',
+            "[motor R1] sensors.changes.0",
+            "give gain",
+        ),
+        (
+            MINIMAL
+            + '[motor.sensors]\nchanges = [{ channel = "VA", at_days=3, gain_per_day=0.1, until_days=2 }]',
+            "[motor R1] sensors.changes.0",
+            "after the beginning",
+        ),
+        (MINIMAL.replace('"R1"', '"R1"\nbus = "MCC"'), "[motor R1] bus", "there is none"),
+        (
+            MINIMAL.replace('"R1"', '"R1"\nbus = "MCC"') + "[motor.supply]\nunbalance = 0.01" + BUS,
+            "[motor R1]",
+            "no supply of its own",
+        ),
+        (MINIMAL + BUS + BUS, "[bus MCC] name", "each bus once"),
+        (MINIMAL + BUS.replace("line_voltage_V = 400", ""), "[bus MCC] line_voltage_V", "this field"),
+        (MINIMAL + "[clock]\nstart_days_ago = 30\nspeed_up = 1", "clock.speed_up", "greater than 1"),
         (
             MINIMAL + '[motor.fault]\nphase = "a"\nlevel = 0.1\nresistance_ohm = 1e6',
             "[motor R1] fault.resistance_ohm",

@@ -1,0 +1,175 @@
+"""Tables of a scenario file about what ails a motor and its sensors, and how that develops."""
+
+from math import inf, sqrt
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from core.machines.parameters import Motor
+from core.units import SECONDS_PER_DAY
+from ied_sim.motor.fault import FaultCourse
+from ied_sim.motor.joint import JointCourse
+from ied_sim.motor.plant import rated_current
+from ied_sim.motor.sensors import CHANNELS, ChannelChange, Sensors
+from ied_sim.motor.warming import ALUMINIUM_PER_K, COPPER_PER_K, Warming
+from ied_sim.scenario.moments import MomentTable, require_rising
+from ied_sim.toml_tables import Table
+
+CURRENT_HEADROOM = 12
+"""Full scale of the current channels over the peak of the rated current; a starting current must fit."""
+VOLTAGE_HEADROOM = 2
+
+Share = Annotated[float, Field(ge=-0.5, le=0.5)]
+SixShares = tuple[Share, Share, Share, Share, Share, Share]
+Delay = Annotated[float, Field(ge=-20_000, le=20_000)]
+SixDelays = tuple[Delay, Delay, Delay, Delay, Delay, Delay]
+Turns = Annotated[float, Field(ge=0, le=0.5)]
+Resistance = Annotated[float, Field(ge=0)]
+Phase = Literal["a", "b", "c"]
+Duration = Annotated[float, Field(gt=0)]
+
+
+class TimelinePointTable(MomentTable):
+    """One point of a fault's development."""
+
+    level: Turns
+
+
+class FaultTable(Table):
+    """Shorted turns, of a constant level or one that develops."""
+
+    phase: Phase
+    level: Turns | None = None
+    timeline: Annotated[tuple[TimelinePointTable, ...], Field(min_length=1)] | None = None
+    resistance_ohm: Resistance = 0.0
+    path_ratio: Annotated[float, Field(ge=0, le=100)] | None = None
+
+    @model_validator(mode="after")
+    def _is_one_course_in_time(self) -> Self:
+        if (self.level is None) == (self.timeline is None):
+            raise ValueError("give either level or timeline")
+        require_rising([point.time_s for point in self.timeline or ()], "timeline")
+        return self
+
+    @model_validator(mode="after")
+    def _has_one_path(self) -> Self:
+        if self.path_ratio is not None and self.resistance_ohm:
+            raise ValueError("give either resistance_ohm or path_ratio")
+        return self
+
+    def course(self, stator_resistance_ohm: float) -> FaultCourse:
+        """Return the fault's development in a motor."""
+        constant = ((0.0, self.level or 0.0),)
+        points = tuple((p.time_s, p.level) for p in self.timeline) if self.timeline else constant
+        return FaultCourse(
+            "abc".index(self.phase),
+            points,
+            self.resistance_ohm,
+            (self.path_ratio or 0.0) * stator_resistance_ohm,
+        )
+
+
+class JointPointTable(MomentTable):
+    """One point of a joint's development."""
+
+    resistance_ohm: Resistance
+
+
+class JointTable(Table):
+    """A bad joint in one line, of a constant resistance or one that develops."""
+
+    phase: Phase
+    resistance_ohm: Resistance | None = None
+    timeline: Annotated[tuple[JointPointTable, ...], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _is_one_course_in_time(self) -> Self:
+        if (self.resistance_ohm is None) == (self.timeline is None):
+            raise ValueError("give either resistance_ohm or timeline")
+        require_rising([point.time_s for point in self.timeline or ()], "timeline")
+        return self
+
+    def course(self) -> JointCourse:
+        """Return the joint's development."""
+        constant = ((0.0, self.resistance_ohm or 0.0),)
+        points = tuple((p.time_s, p.resistance_ohm) for p in self.timeline) if self.timeline else constant
+        return JointCourse("abc".index(self.phase), points)
+
+
+class WarmingTable(Table):
+    """The warming of the windings."""
+
+    rise_K: Annotated[float, Field(ge=0, le=300)]
+    time_constant_s: Duration = 1800.0
+    begin_s: float = 0.0
+    idle_share: Annotated[float, Field(ge=0, le=1)] = 0.35
+    ambient_K: Annotated[float, Field(ge=-100, le=100)] = 0.0
+    ambient_swing_K: Annotated[float, Field(ge=0, le=50)] = 0.0
+    cage: Literal["aluminium", "copper"] = "aluminium"
+
+    def warming(self) -> Warming:
+        """Return the warming."""
+        per_K = {"aluminium": ALUMINIUM_PER_K, "copper": COPPER_PER_K}[self.cage]
+        return Warming(rotor_per_K=per_K, **self.model_dump(exclude={"cage"}))
+
+
+class ChannelChangeTable(MomentTable):
+    """A channel that jumps or drifts."""
+
+    channel: Literal["IA", "IB", "IC", "VA", "VB", "VC"]
+    gain: Share = 0.0
+    delay_us: Delay = 0.0
+    gain_per_day: Share = 0.0
+    delay_us_per_day: Delay = 0.0
+    until_days: float | None = None
+
+    @model_validator(mode="after")
+    def _changes_something(self) -> Self:
+        drifts = bool(self.gain_per_day or self.delay_us_per_day)
+        if not (drifts or self.gain or self.delay_us):
+            raise ValueError("give gain, delay_us, gain_per_day or delay_us_per_day")
+        if self.until_days is not None:
+            if not drifts:
+                raise ValueError("until_days belongs to gain_per_day or delay_us_per_day")
+            if self.until_days * SECONDS_PER_DAY <= self.time_s:
+                raise ValueError("until_days must lie after the beginning")
+        return self
+
+    def change(self) -> ChannelChange:
+        """Return the change."""
+        return ChannelChange(
+            channel=CHANNELS.index(self.channel),
+            at_s=self.time_s,
+            gain=self.gain,
+            delay_s=self.delay_us * 1e-6,
+            gain_per_day=self.gain_per_day,
+            delay_per_day_s=self.delay_us_per_day * 1e-6,
+            until_s=inf if self.until_days is None else self.until_days * SECONDS_PER_DAY,
+        )
+
+
+class SensorsTable(Table):
+    """The sensors; their ranges follow from the motor by default."""
+
+    gain_errors: SixShares = (0.0,) * 6
+    delays_us: SixDelays = (0.0,) * 6
+    offsets: SixShares = (0.0,) * 6
+    current_delay_us: Annotated[float, Field(ge=0, le=20_000)] = 0.0
+    noise: Annotated[float, Field(ge=0, le=0.5)] = 0.0
+    full_scale_A: Duration | None = None
+    full_scale_V: Duration | None = None
+    changes: tuple[ChannelChangeTable, ...] = ()
+
+    def sensors(self, motor: Motor) -> Sensors:
+        """Return the sensors at a motor."""
+        phase_peak_V = sqrt(2 / 3) * motor.nameplate.rated_voltage_V
+        return Sensors(
+            full_scale_A=self.full_scale_A or CURRENT_HEADROOM * sqrt(2) * rated_current(motor),
+            full_scale_V=self.full_scale_V or VOLTAGE_HEADROOM * phase_peak_V,
+            gain_errors=self.gain_errors,
+            offsets=self.offsets,
+            current_delay_s=self.current_delay_us * 1e-6,
+            noise=self.noise,
+            delays_s=tuple(delay_us * 1e-6 for delay_us in self.delays_us),
+            changes=tuple(change.change() for change in self.changes),
+        )
