@@ -87,6 +87,12 @@ _TASKS = {
     ),
 }
 
+_UNCONFIRMED = _Task(
+    "Have the motor recorded again: the latest record differs from all before, and one alone proves nothing.",
+    "Do so today.",
+    "If the next record agrees with those before, nothing needs to be done.",
+)
+
 _TELLING = {
     frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION)): _Task(
         "Check the joints from the contactor to the terminal box first (thermal image, voltage drop of each "
@@ -124,7 +130,7 @@ def advice(state: State, kind: Kind, *, phase: str | None = None, candidates: It
     phase : str or None, optional
         Phase that it is seen in.
     candidates : iterable of Kind, optional
-        What it may be, likeliest first, where the kind is unclear.
+        What it may be, likeliest first, where the kind is unclear; none where a single record differs.
 
     Returns
     -------
@@ -137,7 +143,8 @@ def advice(state: State, kind: Kind, *, phase: str | None = None, candidates: It
         return " ".join(UNKNOWN)
     task = _TASKS[kind]
     if kind is Kind.UNCLEAR:
-        task = _TELLING.get(frozenset(tuple(candidates)[:2]), task)
+        likeliest = frozenset(tuple(candidates)[:2])
+        task = _TELLING.get(likeliest, task) if likeliest else _UNCONFIRMED
     urgency = FAULT_URGENCY if state is State.FAULT else task.urgency
     where = "" if phase is None else f" of phase {phase}"
     return " ".join((task.check, urgency, task.surer)).replace("{where}", where)

@@ -96,6 +96,8 @@ class Reference:
         Standard deviations by which it lies beyond what sensors of this class leave.
     from_bus : bool
         Whether other motors of the bus took part in judging it.
+    accepted : bool
+        Whether a person has declared the standing asymmetry healthy.
     """
 
     records: int
@@ -105,6 +107,7 @@ class Reference:
     standing: Level
     standing_score: float
     from_bus: bool
+    accepted: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -265,7 +265,7 @@ def _state(assessment: Assessment, limit: float) -> State:
 
 
 def _stands_out(reference: Reference) -> bool:
-    return reference.standing_score >= STANDING_SCORE
+    return reference.standing_score >= STANDING_SCORE and not reference.accepted
 
 
 def _kind(assessment: Assessment) -> tuple[Kind, tuple[Kind, ...]]:
@@ -326,7 +326,7 @@ def _total(assessment: Assessment, level: Level | None) -> tuple[float, Interval
     interval holds it whole. Neither part is below zero, because shorted turns do not heal.
     """
     standing = assessment.reference.standing
-    if level is not None and level.winding != standing.winding:
+    if assessment.reference.accepted or (level is not None and level.winding != standing.winding):
         # Turns of another winding do not add to the level of this one.
         standing = replace(standing, value=0.0)
     share = 1.0 if assessment.standing_fault else _probability_of_standing_fault(assessment.reference)
@@ -397,6 +397,7 @@ def _reference_document(reference: Reference | None) -> dict[str, object]:
         "detectable": reference.detectable,
         "since": _time(reference.since_ns),
         "from_bus": reference.from_bus,
+        "accepted": reference.accepted,
     }
 
 
@@ -416,4 +417,5 @@ def _reference(document: Mapping[str, Any]) -> Reference | None:
         ),
         standing_score=document["standing_score"],
         from_bus=document["from_bus"],
+        accepted=document["accepted"],
     )

@@ -105,6 +105,8 @@ def _of_standing(assessment: Assessment) -> Iterator[str]:
     )
     if assessment.standing_fault:
         yield f"{beyond}: shorted turns in phase {standing.phase}, {_interval(standing)}"
+    elif reference.accepted:
+        yield "a person has declared the asymmetry that stands from the first record on healthy"
     elif reference.standing_score >= STANDING_SCORE:
         yield f"{beyond}; shorted turns would be in phase {standing.phase}: {_interval(standing)}"
     else:

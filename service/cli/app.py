@@ -172,6 +172,55 @@ def diagnose(
 
 
 @app.command()
+def follow(
+    records: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="RECORD...",
+            help="Recordings of one motor in any order: files, folders (with all below), or patterns.",
+        ),
+    ],
+    motor: Annotated[Path, typer.Option(metavar="MOTOR.toml", help="The motor.")],
+    event: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="TIME=KIND[:REASON]",
+            help="What happened to the motor, such as 2026-01-31T12:00:00Z=rewound; may be given repeatedly.",
+        ),
+    ] = None,
+    events: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A file of events (TOML, tables [[event]]).")
+    ] = None,
+    stale_after: Annotated[
+        float,
+        typer.Option(
+            metavar="DAYS", min=0, help="The condition is stale after so long without a valid record."
+        ),
+    ] = 7.0,
+    *,
+    lenient: Annotated[
+        bool, typer.Option("--lenient", help="Mend what can be mended in faulty files.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Tell a motor's condition from its recordings over time: what has changed, since when, how it grows."""
+    if not isfinite(stale_after):
+        raise typer.BadParameter(f"--stale-after: expected a number of days, found {stale_after}")
+    with collection_paused():
+        from service.cli.follow import follow_records
+
+    follow_records(
+        records,
+        motor,
+        events=event or [],
+        events_file=events,
+        stale_after_days=stale_after,
+        lenient=lenient,
+        as_json=as_json,
+    )
+
+
+@app.command()
 def commission(
     records: Annotated[
         list[Path],

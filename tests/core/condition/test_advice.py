@@ -27,8 +27,12 @@ def test_kinds_on_watch_ask_for_different_things() -> None:
 def test_of_two_kinds_it_says_what_record_would_tell(other: Kind) -> None:
     either = advice(State.WATCH, Kind.UNCLEAR, candidates=(Kind.SHORTED_TURNS, other))
     assert either == advice(State.WATCH, Kind.UNCLEAR, candidates=(other, Kind.SHORTED_TURNS))
-    assert either != advice(State.WATCH, Kind.UNCLEAR)
+    assert either != advice(State.WATCH, Kind.UNCLEAR, candidates=(Kind.SUPPLY, Kind.ROTOR))
     assert "another load" in either or "other motors" in either
+
+
+def test_a_single_record_that_differs_asks_for_another() -> None:
+    assert "recorded again" in advice(State.WATCH, Kind.UNCLEAR)
 
 
 def test_a_fault_is_more_urgent_than_a_watch_and_names_its_phase() -> None:

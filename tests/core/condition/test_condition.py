@@ -153,6 +153,12 @@ def test_a_standing_asymmetry_that_is_not_sure_is_watched() -> None:
     assert condition.candidates == (Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL)
 
 
+def test_a_standing_asymmetry_that_a_person_declared_healthy_is_left() -> None:
+    accepted = replace(reference(standing=level(0.012, 0.004), score=3.8), accepted=True)
+    condition = judged(assessment(reference=accepted))
+    assert (condition.state, condition.mu_f) == (State.HEALTHY, 0.0)
+
+
 def test_a_standing_fault_that_grows_adds_up_where_it_is_one_winding() -> None:
     standing = reference(standing=level(0.03, 0.004, winding=1), score=7.0)
     grown = judged(
@@ -211,6 +217,7 @@ REFERENCES = st.builds(
     standing=LEVELS,
     standing_score=st.floats(0, 50),
     from_bus=st.booleans(),
+    accepted=st.booleans(),
 )
 ASSESSMENTS = st.builds(
     Assessment,

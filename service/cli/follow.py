@@ -1,0 +1,162 @@
+"""`mcc follow`: the condition of one motor over its records, without a service."""
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+from core.condition.condition import Condition, condition_of
+from core.condition.follower import Follower
+from core.machines.motor_file import MotorFileError, read_motor
+from core.machines.parameters import Motor
+from core.time_stamps import rfc3339
+from core.units import NANOSECONDS_PER_DAY
+from service.cli.condition_view import print_condition
+from service.cli.followed_records import Seen, find_records, observe_all
+from service.cli.given_events import GivenEvent, given_events
+from service.cli.output import CommandError, failing_clearly, one_line, print_document, progress
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One record that was used, and the condition after it."""
+
+    seen: Seen
+    condition: Condition
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the step as an entry of the history."""
+        condition = self.condition
+        return {
+            "record": _name(self.seen.path),
+            "time": _time(self.seen),
+            "state": str(condition.state),
+            "kind": str(condition.kind),
+            "phase": condition.phase,
+            "mu_f": condition.mu_f,
+            "change": condition.change,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Followed:
+    """All that came of the records: the condition at the end, the steps to it, and what was not used."""
+
+    condition: Condition
+    steps: tuple[Step, ...]
+    skipped: tuple[Seen, ...]
+
+
+def follow_records(
+    records: Sequence[str],
+    motor_file: Path,
+    *,
+    events: Sequence[str],
+    events_file: Path | None,
+    stale_after_days: float,
+    lenient: bool,
+    as_json: bool,
+) -> None:
+    """Read the records, fold them in the order of time, and print the motor's condition.
+
+    A record that cannot be used is named with the reason; it only ages the condition.
+
+    Raises CommandError where the motor's file or an event cannot be used, or none of the records.
+    """
+    with failing_clearly(MotorFileError, OSError):
+        motor = read_motor(motor_file)
+        given = given_events(events, events_file)
+        paths = find_records(records)
+        with _bar() as advance:
+            seen = observe_all(paths, motor, lenient=lenient, advance=advance)
+    followed = follow(motor, seen, given, round(stale_after_days * NANOSECONDS_PER_DAY))
+    if not followed.steps:
+        raise _none_usable(records, followed.skipped)
+    if as_json:
+        print_document(_document(motor_file, followed, given))
+    else:
+        skipped = [(_name(one.path), one.refusal) for one in followed.skipped]
+        print_condition(followed.condition, [step.condition for step in followed.steps], skipped)
+
+
+def follow(motor: Motor, seen: Sequence[Seen], events: Sequence[GivenEvent], stale_after_ns: int) -> Followed:
+    """Fold records and events in their order of time.
+
+    The age of the condition is counted until the latest record, whether that is of use or not: the same
+    records give the same answer on any day.
+    """
+    follower = Follower(motor)
+    times_ns = [one.time_ns for one in seen if one.time_ns is not None]
+    now_ns = max(times_ns, default=0)
+    waiting = list(events)
+    steps: list[Step] = []
+    skipped: list[Seen] = []
+    for one in seen:
+        if one.observation is None:
+            skipped.append(one)
+            continue
+        while waiting and waiting[0].event.time_ns <= one.observation.time_ns:
+            _apply(follower, waiting.pop(0))
+        try:
+            follower.fold(one.observation)
+        except ValueError as error:
+            skipped.append(one.refused(str(error)))
+            continue
+        found = condition_of(follower.motor, follower.assessment(), one.observation.time_ns, stale_after_ns)
+        steps.append(Step(one, found))
+    for event in waiting:
+        _apply(follower, event)
+    condition = condition_of(follower.motor, follower.assessment(), now_ns, stale_after_ns)
+    return Followed(condition, tuple(steps), tuple(skipped))
+
+
+def _apply(follower: Follower, given: GivenEvent) -> None:
+    follower.apply(given.event, given.motor)
+
+
+def _document(motor_file: Path, followed: Followed, events: Sequence[GivenEvent]) -> dict[str, object]:
+    return {
+        **followed.condition.as_dict(),
+        "motor_file": _name(motor_file),
+        "events": [one.as_dict() for one in events],
+        "history": [step.as_dict() for step in followed.steps],
+        "skipped": _skipped(followed.skipped),
+    }
+
+
+def _skipped(records: Sequence[Seen]) -> list[dict[str, object]]:
+    return [
+        {"record": _name(one.path), "time": _time(one), "reason": one_line(one.refusal)} for one in records
+    ]
+
+
+def _none_usable(given: Sequence[str], skipped: Sequence[Seen]) -> CommandError:
+    if not skipped:
+        what = f"no recordings in {', '.join(given)}: expected .cfg, .cff or .cev files"
+    else:
+        first = skipped[0]
+        what = f"none of {len(skipped)} records can be used; the first, {_name(first.path)}: {first.refusal}"
+    details = {"type": "NoUsableRecord", "skipped": _skipped(skipped)}
+    return CommandError(one_line(what), details=details)
+
+
+def _name(path: Path) -> str:
+    """Return a path as text that any encoding of a terminal takes."""
+    return one_line(os.fsencode(path).decode("utf-8", errors="replace"))
+
+
+def _time(seen: Seen) -> str | None:
+    return None if seen.time_ns is None else rfc3339(seen.time_ns)
+
+
+@contextmanager
+def _bar() -> Iterator[Callable[[int, int], None]]:
+    """Show a progress bar on stderr, if that is a terminal."""
+    console = progress()
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task("reading records", total=None)
+        yield lambda done, of: bar.update(task, completed=done, total=of)

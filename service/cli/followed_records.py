@@ -1,0 +1,147 @@
+"""The records that `mcc follow` is given: found, read and observed by several processes, and put in order."""
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from core.condition.observation import Observation
+from core.condition.observing import observation_of
+from core.diagnosis.acceptance import accept
+from core.machines.parameters import Motor
+from core.recordings import RecordingError, read
+from core.recordings.reading import READERS
+
+MOST_VALUES = 8_000_000
+"""A longer recording is refused, as the service refuses it."""
+
+FEW = 12
+"""So many records are read sooner than a second process has started."""
+
+AT_ONCE = 4
+"""Records that a process gets at a time."""
+
+GLOB_CHARACTERS = frozenset("*?[")
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """One record and what it tells.
+
+    path: as it was found. time_ns: of its trigger, UTC; None where it cannot be read. observation: None where
+    the record was refused. refusal: why.
+    """
+
+    path: Path
+    time_ns: int | None
+    observation: Observation | None
+    refusal: str = ""
+
+    def refused(self, reason: str) -> "Seen":
+        """Return the record as one that is not used, with the reason."""
+        return Seen(self.path, self.time_ns, None, reason)
+
+
+def find_records(given: Sequence[str]) -> list[Path]:
+    """Return the files that are meant by names of files and folders, and by patterns such as mill/*.CFG.
+
+    A folder stands for all recordings in it and below. A file is taken once. A name that leads nowhere is
+    kept, so that reading it says what is wrong.
+    """
+    found: dict[Path, Path] = {}
+    for name in given:
+        for path in _meant(name):
+            found.setdefault(path.resolve(), path)
+    return list(found.values())
+
+
+def _meant(name: str) -> Iterator[Path]:
+    path = Path(name)
+    if path.is_dir():
+        yield from _inside(path)
+    elif path.exists() or not GLOB_CHARACTERS.intersection(name):
+        yield path
+    else:
+        matching = sorted(Path(path.anchor).glob(str(path.relative_to(path.anchor))))
+        for one in matching:
+            yield from _meant(str(one))
+        if not matching:
+            yield path
+
+
+def _inside(folder: Path) -> Iterator[Path]:
+    """Yield the recordings of a folder, each event once: a relay may keep it as COMTRADE and as CEV."""
+    order = list(READERS)
+    known = [path for path in folder.rglob("*") if path.suffix.casefold() in READERS and path.is_file()]
+    known.sort(key=lambda path: (str(path.with_suffix("")), order.index(path.suffix.casefold())))
+    before = None
+    for path in known:
+        event = path.with_suffix("")
+        if event != before:
+            yield path
+        before = event
+
+
+def observe_all(
+    paths: Sequence[Path], motor: Motor, *, lenient: bool, advance: Callable[[int, int], None]
+) -> list[Seen]:
+    """Read and observe the records, and return them in the order of time; those without a time come last.
+
+    Of copies of one record the first is used. advance: is told how many of all are done.
+    """
+    look = partial(observe_record, motor=motor, lenient=lenient)
+    seen: list[Seen] = []
+    for one in _each(look, paths):
+        seen.append(one)
+        advance(len(seen), len(paths))
+    seen.sort(key=lambda one: (one.time_ns is None, one.time_ns or 0, str(one.path)))
+    return list(_without_copies(seen))
+
+
+def _each(look: Callable[[Path], Seen], paths: Sequence[Path]) -> Iterator[Seen]:
+    processes = min(len(os.sched_getaffinity(0)), len(paths) // AT_ONCE)
+    if processes < 2 or len(paths) < FEW:
+        yield from map(look, paths)
+        return
+    done = 0
+    try:
+        with ProcessPoolExecutor(processes) as pool:
+            for one in pool.map(look, paths, chunksize=AT_ONCE):
+                yield one
+                done += 1
+    except BrokenProcessPool:
+        # A process was killed from outside, for want of memory for example: go on more slowly without it.
+        yield from map(look, paths[done:])
+
+
+def observe_record(path: Path, motor: Motor, *, lenient: bool) -> Seen:
+    """Read one record and observe the motor in it; whatever is wrong with it is told in the answer."""
+    try:
+        recording = read(path, lenient=lenient, most_values=MOST_VALUES)
+    except (RecordingError, OSError) as error:
+        return Seen(path, None, None, str(error))
+    unused = Seen(path, recording.trigger_time_ns, None)
+    try:
+        acceptance = accept(recording, motor)
+    except RecordingError as error:
+        return unused.refused(str(error))
+    if acceptance.accepted is None:
+        failed = (f"{one.name}: {one.message}" for one in acceptance.quality if not one.passed)
+        return unused.refused("; ".join(failed))
+    observation = observation_of(recording, acceptance.accepted)
+    if observation is None:
+        return unused.refused("it gives no finite negative-sequence voltage and current")
+    return Seen(path, recording.trigger_time_ns, observation)
+
+
+def _without_copies(seen: Sequence[Seen]) -> Iterator[Seen]:
+    first: dict[Observation, Path] = {}
+    for one in seen:
+        if one.observation is None:
+            yield one
+            continue
+        kept = first.setdefault(one.observation, one.path)
+        yield one if kept == one.path else one.refused(f"a copy of {kept}")

@@ -1,0 +1,220 @@
+"""`mcc follow`: a motor's condition from files, without a service."""
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.condition.condition import condition_of
+from core.condition.follower import Follower
+from core.condition.kinds import Kind, State
+from core.condition.observing import observe
+from core.machines.motor_file import read_motor
+from core.machines.motor_file_writer import write_motor
+from core.recordings import comtrade, read
+from core.time_stamps import rfc3339
+from core.units import NANOSECONDS_PER_DAY
+from service.cli import main
+from service.cli.condition_view import print_condition
+from service.cli.followed_records import FEW, find_records, observe_all, observe_record
+from testing.machines.motors import REFERENCE
+from testing.machines.record_series import BEGUN_NS, HOUR_NS, write_series
+
+RECORDS = FEW + 2
+
+
+@pytest.fixture(scope="module")
+def plant(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the records of a motor, and its file beside it."""
+    folder = tmp_path_factory.mktemp("plant")
+    write_motor(folder / "PUMP.toml", REFERENCE)
+    (folder / "records").mkdir()
+    write_series(folder / "records", REFERENCE, RECORDS)
+    return folder
+
+
+@pytest.fixture
+def few(plant: Path, tmp_path: Path) -> Path:
+    """A folder of its own with three of the records and the motor's file."""
+    shutil.copy(plant / "PUMP.toml", tmp_path)
+    for k in range(3):
+        for suffix in (".CFG", ".DAT"):
+            shutil.copy(plant / "records" / f"R{k:04d}{suffix}", tmp_path)
+    return tmp_path
+
+
+def followed(capsys: pytest.CaptureFixture[str], folder: Path, *words: str) -> dict[str, Any]:
+    assert main(["follow", *words, "--motor", str(folder / "PUMP.toml"), "--json"]) == 0
+    document: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return document
+
+
+def test_the_document_is_that_of_the_records_folded_in_their_order(
+    plant: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    motor = read_motor(plant / "PUMP.toml")
+    follower = Follower(motor)
+    paths = sorted((plant / "records").glob("*.CFG"))
+    for path in paths:
+        observation = observe(read(path), motor)
+        assert observation is not None
+        follower.fold(observation)
+    last_ns = BEGUN_NS + (RECORDS - 1) * HOUR_NS
+    expected = condition_of(motor, follower.assessment(), last_ns).as_dict()
+    document = followed(capsys, plant, *(str(path) for path in reversed(paths)))
+    assert {key: document[key] for key in expected} == expected
+    assert (document["motor"], document["as_of"]) == ("PUMP", rfc3339(last_ns))
+    assert [entry["time"] for entry in document["history"]] == [
+        rfc3339(BEGUN_NS + k * HOUR_NS) for k in range(RECORDS)
+    ]
+    assert document["history"][-1]["state"] == document["state"]
+    assert document["skipped"] == []
+
+
+def test_several_processes_see_what_one_sees(plant: Path) -> None:
+    motor = read_motor(plant / "PUMP.toml")
+    paths = find_records([str(plant / "records")])
+    told: list[tuple[int, int]] = []
+    together = observe_all(paths, motor, lenient=False, advance=lambda done, of: told.append((done, of)))
+    assert together == [observe_record(path, motor, lenient=False) for path in paths]
+    assert told == [(k, RECORDS) for k in range(1, RECORDS + 1)]
+
+
+def test_folders_patterns_and_files_mean_each_record_once(few: Path) -> None:
+    (few / "BELOW").mkdir()
+    shutil.copy(few / "R0000.CFG", few / "BELOW" / "R0009.cfg")
+    (few / "R0001.CEV").write_text("the same event in the other format")
+    (few / "notes.txt").write_text("no recording")
+    found = find_records([str(few), str(few / "R*.CFG"), str(few / "R0000.CFG")])
+    assert [path.name for path in found] == ["R0009.cfg", "R0000.CFG", "R0001.CFG", "R0002.CFG"]
+    missing = [str(few / "R0100.CFG"), str(few / "X*.CFG")]
+    assert [str(path) for path in find_records(missing)] == missing
+
+
+def test_what_cannot_be_used_is_named_and_the_rest_is_followed(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (few / "BAD.CFG").write_text("nothing of the kind")
+    (few / "PICTURE.png").write_bytes(b"\x89PNG")
+    for suffix in (".CFG", ".DAT"):
+        shutil.copy(few / f"R0001{suffix}", few / f"COPY{suffix}")
+    document = followed(capsys, few, str(few), str(few / "PICTURE.png"), str(few / "GONE.CFG"))
+    assert len(document["history"]) == 3
+    reasons = {Path(one["record"]).name: one["reason"] for one in document["skipped"]}
+    assert set(reasons) == {"BAD.CFG", "PICTURE.png", "GONE.CFG", "R0001.CFG"}
+    assert "copy of" in reasons["R0001.CFG"]
+    assert "suffix" in reasons["PICTURE.png"]
+
+
+def test_records_of_a_stopped_motor_only_age_the_condition(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    running = read(few / "R0000.CFG")
+    silent = replace(
+        running, samples=0.0 * running.samples, start_time_ns=running.start_time_ns + 8 * NANOSECONDS_PER_DAY
+    )
+    stopped = comtrade.write(few / "STOPPED.CFG", silent)
+    document = followed(capsys, few, str(few))
+    before = followed(capsys, few, str(few / "R*.CFG"))
+    (skipped,) = document["skipped"]
+    assert skipped["record"] == str(stopped)
+    assert (document["stale"], before["stale"]) == (True, False)
+    assert document["as_of"] == before["as_of"]
+    assert not followed(capsys, few, str(few), "--stale-after", "9")["stale"]
+
+
+def test_without_a_usable_record_it_fails_with_the_reasons(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (few / "BAD.CFG").write_text("nothing of the kind")
+    words = ["follow", str(few / "BAD.CFG"), "--motor", str(few / "PUMP.toml"), "--json"]
+    assert main(words) == 1
+    answer = capsys.readouterr()
+    error = json.loads(answer.out)["error"]
+    assert error["type"] == "NoUsableRecord"
+    assert error["skipped"][0]["record"] == str(few / "BAD.CFG")
+    assert "none of 1 records" in answer.err
+    (few / "EMPTY").mkdir()
+    assert main(["follow", str(few / "EMPTY"), "--motor", str(few / "PUMP.toml")]) == 1
+    assert "no recordings in" in capsys.readouterr().err
+
+
+def test_events_are_taken_between_the_records_in_their_time(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    between = rfc3339(BEGUN_NS + HOUR_NS + HOUR_NS // 2)
+    document = followed(capsys, few, str(few), "--event", f"{between}=rewound:new winding")
+    assert document["events"] == [{"time": between, "kind": "rewound", "reason": "new winding"}]
+    assert document["reference"]["records"] == 1
+    after = rfc3339(BEGUN_NS + 9 * HOUR_NS)
+    assert followed(capsys, few, str(few), "--event", f"{after}=rewound")["state"] == "unknown"
+
+
+def test_events_come_from_a_file_too_with_the_motor_as_it_is_then(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (few / "events.toml").write_text(
+        "[[event]]\ntime = 2026-01-05T10:30:00+01:00\n"
+        'kind = "parameters-edited"\nreason = "as commissioned"\nmotor = "PUMP.toml"\n'
+        '[[event]]\ntime = "2026-01-05T09:15:00Z"\nkind = "note"\n'
+    )
+    document = followed(capsys, few, str(few), "--events", str(few / "events.toml"))
+    assert [one["kind"] for one in document["events"]] == ["note", "parameters-edited"]
+    assert document["events"][1]["time"].startswith("2026-01-05T09:30:00")
+    assert document["reference"]["records"] == 3
+
+
+@pytest.mark.parametrize(
+    ("option", "text"),
+    [
+        ("--event", "yesterday=rewound"),
+        ("--event", "2026-01-31T12:00:00Z=polished"),
+        ("--events", "[[event]]\ntime = 2026-01-31\nkind = 'rewound'\n"),
+        ("--events", "[[event]]\ntime = 2026-01-31T12:00:00Z\nkind = 3\n"),
+        ("--events", "[[event]]\ntime = 2026-01-31T12:00:00Z\nkind = 'rewound'\nwho = 'me'\n"),
+        ("--events", "event = 3\n"),
+        ("--events", "[motor]\n"),
+        ("--events", "= = ="),
+    ],
+)
+def test_what_is_no_event_is_wrong_use(
+    few: Path, option: str, text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if option == "--events":
+        (few / "events.toml").write_text(text)
+        text = str(few / "events.toml")
+    assert main(["follow", str(few), "--motor", str(few / "PUMP.toml"), option, text, "--json"]) == 2
+    error = json.loads(capsys.readouterr().out)["error"]
+    assert error["type"] == "EventUnusable"
+
+
+def test_people_read_state_and_advice_first(few: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["follow", str(few), "--motor", str(few / "PUMP.toml")]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "PUMP: healthy"
+    assert lines[1].startswith("Nothing needs to be done")
+    assert lines.index("Why") > 2
+    (row,) = [
+        line for line in lines if line.strip().startswith("2026-01-05 09:00:00 UTC") and "healthy" in line
+    ]
+    assert row.split()[3] == "3"
+
+
+def test_names_and_reasons_cannot_play_with_the_terminal(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (few / "A\x1b[2J\n[red]\udcff.CFG").write_text("\x1b]0;mine\x07")
+    document = followed(capsys, few, str(few))
+    assert all(character.isprintable() for one in document["skipped"] for character in one["record"])
+    assert main(["follow", str(few), "--motor", str(few / "PUMP.toml")]) == 0
+    shown = capsys.readouterr().out
+    assert "\x1b" not in shown
+    assert "[red]" in shown
+    condition = condition_of(REFERENCE, None, BEGUN_NS)
+    print_condition(condition, [condition], [("\x1b[2Jname", "\x07reason")])
+    shown = capsys.readouterr().out
+    assert not {"\x1b", "\x07"} & set(shown)
+    assert (condition.state, condition.kind) == (State.UNKNOWN, Kind.NONE)
