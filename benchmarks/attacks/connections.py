@@ -68,13 +68,13 @@ ATTACKS = (
 
 @dataclass
 class Figures:
-    """times_s: until each answer; infinite where there was none."""
+    """times_s: until each answer; infinite where there was none, and `failures` says why."""
 
     times_s: dict[str, list[float]] = field(default_factory=lambda: {"/healthz": [], "/api/v1/motors": []})
+    failures: list[str] = field(default_factory=list)
     descriptors: int = 0
     memory_mb: float = 0.0
-    log_bytes: int = 0
-    log_lines: int = 0
+    log: bytes = b""
     left_over: int = 0
 
     def p95_s(self, path: str) -> float:
@@ -93,7 +93,7 @@ class Figures:
                 (f"/healthz p95 {HEALTHZ_P95_LIMIT_S:g} s", self.p95_s("/healthz") <= HEALTHZ_P95_LIMIT_S),
                 ("an answer of /api/v1/motors", self.failed("/api/v1/motors") == 0),
                 (f"memory {MEMORY_LIMIT_MB:g} MB", self.memory_mb <= MEMORY_LIMIT_MB),
-                (f"log {LOG_LIMIT_BYTES} bytes", self.log_bytes <= LOG_LIMIT_BYTES),
+                (f"log {LOG_LIMIT_BYTES} bytes", len(self.log) <= LOG_LIMIT_BYTES),
             )
             if not kept
         ]
@@ -112,6 +112,8 @@ def main() -> int:
             figures = measure(attack, arguments.connections, arguments.seconds)
             rows.append(_row(attack, figures))
             print(f"{attack.name}: {figures.broken() or 'all limits kept'}", file=sys.stderr, flush=True)
+            for failure in figures.failures:
+                print(f"  no answer of {failure}", file=sys.stderr, flush=True)
             broken.extend(figures.broken())
     head = (
         "attack",
@@ -139,14 +141,12 @@ def measure(attack: Attack, connections: int, seconds: float) -> Figures:
         _raise_limit()
         port = int(service.url.rpartition(":")[2])
         for path in figures.times_s:
-            _time_of_answer(port, path)
+            _ask(port, path)
         resting, memory_kb = _descriptors(service), _memory_kb(service)
-        log_bytes, log_lines = _log(service)
+        log_bytes = service.log.stat().st_size
         with _attackers(port, attack, connections):
             _probe(service, port, figures, seconds)
-        figures.log_bytes, figures.log_lines = (
-            after - before for after, before in zip(_log(service), (log_bytes, log_lines), strict=True)
-        )
+        figures.log = service.log.read_bytes()[log_bytes:]
         figures.descriptors -= resting
         figures.memory_mb -= memory_kb / 1024
         time.sleep(SETTLING_S)
@@ -159,25 +159,28 @@ def _probe(service: Service, port: int, figures: Figures, seconds: float) -> Non
     end_s = time.monotonic() + seconds
     while time.monotonic() < end_s:
         for path, times_s in figures.times_s.items():
-            times_s.append(_time_of_answer(port, path))
+            begun_s = time.monotonic()
+            failure = _ask(port, path)
+            times_s.append(math.inf if failure else time.monotonic() - begun_s)
+            if failure:
+                figures.failures.append(f"{path}, after {time.monotonic() - begun_s:.2f} s: {failure}")
         figures.descriptors = max(figures.descriptors, _descriptors(service))
         figures.memory_mb = max(figures.memory_mb, _memory_kb(service) / 1024)
         time.sleep(PROBE_PERIOD_S)
 
 
-def _time_of_answer(port: int, path: str) -> float:
-    """How long a new client waits for a good answer [s]; infinite where there is none."""
-    begun = time.perf_counter()
+def _ask(port: int, path: str) -> str:
+    """Ask like a new client, and return why there was no good answer; "" where there was one."""
     client = http.client.HTTPConnection(LOOPBACK, port, timeout=PROBE_TIMEOUT_S)
     try:
         client.request("GET", path)
         answer = client.getresponse()
-        answer.read()
-    except (OSError, http.client.HTTPException):
-        return float("inf")
+        content = answer.read()
+    except (OSError, http.client.HTTPException) as error:
+        return repr(error)
     finally:
         client.close()
-    return time.perf_counter() - begun if answer.status == http.client.OK else float("inf")
+    return "" if answer.status == http.client.OK else f"{answer.status} {content.decode(errors='replace')}"
 
 
 @contextmanager
@@ -259,12 +262,6 @@ def _memory_kb(service: Service) -> int:
     return next(int(line.split()[1]) for line in status.splitlines() if line.startswith("VmRSS:"))
 
 
-def _log(service: Service) -> tuple[int, int]:
-    """Bytes and lines of the log."""
-    content = service.log.read_bytes()
-    return len(content), content.count(b"\n")
-
-
 def _row(attack: Attack, figures: Figures) -> tuple[str, ...]:
     answers = [
         text
@@ -279,7 +276,7 @@ def _row(attack: Attack, figures: Figures) -> tuple[str, ...]:
         *answers,
         f"+{figures.descriptors}",
         f"+{figures.memory_mb:.0f} MB",
-        f"{figures.log_lines} lines, {figures.log_bytes / 1000:.1f} kB",
+        f"{len(figures.log.splitlines())} lines, {len(figures.log) / 1000:.1f} kB",
         f"{figures.left_over}",
     )
 

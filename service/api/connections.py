@@ -6,12 +6,16 @@ as many connections as there may be, those that have kept the service waiting fo
 """
 
 import asyncio
+import fcntl
 import logging
+import struct
+import termios
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
-from heapq import nlargest
 from http import HTTPStatus
+from itertools import islice
+from operator import itemgetter
 from typing import Any
 
 import h11
@@ -36,6 +40,9 @@ SETTLED_S = 0.25
 
 UNREAD_BYTES = 1 << 20
 """So much of a body may still come after its request has been answered; then the connection is closed."""
+
+UNREAD = struct.Struct("i")
+"""The number of bytes that the system tells (FIONREAD)."""
 
 OVERLOADED = "as many connections are open as there may be; try again"
 
@@ -76,15 +83,16 @@ class OpenConnections(ServerState):
         surplus = len(present) - self.limits.most
         if surplus <= 0:
             return
+        least_s = SETTLED_S if surplus <= EXTRA else 0.0
         waits = [
-            (waited_s, index, each)
-            for index, each in enumerate(present)
-            if each is not new and (waited_s := each.waited_s(now_s)) is not None
+            (waited_s, each)
+            for each in present
+            if each is not new and (waited_s := each.waited_s(now_s)) is not None and waited_s >= least_s
         ]
-        longest = nlargest(min(DISPLACED_AT_ONCE, 1 + len(waits) // 2), waits)
-        if surplus <= EXTRA:
-            longest = [wait for wait in longest if wait[0] >= SETTLED_S]
-        for _, _, each in longest:
+        waits.sort(key=itemgetter(0), reverse=True)
+        at_once = min(DISPLACED_AT_ONCE, 1 + len(waits) // 2)
+        longest = list(islice((each for _, each in waits if not each.has_sent_more()), at_once))
+        for each in longest:
             self.tally.add("displaced")
             each.give_up(HTTPStatus.SERVICE_UNAVAILABLE, OVERLOADED)
         if surplus > EXTRA and not longest:
@@ -140,6 +148,18 @@ class LimitedConnection(H11Protocol):
         """Return for how long the client has kept the service waiting [s]; None while the service works."""
         return None if self.wait is None else now_s - self._since_s
 
+    def has_sent_more(self) -> bool:
+        """Tell whether bytes of the client lie in the system that the service did not come to read yet.
+
+        Such a client waits for the service, however long ago the service began to wait for it. One that does
+        not take its answers is not read, so what it has sent counts for nothing.
+        """
+        if self.wait is Wait.TAKING or self.transport.is_closing():
+            return False
+        connection = self.transport.get_extra_info("socket")
+        (unread_bytes,) = UNREAD.unpack(fcntl.ioctl(connection, termios.FIONREAD, bytes(UNREAD.size)))
+        return bool(unread_bytes > 0)
+
     def close_if_overdue(self, now_s: float) -> None:
         """Close the connection if its client has taken longer than it may."""
         self._look()
@@ -149,7 +169,7 @@ class LimitedConnection(H11Protocol):
             Wait.NEXT_REQUEST: limits.idle_timeout_s,
         }.get(self.wait or Wait.BODY, limits.transfer_timeout_s)
         waited_s = self.waited_s(now_s)
-        if self.wait is None or waited_s is None or waited_s <= limit_s:
+        if self.wait is None or waited_s is None or waited_s <= limit_s or self.has_sent_more():
             return
         if self.wait is not Wait.NEXT_REQUEST:
             self._open.tally.add(self.wait.value)

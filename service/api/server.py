@@ -18,8 +18,11 @@ from service.configuration.settings import Settings
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
-ACCEPTED_AT_ONCE = 64
-"""Connections between two looks at anything else, each with a descriptor."""
+ACCEPTED_AT_ONCE = 16
+"""Connections between two looks at anything else, each with a descriptor.
+
+So few that the requests of a burst are read and answered while it comes.
+"""
 
 QUEUE = 2048
 """Connections that the system holds until they are accepted. Those beyond try again after a second."""

@@ -7,8 +7,10 @@ import subprocess
 import sys
 import threading
 import time
+from collections import Counter
 from collections.abc import Iterator, MutableMapping
 from contextlib import ExitStack, contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +50,7 @@ class Application:
                 Route("/read", self._read, methods=["POST"]),
                 Route("/large", self._large),
                 Route("/wait", self._wait),
+                Route("/stall", self._stall),
             ]
         )
 
@@ -64,6 +67,11 @@ class Application:
         self.waiting.release()
         self.go_on.wait(PATIENCE_S)
         return PlainTextResponse("waited")
+
+    async def _stall(self, request: Request) -> Response:
+        self.waiting.release()
+        self.go_on.wait(PATIENCE_S)  # in the event loop, which serves nobody meanwhile
+        return PlainTextResponse("stalled")
 
 
 @pytest.fixture
@@ -161,6 +169,17 @@ def test_waiting_connections_make_room_for_new_ones(
     told = [entry for entry in logs if entry["event"] == "connections were closed or refused"]
     assert len(told) == 1, "one line a minute"
     assert told[0]["displaced"] > 0
+
+
+def test_a_burst_of_requests_is_answered_to_the_last(application: Application) -> None:
+    """None of these clients keeps the service waiting: it is the service that is behind."""
+    with listening(application.asgi, replace(PATIENT, most=8)) as port, ExitStack() as held:
+        held.enter_context(connected(port, HEALTH.replace(b"/healthz", b"/stall")))
+        assert application.waiting.acquire(timeout=PATIENCE_S)
+        burst = [held.enter_context(connected(port, HEALTH)) for _ in range(600)]
+        application.go_on.set()
+        answers = Counter(client.recv(1 << 16).partition(b"\r\n")[0] for client in burst)
+    assert answers == {b"HTTP/1.1 200 OK": len(burst)}
 
 
 def test_where_all_are_being_answered_health_alone_is_told(application: Application) -> None:
