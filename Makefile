@@ -38,9 +38,11 @@ demo: install
 test: install
 	$(BIN)/python -m pytest -q -m "not campaign"
 
-# The same with coverage, and the campaigns; the containers where an engine answers.
+# The same with coverage, and the campaigns; the containers where an engine answers. Long tests that have limits of time
+# do not share the cores with as many others.
 test-all: install
-	$(BIN)/python -m pytest -q --cov
+	$(BIN)/python -m pytest -q -m "not campaign" --cov
+	$(BIN)/python -m pytest -q -m campaign -n 2 --cov --cov-append
 	$(MAKE) hostile
 	$(MAKE) chaos
 	$(if $(COMPOSE),$(MAKE) compose-test,@echo "compose-test: not run, no Docker engine answers here and COMPOSE names no other compose command")

@@ -16,6 +16,7 @@ from service.configuration.settings import Settings
 from service.retention.batches import Batches, Pace
 from service.storage import Repository, connect
 from service.storage.records import DeletedRows
+from service.storage.repository.leases import Share
 from service.timing.wall_clock import SETTLING_S
 from testing.service.plants import NOW_NS, SECOND_NS
 
@@ -25,15 +26,19 @@ HOUR_NS = round(SETTLING_S * SECOND_NS)
 
 @contextmanager
 def renewing(url: str, period_s: float) -> Iterator[Waits]:
-    """Renew the lease of a gateway, which has a repository of its own, and note how long each takes."""
+    """Renew the leases of a gateway, which has a repository of its own, and note how long each takes.
+
+    They are taken before: that inserts a row for each relay, and is no renewal.
+    """
     engine = connect(url)
     gateways = Repository(engine)
     gateways.register_gateway("measured", host="here", process_id=1, now_ns=NOW_NS)
     waits, end = Waits(), Event()
 
-    def renew() -> None:
-        gateways.share_relays("measured", RELAYS, most=MOTORS, problem=None)
+    def renew() -> Share:
+        return gateways.share_relays("measured", RELAYS, most=MOTORS, problem=None)
 
+    assert renew().held == set(RELAYS)
     thread = Thread(target=waits.repeat, args=(renew, end.wait, period_s))
     thread.start()
     try:
