@@ -40,6 +40,7 @@ from benchmarks.accuracy.cells import (
 from benchmarks.accuracy.intervals import intervals
 from benchmarks.accuracy.level_choices import level_choices
 from benchmarks.accuracy.resistive_paths import resistive_paths
+from benchmarks.accuracy.sensor_classes import sensor_classes
 from benchmarks.reporting import Section, spread, table, write_sections
 from testing.machines.motors import REFERENCE
 from testing.machines.steady_faults import FaultModel
@@ -77,7 +78,7 @@ records were measured before turns bridged by a resistance were weighed against 
 class Effort:
     """How much is measured: seeds a cell; records of coverage, healthy, faulty, with one factor alone, and a
     cell of the paths; every n-th window; sparse: only the corners of the cells; records a row of
-    intervals."""
+    intervals, and a class of sensors."""
 
     seeds: int
     covered: int
@@ -88,10 +89,11 @@ class Effort:
     every: int
     sparse: bool
     interval: int
+    classes: int
 
 
-FULL = Effort(50, 500, 2_000, 500, 300, 24, 1, sparse=False, interval=100)
-QUICK = Effort(4, 10, 12, 12, 3, 2, 24, sparse=True, interval=2)
+FULL = Effort(50, 500, 2_000, 500, 300, 24, 1, sparse=False, interval=100, classes=100)
+QUICK = Effort(4, 10, 12, 12, 3, 2, 24, sparse=True, interval=2, classes=6)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,6 +175,14 @@ def _level_choices(effort: Effort, pool: Executor) -> Iterator[str]:
     yield from level_choices(records=effort.paths, pool=pool)
 
 
+def _sensor_classes(effort: Effort, pool: Executor) -> Iterator[str]:
+    yield f"{effort.classes} healthy and as many faulty records a class, drawn as in the section on false"
+    yield "alarms with resistances off, but for gains and delays: they are drawn within the class, and the"
+    yield "motor's file names that class. Called `fault`, by the true level:"
+    yield ""
+    yield from sensor_classes(records=effort.classes, pool=pool)
+
+
 def _baseline(effort: Effort, pool: Executor) -> Iterator[str]:
     yield f"A baseline learnt from {BASELINE_RECORDS} healthy records of the same motor and sensors, at other"
     yield "loads, voltages and frequencies."
@@ -228,6 +238,7 @@ SUBJECTS = {
     "coverage": Subject("The scatter", _coverage),
     "intervals": Subject("The 95 % intervals", _intervals),
     "alarms": Subject("False alarms and faults found", _alarms),
+    "sensor-classes": Subject("By the class of the sensors", _sensor_classes),
     "baseline": Subject("The same, with a baseline", _baseline),
     "paths": Subject("Turns bridged by a resistance", _paths),
     "level-choices": Subject("Other choices of the level of bridged turns", _level_choices),
@@ -287,6 +298,7 @@ def main() -> None:
             covered=min(effort.covered, chosen.records),
             paths=min(effort.paths, chosen.records),
             interval=min(effort.interval, chosen.records),
+            classes=min(effort.classes, chosen.records),
         )
         options += f" --records {chosen.records}"
     command = f"python -m benchmarks.accuracy{options} --subject"

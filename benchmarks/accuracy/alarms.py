@@ -75,7 +75,8 @@ class Outcome:
 def draw_conditions(draw: Draw) -> tuple[Condition, Disturbances, float]:
     """Condition, disturbances and the time the window starts at.
 
-    All uniform unless said otherwise. Gains: +-1 % on each of the six channels. Delays: 0 to 50 us on each.
+    All uniform unless said otherwise. Gains and delays: within the class of the motor's sensors, for each of
+    the six channels; delays count from the earliest, so that none is negative.
     Resistances: stator and rotor +-10 %, independent; inductances likewise. Harmonics: orders 5 to 13 that
     the rate can show. Swings: of the rated torque. Levels: mu 1 to 19 %, log-uniform. Every factor takes its
     own numbers from the generator whether it is on or not, so that records differ in the factor alone.
@@ -85,8 +86,10 @@ def draw_conditions(draw: Draw) -> tuple[Condition, Disturbances, float]:
     load = random.uniform(0.0, 1.0)
     start_s = random.uniform(0.0, 1_000.0)
     unbalance = random.uniform(0.0, 0.05) * np.exp(1j * random.uniform(0.0, 2.0 * pi))
-    gains = random.uniform(-0.01, 0.01, 6)
-    delays = random.uniform(0.0, 50e-6, 6)
+    sensors = draw.motor.sensors
+    gains = random.uniform(-1.0, 1.0, 6) * np.repeat([sensors.current_gain, sensors.voltage_gain], 3)
+    spans = np.repeat([sensors.current_delay_s, sensors.voltage_delay_s], 3)
+    delays = random.uniform(0.0, 1.0, 6) * 2.0 * spans
     harmonics = random_harmonics(random, random.uniform(0.0, 0.05), draw.sample_rate_hz)
     frequency = random.uniform(49.0, 51.0)
     swing_frequency = random.uniform(0.5, 10.0)
@@ -258,7 +261,7 @@ def alarms(*, healthy: int, faulty: int, pool: Executor, healthy_before: int = 0
         )
         alarm_rows.append([name, *alarm_row(calm)])
         found_rows.append([name, *found_row(ill)])
-        misses.append([name, *_found_by_level(ill)])
+        misses.append([name, *found_by_level(ill)])
     yield from table(["motor, parameters", *ALARM_HEADER], alarm_rows)
     yield ""
     yield from table(["motor, parameters", *FOUND_HEADER], found_rows)
@@ -271,9 +274,10 @@ def alarms(*, healthy: int, faulty: int, pool: Executor, healthy_before: int = 0
 LEVEL_BANDS = ((0.01, 0.015), (0.015, 0.02), (0.02, 0.03), (0.03, 0.05), (0.05, 0.10), (0.10, 0.19))
 
 
-def _found_by_level(faulty: Count) -> list[str]:
+def found_by_level(faulty: Count, bands: Sequence[tuple[float, float]] = LEVEL_BANDS) -> list[str]:
+    """How many of the faulty ones of each band of levels were called fault."""
     cells = []
-    for low, high in LEVEL_BANDS:
+    for low, high in bands:
         band = [one for one in faulty.outcomes if low <= one.condition.level < high]
         found = sum(one.diagnosis.verdict is Verdict.FAULT for one in band)
         cells.append(f"{found} of {len(band)}")

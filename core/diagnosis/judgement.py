@@ -3,7 +3,6 @@
 from core.diagnosis.case import Case
 from core.diagnosis.hypotheses import Explanation, is_another_asymmetry, is_explained
 from core.diagnosis.refinement import (
-    CHANNEL_RATIO,
     FAULT_LEVEL,
     LOAD_LEVEL,
     PATH_RATIO,
@@ -129,9 +128,11 @@ def identified(explanation: Explanation) -> QualityFinding:
 def _unknowns(case: Case, fit: Fit) -> str:
     """Say what else the fit estimated, and what it held."""
     path = ", resistance of the path" if PATH_RATIO in fit.standard_error else ""
+    sensors, frequency = case.motor.sensors, case.frequency_hz
     return (
         f"estimated beside the level: frequency ({case.frequency_hz:.2f} Hz), load, offset of the currents "
         f"({fit.value(TIME_OFFSET) * 1e6:+.0f} us){path}; held and only bounded, by standard deviations: the "
-        f"channels' ratios ({CHANNEL_RATIO:.1%} each), the motor's resistances and inductances "
+        f"channels' ratios (voltages {sensors.voltage_deviation(frequency):.1%} each, currents "
+        f"{sensors.current_deviation(frequency):.1%}), the motor's resistances and inductances "
         f"({PARAMETERS:.0%} of its negative-sequence impedance)"
     )

@@ -7,6 +7,7 @@ the fit turns that change into a change of its unknowns. Causes are independent,
 from dataclasses import dataclass, replace
 from math import hypot, pi, sqrt
 from statistics import NormalDist
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -18,11 +19,6 @@ from core.machines.candidates import Candidates
 from core.machines.running import SteadyRunning
 from core.machines.winding_frame import to_winding_frame
 
-GAIN = 0.01 / sqrt(3.0)
-"""Standard deviation of a channel's gain: within 1 %, uniformly, as protection relays and their transformers
-are specified."""
-DELAY_S = 50e-6 / sqrt(12.0)
-"""Standard deviation of a channel's delay: 0 to 50 us, uniformly [s]."""
 PARAMETER = 0.1 / sqrt(3.0)
 """Standard deviation of each resistance and inductance: within 10 %, uniformly."""
 PARAMETER_NAMES = (
@@ -185,14 +181,17 @@ def _of_sensors(case: Case, record: Fundamental, machine: _Machine, known: Known
         np.eye(2), np.eye(2), case.sequence, case.motor.nameplate.connection
     )
     backward = np.array([1.0, 1.0, 1.0 - known.share, 1.0 - known.share])
-    errors = [backward * one for one in _channels(record.current.components, to_current, record)]
+    sensors, frequency = case.motor.sensors, record.angular_frequency
+    of_current = _Ratio.within(sensors.current_gain, sensors.current_delay_s, frequency)
+    of_voltage = _Ratio.within(sensors.voltage_gain, sensors.voltage_delay_s, frequency)
+    errors = [backward * one for one in _channels(record.current.components, to_current, of_current)]
     if case.voltages_assumed:
         forward = abs(record.voltage.forward)
         unknown = known.supply_unbalance * forward / sqrt(2.0)
         volts = [np.array([0.0, 0.0, unknown, 0.0]), np.array([0.0, 0.0, 0.0, unknown])]
         backward = np.ones(4)
     else:
-        volts = _channels(record.voltage.components, to_voltage, record)
+        volts = _channels(record.voltage.components, to_voltage, of_voltage)
     errors += [backward * (machine.here - machine.current(machine.volts + one)) for one in volts]
     if known.error_A > 0.0:
         own = known.error_A / sqrt(2.0)
@@ -214,14 +213,26 @@ def _of_parameters(machine: _Machine, known: Known) -> list[Array]:
     ]
 
 
-def _channels(values: Array, to_windings: Array, record: Fundamental) -> list[Array]:
+class _Ratio(NamedTuple):
+    """Standard deviations of a channel's ratio: of its size, and of its angle [rad]."""
+
+    size: float
+    angle: float
+
+    @classmethod
+    def within(cls, gain: float, delay_s: float, angular_frequency: float) -> Self:
+        """Return those of errors uniform within plus and minus the spans."""
+        return cls(gain / sqrt(3.0), angular_frequency * delay_s / sqrt(3.0))
+
+
+def _channels(values: Array, to_windings: Array, ratio: _Ratio) -> list[Array]:
     """Return how gain and delay of each of three channels change a quantity's components."""
     phasor = axis_phasors(values)
     changes = []
     for axis in AXES:
         one = to_windings @ (2.0 / 3.0 * np.outer(axis, axis)) @ np.linalg.inv(to_windings) @ phasor
         changes += [
-            components(GAIN * one),
-            components(-1j * record.angular_frequency * DELAY_S * one),
+            components(ratio.size * one),
+            components(-1j * ratio.angle * one),
         ]
     return changes

@@ -11,7 +11,7 @@ its tails are Cauchy's, so that a record which does tell a long delay is believe
 """
 
 from dataclasses import dataclass, replace
-from math import log1p, sqrt
+from math import hypot, log1p, sqrt
 
 import numpy as np
 
@@ -39,9 +39,6 @@ FIRST_DAMPING, MOST_DAMPING = 0.1, 1e6
 SMALLEST_FALL = 1e-30
 NEGLIGIBLE = 3e-3
 """Share of a difference quotient's step below which a Gauss-Newton step is not worth taking."""
-CHANNEL_RATIO = 0.0073
-"""Standard deviation of a channel's complex ratio: within 1 % in size and 50 us in time at 50 Hz, uniformly,
-as protection relays and their transformers are specified (1 % / sqrt 3, and 50 us / sqrt 12 as an angle)."""
 COMPONENTS_OF_A_RATIO = 6
 """A channel's complex ratio shows in either sequence with a third of its variance in two components."""
 
@@ -206,7 +203,7 @@ class Refinement:
         self.noise = current.covariance + passed @ voltage.covariance @ passed.T
         self.backward_noise_A = sqrt(self.noise[2, 2] + self.noise[3, 3])
         cycles = self.record.cycles
-        sensors = (CHANNEL_RATIO * abs(current.forward)) ** 2 / COMPONENTS_OF_A_RATIO * np.eye(4)
+        sensors = (_channel_ratio(case) * abs(current.forward)) ** 2 / COMPONENTS_OF_A_RATIO * np.eye(4)
         weighed = current.shrunk(cycles) + passed @ voltage.shrunk(cycles) @ passed.T + sensors
         self._whitening = np.linalg.inv(np.linalg.cholesky(weighed))
 
@@ -344,6 +341,13 @@ class _Point:
     misfit: float
     rows: Array
     slopes: Array
+
+
+def _channel_ratio(case: Case) -> float:
+    """Return the standard deviation of a channel's complex ratio, over voltages and currents alike."""
+    sensors, frequency = case.motor.sensors, case.frequency_hz
+    voltage, current = sensors.voltage_deviation(frequency), sensors.current_deviation(frequency)
+    return hypot(voltage, current) / sqrt(2.0)
 
 
 def _step(point: _Point, unknowns: tuple[Unknown, ...], damping: float) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 
 from core.diagnosis.case import Case
 from core.diagnosis.propagation import CONFIDENCE_QUANTILE, Known
-from core.diagnosis.refinement import CHANNEL_RATIO, FAULT_LEVEL, Fit
+from core.diagnosis.refinement import FAULT_LEVEL, Fit
 from core.machines.candidates import Candidates
 from core.machines.playback import Playback
 
@@ -122,7 +122,9 @@ def systematic(case: Case, playback: Playback, fit: Fit, known: Known) -> System
     V_unknown -= known.unbalance_V
     impedance = _negative_sequence_impedance(case)
     per_volt = 1.0 / (impedance * forward)
-    sensors = hypot(CHANNEL_RATIO / sqrt(3.0), CHANNEL_RATIO / sqrt(3.0) * V_forward * per_volt)
+    voltage_ratio = case.motor.sensors.voltage_deviation(case.frequency_hz)
+    current_ratio = case.motor.sensors.current_deviation(case.frequency_hz)
+    sensors = hypot(current_ratio, voltage_ratio * V_forward * per_volt) / sqrt(3.0)
     backward = hypot(
         (1.0 - known.share) * sensors,
         PARAMETERS * abs(V_unknown) * per_volt,

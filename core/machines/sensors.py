@@ -8,6 +8,9 @@ from math import hypot, pi, sqrt
 class SensorClass:
     """Errors of single channels against one another, uniform within plus and minus each span.
 
+    The default stands for protection relays with their transformers. A delay that all channels share shows in
+    no phasor. What a delay makes of a phasor grows with the supply frequency.
+
     Parameters
     ----------
     voltage_gain, current_gain : float

@@ -10,8 +10,6 @@ from core.diagnosis.fundamental import fundamental_of
 from core.diagnosis.hypotheses import explain
 from core.diagnosis.methods import DEFAULT_METHOD
 from core.diagnosis.propagation import (
-    DELAY_S,
-    GAIN,
     PARAMETER,
     PARAMETER_NAMES,
     Known,
@@ -25,6 +23,7 @@ from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Verdict
 from core.machines.candidates import Candidates
 from core.machines.parameters import Motor
+from core.machines.sensors import SensorClass
 from core.machines.split_winding import SplitWinding
 from core.recordings import Recording
 from core.signals.clarke import clarke
@@ -50,17 +49,24 @@ def refined(seen: Case, near: Candidates) -> Fit:
     )
 
 
+SENSORS = SensorClass(voltage_gain=0.004, current_gain=0.01, voltage_delay_s=20e-6, current_delay_s=8e-6)
+"""Every span different, so that none is taken for another."""
+
+
 def with_channel_error(record: Recording, number: int) -> Recording:
     """The record with one standard deviation of one channel's gain (even) or delay (odd)."""
     samples = record.samples.copy()
     channel, is_delay = divmod(number, 2)
+    current = channel < 3
     if is_delay:
         # A sine's delay by so little turns it by w T_d: the part in quadrature is a quarter of a cycle away.
-        turn = 2.0 * np.pi * 50.0 * DELAY_S
+        delay_s = SENSORS.current_delay_s if current else SENSORS.voltage_delay_s
+        turn = 2.0 * np.pi * 50.0 * delay_s / np.sqrt(3.0)
         quarter = np.roll(samples[channel], CYCLE // 4)
         samples[channel] = np.cos(turn) * samples[channel] + np.sin(turn) * quarter
     else:
-        samples[channel] *= 1.0 + GAIN
+        gain = SENSORS.current_gain if current else SENSORS.voltage_gain
+        samples[channel] *= 1.0 + gain / np.sqrt(3.0)
     return replace(record, samples=samples)
 
 
@@ -70,6 +76,7 @@ def operation(motor: Motor, *, reverse: bool) -> Operation:
 
 @pytest.mark.parametrize(("motor", "reverse"), [(REFERENCE, False), (MEDIUM, True), (LARGE, True)])
 def test_every_cause_moves_level_and_load_as_told(motor: Motor, reverse: bool) -> None:
+    motor = replace(motor, sensors=SENSORS)
     truth = operation(motor, reverse=reverse)
     record = recording(truth, noise=1e-5)
     seen = case(record, motor, reverse=reverse)
@@ -161,3 +168,31 @@ def test_a_level_that_chance_makes_in_the_best_of_three_windings_may_be_none() -
     assert of_the_likeliest_winding(2.05, (0.09, 4.01)) == (0.0, 4.01)
     assert of_the_likeliest_winding(2.2, (0.24, 4.16)) == (0.24, 4.16)
     assert of_the_likeliest_winding(0.5, (-1.46, 2.46)) == (-1.46, 2.46)
+
+
+def test_better_sensors_let_less_be_seen() -> None:
+    """Detection limits of one record, by the class of the sensors; the default is 1 %, +-25 us."""
+    record = recording(running(REFERENCE, 0.7, unbalance=0.02), noise=0.002)
+    limits = {}
+    for gain, delay_s in [(0.01, 25e-6), (0.005, 25e-6), (0.002, 10e-6)]:
+        seen = diagnose(record, replace(REFERENCE, sensors=SensorClass(gain, gain, delay_s, delay_s)))
+        limits[gain] = seen.detection_limit
+        assert seen.mu_f_ci95 is not None
+        assert seen.mu_f_scatter95 is not None
+        assert seen.mu_f_ci95[1] > seen.mu_f_scatter95[1]
+    assert limits[0.01] == diagnose(record, REFERENCE).detection_limit
+    assert limits == pytest.approx({0.01: 0.0243, 0.005: 0.0186, 0.002: 0.0126}, rel=0.1)
+
+
+def test_one_quantity_may_be_better_than_the_other() -> None:
+    record = recording(running(REFERENCE, 0.7, unbalance=0.01), noise=0.002)
+    usual = diagnose(record, REFERENCE)
+    better = {
+        name: diagnose(record, replace(REFERENCE, sensors=replace(SensorClass(), **{name: 0.001})))
+        for name in ("voltage_gain", "current_gain")
+    }
+    for one in better.values():
+        assert one.detection_limit is not None
+        assert usual.detection_limit is not None
+        assert one.detection_limit < usual.detection_limit
+    assert "voltages 0.5% each, currents 0.7%" in "".join(better["voltage_gain"].reasons)
