@@ -1,5 +1,6 @@
 # make install | demo | test | test-all | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
 # make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
+# make bench [QUICK=1] [DATA=FOLDER]     (DATA: measured recordings, for docs/evidence/condition.md)
 # make hostile CASES=10000 SEED=1     (a relay that answers nonsense: docs/evidence/interoperability.md)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
 PYTHON ?= python3
@@ -73,10 +74,12 @@ lint: install
 docs: install
 	$(BIN)/python -m tests.docs
 
-# The second one ends with 1 where a command answers too slowly.
+# The second one ends with 1 where a command answers too slowly. The third one writes docs/evidence/condition.md, in the
+# better part of an hour; with QUICK=1 it prints what a few motors give, within minutes.
 bench: install
 	$(BIN)/python -m benchmarks
 	$(BIN)/python -m benchmarks.commands
+	$(BIN)/python -m benchmarks.condition $(if $(QUICK),--quick) $(if $(DATA),--data $(DATA))
 
 # Clients and servers of other stacks; LIBIEC61850: a built source tree of that library, too (docs/evidence/interoperability.md).
 interop: install

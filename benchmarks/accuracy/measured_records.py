@@ -79,8 +79,9 @@ def diagnose_measured(measured: Measured) -> Diagnosis:
     )
 
 
-def mill_windows(path: Path) -> tuple[list[Recording], Array]:
-    """Windows of 0.5 s, channels brought to one instant, and the encoder's mean speed in each [rpm]."""
+def mill_samples(path: Path) -> tuple[Array, Array]:
+    """Currents [A] and voltages [V] of a, b, c brought to one instant, (6, n), and the encoder's speed [rpm],
+    which is NaN where the encoder failed."""
     data = np.asarray(loadmat(path)["data"], dtype=np.float64)
     amperes = 1_000.0 * (data[:, :3] * 10.25 / 65_536 - 5.18) / 155.0
     volts = data[:, 3:6] * np.array(MILL_VOLTS_PER_BIT)
@@ -92,6 +93,12 @@ def mill_windows(path: Path) -> tuple[list[Recording], Array]:
     counts = data[:, ENCODER_COLUMN]
     sound = (counts > ENCODER_COUNTS[0]) & (counts < ENCODER_COUNTS[1])
     rpm = np.where(sound, 60.0 * 48e6 * 8 / (1_800 * np.where(sound, counts, 1.0)), np.nan)
+    return samples, rpm
+
+
+def mill_windows(path: Path) -> tuple[list[Recording], Array]:
+    """Windows of 0.5 s and the encoder's mean speed in each [rpm]."""
+    samples, rpm = mill_samples(path)
     windows, speeds = [], []
     for first in range(0, samples.shape[1] - WINDOW + 1, WINDOW):
         part = slice(first, first + WINDOW)

@@ -151,7 +151,8 @@ def _temperature(random: np.random.Generator, heat: Array, hours: Array, size: f
     winding = rise * heat[at] + (warm[at] - rise * heat[at]) * within
     year = 10.0 * np.sin(2 * np.pi * hours / 8_766.0 + random.uniform(0.0, 6.28))
     day = random.uniform(0.0, 6.0) * np.sin(2 * np.pi * hours / 24.0)
-    return np.asarray(winding + year + day - random.uniform(20.0, 60.0))
+    # The figures of a file are those of a motor at 20 to 75 degrees; the air has 20.
+    return np.asarray(winding + year + day - random.uniform(0.0, 55.0))
 
 
 def _voltage(random: np.random.Generator, grid: Array, at: NDArray[np.int64], hours: Array) -> Array:

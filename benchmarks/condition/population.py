@@ -12,7 +12,8 @@ from core.machines.sensors import SensorClass
 from core.signals.sequence import PhaseSequence
 
 LEAST_POWER_W, MOST_POWER_W = 800.0, 400_000.0
-LARGE_POWER_W = 200_000.0
+VOLTAGES_V = (380.0, 400.0, 480.0, 690.0)
+ABC_SHARE = 0.6
 SENSOR_CLASSES = (
     SensorClass(0.01, 0.01, 50e-6, 50e-6),
     SensorClass(0.01, 0.01, 25e-6, 25e-6),
@@ -38,7 +39,7 @@ class SimulatedMotor:
     """A motor as its file says it is, and as it is.
 
     windings: at the temperature of the file's resistances.  saturation: relative loss of magnetising
-    inductance per relative rise of the voltage.  sense: what the relay's class promises.
+    inductance per relative rise of the voltage.  sensors: the class of its channels.
     """
 
     motor: Motor
@@ -59,6 +60,12 @@ class SimulatedMotor:
         line = sqrt(2.0) * self.motor.nameplate.rated_voltage_V
         return line if self.delta else line / sqrt(3.0)
 
+    @property
+    def rated_line_impedance_ohm(self) -> float:
+        """Rated voltage of a line to neutral over the rated current, which is estimated."""
+        nameplate = self.motor.nameplate
+        return 0.75 * nameplate.rated_voltage_V**2 / nameplate.rated_power_W
+
     def terminal(self, winding: int) -> int:
         """Number under which the terminals know a winding of the machine's own frame."""
         if self.sequence is PhaseSequence.ABC:
@@ -66,17 +73,38 @@ class SimulatedMotor:
         return (2, 1, 0)[winding] if self.delta else (0, 2, 1)[winding]
 
 
+@dataclass(frozen=True, slots=True)
+class Site:
+    """What motors of one bus have in common."""
+
+    rated_voltage_V: float
+    rated_frequency_Hz: float
+    sequence: PhaseSequence
+
+
+def draw_site(random: np.random.Generator) -> Site:
+    """Draw a bus."""
+    return Site(
+        float(random.choice(VOLTAGES_V)),
+        float(random.choice([50.0, 60.0])),
+        PhaseSequence.ABC if random.uniform() < ABC_SHARE else PhaseSequence.ACB,
+    )
+
+
 def draw_motor(
-    random: np.random.Generator, *, parameter_span: float = 0.1, sensors: SensorClass | None = None
+    random: np.random.Generator,
+    *,
+    parameter_span: float = 0.1,
+    sensors: SensorClass | None = None,
+    site: Site | None = None,
 ) -> SimulatedMotor:
     """Draw a motor of any rating, powers log-uniform; each figure of its file is off by up to the span."""
+    if site is None:
+        site = draw_site(random)
     size = random.uniform()
     power = LEAST_POWER_W * (MOST_POWER_W / LEAST_POWER_W) ** size
-    frequency = float(random.choice([50.0, 60.0]))
-    high_voltage = power > LARGE_POWER_W and random.uniform() < 0.5
-    voltages = [3_300.0, 6_000.0] if high_voltage else [380.0, 400.0, 480.0, 690.0]
-    voltage = float(random.choice(voltages))
-    delta = not high_voltage and random.uniform() < 0.2 + 0.6 * size
+    frequency, voltage = site.rated_frequency_Hz, site.rated_voltage_V
+    delta = random.uniform() < 0.2 + 0.6 * size
     nameplate = Nameplate(
         rated_power_W=power,
         rated_voltage_V=voltage,
@@ -99,21 +127,22 @@ def draw_motor(
     sensor_class = sensors or SENSOR_CLASSES[int(random.integers(len(SENSOR_CLASSES)))]
     kinds = list(VoltageChannels)
     return SimulatedMotor(
-        motor=motor_of(nameplate, filed),
+        motor=motor_of(nameplate, filed, sensor_class),
         windings=windings,
         saturation=random.uniform(0.0, 1.5),
-        sequence=PhaseSequence.ABC if random.uniform() < 0.6 else PhaseSequence.ACB,
+        sequence=site.sequence,
         voltage_channels=kinds[int(random.choice(3, p=[0.6, 0.2, 0.2]))],
         sensors=sensor_class,
         channels=draw_channels(random, sensor_class, frequency),
     )
 
 
-def motor_of(nameplate: Nameplate, figures: Array) -> Motor:
-    """A motor file with R_s, R_r, L_ls, L_lr and L_m."""
+def motor_of(nameplate: Nameplate, figures: Array, sensors: SensorClass) -> Motor:
+    """Make a motor file of R_s, R_r, L_ls, L_lr and L_m."""
     R_s, R_r, L_ls, L_lr, L_m = (float(one) for one in figures)
     inertia = 0.02 * (nameplate.rated_power_W / 800.0) ** 1.2
-    return Motor("simulated", nameplate, MachineParameters(R_s, R_r, L_ls, L_lr, L_m / 1.5, inertia))
+    parameters = MachineParameters(R_s, R_r, L_ls, L_lr, L_m / 1.5, inertia)
+    return Motor("simulated", nameplate, parameters, sensors=sensors)
 
 
 def draw_windings(random: np.random.Generator, figures: Array, w: float, skin: float) -> Windings:

@@ -1,6 +1,6 @@
 """Observations of a simulated motor: what its relay measures, in bulk."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,8 @@ from core.signals.sequence import PhaseSequence
 REAL_NOISE, HARSH_NOISE = 2e-4, 2e-3
 """Of a channel's phasor from record to record, over V1 (currents: over V1 / |Z2|), root mean square."""
 RECORD_CYCLES = 25
+OUTLIER = 10.0
+"""Times the noise of other records."""
 SCATTER_SPAN = (0.1, 1.5)
 """What the record's own noise says over the variance from record to record."""
 
@@ -147,6 +149,16 @@ def measure(
         load=operation.load,
         sequence=simulated.sequence,
         voltage_channels=simulated.voltage_channels,
+    )
+
+
+def with_outliers(random: np.random.Generator, measured: Measured, share: float) -> Measured:
+    """The same with a share of the records ten times as noisy, though they do not say so."""
+    hit = random.uniform(size=len(measured)) < share
+    noise = OUTLIER * np.sqrt(measured.scatter.mean()) * hit
+    volts = noise * np.abs(measured.positive_voltage_V)
+    return replace(
+        measured, negative_voltage_V=measured.negative_voltage_V + volts * _white(random, volts.shape)
     )
 
 

@@ -1,0 +1,125 @@
+"""What following costs: time a record, bytes a motor, and a plant of 500 motors refolded after ten years."""
+
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from time import perf_counter, process_time
+
+import numpy as np
+
+from benchmarks.condition.courses import healthy, shape, with_fault
+from benchmarks.condition.operation import draw_operation
+from benchmarks.condition.population import draw_motor
+from benchmarks.condition.records import REAL_NOISE, measure
+from benchmarks.reporting import mark, spread, table
+from core.condition.condition import condition_of
+from core.condition.follower import Follower
+
+PLANT_MOTORS, PLANT_RECORDS = 500, 87_660
+MOST_MICROSECONDS, MOST_KILOBYTES = 100.0, 50.0
+ASSESSED = 200
+"""Assessments and saves that are timed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One motor, by its number; faulty: with shorted turns from the middle on."""
+
+    number: int
+    records: int
+    faulty: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """Processor time a record [us]: all, the first and the last tenth; that of an assessment with its
+    condition and of a save; size of the state [kB]."""
+
+    record_us: float
+    first_us: float
+    last_us: float
+    assessment_us: float
+    save_us: float
+    state_kB: float
+
+
+def measure_cost(task: Task) -> Cost:
+    """Fold one motor's records."""
+    random = np.random.default_rng([task.number, 6])
+    simulated = draw_motor(random)
+    operation = draw_operation(random, task.records)
+    course = healthy(task.records)
+    if task.faulty:
+        course = with_fault(course, 0, 0.01 * shape(task.records, task.records // 2), 0.0)
+    observations = measure(random, simulated, operation, course, REAL_NOISE).observations()
+    follower = Follower(simulated.motor)
+    tenth = max(1, task.records // 10)
+    marks = [process_time()]
+    for part in (observations[:tenth], observations[tenth:-tenth], observations[-tenth:]):
+        for observation in part:
+            follower.fold(observation)
+        marks.append(process_time())
+    begun = process_time()
+    for _ in range(ASSESSED):
+        assessment = follower.assessment()
+        if assessment is None:
+            raise ValueError("no assessment after records")
+        condition_of(simulated.motor, assessment, assessment.as_of_ns)
+    assessed = process_time()
+    for _ in range(ASSESSED):
+        state = follower.save()
+    saved = process_time()
+    return Cost(
+        record_us=(marks[3] - marks[0]) / task.records * 1e6,
+        first_us=(marks[1] - marks[0]) / tenth * 1e6,
+        last_us=(marks[3] - marks[2]) / tenth * 1e6,
+        assessment_us=(assessed - begun) / ASSESSED * 1e6,
+        save_us=(saved - assessed) / ASSESSED * 1e6,
+        state_kB=len(state) / 1e3,
+    )
+
+
+def cost(motors: int, records: int, long: int, pool: Executor) -> Iterator[str]:
+    """Tables of both kinds of motors, of ten years of one, and the time of the plant."""
+    list(pool.map(measure_cost, [Task(0, 40, faulty=True)] * 4))  # compiles, if anything is to be compiled
+    rows, every = [], []
+    begun = perf_counter()
+    folded = 0
+    for name, faulty, count, each in (
+        ("healthy", False, motors, records),
+        ("1 % from the middle on", True, motors, records),
+        ("healthy, ten years", False, 1, long),
+    ):
+        tasks = [Task(number, each, faulty) for number in range(count)]
+        found = list(spread(measure_cost, tasks, f"cost, {name}", pool))
+        every += found
+        folded += count * each
+        rows.append(
+            [
+                name, f"{count}", f"{each:,}", _mean(found, "record_us"), _mean(found, "first_us"),
+                _mean(found, "last_us"), _mean(found, "assessment_us"), _mean(found, "save_us"),
+                f"{max(one.state_kB for one in found):.1f}",
+            ]
+        )  # fmt: skip
+    elapsed = perf_counter() - begun
+    yield from table(
+        [
+            "motors", "number", "records each", "us a record", "first tenth", "last tenth",
+            "assessment and condition, us", "save, us", "state, kB at most",
+        ],
+        rows,
+    )  # fmt: skip
+    yield ""
+    us = float(np.mean([one.record_us for one in every]))
+    yield f"- A record: {us:.0f} us of one core: {mark(us <= MOST_MICROSECONDS)}"
+    yield f"  ({MOST_MICROSECONDS:.0f} us)."
+    kB = max(one.state_kB for one in every)
+    yield f"- A motor: {kB:.1f} kB: {mark(kB <= MOST_KILOBYTES)} ({MOST_KILOBYTES:.0f} kB)."
+    hours = PLANT_MOTORS * PLANT_RECORDS * us * 1e-6 / 2 / 3_600
+    yield f"- {PLANT_MOTORS} motors with ten years of hourly records ({PLANT_MOTORS * PLANT_RECORDS:,}), on"
+    yield f"  two cores: {hours * 60:.0f} minutes, **extrapolated** from {folded:,} records, which took"
+    yield f"  {elapsed:.0f} s with their simulation. Reading them from a database is not in it."
+
+
+def _mean(found: list[Cost], name: str) -> str:
+    return f"{np.mean([getattr(one, name) for one in found]):.0f}"

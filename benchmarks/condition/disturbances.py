@@ -1,0 +1,145 @@
+"""What is no fault: channels, relays, windings, joints and the supply; how often it is called one."""
+
+from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from benchmarks.condition.courses import (
+    Course,
+    healthy,
+    shape,
+    with_current_error,
+    with_joint,
+    with_other_relay,
+    with_rewinding,
+    with_unbalance,
+    with_voltage_error,
+)
+from benchmarks.condition.following import Outcome, follow, outcome
+from benchmarks.condition.operation import draw_operation
+from benchmarks.condition.population import SimulatedMotor, draw_motor
+from benchmarks.condition.records import HARSH_NOISE, REAL_NOISE, measure
+from benchmarks.reporting import mark, rate_text, spread, table
+from core.condition.kinds import Kind
+
+BEFORE = (60, 140)
+AFTER = 300
+CHANNEL_ERRORS = (0.003, 0.02)
+"""Of a channel that steps or drifts, either way."""
+DIRECTION = 0.1
+"""Scatter of a channel's error about a pure gain [rad]."""
+DRIFT_RECORDS = (20, 200)
+JOINT_DROPS = (0.002, 0.02)
+"""At rated current, over the rated voltage of a phase."""
+SUPPLY_STEPS = (0.01, 0.04)
+MOST_CALLED = 0.02
+
+
+class Disturbance(StrEnum):
+    """What happens to a healthy motor or to what measures it."""
+
+    VOLTAGE_STEP = "voltage channel, step"
+    VOLTAGE_DRIFT = "voltage channel, drift"
+    CURRENT_STEP = "current channel, step"
+    CURRENT_DRIFT = "current channel, drift"
+    RELAY_TOLD = "relay exchanged, announced"
+    RELAY_UNTOLD = "relay exchanged, unannounced"
+    REWOUND = "rewound, unannounced"
+    SUPPLY = "supply, step of V2/V1"
+    JOINT_STEP = "joint, step"
+    JOINT_GROWTH = "joint, growth"
+
+
+JOINTS = (Disturbance.JOINT_STEP, Disturbance.JOINT_GROWTH)
+"""A real defect of the motor's circuit, which at constant load cannot be told from shorted turns."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One motor with a disturbance, by its number."""
+
+    disturbance: Disturbance
+    number: int
+    noise: float
+
+
+def disturbed(
+    kind: Disturbance, random: np.random.Generator, motor: SimulatedMotor, records: int, first: int
+) -> Course:
+    """A course in which the disturbance begins at a record, of a random size and in a random channel."""
+    course = healthy(records)
+    place = int(random.integers(3))
+    sudden = shape(records, first)
+    slow = shape(records, first, int(random.integers(*DRIFT_RECORDS)))
+    error = random.uniform(*CHANNEL_ERRORS) * random.choice([-1.0, 1.0])
+    channel_error = complex(error * np.exp(1j * random.normal(0.0, DIRECTION)))
+    joint_ohm = random.uniform(*JOINT_DROPS) * motor.rated_line_impedance_ohm
+    unbalance = complex(random.uniform(*SUPPLY_STEPS) * np.exp(2j * np.pi * random.uniform()))
+    match kind:
+        case Disturbance.VOLTAGE_STEP:
+            return with_voltage_error(course, place, channel_error, sudden)
+        case Disturbance.VOLTAGE_DRIFT:
+            return with_voltage_error(course, place, channel_error, slow)
+        case Disturbance.CURRENT_STEP:
+            return with_current_error(course, place, channel_error, sudden)
+        case Disturbance.CURRENT_DRIFT:
+            return with_current_error(course, place, channel_error, slow)
+        case Disturbance.RELAY_TOLD | Disturbance.RELAY_UNTOLD:
+            told = kind is Disturbance.RELAY_TOLD
+            return with_other_relay(random, course, motor, first, announced=told)
+        case Disturbance.REWOUND:
+            return with_rewinding(random, course, motor, first)
+        case Disturbance.SUPPLY:
+            return with_unbalance(course, unbalance, sudden)
+        case Disturbance.JOINT_STEP:
+            return with_joint(course, place, joint_ohm, sudden)
+        case Disturbance.JOINT_GROWTH:
+            return with_joint(course, place, joint_ohm, slow)
+
+
+def follow_disturbance(task: Task) -> Outcome:
+    """Simulate a motor with a disturbance and follow it for 300 records after it."""
+    random = np.random.default_rng([task.number, 3, list(Disturbance).index(task.disturbance)])
+    simulated = draw_motor(random)
+    first = int(random.integers(BEFORE[0], BEFORE[1] + 1))
+    records = first + AFTER
+    operation = draw_operation(random, records)
+    course = disturbed(task.disturbance, random, simulated, records, first)
+    observations = measure(random, simulated, operation, course, task.noise).observations()
+    return outcome(list(follow(simulated.motor, observations)), first)
+
+
+def disturbances(motors: int, pool: Executor) -> Iterator[str]:
+    """Tables of how often each is called a fault, and what each is named."""
+    for noise, name in ((REAL_NOISE, "real"), (HARSH_NOISE, "harsh")):
+        rows = []
+        called = total = 0
+        for kind in Disturbance:
+            tasks = [Task(kind, number, noise) for number in range(motors)]
+            found = list(spread(follow_disturbance, tasks, f"{name}, {kind.value}", pool))
+            faults = sum(one.called_fault is not None for one in found)
+            if kind not in JOINTS:
+                called, total = called + faults, total + len(found)
+            rows.append([kind.value, rate_text(faults, len(found)), *outcome_row(found)])
+        yield f"Noise {name}:"
+        yield ""
+        yield from table(["disturbance", "called `fault`", "seen", "in the end"], rows)
+        yield ""
+        yield f"All but joints: {rate_text(called, total)} called `fault`: "
+        yield f"{mark(called <= MOST_CALLED * total)} ({MOST_CALLED:.0%})."
+        yield ""
+
+
+def outcome_row(found: list[Outcome]) -> list[str]:
+    """How many were seen, and how often each kind or pair of kinds was named in the end."""
+    named = Counter(_names(one.final) for one in found)
+    seen = sum(one.seen is not None for one in found)
+    return [f"{seen / len(found):.2f}", ", ".join(f"{name} {count}" for name, count in named.most_common(5))]
+
+
+def _names(kinds: tuple[Kind, ...]) -> str:
+    return " or ".join(sorted(str(kind) for kind in kinds)) or "none"

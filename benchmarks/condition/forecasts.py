@@ -1,0 +1,126 @@
+"""Growing faults: how often the published interval holds the time to the limit."""
+
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from enum import StrEnum
+from math import inf, log
+
+import numpy as np
+
+from benchmarks.condition.circuit import Array
+from benchmarks.condition.courses import healthy, shape, with_fault
+from benchmarks.condition.following import follow
+from benchmarks.condition.operation import HOUR_NS, draw_operation
+from benchmarks.condition.population import draw_motor
+from benchmarks.condition.records import HARSH_NOISE, REAL_NOISE, measure
+from benchmarks.reporting import rate_text, spread, table
+
+REFERENCE = 100
+LONGEST = 500
+HIGHEST_LEVEL = 0.04
+LOOKS = 4
+"""Forecasts that are looked at of each motor."""
+DAY_NS = 24 * HOUR_NS
+PATHS = (0.0, 1.0, 3.0)
+
+
+class Growth(StrEnum):
+    """How a level grows."""
+
+    LINEAR = "linear"
+    WANDERING = "wandering"
+    EXPONENTIAL = "exponential"
+    NONE = "none: a step that stays"
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """One motor with a fault that grows, by its number."""
+
+    growth: Growth
+    number: int
+    noise: float
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """One forecast [days], None for no trend, and the true time until the level reaches its limit [days]."""
+
+    days: tuple[float, float, float] | None
+    true_days: float
+
+
+def levels_of(growth: Growth, random: np.random.Generator, records: int) -> Array:
+    """Level after so many records of growth, without end."""
+    since = np.arange(1.0, records + 1.0)
+    rate = np.exp(random.uniform(log(2e-5), log(2e-4)))
+    if growth is Growth.LINEAR:
+        return np.asarray(rate * since)
+    if growth is Growth.WANDERING:
+        memory = random.uniform(20.0, 100.0)
+        wander = np.empty(records)
+        value = 0.7 * random.standard_normal()
+        for k, step in enumerate(random.standard_normal(records)):
+            value = np.exp(-1.0 / memory) * value + 0.7 * np.sqrt(1.0 - np.exp(-2.0 / memory)) * step
+            wander[k] = value
+        return np.asarray(np.cumsum(rate * np.exp(wander)))
+    if growth is Growth.EXPONENTIAL:
+        return np.asarray(random.uniform(5e-4, 2e-3) * np.expm1(since / random.uniform(25.0, 100.0)))
+    return np.full(records, random.uniform(0.0075, 0.0125))
+
+
+def follow_growth(task: Task) -> list[Look]:
+    """Simulate a motor, follow it, and look at some of its forecasts."""
+    random = np.random.default_rng([task.number, 5, list(Growth).index(task.growth)])
+    simulated = draw_motor(random)
+    endless = levels_of(task.growth, random, 20 * LONGEST)
+    longest = min(LONGEST, int(np.searchsorted(endless, HIGHEST_LEVEL)))
+    records = REFERENCE + longest
+    operation = draw_operation(random, records)
+    level = np.concatenate([np.zeros(REFERENCE), endless[:longest]]) * shape(records, REFERENCE)
+    course = with_fault(healthy(records), int(random.integers(3)), level, float(random.choice(PATHS)))
+    observations = measure(random, simulated, operation, course, task.noise).observations()
+    looks = []
+    for k, said in enumerate(follow(simulated.motor, observations)):
+        forecast = said.condition.forecast
+        if k < REFERENCE or not said.changed or forecast.growth_per_day is None:
+            continue
+        # Times are taken from the first record of the growth, and go on hourly after the last.
+        crossing = REFERENCE + int(np.searchsorted(endless, forecast.limit))
+        never = crossing >= REFERENCE + endless.size
+        looks.append(Look(forecast.days, inf if never else (crossing - k) / 24.0))
+    ahead = [one for one in looks if one.true_days > 0.0]
+    chosen = random.permutation(len(ahead))[:LOOKS]
+    return [ahead[k] for k in chosen]
+
+
+def forecasts(motors: int, pool: Executor) -> Iterator[str]:
+    """A table of the growths."""
+    rows = []
+    for noise, name in ((REAL_NOISE, "real"), (HARSH_NOISE, "harsh")):
+        for growth in Growth:
+            tasks = [Task(growth, number, noise) for number in range(motors)]
+            looks = [
+                one for found in spread(follow_growth, tasks, f"{name}, {growth}", pool) for one in found
+            ]
+            rows.append([name, growth.value, *_row(looks)])
+    yield from table(
+        [
+            "noise", "growth", "forecasts", "no trend told", "interval holds the time", "too early",
+            "too late", "last over first day, median",
+        ],
+        rows,
+    )  # fmt: skip
+
+
+def _row(looks: list[Look]) -> list[str]:
+    told = [(one.days, one.true_days) for one in looks if one.days is not None]
+    held = sum(days[0] <= true <= days[2] for days, true in told)
+    early = sum(days[2] < true for days, true in told)
+    late = sum(true < days[0] for days, true in told)
+    widths = [days[2] / max(days[0], 1.0 / 24.0) for days, _ in told]
+    return [
+        f"{len(looks)}", f"{len(looks) - len(told)}", rate_text(held, len(told)), f"{early}", f"{late}",
+        f"{np.median(widths):.1f}" if widths else "-",
+    ]  # fmt: skip
