@@ -1,9 +1,11 @@
-"""Documents of diagnoses as large as real ones: some thirty findings of the quality gate."""
+"""Documents of diagnoses and conditions as large as real ones: some thirty findings of the quality gate."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 
 from core.quality.finding import QualityFinding
+from testing.service.conditions import FAULT
 from testing.service.plants import fault
 
 FINDINGS = 33
@@ -21,3 +23,8 @@ _TEXT = json.dumps(_DOCUMENT)
 def document(mu_f: float) -> str:
     """Return the JSON text of a diagnosis with this fault level."""
     return _TEXT.replace(str(_MU_F), f"{mu_f:.7f}")
+
+
+def condition_document() -> Mapping[str, object]:
+    """Return the document of a condition."""
+    return FAULT.as_dict()

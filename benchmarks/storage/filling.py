@@ -6,8 +6,9 @@ from contextlib import contextmanager
 
 from sqlalchemy import Connection, Engine, inspect, text
 
+from benchmarks.storage import condition_rows, rows
 from benchmarks.storage.plant import plant_of
-from benchmarks.storage.rows import Amounts, Table, tables
+from benchmarks.storage.rows import Amounts, Table
 from service.storage import Repository, connect, migrate
 
 COUNTED = ("recordings", "recording_requests", "jobs")
@@ -24,7 +25,13 @@ def fill(url: str, amounts: Amounts, progress: Progress = lambda _line: None) ->
     load(engine, amounts, progress)
     with engine.begin() as connection:
         _count(connection)
+        condition_rows.judge(connection)
     engine.dispose()
+
+
+def _tables(amounts: Amounts) -> Iterator[Table]:
+    yield from rows.tables(amounts)
+    yield from condition_rows.tables(amounts)
 
 
 def _load_sqlite(engine: Engine, amounts: Amounts, progress: Progress) -> None:
@@ -38,9 +45,10 @@ def _load_sqlite(engine: Engine, amounts: Amounts, progress: Progress) -> None:
     indexes = connection.execute(kept).fetchall()
     for name, _statement in indexes:
         connection.execute(f"DROP INDEX {name}")
-    for table in tables(amounts):
+    for table in _tables(amounts):
         places = ", ".join("?" * len(table.columns))
-        insert = f"INSERT INTO {table.name} ({', '.join(table.columns)}) VALUES ({places})"  # noqa: S608 - our names
+        columns = ", ".join(f'"{column}"' for column in table.columns)
+        insert = f"INSERT INTO {table.name} ({columns}) VALUES ({places})"  # noqa: S608 - our names
         connection.execute("BEGIN")
         written = connection.executemany(insert, table.rows).rowcount
         connection.execute("COMMIT")
@@ -56,7 +64,7 @@ def _load_postgresql(engine: Engine, amounts: Amounts, progress: Progress) -> No
     with engine.begin() as connection, _without_indexes(connection, progress):
         connection.execute(text("SET LOCAL session_replication_role = replica"))  # foreign keys hold anyway
         connection.execute(text("SET LOCAL maintenance_work_mem = '1GB'"))
-        for table in tables(amounts):
+        for table in _tables(amounts):
             progress(f"{table.name}: {_copy(connection, table):,} rows")
     with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
         connection.execute(text("VACUUM ANALYZE"))

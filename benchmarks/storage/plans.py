@@ -25,6 +25,9 @@ GROWING = frozenset(
         "link_changes",
         "deletions",
         "deleted_remote_records",
+        "observations",
+        "condition_changes",
+        "condition_events",
     }
 )
 """Tables that have more rows every day."""
@@ -34,8 +37,13 @@ PARTIAL = {
     "ix_alarms_standing_ied_raised_ns_id": "cleared_ns",
     "ix_alarms_cleared_raised_ns_id": "cleared_ns",
     "ix_alarms_cleared_ied_raised_ns_id": "cleared_ns",
+    "ix_alarms_standing_motor_raised_ns_id": "cleared_ns",
+    "ix_alarms_cleared_motor_raised_ns_id": "cleared_ns",
 }
 """Indexes that have just the rows of one filter, and the column that it is about."""
+
+PASSED_BY_ALL = {"observations": "state"}
+"""Columns of filters that nearly every row passes, by table: all but the latest observations are folded."""
 
 _STEP = re.compile(
     r"(?P<how>SCAN|SEARCH) (?P<table>\w+?)(?:_\d+)?(?= |$)"
@@ -118,4 +126,4 @@ def _reads_all(step: str, text: str) -> bool:
 def _filters(text: str, table: str) -> set[str]:
     """Return the columns of a table that a statement compares with one value."""
     where = text.partition("WHERE")[2]
-    return set(re.findall(rf"\b{table}(?:_\d+)?\.(\w+) (?:=|IS)", where))
+    return set(re.findall(rf"\b{table}(?:_\d+)?\.(\w+) (?:=|IS)", where)) - {PASSED_BY_ALL.get(table)}

@@ -9,6 +9,7 @@ from urllib.parse import parse_qsl, urlsplit
 from fastapi import FastAPI
 
 from benchmarks.storage import rows
+from benchmarks.storage.condition_rows import EVENT, TOLD
 from benchmarks.storage.plant import BUSY, IDLE, QUIET, motor_name, relay_name
 from core.time_stamps import rfc3339
 from service.api.pages import encode
@@ -40,7 +41,13 @@ TIMED: Mapping[str, tuple[str, ...]] = {
         "{busy}?limit=1000&quantity=theta_f&from={from}",
         "{busy}?limit=1000&to={to}",
         "{busy}?limit=1000&from={from}&to={to}&cursor={deep}",
+        "{busy}?limit=1000&quantity=condition_level",
+        "{busy}?limit=1000&quantity=change&from={from}&to={to}&cursor={deep}",
     ),
+    "/api/v1/motors/{name}/condition": (*_MOTOR, "{busy}?history=100"),
+    "/api/v1/motors/{name}/condition/history": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
+    "/api/v1/motors/{name}/notes": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
+    "/api/v1/motors/{name}/notes/{note_id}": ("{busy} {note}",),
     "/api/v1/motors/{name}/recordings": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/baseline": ("{busy}",),
     "/api/v1/motors/{name}/measurements": (
@@ -179,6 +186,7 @@ def _places(position: float, amounts: rows.Amounts) -> Mapping[str, str]:
         "from": rfc3339(time_ns),
         "to": rfc3339(time_ns + rows.SPAN_NS // 4),
         "recording": rows.id_of(rows.RECORDING, diagnosed),
+        "note": rows.id_of(EVENT, TOLD),
         "job": rows.id_of(rows.JOB, diagnosed),
         "deletion": rows.id_of(rows.DELETION, int(position * amounts.deletions)),
         "report": rows.id_of(rows.REQUEST, int(position * amounts.recording_requests)),

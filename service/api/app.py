@@ -10,6 +10,7 @@ from fastapi.openapi.utils import get_openapi
 
 from service.api import (
     baselines,
+    conditions,
     deletions,
     diagnoses,
     event_reports,
@@ -45,7 +46,17 @@ def create_app(context: ApiContext) -> FastAPI:
     )
     app.state.context = context
     api = APIRouter(prefix=PREFIX)
-    for part in (motors, baselines, measurements, relays, event_reports, recordings, diagnoses, deletions):
+    for part in (
+        motors,
+        conditions,
+        baselines,
+        measurements,
+        relays,
+        event_reports,
+        recordings,
+        diagnoses,
+        deletions,
+    ):
         api.include_router(part.router)
     app.include_router(api)
     app.include_router(probes.router)

@@ -35,6 +35,17 @@ class Document(BaseModel):
     model_config = ConfigDict(from_attributes=True, validate_by_name=True)
 
 
+Reason = Annotated[
+    str, StringConstraints(min_length=1, max_length=500, strip_whitespace=True, pattern=r"^[^\x00]+$")
+]
+"""These are a person's words for why something is done."""
+
+Person = Annotated[
+    str,
+    StringConstraints(min_length=1, max_length=100, strip_whitespace=True, pattern=r"^[^\x00-\x1f\x7f]+$"),
+]
+"""This is who says it: a name, in one line."""
+
 MOST_FIELDS = 20
 
 

@@ -1,16 +1,21 @@
 """Sites and motors; their condition."""
 
-from typing import Annotated
+import time
+from functools import partial
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query
 
+from service.api.condition_documents import condition_document
 from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.schemas import Health, ListedMotor, Motor, Recording, Site, TrendPoint
 from service.api.times import TimeParameter, rfc3339
-from service.storage.records import MotorHealth, Quantity
+from service.storage.records import ConditionPoint, MotorHealth, Quantity
+
+ConditionQuantity = Literal["condition_level", "change"]
 
 router = APIRouter()
 
@@ -31,7 +36,8 @@ def list_motors(
     """Return the motors, by name."""
     after = decode(cursor, str)
     if health:
-        return page(context.repository.health_of_motors(limit=limit, after=after), _with_health)
+        healths = context.repository.health_of_motors(limit=limit, after=after)
+        return page(healths, partial(_with_health, now_ns=time.time_ns()))
     return page(context.repository.motors(limit=limit, after=after), ListedMotor.model_validate)
 
 
@@ -43,24 +49,35 @@ def get_motor(context: Context, name: Name) -> Motor:
 
 @router.get("/motors/{name}/health", responses=problems(404), tags=["condition"])
 def get_health(context: Context, name: Name) -> Health:
-    """Return the condition of a motor as of its latest recording, and whether its relay answers."""
-    return _health(context.repository.health(name))
+    """Return a motor's condition, what its latest recording says by itself, and whether its relay answers."""
+    return _health(context.repository.health(name), time.time_ns())
 
 
-@router.get("/motors/{name}/trend", responses=problems(404), tags=["condition"])
+@router.get(
+    "/motors/{name}/trend",
+    responses=problems(404),
+    tags=["condition"],
+    response_model_exclude_unset=True,
+)
 def get_trend(
     context: Context,
     name: Name,
-    quantity: Quantity = "mu_f",
+    quantity: Quantity | ConditionQuantity = "mu_f",
     from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
     to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[TrendPoint]:
-    """Return one figure for each recording of a motor, oldest first."""
-    points = context.repository.trend(
-        name, quantity, from_ns=from_, to_ns=to, limit=limit, after=decode(cursor, int, str)
-    )
+    """Return one figure for each recording of a motor, oldest first.
+
+    The figures of the motor's condition, as it was seen from that recording on, are `condition_level` and
+    `change`; the others are what the recording says by itself.
+    """
+    after = decode(cursor, int, str)
+    if quantity == "condition_level" or quantity == "change":
+        seen = context.repository.condition_trend(name, from_ns=from_, to_ns=to, limit=limit, after=after)
+        return page(seen, partial(_point_of_condition, quantity=quantity))
+    points = context.repository.trend(name, quantity, from_ns=from_, to_ns=to, limit=limit, after=after)
     return page(points, TrendPoint.model_validate)
 
 
@@ -74,11 +91,27 @@ def list_recordings_of_motor(
     return page(recordings, Recording.model_validate)
 
 
-def _with_health(health: MotorHealth) -> ListedMotor:
-    return ListedMotor.model_validate(health.motor).model_copy(update={"health": _health(health)})
+def _point_of_condition(point: ConditionPoint, quantity: ConditionQuantity) -> TrendPoint:
+    is_change = quantity == "change"
+    return TrendPoint(
+        time=rfc3339(point.time_ns),
+        value=point.change if is_change else point.mu_f,
+        ci95=point.change_ci95 if is_change else point.mu_f_ci95,
+        scatter95=None,
+        detection_limit=None,
+        verdict=None,
+        recording_id=point.recording_id,
+        state=point.state,
+        kind=point.kind,
+        phase=point.phase,
+    )
 
 
-def _health(health: MotorHealth) -> Health:
+def _with_health(health: MotorHealth, now_ns: int) -> ListedMotor:
+    return ListedMotor.model_validate(health.motor).model_copy(update={"health": _health(health, now_ns)})
+
+
+def _health(health: MotorHealth, now_ns: int) -> Health:
     diagnosis = health.diagnosis
     link = health.ied
     last = health.last_recording
@@ -86,6 +119,7 @@ def _health(health: MotorHealth) -> Health:
         motor=health.motor.name,
         site=health.motor.site,
         ied=health.motor.ied,
+        condition=condition_document(health.condition, now_ns),
         verdict=None if diagnosis is None else diagnosis.verdict,
         mu_f=None if diagnosis is None else diagnosis.mu_f,
         mu_f_ci95=None if diagnosis is None else diagnosis.mu_f_ci95,

@@ -11,6 +11,7 @@ from prometheus_client.exposition import CONTENT_TYPE_LATEST, generate_latest
 from prometheus_client.registry import Collector
 from sqlalchemy.exc import SQLAlchemyError
 
+from service.api.condition_metrics import ConditionMetrics
 from service.api.context import ApiContext, Context
 from service.api.link_metrics import LinkMetrics
 from service.api.problems import problem_response, problems
@@ -46,12 +47,13 @@ def get_readiness(context: Context, request: Request) -> Status | JSONResponse:
 
 @router.get("/metrics", response_class=PlainTextResponse)
 def get_metrics(context: Context) -> Response:
-    """Return the numbers of links, recording requests, recordings, jobs and alarms, and each link's figures.
+    """Return the numbers of links, recording requests, recordings, jobs, alarms and motors by state.
 
-    Prometheus text format.
+    Also the figures of each link and of each motor's condition. Prometheus text format.
     """
     registry = CollectorRegistry()
     registry.register(_StateCollector(context.repository))
+    registry.register(ConditionMetrics(context.repository))
     registry.register(LinkMetrics(context.repository))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
 

@@ -6,9 +6,11 @@ from uuid import UUID
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, FailFast, Field, StringConstraints, create_model
 
+from core.condition.kinds import Kind, State
 from core.diagnosis import methods
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
+from service.api.condition_schemas import Condition
 from service.api.document import Document, Listed, RequestDocument
 from service.api.relay_schemas import RelayClock
 from service.api.times import Time
@@ -206,15 +208,16 @@ class DiagnosisRequest(RequestDocument):
 
 
 class Health(Document):
-    """What is known of a motor now: the diagnosis of its latest recording, its relay's link, its recordings.
+    """What is known of a motor now: its condition, the diagnosis of its latest recording, its relay's link.
 
-    What is said of verdict, level, phase, load and reasons repeats the diagnosis; null and empty before the
-    first one.
+    What is said of verdict, level, phase, load and reasons beside the condition repeats the diagnosis; null
+    and empty before the first one.
     """
 
     motor: str
     site: str
     ied: str
+    condition: Condition
     verdict: Verdict | None
     mu_f: float | None
     mu_f_ci95: tuple[float, float] | None
@@ -241,8 +244,10 @@ class ListedMotor(Motor):
 class TrendPoint(Document):
     """One recording's figure; `value` is null where the recording does not tell it.
 
-    ci95: 95 % interval from noise, sensors and parameters, of mu_f and load_level. Of mu_f only: scatter95,
-    from the record's own scatter alone; detection_limit, the level that nine of ten such recordings show.
+    ci95: 95 % interval from noise, sensors and parameters, of all but theta_f. Of mu_f only: scatter95, from
+    the record's own scatter alone; detection_limit, the level that nine of ten such recordings show.
+    verdict: of the recording alone; null, and replaced by state, kind and phase, where the figure is one of
+    the motor's condition from that recording on.
     """
 
     time: Time = Field(validation_alias="recorded_ns")
@@ -250,8 +255,11 @@ class TrendPoint(Document):
     ci95: tuple[float, float] | None
     scatter95: tuple[float, float] | None
     detection_limit: float | None
-    verdict: Verdict
+    verdict: Verdict | None
     recording_id: str
+    state: State | None = None
+    kind: Kind | None = None
+    phase: Literal["a", "b", "c"] | None = None
 
 
 class MeasurementTime(Document):

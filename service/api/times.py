@@ -13,12 +13,16 @@ def _outside(value: object) -> object:
     return rfc3339(value) if isinstance(value, int) else value
 
 
+def _inside(value: object) -> int:
+    return nanoseconds(value if isinstance(value, str) else "")  # a number in a document is no time
+
+
 Time = Annotated[str, BeforeValidator(_outside), WithJsonSchema({"type": "string", "format": "date-time"})]
 """A time in a response is made from nanoseconds."""
 
 TimeParameter = Annotated[
     int,
-    BeforeValidator(nanoseconds),
+    BeforeValidator(_inside),
     WithJsonSchema({"type": "string", "format": "date-time", "maxLength": MAX_LENGTH}),
 ]
-"""A time in a query is RFC 3339 and becomes nanoseconds."""
+"""A time in a request is RFC 3339 and becomes nanoseconds."""

@@ -10,6 +10,7 @@ from typing import Annotated
 
 import typer
 
+from core.condition.events import EventKind
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, one_line, print_failure
 from service.process.garbage_collection import collection_paused
@@ -25,6 +26,12 @@ app = typer.Typer(
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout, also on failure.")]
 Url = Annotated[str, typer.Option("--url", envvar="MCC_URL", help="Address of the running service.")]
 MotorName = Annotated[str, typer.Argument(metavar="MOTOR", help="The motor's name in the plant's SCD.")]
+
+Time = Annotated[
+    str | None,
+    typer.Option(metavar="TIME", help="When it happened, as 2026-01-31T12:00:00Z (default: now)."),
+]
+By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
 
 INTERRUPTED = 130
 """Typer ends with this exit code after Ctrl-C."""
@@ -287,18 +294,80 @@ def trigger(
 
 @app.command()
 def motors(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
-    """Show every motor the service watches: link, verdict, level, load, last recording."""
-    from service.cli.remote import list_motors
+    """Show the condition of every motor the service watches: state, cause, level, since when, as of when."""
+    from service.cli.motors import list_motors
 
     list_motors(url, as_json=as_json)
 
 
 @app.command()
 def health(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
-    """Show a motor's condition."""
-    from service.cli.remote import show_health
+    """Show a motor's condition with what to do, and what its latest recording says by itself."""
+    from service.cli.motors import show_health
 
     show_health(url, motor, as_json=as_json)
+
+
+@app.command()
+def condition(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    *,
+    history: Annotated[
+        bool, typer.Option("--history", help="Also when it changed, and what changed it.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Show a motor's condition over time: state, cause, level, forecast, what to do and why."""
+    from service.cli.conditions import show_condition
+
+    show_condition(url, motor, history=history, as_json=as_json)
+
+
+@app.command()
+def note(
+    motor: MotorName,
+    text: Annotated[str, typer.Argument(metavar="TEXT", help="What happened, in words.")],
+    url: Url = DEFAULT_URL,
+    kind: Annotated[
+        EventKind,
+        typer.Option(help="What it is: all but a note change what the condition follows from."),
+    ] = EventKind.NOTE,
+    time: Time = None,
+    by: By = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Tell what happened to a motor: maintenance, another winding, another relay, or just a note."""
+    from service.cli.conditions import add_note
+
+    add_note(url, motor, text, kind=kind.value, time=time, by=by, as_json=as_json)
+
+
+@app.command()
+def notes(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
+    """Show what people told of a motor, latest first."""
+    from service.cli.conditions import list_notes
+
+    list_notes(url, motor, as_json=as_json)
+
+
+@app.command("restart-reference")
+def restart_reference(
+    motor: MotorName,
+    reason: Annotated[
+        str, typer.Option(metavar="TEXT", help="Why the motor counts as healthy as it is; it is kept.")
+    ],
+    url: Url = DEFAULT_URL,
+    time: Time = None,
+    by: By = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Take a motor for healthy as it is: what stands out of it from the first record on is learnt anew."""
+    from service.cli.conditions import restart_reference
+
+    restart_reference(url, motor, reason, time=time, by=by, as_json=as_json)
 
 
 @app.command()

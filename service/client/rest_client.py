@@ -96,15 +96,31 @@ class ServiceClient:
         self._request("DELETE", f"{API}/recordings/{segment(recording_id)}", {"reason": reason})
         return self.get(f"/deletions/{segment(recording_id)}")
 
+    def add_note(self, motor: str, note: Document) -> Document:
+        """Tell something of a motor, and return the note that is kept. Raises ServiceError."""
+        path = f"{API}/motors/{segment(motor)}/notes"
+        return _document(self._request("POST", path, {}, document=note))
+
+    def restart_reference(self, motor: str, restart: Document) -> Document:
+        """Have a motor's reference learnt anew, and return the note that is kept. Raises ServiceError."""
+        path = f"{API}/motors/{segment(motor)}/reference"
+        return _document(self._request("POST", path, {}, document=restart))
+
     def recording_request(self, request_id: str) -> Document:
         """Return a recording request, with its present state. Raises ServiceError."""
         return self.get(f"/event-reports/{segment(request_id)}")
 
     def _request(
-        self, method: str, path: str, query: Mapping[str, str], headers: Mapping[bytes, bytes] | None = None
+        self,
+        method: str,
+        path: str,
+        query: Mapping[str, str],
+        headers: Mapping[bytes, bytes] | None = None,
+        *,
+        document: Document | None = None,
     ) -> httpx.Response:
         try:
-            response = self._http.request(method, path, params=query, headers=headers)
+            response = self._http.request(method, path, params=query, headers=headers, json=document)
         except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
             raise ServiceError(
                 f"no service answers at {self._url} ({error}); start it with mcc serve"

@@ -1,5 +1,7 @@
 """Verdicts, fault levels and times as text for people, the same in every command."""
 
+from collections.abc import Mapping
+
 from rich.text import Text
 
 VERDICT_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red", "undiagnosable": "magenta"}
@@ -42,6 +44,12 @@ def percent(share: object) -> str:
 def detection(limit: object) -> str:
     """Return in words from which level on nine of ten such recordings show a fault."""
     return "-" if limit is None else f"{percent(limit)} %: nine of ten such recordings show a fault of it"
+
+
+def reasons_of(found: Mapping[str, object]) -> list[str]:
+    """Return the reasons of a diagnosis or a health, each once."""
+    reasons = found["reasons"]
+    return list(dict.fromkeys(map(str, reasons))) if isinstance(reasons, list) else []
 
 
 def to_the_second(time: object) -> str:

@@ -22,11 +22,11 @@ from service.storage.records.diagnoses import (
     Job,
     JobResult,
     LatestDiagnosis,
-    MotorHealth,
     Quantity,
     TrendPoint,
     interval_of,
 )
+from service.storage.records.health import MotorHealth
 from service.storage.records.measurements import Measurement, Sample
 from service.storage.records.pages import Cursor, Page
 from service.storage.records.plant import IedEntry, MotorEntry, SiteEntry

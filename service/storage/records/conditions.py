@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from core.condition.assessment import Phase
 from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
@@ -19,7 +20,7 @@ class ConditionFigures:
 
     state: State
     kind: Kind
-    phase: str | None = None
+    phase: Phase | None = None
     mu_f: float | None = None
     mu_f_ci95_low: float | None = None
     mu_f_ci95_high: float | None = None

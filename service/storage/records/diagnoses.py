@@ -5,8 +5,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 from core.diagnosis.verdict import Verdict
-from service.storage.records.plant import IedEntry, MotorEntry
-from service.storage.records.recordings import RecordingEntry
 from service.storage.states import AlarmKind, JobState, LinkState, RecordingRequestState, RecordingState
 
 Quantity = Literal["mu_f", "theta_f", "load_level"]
@@ -125,16 +123,6 @@ class LatestDiagnosis:
         """Return the phase with the fault; None unless shorted turns are found."""
         phases: tuple[Literal["a", "b", "c"], ...] = ("a", "b", "c")
         return None if self.theta_f is None else phases[self.theta_f]
-
-
-@dataclass(frozen=True, slots=True)
-class MotorHealth:
-    """What is known of a motor now: the latest recording's diagnosis, its relay, its latest recording."""
-
-    motor: MotorEntry
-    ied: IedEntry
-    diagnosis: LatestDiagnosis | None
-    last_recording: RecordingEntry | None
 
 
 @dataclass(frozen=True, slots=True)

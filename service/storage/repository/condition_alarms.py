@@ -1,13 +1,14 @@
 """The alarm of a motor: one stands while its condition is `watch` or `fault`."""
 
 import uuid
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from core.condition.kinds import State
 from service.storage.models import AlarmRow, MotorRow
+from service.storage.records import ConditionEntry
 from service.storage.repository.alarms import clear, forget_cleared
 from service.storage.repository.standing_alarm_counts import count_raised
 from service.storage.states import AlarmKind
@@ -16,18 +17,8 @@ from service.storage.texts import storable
 ALARM_OF = {State.WATCH: AlarmKind.CONDITION_WATCH, State.FAULT: AlarmKind.CONDITION_FAULT}
 
 
-@dataclass(frozen=True, slots=True)
-class ConditionInWords:
-    """What an alarm says of a condition: its state, the cause, why it is taken for that, and what to do."""
-
-    state: State
-    cause: str
-    reason: str
-    advice: str
-
-
-def settle_alarm(session: Session, motor: MotorRow, condition: ConditionInWords, *, now_ns: int) -> None:
-    """Make the motor's alarm say what its condition says. Whoever calls it has locked the motor's row.
+def settle_alarm(session: Session, motor: MotorRow, condition: ConditionEntry, *, now_ns: int) -> None:
+    """Make the motor's alarm say what its condition says. Whoever calls it has locked the condition's row.
 
     From `watch` to `fault` one alarm is cleared and the other raised; while the state stays, the alarm stays
     and gets the present words. A motor that left the plant has none.
@@ -49,9 +40,21 @@ def settle_alarm(session: Session, motor: MotorRow, condition: ConditionInWords,
     row = stands or AlarmRow(
         id=str(uuid.uuid4()), ied=motor.ied, kind=kind, motor=motor.name, raised_ns=now_ns
     )
-    row.subject = storable(condition.cause)
-    row.reason = storable(condition.reason)
-    row.advice = storable(condition.advice)
+    document = condition.document or {}
+    row.subject = storable(_cause(condition, document))
+    row.reason = storable("; ".join(_texts(document.get("reasons"))))
+    row.advice = storable(str(document.get("advice", "")))
     if stands is None:
         session.add(row)
         count_raised(session, motor.ied, kind)
+
+
+def _cause(condition: ConditionEntry, document: Mapping[str, object]) -> str:
+    """Return what has changed, and in which phase; of what is unclear, what it may be."""
+    kinds = _texts(document.get("candidates")) or [str(condition.kind)]
+    words = " or ".join(kind.replace("-", " ") for kind in kinds)
+    return words if condition.phase is None else f"{words} in phase {condition.phase}"
+
+
+def _texts(found: object) -> Sequence[str]:
+    return [str(one) for one in found] if isinstance(found, list) else []

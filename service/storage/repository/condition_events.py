@@ -4,7 +4,8 @@ import uuid
 
 from sqlalchemy import select
 
-from core.condition.events import Event
+from core.condition.events import Event, EventKind
+from service.storage.errors import NotFoundError
 from service.storage.models import ConditionEventRow, MotorRow
 from service.storage.records import ConditionEvent, Cursor, Page
 from service.storage.repository.fold_marks import mark
@@ -28,7 +29,17 @@ class ConditionEventRows(Sessions):
             )
             session.add(row)
             session.flush()
-            mark(session, motor, event.time_ns)
+            if event.kind is not EventKind.NOTE:
+                mark(session, motor, event.time_ns)
+            return record_of(ConditionEvent, row)
+
+    def event(self, motor: str, event_id: str) -> ConditionEvent:
+        """Return one event of a motor. Raises NotFoundError."""
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            row = session.get(ConditionEventRow, event_id)
+            if row is None or row.motor != motor:
+                raise NotFoundError(f"note of motor {motor}", event_id)
             return record_of(ConditionEvent, row)
 
     def events(self, motor: str, *, limit: int, after: Cursor | None = None) -> Page[ConditionEvent]:

@@ -1,13 +1,15 @@
 """The conditions of motors, and how they came to be."""
 
 from collections.abc import Collection, Mapping
+from dataclasses import fields
 
-from sqlalchemy import Select, select
+from sqlalchemy import select
+from sqlalchemy.orm import Session
 
 from core.condition.kinds import Kind, State
 from service.storage.models import ConditionChangeRow, ConditionRow, MotorRow
 from service.storage.records import ConditionChange, ConditionEntry, Cursor, Page
-from service.storage.repository.sessions import Order, Sessions, found, page_of, record_of
+from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 
 
 class ConditionRows(Sessions):
@@ -18,14 +20,8 @@ class ConditionRows(Sessions):
 
     def conditions(self, motors: Collection[str] | None = None) -> Mapping[str, ConditionEntry]:
         """Return the conditions of these motors, or of all in service, by name."""
-        query: Select[ConditionRow] = select(ConditionRow)
-        if motors is None:
-            query = query.join(MotorRow, MotorRow.name == ConditionRow.motor).where(MotorRow.in_service)
-        else:
-            query = query.where(ConditionRow.motor.in_(motors))
         with self._read() as session:
-            rows = session.scalars(query.order_by(ConditionRow.motor))
-            return {row.motor: record_of(ConditionEntry, row) for row in rows}
+            return conditions_of(session, motors)
 
     def condition_history(
         self, motor: str, *, limit: int, after: Cursor | None = None
@@ -44,6 +40,18 @@ class ConditionRows(Sessions):
                 after=after,
                 descending=True,
             )
+
+
+def conditions_of(session: Session, motors: Collection[str] | None = None) -> Mapping[str, ConditionEntry]:
+    """Return the conditions of these motors, or of all in service, by name."""
+    query = select(*columns_of(ConditionEntry, ConditionRow))
+    if motors is None:
+        query = query.join(MotorRow, MotorRow.name == ConditionRow.motor).where(MotorRow.in_service)
+    else:
+        query = query.where(ConditionRow.motor.in_(motors))
+    names = [field.name for field in fields(ConditionEntry)]
+    rows = session.execute(query.order_by(ConditionRow.motor))
+    return {row.motor: ConditionEntry(**dict(zip(names, row, strict=True))) for row in rows}
 
 
 def new_condition(motor: str) -> ConditionRow:

@@ -11,6 +11,7 @@ from dataclasses import asdict
 from sqlalchemy import bindparam, delete, func, insert, or_, select, update
 from sqlalchemy.orm import Session, aliased
 
+from core.condition.events import EventKind
 from service.storage.models import (
     Base,
     ConditionChangeRow,
@@ -31,6 +32,7 @@ from service.storage.records import (
     MotorVersion,
     RecordObservation,
 )
+from service.storage.repository.condition_alarms import settle_alarm
 from service.storage.repository.fold_marks import EARLIEST_NS, NEIGHBOURS_WITHIN_NS, mark
 from service.storage.repository.observations import record_observation
 from service.storage.repository.sessions import Sessions, found, only, record_of
@@ -78,10 +80,11 @@ class FoldingRows(Sessions):
                 latest_change=_latest_change(session, motor, done_ns),
             )
 
-    def finish_fold(self, fold: FoldInput, result: FoldResult) -> bool:
+    def finish_fold(self, fold: FoldInput, result: FoldResult, *, now_ns: int) -> bool:
         """Keep what a fold found, all of it or nothing; have the rest folded, if there is one.
 
-        Returns False, and keeps nothing, where another fold of the motor has ended since this one began.
+        With the condition goes the motor's alarm: it is raised or cleared at `now_ns`. Returns False, and
+        keeps nothing, where another fold of the motor has ended since this one began.
         """
         done_ns = EARLIEST_NS if fold.checkpoint is None else fold.checkpoint.time_ns
         with self._write() as session:
@@ -100,6 +103,8 @@ class FoldingRows(Sessions):
                 figures = asdict(result.condition)
                 for name in set(figures) - {"motor", "version"}:
                     setattr(row, name, figures[name])
+                motor = found(session, MotorRow, fold.motor, "motor")
+                settle_alarm(session, motor, result.condition, now_ns=now_ns)
             return True
 
     def checkpoints(self, motor: str) -> tuple[Checkpoint, ...]:
@@ -156,8 +161,11 @@ def _observations(
 
 
 def _events(session: Session, motor: str, done_ns: int, next_ns: int | None) -> tuple[ConditionEvent, ...]:
+    """Return the next events of a motor, in their order; a note resets nothing and is left out."""
     query = select(ConditionEventRow).where(
-        ConditionEventRow.motor == motor, ConditionEventRow.time_ns > done_ns
+        ConditionEventRow.motor == motor,
+        ConditionEventRow.time_ns > done_ns,
+        ConditionEventRow.kind != EventKind.NOTE,
     )
     if next_ns is not None:
         query = query.where(ConditionEventRow.time_ns < next_ns)

@@ -24,6 +24,7 @@ from service.storage.records import (
     TrendPoint,
     interval_of,
 )
+from service.storage.repository.conditions import conditions_of
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 from service.storage.states import RecordingState
 
@@ -117,12 +118,14 @@ def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHea
     said = select(*_SAID).where(DiagnosisRow.id.in_(_for_each(names, latest_diagnosis)))
     diagnoses = {row.motor: LatestDiagnosis(*row) for row in session.execute(said)}
     recordings = _latest_recordings(session, names)
+    conditions = conditions_of(session, names)
     links = select(*columns_of(IedEntry, IedRow)).where(IedRow.name.in_({motor.ied for motor in motors}))
     relays = {row.name: IedEntry(*row) for row in session.execute(links)}
     return tuple(
         MotorHealth(
             motor=motor,
             ied=relays[motor.ied],
+            condition=conditions[motor.name],
             diagnosis=diagnoses.get(motor.name),
             last_recording=recordings.get(motor.name),
         )

@@ -1,7 +1,9 @@
 """Observations: what each record tells of its motor's condition."""
 
 from collections.abc import Sequence
+from dataclasses import fields
 from math import isfinite
+from typing import Any
 
 from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session
@@ -43,6 +45,9 @@ OTHERS = (
 """Columns that are called as the fields are."""
 
 
+_POINT_FIELDS = [field.name for field in fields(ConditionPoint)]
+
+
 class ObservationRows(Sessions):
     def observation(self, recording_id: str) -> RecordObservation | None:
         """Return what a recording tells of its motor's condition; None where it tells nothing."""
@@ -70,18 +75,21 @@ class ObservationRows(Sessions):
             query = query.where(ObservationRow.time_ns >= from_ns)
         if to_ns is not None:
             query = query.where(ObservationRow.time_ns < to_ns)
-        names = [column.key for column in columns_of(ConditionPoint, ObservationRow)]
         order: Order = [ObservationRow.time_ns, ObservationRow.recording_id]
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(
-                session,
-                query,
-                order,
-                lambda *values: ConditionPoint(**dict(zip(names, values, strict=True))),
-                limit=limit,
-                after=after,
-            )
+            return page_of(session, query, order, _point, limit=limit, after=after)
+
+    def latest_condition_points(self, motor: str, *, limit: int) -> tuple[ConditionPoint, ...]:
+        """Return what was said from each of a motor's latest records on, oldest first."""
+        query = (
+            select(*columns_of(ConditionPoint, ObservationRow))
+            .where(ObservationRow.motor == motor, ObservationRow.state.is_not(None))
+            .order_by(ObservationRow.time_ns.desc(), ObservationRow.recording_id.desc())
+            .limit(limit)
+        )
+        with self._read() as session:
+            return tuple(_point(*row) for row in reversed(session.execute(query).all()))
 
     def motors_to_observe(self) -> tuple[str, ...]:
         """Return the motors that have recordings from before there were observations."""
@@ -182,6 +190,10 @@ def record_observation(row: ObservationRow) -> RecordObservation:
         load_level=row.load_level,
     )
     return RecordObservation(row.recording_id, row.motor, observation)
+
+
+def _point(*values: Any) -> ConditionPoint:
+    return ConditionPoint(**dict(zip(_POINT_FIELDS, values, strict=True)))
 
 
 def _row(recording_id: str, motor: str, observation: Observation) -> ObservationRow:

@@ -23,15 +23,20 @@ DO_NOT_GROW = frozenset(
         "ieds",
         "motors",
         "baseline_recordings",
+        "conditions",
+        "condition_checkpoints",
         "discarded_folders",
+        "fold_marks",
         "gateways",
         "job_runners",
         "leases",
         "link_figures",
+        "motor_versions",
         "quarantines",
         "relay_findings",
         "standing_alarm_counts",
         "state_counts",
+        "unobserved_recordings",
     }
 )
 """Tables that are as large as the plant is, or as the work of the moment."""

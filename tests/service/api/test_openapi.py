@@ -17,8 +17,10 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.records import Sample
 from service.storage.states import AlarmKind, LinkState
+from testing.service.conditions import FAULT, tell
 from testing.service.database import make_database
 from testing.service.job_runner import RUNNER, register_runner
+from testing.service.observations import OBSERVATION
 from testing.service.plants import NOW_NS, fault, two_motor_plant
 from testing.service.small_record import CFG, DAT
 from tests.service.api.serving import serving
@@ -49,12 +51,20 @@ def documented_api(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BaseSch
     repository.add_recording(stored, motor="PUMP-A1", recording_request_id=report.id, now_ns=NOW_NS)
     claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
     assert claimed is not None
-    repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    repository.finish_job(
+        claimed.job.id,
+        fault(),
+        recorded_ns=NOW_NS,
+        now_ns=NOW_NS,
+        runner=RUNNER,
+        observation=OBSERVATION,
+    )
     repository.set_link_state("A1_SEL710", LinkState.DOWN, "refused", now_ns=NOW_NS)
     repository.register_gateway("here/0", host="here", process_id=1, now_ns=NOW_NS)
     repository.share_relays("here/0", ["A1_SEL710"], most=1, problem=None)
     repository.add_samples([Sample("PUMP-A1", NOW_NS, {"ia_A": 1.0})])
     repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "X.CFG", "outside", now_ns=NOW_NS)
+    tell(repository, FAULT)
     context = ApiContext(Settings(data_directory=data), repository, store)
     with serving(create_app(context)) as client:
         yield schemathesis.openapi.from_url(f"{client.base_url}/api/v1/openapi.json")

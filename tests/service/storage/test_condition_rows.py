@@ -166,7 +166,7 @@ def test_a_fold_is_kept_and_its_marks_are_gone(repository: Repository, recorder:
         state=State.HEALTHY,
         kind=Kind.NONE,
     )
-    assert repository.finish_fold(fold, replace(nothing_more(fold), changes=[change]))
+    assert repository.finish_fold(fold, replace(nothing_more(fold), changes=[change]), now_ns=NOW_NS)
     condition = repository.condition(PUMP)
     assert (condition.version, condition.state, condition.as_of_ns) == (1, "healthy", NOW_NS + HOUR_NS)
     assert condition.document == {"state": "healthy"}
@@ -183,31 +183,31 @@ def test_a_fold_goes_on_from_the_last_checkpoint_before_what_changed(
 ) -> None:
     ids = [recorder.record(observation(hour)) for hour in range(4)]
     fold = began(repository)
-    repository.finish_fold(fold, nothing_more(fold))
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
 
     recorder.record(observation(4))
     fold = began(repository)
     assert fold.checkpoint == Checkpoint(NOW_NS + 3 * HOUR_NS, 4, f"up to {NOW_NS + 3 * HOUR_NS}".encode())
     assert [one.observation.time_ns for one in fold.observations] == [NOW_NS + 4 * HOUR_NS]
-    repository.finish_fold(fold, nothing_more(fold))
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
 
     late = recorder.record(observation(1.5))
     fold = began(repository)
     assert fold.checkpoint is not None
     assert (fold.checkpoint.time_ns, len(fold.observations)) == (NOW_NS + HOUR_NS, 4)
-    assert repository.finish_fold(fold, nothing_more(fold))
+    assert repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
     assert [one.records for one in repository.checkpoints(PUMP)] == [1, 2, 3, 4, 5, 6]
 
     repository.delete_recording(late, "of another motor", now_ns=NOW_NS)
     fold = began(repository)
     assert [one.recording_id for one in fold.observations][:2] == ids[2:]
-    repository.finish_fold(fold, nothing_more(fold))
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
 
     recorder.diagnose_again(ids[1], observation(1, 0.5j))
     fold = began(repository)
     assert fold.checkpoint is not None
     assert fold.checkpoint.time_ns == NOW_NS
-    repository.finish_fold(fold, nothing_more(fold))
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
 
     recorder.diagnose_again(ids[1], observation(1, 0.5j))
     assert repository.begin_fold(PUMP, 10) is None, "it tells the same"
@@ -218,7 +218,7 @@ def test_a_fold_goes_on_from_the_last_checkpoint_before_what_changed(
     assert [one.recording_id for one in fold.observations][:2] == ids[1:3]
 
     event = Event(NOW_NS + 3 * HOUR_NS, EventKind.MAINTENANCE, "new bearing")
-    repository.finish_fold(fold, nothing_more(fold))
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
     kept = repository.add_event(PUMP, event, by="ann", now_ns=NOW_NS)
     fold = began(repository)
     assert fold.checkpoint is not None
@@ -239,7 +239,9 @@ def test_a_long_fold_is_done_in_parts(repository: Repository, recorder: Recorder
         parts.append([one.observation.time_ns for one in fold.observations])
         assert len(fold.events) == (fold.next_ns == NOW_NS + 2 * HOUR_NS)
         result = nothing_more(fold)
-        assert repository.finish_fold(fold, replace(result, checkpoints=result.checkpoints[-1:]))
+        assert repository.finish_fold(
+            fold, replace(result, checkpoints=result.checkpoints[-1:]), now_ns=NOW_NS
+        )
         assert (repository.condition(PUMP).document is None) == (fold.next_ns is not None)
     assert parts == [[NOW_NS + hour * HOUR_NS for hour in part] for part in ((0,), (1, 1, 1), (2,))]
     assert [one.records for one in repository.checkpoints(PUMP)] == [1, 4, 5]
@@ -249,8 +251,8 @@ def test_the_slower_of_two_folds_is_not_kept(repository: Repository, recorder: R
     recorder.record(observation(0))
     slow, quick = began(repository), began(repository)
     recorder.record(observation(-1))
-    assert repository.finish_fold(quick, nothing_more(quick))
-    assert not repository.finish_fold(slow, nothing_more(slow))
+    assert repository.finish_fold(quick, nothing_more(quick), now_ns=NOW_NS)
+    assert not repository.finish_fold(slow, nothing_more(slow), now_ns=NOW_NS)
     assert repository.condition(PUMP).version == 1
     again = began(repository)
     assert len(again.observations) == 2, "what came meanwhile is folded with what comes after it"
@@ -268,7 +270,7 @@ def test_records_of_a_bus_at_about_the_same_time_are_neighbours(
         recorder.record(observation(hour))
     fold = began(repository)
     assert fold.neighbours == ()
-    repository.finish_fold(fold, nothing_more(fold))
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
 
     after = replace(observation(1), time_ns=NOW_NS + HOUR_NS + 59 * SECOND_NS)
     neighbour = recorder.record(after, FAN)
@@ -278,7 +280,7 @@ def test_records_of_a_bus_at_about_the_same_time_are_neighbours(
     assert fold.checkpoint.time_ns == NOW_NS
     assert [one.recording_id for one in fold.neighbours] == [neighbour]
     assert [one.motor for one in began(repository, FAN).neighbours] == [PUMP]
-    repository.finish_fold(fold, nothing_more(fold))
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
 
     recorder.record(replace(after, time_ns=after.time_ns + 90 * SECOND_NS), FAN)
     assert repository.motors_to_fold() == (FAN,), "this was too late to see the same"
@@ -289,7 +291,7 @@ def test_records_of_a_bus_at_about_the_same_time_are_neighbours(
 def test_a_rule_of_retention_leaves_what_a_recording_told(repository: Repository, recorder: Recorder) -> None:
     kept, deleted = recorder.record(observation(0)), recorder.record(observation(1))
     fold = began(repository)
-    repository.finish_fold(fold, nothing_more(fold))
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
     for recording_id, deleted_by in ((kept, DeletedBy.RETENTION), (deleted, DeletedBy.PERSON)):
         repository.delete_recording(recording_id, "old", now_ns=NOW_NS, deleted_by=deleted_by)
     assert repository.observation(kept) is not None

@@ -1,0 +1,102 @@
+"""The rows of the filled database that are about conditions: every diagnosed recording is observed."""
+
+from collections.abc import Iterator
+
+from sqlalchemy import Connection, update
+
+from benchmarks.storage.documents import condition_document
+from benchmarks.storage.plant import IDLE, motor_name
+from benchmarks.storage.rows import (
+    END_NS,
+    RECORDING,
+    Amounts,
+    Row,
+    Table,
+    id_of,
+    motor_of,
+    recording_state,
+    time_of,
+)
+from service.storage.models import Base
+
+CHANGED = 50
+"""Every 50th observation changed a condition."""
+TOLD = 400
+"""And after every 400th a person told something of the motor."""
+
+EVENT = 9
+"""Kind of the ids of what people told, beside those of `rows`."""
+
+_OBSERVATION_COLUMNS = (
+    "recording_id", "motor", "time_ns", "recorder", "sequence", "voltage_channels", "frequency_hz",
+    "positive_voltage_re", "positive_voltage_im", "negative_voltage_re", "negative_voltage_im",
+    "zero_voltage_re", "zero_voltage_im", "positive_current_re", "positive_current_im",
+    "negative_current_re", "negative_current_im", "zero_current_re", "zero_current_im", "scatter", "cycles",
+    "load_level", "state", "kind", "phase", "mu_f", "mu_f_ci95_low", "mu_f_ci95_high", "change",
+    "change_ci95_low", "change_ci95_high",
+)  # fmt: skip
+_CHANGE_COLUMNS = (
+    "id", "motor", "time_ns", "recording_id", "event_id", "state", "kind", "phase", "mu_f", "mu_f_ci95_low",
+    "mu_f_ci95_high", "change", "change_ci95_low", "change_ci95_high",
+)  # fmt: skip
+_EVENT_COLUMNS = ("id", "motor", "time_ns", "kind", "reason", "by", "made_ns")
+
+
+def tables(amounts: Amounts) -> Iterator[Table]:
+    """Yield the tables about conditions that grow."""
+    yield Table("observations", _OBSERVATION_COLUMNS, _observations(amounts))
+    yield Table("condition_changes", _CHANGE_COLUMNS, _changes(amounts))
+    yield Table("condition_events", _EVENT_COLUMNS, _events(amounts))
+
+
+def judge(connection: Connection) -> None:
+    """Give each motor but the idle one a condition."""
+    conditions = Base.metadata.tables["conditions"]
+    figures = dict(zip(_CHANGE_COLUMNS[5:], _said(0.012), strict=True))
+    connection.execute(
+        update(conditions)
+        .where(conditions.c.motor != motor_name(IDLE))
+        .values(version=1, as_of_ns=END_NS, since_ns=END_NS, document=condition_document(), **figures)
+    )
+
+
+def _observed(amounts: Amounts) -> Iterator[tuple[int, str, int]]:
+    """Yield number, motor and time of the recordings that are observed."""
+    of = amounts.recordings
+    for number in range(of):
+        if recording_state(number, of) == "diagnosed":
+            motor = motor_name(motor_of(number, of, amounts.motors))
+            yield number, motor, time_of(number, of) - 2_000_000_000
+
+
+def _observations(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        mu_f = number % 997 / 20_000
+        yield (
+            id_of(RECORDING, number), motor, time_ns, "RELAY 100:1", "abc", "phase", 50.02, 325.0, 1.5, -1.25,
+            0.5, 0.1, -0.3, 2.1, -1.3, 0.02, 0.011, 1e-3, 2e-3, 1.2e-8, 12, 0.48, *_said(mu_f),
+        )  # fmt: skip
+
+
+def _changes(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        if number % CHANGED == 0:
+            recording = id_of(RECORDING, number)
+            yield recording, motor, time_ns, recording, None, *_said(0.01)
+        if number % TOLD == 0:
+            event = id_of(EVENT, number)
+            yield event, motor, time_ns + 1, None, event, *_said(0.01)
+
+
+def _events(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        if number % TOLD == 0:
+            event = id_of(EVENT, number)
+            yield event, motor, time_ns + 1, "maintenance", "bearings greased", "ann", time_ns + 1
+
+
+def _said(mu_f: float) -> Row:
+    """Return state, kind, phase and levels."""
+    is_fault = mu_f > 0.045
+    state, kind, phase = ("fault", "shorted-turns", "b") if is_fault else ("healthy", "none", None)
+    return state, kind, phase, mu_f, mu_f - 0.001, mu_f + 0.001, mu_f, mu_f - 0.001, mu_f + 0.001

@@ -1,0 +1,68 @@
+"""The conditions of motors in figures, for Prometheus: a few time series a motor."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+from prometheus_client.core import GaugeMetricFamily, Metric
+from prometheus_client.registry import Collector
+
+from core.condition.kinds import State
+from core.units import NANOSECONDS_PER_SECOND
+from service.storage.repository import Repository
+
+LABELS = ["motor"]
+
+
+class ConditionMetrics(Collector):
+    """Asks the database when it is asked."""
+
+    def __init__(self, repository: Repository) -> None:
+        self._repository = repository
+
+    def collect(self) -> Iterator[Metric]:
+        number = GaugeMetricFamily(
+            "mcc_motors", "Number of motors by the state they are in", labels=["state"]
+        )
+        state = GaugeMetricFamily(
+            "mcc_motor_state",
+            "1 for the state that the motor is in, 0 for the others",
+            labels=["motor", "state"],
+        )
+        level = GaugeMetricFamily(
+            "mcc_motor_fault_level_ratio", "Fault level in all, over the turns of a phase", labels=LABELS
+        )
+        change = GaugeMetricFamily(
+            "mcc_motor_fault_level_change_ratio",
+            "Change of the fault level since the reference",
+            labels=LABELS,
+        )
+        as_of = GaugeMetricFamily(
+            "mcc_motor_condition_timestamp_seconds",
+            "Time of the latest record in the motor's condition (UNIX time)",
+            labels=LABELS,
+        )
+        states: Counter[State] = Counter()
+        for motor, found in self._repository.conditions().items():
+            states[found.state] += 1
+            for one in State:
+                state.add_metric([motor, one], found.state is one)
+            if found.mu_f is not None:
+                level.add_metric([motor], found.mu_f)
+            if found.change is not None:
+                change.add_metric([motor], found.change)
+            if found.as_of_ns is not None:
+                as_of.add_metric([motor], found.as_of_ns / NANOSECONDS_PER_SECOND)
+        for one in State:
+            number.add_metric([one], states[one])
+        yield from (number, state, level, change, as_of)
+        backlog = self._repository.backlog()
+        yield GaugeMetricFamily(
+            "mcc_recordings_to_observe",
+            "Recordings from before there were conditions that are yet to be taken into account",
+            value=backlog.unobserved_recordings,
+        )
+        yield GaugeMetricFamily(
+            "mcc_motors_to_fold",
+            "Motors whose condition is about to follow a change",
+            value=backlog.motors_to_fold,
+        )

@@ -1,0 +1,141 @@
+"""Documents of a motor's condition. Fields that are null are not known (yet)."""
+
+from pydantic import Field
+
+from core.condition.assessment import Phase
+from core.condition.events import EventKind
+from core.condition.kinds import Kind, State
+from service.api.document import Document, Listed, Person, Reason, RequestDocument
+from service.api.times import Time, TimeParameter
+
+Interval = tuple[float, float]
+
+
+class Forecast(Document):
+    """Days from the latest record until the level reaches `limit`: likely not before, middle, likely by then.
+
+    One chance in ten each that it is earlier than the first or later than the last. `days` is null where the
+    records show no trend towards the limit.
+    """
+
+    limit: float | None
+    days: tuple[float, float, float] | None
+
+
+class ConditionReference(Document):
+    """What the motor was like before any change, as learnt from `records` records.
+
+    complete: whether changes are looked for. standing: level that the asymmetry from the first record on
+    would mean if it were shorted turns (..._deviation: standard deviation, ..._score: standard deviations
+    beyond what the sensors leave). detectable: step of the level that would be seen within ten records in
+    nine of ten cases. from_bus: whether other motors of the bus took part in judging it.
+    """
+
+    records: int
+    complete: bool
+    standing: float | None
+    standing_deviation: float | None
+    standing_phase: Phase | None
+    standing_path_ratio: float | None
+    standing_score: float | None
+    detectable: float | None
+    since: Time | None
+    from_bus: bool
+
+
+class Condition(Document):
+    """The condition of a motor over time, judged from all its records: what a plant acts on.
+
+    kind: what has changed, or stands out from the first record on; `candidates` where that is unclear.
+    mu_f: fault level in all, change: since the reference, as fractions of the phase turns, each with its 95 %
+    interval from noise, sensors and parameters. size: of the change in its own measure, for example the
+    relative error of a channel. since: first record that shows the change. as_of: latest record that counts;
+    stale: whether that is too old.
+    """
+
+    motor: str
+    state: State
+    kind: Kind
+    candidates: Listed[Kind]
+    phase: Phase | None
+    mu_f: float | None
+    mu_f_ci95: Interval | None
+    change: float | None
+    change_ci95: Interval | None
+    size: float | None
+    since: Time | None
+    growth_per_day: float | None
+    forecast: Forecast
+    reference: ConditionReference
+    as_of: Time | None
+    stale: bool
+    advice: str
+    reasons: Listed[str]
+
+
+class _Figures(Document):
+    state: State
+    kind: Kind
+    phase: Phase | None
+    mu_f: float | None
+    mu_f_ci95: Interval | None
+    change: float | None
+    change_ci95: Interval | None
+
+
+class ConditionPoint(_Figures):
+    """What was said of the motor from one of its records on; `record` is the id of the recording."""
+
+    record: str = Field(validation_alias="recording_id")
+    time: Time = Field(validation_alias="time_ns")
+
+
+class ConditionDetails(Condition):
+    """A condition with what was said from each of the latest records on, oldest first."""
+
+    history: Listed[ConditionPoint]
+
+
+class ConditionChange(_Figures):
+    """A time at which the motor's state, kind or phase changed, or a note was taken into account.
+
+    recording_id, note_id: what caused it; one of them is null.
+    """
+
+    id: str
+    time: Time = Field(validation_alias="time_ns")
+    recording_id: str | None
+    note_id: str | None = Field(validation_alias="event_id")
+
+
+class NoteRequest(RequestDocument):
+    """What a person tells of a motor. `time`: when it happened, by default now."""
+
+    kind: EventKind = EventKind.NOTE
+    text: Reason
+    by: Person
+    time: TimeParameter | None = None
+
+
+class RestartRequest(RequestDocument):
+    """Why the motor counts as healthy as it is. `time`: from when on, by default now."""
+
+    reason: Reason
+    by: Person
+    time: TimeParameter | None = None
+
+
+class Note(Document):
+    """What somebody told of a motor, or what its files tell.
+
+    It happened at `time`; `by` told it at `made_time`. The condition follows from all
+    but those of kind `note`.
+    """
+
+    id: str
+    motor: str
+    kind: EventKind
+    text: str = Field(validation_alias="reason")
+    by: str
+    time: Time = Field(validation_alias="time_ns")
+    made_time: Time = Field(validation_alias="made_ns")

@@ -1,0 +1,114 @@
+"""The conditions of motors over time, their history, and what people tell of motors."""
+
+import time
+from http import HTTPStatus
+from typing import Annotated
+from uuid import UUID
+
+from fastapi import APIRouter, Query, Request, Response
+
+from core.condition.events import Event, EventKind
+from core.units import NANOSECONDS_PER_DAY
+from service.api.condition_documents import condition_document
+from service.api.condition_schemas import (
+    ConditionChange,
+    ConditionDetails,
+    ConditionPoint,
+    Note,
+    NoteRequest,
+    RestartRequest,
+)
+from service.api.context import ApiContext, Context
+from service.api.document import Name
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
+from service.api.problems import FieldError, ProblemError, problems
+from service.api.times import rfc3339
+
+LATEST_POINTS = 20
+MOST_POINTS = 100
+
+FURTHEST_AHEAD_NS = NANOSECONDS_PER_DAY
+"""No note lies further in the future. Clocks of relays, which order the records, may be hours ahead."""
+
+_MADE: dict[int | str, dict[str, object]] = {
+    201: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The note."}}}
+}
+
+router = APIRouter(prefix="/motors/{name}", tags=["condition"])
+
+
+@router.get("/condition", responses=problems(404))
+def get_condition(
+    context: Context,
+    name: Name,
+    history: Annotated[
+        int, Query(ge=0, le=MOST_POINTS, description="With so many of the latest records.")
+    ] = LATEST_POINTS,
+) -> ConditionDetails:
+    """Return the condition of a motor over time, with what was said from each of its latest records on."""
+    now_ns = time.time_ns()
+    condition = condition_document(context.repository.condition(name), now_ns)
+    points = context.repository.latest_condition_points(name, limit=history)
+    return ConditionDetails(
+        **dict(condition), history=[ConditionPoint.model_validate(point) for point in points]
+    )
+
+
+@router.get("/condition/history", responses=problems(404))
+def list_condition_history(
+    context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
+) -> Page[ConditionChange]:
+    """Return the changes of a motor's condition with what caused each, latest first."""
+    changes = context.repository.condition_history(name, limit=limit, after=decode(cursor, int, str))
+    return page(changes, ConditionChange.model_validate)
+
+
+@router.get("/notes", responses=problems(404))
+def list_notes(
+    context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
+) -> Page[Note]:
+    """Return what people told of a motor, and what its files told, latest first."""
+    return page(
+        context.repository.events(name, limit=limit, after=decode(cursor, int, str)), Note.model_validate
+    )
+
+
+@router.post("/notes", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 413) | _MADE)
+def add_note(context: Context, request: Request, response: Response, name: Name, wanted: NoteRequest) -> Note:
+    """Keep what a person tells of a motor; its condition follows within seconds."""
+    note = _add(context, name, wanted.kind, wanted.text, wanted.by, wanted.time)
+    response.headers["Location"] = request.url_for("get_note", name=name, note_id=note.id).path
+    return note
+
+
+@router.get("/notes/{note_id}", responses=problems(404))
+def get_note(context: Context, name: Name, note_id: UUID) -> Note:
+    """Return one note."""
+    return Note.model_validate(context.repository.event(name, str(note_id)))
+
+
+@router.post("/reference", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 413) | _MADE)
+def restart_reference(
+    context: Context, request: Request, response: Response, name: Name, wanted: RestartRequest
+) -> Note:
+    """Take the motor for healthy as it is: its standing asymmetry is learnt anew. The answer is a note."""
+    kind = EventKind.REFERENCE_RESTARTED
+    note = _add(context, name, kind, wanted.reason, wanted.by, wanted.time)
+    response.headers["Location"] = request.url_for("get_note", name=name, note_id=note.id).path
+    return note
+
+
+def _add(context: ApiContext, motor: str, kind: EventKind, text: str, by: str, time_ns: int | None) -> Note:
+    now_ns = time.time_ns()
+    if time_ns is None:
+        time_ns = now_ns
+    if time_ns > now_ns + FURTHEST_AHEAD_NS:
+        message = f"expected a time at most a day ahead of now, found {rfc3339(time_ns)}"
+        raise ProblemError(
+            HTTPStatus.UNPROCESSABLE_ENTITY,
+            f"body.time: {message}",
+            errors=[FieldError(location="body.time", message=message)],
+        )
+    event = context.repository.add_event(motor, Event(time_ns, kind, text), by=by, now_ns=now_ns)
+    context.on_new_job()
+    return Note.model_validate(event)

@@ -1,0 +1,123 @@
+"""`mcc condition`, `note`, `notes`, `restart-reference`: a motor over time, and what people tell of it."""
+
+import getpass
+from itertools import islice
+
+from rich.box import SIMPLE_HEAD
+from rich.table import Table
+from rich.text import Text
+
+from service.cli.output import CommandError, failing_clearly, one_line, print_document, results
+from service.client.conditions import condition_lines, state_text
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.verdicts import level, to_the_second
+
+MOST_CHANGES = 1000
+"""So many changes are shown, the latest first."""
+
+
+def show_condition(url: str, motor: str, *, history: bool, as_json: bool) -> None:
+    """Print a motor's condition, and perhaps how it came to be. Raises CommandError."""
+    path = f"/motors/{segment(motor)}/condition"
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        condition = service.get(path)
+        changes = list(islice(service.items(f"{path}/history"), MOST_CHANGES)) if history else []
+        notes = {note["id"]: note for note in _notes(service, motor)} if history else {}
+    if as_json:
+        print_document({**condition, "changes": changes} if history else condition)
+        return
+    table = Table(title=Text(motor), title_justify="left", show_header=False)
+    for name, value in condition_lines(condition):
+        table.add_row(name, value)
+    console = results()
+    console.print(table)
+    if history:
+        console.print(_history_table(changes, notes))
+
+
+def add_note(
+    url: str, motor: str, text: str, *, kind: str, time: str | None, by: str | None, as_json: bool
+) -> None:
+    """Tell something of a motor. Raises CommandError."""
+    _require_words(text, "TEXT")
+    note = {"kind": kind, "text": text, "by": by or _login()}
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        kept = service.add_note(motor, note if time is None else {**note, "time": time})
+    _print_kept(kept, as_json=as_json)
+
+
+def list_notes(url: str, motor: str, *, as_json: bool) -> None:
+    """Print what was told of a motor, latest first. Raises CommandError."""
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        notes = list(_notes(service, motor))
+    if as_json:
+        print_document({"notes": notes})
+        return
+    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+    for heading in ("time", "kind", "by", "text"):
+        table.add_column(heading)
+    for note in notes:
+        table.add_row(
+            to_the_second(note["time"]),
+            Text(str(note["kind"])),
+            Text(one_line(str(note["by"]))),
+            Text(one_line(str(note["text"]))),
+        )
+    results().print(table)
+
+
+def restart_reference(
+    url: str, motor: str, reason: str, *, time: str | None, by: str | None, as_json: bool
+) -> None:
+    """Have a motor's reference learnt anew. Raises CommandError."""
+    _require_words(reason, "--reason")
+    restart = {"reason": reason, "by": by or _login()}
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        kept = service.restart_reference(motor, restart if time is None else {**restart, "time": time})
+    _print_kept(kept, as_json=as_json)
+
+
+def _notes(service: ServiceClient, motor: str) -> "islice[Document]":
+    return islice(service.items(f"/motors/{segment(motor)}/notes", limit="1000"), MOST_CHANGES)
+
+
+def _history_table(changes: list[Document], notes: dict[object, Document]) -> Table:
+    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+    table.add_column("time", no_wrap=True)
+    table.add_column("condition")
+    table.add_column("level", no_wrap=True)
+    table.add_column("because of")
+    for change in changes:
+        note = notes.get(change["note_id"])
+        if note is not None:
+            because = f"{note['kind']}: {one_line(str(note['text']))} ({one_line(str(note['by']))})"
+        else:
+            because = "a recording" if change["note_id"] is None else "a note"
+        table.add_row(
+            to_the_second(change["time"]),
+            state_text(change),
+            level(change["mu_f"], change["mu_f_ci95"]),
+            Text(because),
+        )
+    return table
+
+
+def _print_kept(note: Document, *, as_json: bool) -> None:
+    if as_json:
+        print_document(note)
+        return
+    words = f"{note['motor']}: {note['kind']} of {to_the_second(note['time'])} is noted"
+    results().print(Text(one_line(words)), soft_wrap=True)
+
+
+def _require_words(text: str, what: str) -> None:
+    if not text.strip():
+        raise CommandError(f"{what}: expected a few words, found none")
+
+
+def _login() -> str:
+    """Return the name under which the caller is logged in. Raises CommandError."""
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError) as error:
+        raise CommandError("--by: expected a name; who is logged in is not known") from error

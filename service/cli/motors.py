@@ -1,0 +1,153 @@
+"""`mcc motors`, `mcc health`: the condition of every motor, and all that is known of one."""
+
+from collections.abc import Mapping, Sequence
+
+from rich.box import SIMPLE_HEAD
+from rich.console import RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from service.cli.output import failing_clearly, one_line, print_document, results
+from service.client.conditions import as_of, condition_lines, condition_of, day, state_text
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.verdicts import (
+    detection,
+    interval,
+    level,
+    load,
+    percent,
+    reasons_of,
+    to_the_second,
+    verdict_text,
+)
+
+LINK_COLOURS = {"up": "green", "down": "red", "quarantined": "red"}
+NO_RECORDING = "no recording yet"
+
+
+def list_motors(url: str, *, as_json: bool) -> None:
+    """Print one line for each motor of the plant: its condition. Raises CommandError."""
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        motors = list(service.items("/motors", health="true", limit="1000"))
+        healths = [_listed_health(motor) for motor in motors]
+        table = motors_table(healths)
+    if as_json:
+        print_document({"motors": motors})
+        return
+    console = results()
+    console.print(table)
+    for line in _links_in_trouble(healths):
+        console.print(line, soft_wrap=True)
+
+
+def show_health(url: str, motor: str, *, as_json: bool) -> None:
+    """Print a motor's condition: what to do, why, then the latest recording. Raises CommandError."""
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        health = service.get(f"/motors/{segment(motor)}/health")
+        lines = condition_lines(condition_of(health))
+    if as_json:
+        print_document(health)
+        return
+    table = Table(title=Text(motor), title_justify="left", show_header=False)
+    for name, value in lines:
+        table.add_row(name, value)
+    table.add_section()
+    for name, shown in _latest_recording(health):
+        table.add_row(name, shown)
+    results().print(table)
+
+
+def motors_table(healths: Sequence[Document]) -> Table:
+    """Return the table of `mcc motors`; 80 columns hold all of it. Raises ServiceError."""
+    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+    table.add_column("motor", no_wrap=True)
+    table.add_column("condition")
+    table.add_column("level %", justify="right", no_wrap=True)
+    table.add_column("since", no_wrap=True)
+    table.add_column("as of")
+    table.add_column("link", no_wrap=True)
+    for health in healths:
+        condition = condition_of(health)
+        table.add_row(
+            Text(str(health["motor"])),
+            state_text(condition),
+            _level(condition),
+            day(condition["since"]),
+            as_of(condition),
+            _link(health),
+        )
+    return table
+
+
+def _level(condition: Document) -> str:
+    """Return the level in percent with its interval, without the signs: "0.62 [0.31..0.93]"."""
+    if condition["mu_f"] is None:
+        return "-"
+    return f"{percent(condition['mu_f'])} [{interval(condition['mu_f_ci95'])}]"
+
+
+def _links_in_trouble(healths: Sequence[Document]) -> list[Text]:
+    """Return a line for each relay whose link has something to say, with its motors' names."""
+    motors: dict[tuple[str, str, str], list[str]] = {}
+    for health in healths:
+        if health["link_reason"] is not None:
+            link = (str(health["ied"]), str(health["link_state"]), one_line(str(health["link_reason"])))
+            motors.setdefault(link, []).append(str(health["motor"]))
+    return [
+        Text(f"{relay} ({', '.join(names)}): {state}: {reason}", style=LINK_COLOURS.get(state, ""))
+        for (relay, state, reason), names in motors.items()
+    ]
+
+
+def _listed_health(motor: Document) -> Document:
+    health = motor.get("health")
+    if not isinstance(health, Mapping):
+        raise ServiceError("the list of motors has no health in it: is the service older than this command?")
+    return health
+
+
+def _latest_recording(health: Document) -> list[tuple[str, RenderableType]]:
+    """Return the lines of what the latest recording says by itself, and of the relay."""
+    last = _last_recording(health)
+    rows: list[tuple[str, RenderableType]] = []
+    if health["verdict"] is not None:
+        rows.append(("latest verdict", verdict_text(str(health["verdict"]))))
+        if health["mu_f"] is not None:
+            rows.append(("equivalent fault level", level(health["mu_f"], health["mu_f_ci95"])))
+            rows.append(("detection limit", detection(health["detection_limit"])))
+        if health["phase"] is not None:
+            rows.append(("phase", str(health["phase"])))
+        if health["load_level"] is not None:
+            rows.append(("load level", load(health["load_level"], health["load_level_ci95"])))
+        rows.extend(("reason", Text(reason)) for reason in reasons_of(health))
+        diagnosed = to_the_second(health["recorded_time"])
+        if diagnosed != last:
+            rows.append(("diagnosed recording", diagnosed))
+    rows.append(("last recording", Text(NO_RECORDING if last is None else last)))
+    rows.append(("site, relay", Text(f"{health['site']}, {health['ied']}")))
+    rows.append(("link", _link_with_reason(health)))
+    return rows
+
+
+def _last_recording(health: Document) -> str | None:
+    """Return when the last recording was made, and its state where it is not diagnosed."""
+    last = health["last_recording"]
+    if not isinstance(last, Mapping):
+        return None
+    when = to_the_second(last["recorded_time"] or last["announced_time"])
+    if last["state"] == "diagnosed":
+        return when
+    reason = f": {one_line(str(last['reason']))}" if last["reason"] else ""
+    return f"{when}, {last['state']}{reason}"
+
+
+def _link(health: Document) -> Text:
+    state = str(health["link_state"])
+    return Text(state, style=LINK_COLOURS.get(state, ""))
+
+
+def _link_with_reason(health: Document) -> Text:
+    link = _link(health)
+    if health["link_reason"] is not None:
+        link.append(f": {one_line(str(health['link_reason']))}")
+    return link

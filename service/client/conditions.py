@@ -1,0 +1,103 @@
+"""A motor's condition as text for people, the same in every command."""
+
+from collections.abc import Mapping, Sequence
+
+from rich.text import Text
+
+from service.client.rest_client import Document, ServiceError
+from service.client.verdicts import level, percent, to_the_second
+
+STATE_COLOURS = {"healthy": "green", "watch": "yellow", "fault": "red"}
+
+
+def condition_of(health: Document) -> Document:
+    """Return the condition in a motor's health. Raises ServiceError where there is none."""
+    condition = health.get("condition")
+    if not isinstance(condition, Mapping):
+        raise ServiceError("there is no condition in the answer: is the service older than this command?")
+    return condition
+
+
+def state_text(condition: Document) -> Text:
+    """Return the state in its colour, with the cause: "fault: shorted turns b"."""
+    state = str(condition["state"])
+    words = cause(condition)
+    return Text(f"{state}: {words}" if words else state, style=STATE_COLOURS.get(state, ""))
+
+
+def cause(condition: Document) -> str:
+    """Return what has changed, with its phase: "shorted turns b"; of what is open, what it may be."""
+    kind = str(condition["kind"])
+    if kind == "none":
+        return ""
+    candidates = condition.get("candidates")
+    kinds = [str(one) for one in candidates] if isinstance(candidates, Sequence) else []
+    words = " or ".join(one.replace("-", " ") for one in kinds or [kind])
+    return f"{words} {condition['phase'] or ''}".strip()
+
+
+def as_of(condition: Document) -> Text:
+    """Return the time of the latest record that counts, to the minute, and whether it is too old."""
+    if condition["as_of"] is None:
+        return Text("-")
+    when = str(condition["as_of"])[:16].replace("T", " ")
+    return Text(f"{when} stale", style="yellow") if condition["stale"] else Text(when)
+
+
+def day(time: object) -> str:
+    """Return the date of an RFC 3339 time; "-" where there is none."""
+    return "-" if time is None else str(time)[:10]
+
+
+def condition_lines(condition: Document) -> list[tuple[str, Text]]:
+    """Return what is to be done about a motor, then why, as lines of a name and a text."""
+    lines = [("condition", state_text(condition)), ("what to do", Text(str(condition["advice"])))]
+    if condition["mu_f"] is not None:
+        lines.append(("fault level", Text(level(condition["mu_f"], condition["mu_f_ci95"]))))
+    if condition["since"] is not None:
+        lines.append(("since", Text(to_the_second(condition["since"]))))
+        lines.append(("change", Text(level(condition["change"], condition["change_ci95"]))))
+        lines.append(("growth", Text(_growth(condition))))
+    lines.extend(("why", Text(reason)) for reason in _texts(condition["reasons"]))
+    lines.append(("reference", Text(_reference(condition["reference"]))))
+    when = condition["as_of"]
+    if when is None:
+        lines.append(("as of", Text("no record yet")))
+    else:
+        stale = "; stale: no newer record counts" if condition["stale"] else ""
+        lines.append(("as of", Text(f"{to_the_second(when)}{stale}", style="yellow" if stale else "")))
+    return lines
+
+
+def _growth(condition: Document) -> str:
+    growth, forecast = condition["growth_per_day"], condition["forecast"]
+    if not isinstance(growth, int | float):
+        return "no trend"
+    words = f"{100 * growth:.3g} % a day"
+    if not isinstance(forecast, Mapping):
+        return words
+    days = forecast["days"]
+    if not isinstance(days, Sequence):
+        return f"{words}; no trend towards {percent(forecast['limit'])} %"
+    low, middle, high = days
+    return (
+        f"{words}; {percent(forecast['limit'])} % in about {middle:.3g} days, "
+        f"in eight of ten cases {low:.3g} to {high:.3g}"
+    )
+
+
+def _reference(reference: object) -> str:
+    if not isinstance(reference, Mapping) or not reference["records"]:
+        return "none yet"
+    records = f"learnt from {reference['records']} records"
+    if not reference["complete"]:
+        return f"{records} so far; no change can be seen before it is complete"
+    detectable = reference.get("detectable")
+    seen = (
+        "" if detectable is None else f"; a step of {percent(detectable)} % would be seen within ten records"
+    )
+    return f"{records}{seen}"
+
+
+def _texts(found: object) -> list[str]:
+    return [str(one) for one in found] if isinstance(found, list) else []

@@ -1,0 +1,123 @@
+"""Conditions for tests: of a healthy motor, of one with a fault, and how the database gets to know them."""
+
+from dataclasses import fields, replace
+
+from core.condition.assessment import Level, Reference
+from core.condition.condition import Condition
+from core.condition.events import Event, EventKind
+from core.condition.forecast import Forecast
+from core.condition.kinds import Kind, State
+from core.units import NANOSECONDS_PER_DAY
+from service.storage import Repository
+from service.storage.records import (
+    ConditionChange,
+    ConditionEntry,
+    ConditionFigures,
+    ConditionPoint,
+    FoldResult,
+)
+from testing.service.plants import NOW_NS
+
+HEALTHY = Condition(
+    motor="PUMP-A1",
+    state=State.HEALTHY,
+    kind=Kind.NONE,
+    candidates=(),
+    phase=None,
+    mu_f=0.0004,
+    mu_f_ci95=(0.0, 0.012),
+    change=0.0,
+    change_ci95=None,
+    size=None,
+    since_ns=None,
+    forecast=Forecast(0.005),
+    reference=Reference(
+        records=64,
+        complete=True,
+        since_ns=NOW_NS - 64 * NANOSECONDS_PER_DAY,
+        detectable=0.0045,
+        standing=Level(0.004, 0.005, 1, 0.5),
+        standing_score=0.8,
+        from_bus=False,
+    ),
+    as_of_ns=NOW_NS,
+    stale=False,
+    advice="Nothing needs to be done.",
+    reasons=("the reference holds 64 records",),
+)
+
+FAULT = replace(
+    HEALTHY,
+    state=State.FAULT,
+    kind=Kind.SHORTED_TURNS,
+    phase="b",
+    mu_f=0.0121,
+    mu_f_ci95=(0.009, 0.0225),
+    change=0.012,
+    change_ci95=(0.009, 0.015),
+    size=0.012,
+    since_ns=NOW_NS - 3 * NANOSECONDS_PER_DAY,
+    forecast=Forecast(0.02, (12.0, 20.0, 41.0), 0.0004),
+    advice="Check the winding of phase b. Stop the motor at the next opportunity.",
+    reasons=("shorted turns in phase b: 1.20 %", "the interval lies above the motor's limit of 0.50 %"),
+)
+
+DRIFTING = replace(
+    HEALTHY,
+    state=State.WATCH,
+    kind=Kind.UNCLEAR,
+    candidates=(Kind.VOLTAGE_CHANNEL, Kind.SHORTED_TURNS),
+    phase="c",
+    change=0.003,
+    change_ci95=(0.0, 0.008),
+    size=0.004,
+    since_ns=NOW_NS - NANOSECONDS_PER_DAY,
+    advice="Check the voltage transformer of phase c first.",
+    reasons=("something has changed",),
+)
+
+UNKNOWN = replace(HEALTHY, state=State.UNKNOWN, mu_f=None, mu_f_ci95=None, change=None, as_of_ns=None)
+
+
+def entry_of(condition: Condition) -> ConditionEntry:
+    """The row of a condition."""
+    low, high = condition.mu_f_ci95 or (None, None)
+    change_low, change_high = condition.change_ci95 or (None, None)
+    return ConditionEntry(
+        motor=condition.motor,
+        version=1,
+        state=condition.state,
+        kind=condition.kind,
+        phase=condition.phase,
+        mu_f=condition.mu_f,
+        mu_f_ci95_low=low,
+        mu_f_ci95_high=high,
+        change=condition.change,
+        change_ci95_low=change_low,
+        change_ci95_high=change_high,
+        since_ns=condition.since_ns,
+        as_of_ns=condition.as_of_ns,
+        document=condition.as_dict(),
+    )
+
+
+def tell(repository: Repository, condition: Condition, *, now_ns: int = NOW_NS) -> None:
+    """Have the database say this condition of its motor from each of the motor's records on.
+
+    It is folded as if an event had made it.
+    """
+    event = Event(now_ns, EventKind.MAINTENANCE, "new bearing")
+    kept = repository.add_event(condition.motor, event, by="ann", now_ns=now_ns)
+    fold = repository.begin_fold(condition.motor, 1000)
+    assert fold is not None
+    entry = entry_of(condition)
+    figures = {field.name: getattr(entry, field.name) for field in fields(ConditionFigures)}
+    points = [
+        ConditionPoint(recording_id=one.recording_id, time_ns=one.observation.time_ns, **figures)
+        for one in fold.observations
+    ]
+    change = ConditionChange(
+        motor=condition.motor, time_ns=now_ns, recording_id=None, event_id=kept.id, **figures
+    )
+    result = FoldResult(points, [change], [], tuple(fold.earlier), entry)
+    assert repository.finish_fold(fold, result, now_ns=now_ns)
