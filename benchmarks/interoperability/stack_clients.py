@@ -19,7 +19,7 @@ from open61850.mms import rcb as open_rcb
 
 from benchmarks.interoperability.peers import Result
 from ied_sim.profiles.profile import Profile, shipped
-from mms import FunctionalConstraint
+from mms import Client, FunctionalConstraint
 from testing.relays.simulated import IED, Simulated, scenario_of, simulated
 from testing.waiting import eventually
 
@@ -76,7 +76,7 @@ def _by_open61850(profile: Profile, served: Simulated) -> Iterator[Result]:
         open_rcb.disable(client, block)
         seen = len(report.entries)
         yield Result(profile.name, "open61850: reports", f"{seen} members", seen == members)
-        open_mms.operate(client, served.reference(str(profile.points.stop)), True)  # noqa: FBT003 (theirs)
+        open_mms.operate(client, served.reference(str(profile.points.stop)), ctl_val=True)
         yield Result(profile.name, "open61850: operate", "motor stopped", _is_stopped(profile, served))
 
 
@@ -147,7 +147,7 @@ async def _by_iec61850(profile: Profile, served: Simulated) -> list[Result]:
         control = client.create_control_object(
             served.reference(str(profile.points.start)), iec61850.ControlModel.DIRECT_NORMAL
         )
-        outcome = await control.operate(True)  # noqa: FBT003 (theirs)
+        outcome = await control.operate(value=True)
         runs = outcome.success and await asyncio.to_thread(_is_running, profile, served)
         found.append(
             Result(profile.name, "iec61850: operate", "motor started" if runs else "not started", runs)
@@ -207,7 +207,7 @@ def _comes_to(profile: Profile, served: Simulated, condition: Callable[[float], 
         )
 
 
-def _sha256_by_ours(client: object, name: str, size: int) -> str:
+def _sha256_by_ours(client: Client, name: str, size: int) -> str:
     content = io.BytesIO()
-    client.download(name, content, expected_size=size)  # type: ignore[attr-defined]
+    client.download(name, content, expected_size=size)
     return hashlib.sha256(content.getvalue()).hexdigest()

@@ -21,11 +21,11 @@ from service.api import (
     recordings,
     relays,
 )
-from service.api.arrivals import Arrivals
-from service.api.body_limits import BodyLimits, Route, document
 from service.api.context import ApiContext
 from service.api.host_guard import HostGuard
-from service.api.long_lists import LongLists
+from service.api.limits.arrivals import Arrivals
+from service.api.limits.body_limits import BodyLimits, Route, document
+from service.api.limits.long_lists import LongLists
 
 PREFIX = "/api/v1"
 DESCRIPTION = """Stator condition of every motor of the plant, from the protection relays it already has.

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
-from service.api.admission import Admission
+from service.api.limits.admission import Admission
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository

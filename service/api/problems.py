@@ -14,7 +14,6 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 from structlog.typing import FilteringBoundLogger
 
-from service.api.admission import BusyError
 from service.process.disk_space import is_disk_full
 from service.recording_store.store import RecordingStoreError
 from service.storage.errors import (
@@ -85,6 +84,13 @@ class ProblemError(Exception):
         self.detail = detail
         self.errors = errors
         super().__init__(detail)
+
+
+class BusyError(Exception):
+    """There was no turn within the time one may wait."""
+
+    def __init__(self, what: str, most: int) -> None:
+        super().__init__(f"{most} {what} are under way, and none came to its end in time")
 
 
 def problems(*statuses: int) -> dict[int | str, dict[str, object]]:

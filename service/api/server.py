@@ -12,8 +12,8 @@ import uvicorn
 from starlette.types import ASGIApp
 from structlog.typing import FilteringBoundLogger
 
-from service.api.connection_guard import ConnectionGuard
-from service.api.connections import EXTRA, ConnectionLimits, LimitedConnection, OpenConnections
+from service.api.limits.connection_guard import ConnectionGuard
+from service.api.limits.connections import EXTRA, ConnectionLimits, LimitedConnection, OpenConnections
 from service.configuration.settings import Settings
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)

@@ -34,7 +34,7 @@ from service.storage.repository.folders import discard_folder, lock_folder
 from service.storage.repository.observations import forget_observation
 from service.storage.repository.recording_requests import KIND, fail_row, fail_rows
 from service.storage.repository.recordings import stored_before
-from service.storage.repository.remote_records import RECORDS_A_QUERY, listed_in, remote_link
+from service.storage.repository.remote_records import of_records, remote_link
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import DeletedBy, JobState, RecordingState
 
@@ -82,15 +82,11 @@ class DeletionRows(Sessions):
         query = select(DeletedRemoteRecordRow, DeletionRow).join(
             DeletionRow, DeletionRow.id == DeletedRemoteRecordRow.deletion_id
         )
-        asked = list(remotes)
-        deleted: dict[RemoteRecord, Deletion] = {}
         with self._read() as session:
-            for first in range(0, len(asked), RECORDS_A_QUERY):
-                some = asked[first : first + RECORDS_A_QUERY]
-                of_these = query.where(listed_in(DeletedRemoteRecordRow, relay, some))
-                for row, deletion in session.execute(of_these):
-                    deleted[record_of(RemoteRecord, row)] = record_of(Deletion, deletion)
-        return deleted
+            return {
+                record_of(RemoteRecord, row): record_of(Deletion, deletion)
+                for row, deletion in of_records(session, query, DeletedRemoteRecordRow, relay, remotes)
+            }
 
     def keep_deleted(
         self,

@@ -1,10 +1,11 @@
 """Records that relays list: announced the first time, and linked to the recordings that they become."""
 
 import uuid
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import astuple
+from typing import TypeVar
 
-from sqlalchemy import ColumnElement, and_, select, tuple_
+from sqlalchemy import ColumnElement, Select, and_, select, tuple_
 from sqlalchemy.orm import Session
 
 from service.storage.models import (
@@ -21,6 +22,9 @@ from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import RecordingSource, RecordingState
 from service.storage.texts import storable
 
+Listed = TypeVar("Listed")
+Held = TypeVar("Held")
+
 RECORDS_A_QUERY = 500
 """Databases limit how many values a query may hold."""
 
@@ -36,15 +40,11 @@ class RemoteRecordRows(Sessions):
         query = select(RemoteRecordRow, RecordingRow).join(
             RecordingRow, RecordingRow.id == RemoteRecordRow.recording_id
         )
-        asked = list(remotes)
-        known: dict[RemoteRecord, RecordingEntry] = {}
         with self._read() as session:
-            for first in range(0, len(asked), RECORDS_A_QUERY):
-                some = asked[first : first + RECORDS_A_QUERY]
-                of_these = query.where(listed_in(RemoteRecordRow, relay, some))
-                for row, held in session.execute(of_these):
-                    known[record_of(RemoteRecord, row)] = record_of(RecordingEntry, held)
-        return known
+            return {
+                record_of(RemoteRecord, row): record_of(RecordingEntry, held)
+                for row, held in of_records(session, query, RemoteRecordRow, relay, remotes)
+            }
 
     def announced_remote_records(self, relay: str) -> frozenset[RemoteRecord]:
         """Return a relay's records that were seen and are neither stored nor refused."""
@@ -126,7 +126,21 @@ class RemoteRecordRows(Sessions):
             return record_of(RecordingEntry, row)
 
 
-def listed_in(
+def of_records(
+    session: Session,
+    query: Select[Listed, Held],
+    table: type[RemoteRecordRow | DeletedRemoteRecordRow],
+    relay: str,
+    remotes: Collection[RemoteRecord],
+) -> Iterator[tuple[Listed, Held]]:
+    """Yield what the query finds where a row of the table is one of these records of the relay."""
+    asked = list(remotes)
+    for first in range(0, len(asked), RECORDS_A_QUERY):
+        some = asked[first : first + RECORDS_A_QUERY]
+        yield from session.execute(query.where(_listed_in(table, relay, some)))
+
+
+def _listed_in(
     table: type[RemoteRecordRow | DeletedRemoteRecordRow], relay: str, remotes: Collection[RemoteRecord]
 ) -> ColumnElement[bool]:
     """Return the condition that a row of the table is one of these records of the relay."""

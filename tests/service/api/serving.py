@@ -10,7 +10,7 @@ import httpx
 from fastapi import FastAPI
 from starlette.types import ASGIApp
 
-from service.api.connections import ConnectionLimits
+from service.api.limits.connections import ConnectionLimits
 from service.api.server import ApiServer, connection_limits
 
 

@@ -9,7 +9,8 @@ from starlette.types import Message, Receive, Scope, Send
 from core.recordings import Channel, Quantity, Recording
 from core.recordings.envelope import envelope_of
 from service.api import ApiContext, create_app
-from service.api.admission import Admission, BusyError
+from service.api.limits.admission import Admission
+from service.api.problems import BusyError
 from service.api.waveform import Waveform, intervals_within, waveform_json
 from service.storage import Repository
 from testing.service.plants import NOW_NS

@@ -8,9 +8,9 @@ import structlog
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.typing import FilteringBoundLogger
 
-from service.api.admission import Admission, BusyError
+from service.api.limits.admission import Admission
 from service.api.pages import DEFAULT_LIMIT
-from service.api.problems import busy_response
+from service.api.problems import BusyError, busy_response
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 

@@ -14,9 +14,8 @@ from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.api.admission import BusyError
-from service.api.arrivals import Arrivals
-from service.api.problems import busy_response, problem_response
+from service.api.limits.arrivals import Arrivals
+from service.api.problems import BusyError, busy_response, problem_response
 
 MAX_JSON_BYTES = 8 * 1024
 """Twice the largest document that a route takes, a baseline of a hundred recordings."""

@@ -8,7 +8,7 @@ from http import HTTPStatus
 from starlette.exceptions import HTTPException
 from starlette.types import Message, Receive
 
-from service.api.admission import Admission
+from service.api.limits.admission import Admission
 
 ARRIVING_AT_ONCE = 16
 """Each may fill the temporary folder with as many bytes as an upload may have."""

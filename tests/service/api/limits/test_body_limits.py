@@ -10,7 +10,7 @@ import httpx
 import pytest
 
 from service.api import ApiContext
-from service.api.body_limits import MAX_JSON_BYTES
+from service.api.limits.body_limits import MAX_JSON_BYTES
 from service.api.problems import MAX_ERRORS
 from service.storage import Repository
 from testing.service.plants import NOW_NS

@@ -21,7 +21,7 @@ from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route
 
-from service.api.connections import ConnectionLimits
+from service.api.limits.connections import ConnectionLimits
 from testing.waiting import eventually
 from tests.service.api.serving import listening
 
@@ -251,10 +251,10 @@ def test_what_is_no_http_is_one_line_a_minute(
 
 SERVER = """
 import resource, socket
-from service.api.connections import ConnectionLimits
+from service.api.limits.connections import ConnectionLimits
 from service.api.server import ApiServer
 from service.process.logs import configure_logging
-from tests.service.api.test_connections import Application
+from tests.service.api.limits.test_connections import Application
 
 configure_logging("server")
 resource.setrlimit(resource.RLIMIT_NOFILE, (60, 60))

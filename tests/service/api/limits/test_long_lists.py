@@ -9,7 +9,7 @@ from starlette.responses import Response
 from starlette.types import Message, Scope
 
 from service.api import ApiContext, create_app
-from service.api.long_lists import MADE_AT_ONCE, PIECE_BYTES, LongLists
+from service.api.limits.long_lists import MADE_AT_ONCE, PIECE_BYTES, LongLists
 from tests.service.api.serving import serving
 
 LONG = b"x" * (3 * PIECE_BYTES + 1)
@@ -42,8 +42,8 @@ def asked(
 def test_more_long_lists_than_the_service_makes_are_to_be_asked_for_again(
     context: ApiContext, monkeypatch: pytest.MonkeyPatch, limit: str
 ) -> None:
-    monkeypatch.setattr("service.api.long_lists.MADE_AT_ONCE", 0)
-    monkeypatch.setattr("service.api.long_lists.WAIT_S", 0.01)
+    monkeypatch.setattr("service.api.limits.long_lists.MADE_AT_ONCE", 0)
+    monkeypatch.setattr("service.api.limits.long_lists.WAIT_S", 0.01)
     with serving(create_app(context)) as client:
         refused = client.get(f"/api/v1/motors?limit={limit}")
         assert refused.status_code == 503
@@ -99,7 +99,7 @@ def test_a_list_is_sent_in_pieces_and_others_are_made_meanwhile() -> None:
 
 
 def test_a_client_that_does_not_take_its_list_loses_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("service.api.long_lists.SENDING_LIMIT_S", 0.02)
+    monkeypatch.setattr("service.api.limits.long_lists.SENDING_LIMIT_S", 0.02)
     sent: list[str] = []
 
     async def stuck(message: Message) -> None:

@@ -11,8 +11,8 @@ import httpx
 import pytest
 
 from service.api import ApiContext, create_app
-from service.api.admission import Admission
-from service.api.arrivals import ARRIVING_AT_ONCE
+from service.api.limits.admission import Admission
+from service.api.limits.arrivals import ARRIVING_AT_ONCE
 from service.recording_store.store import RecordingStore, StoredRecording
 from service.storage import Repository
 from service.storage.errors import FolderGoneError
@@ -45,7 +45,7 @@ def begun(client: httpx.Client) -> Iterator[socket.socket]:
 def test_uploads_that_dribble_do_not_keep_others_out(
     context: ApiContext, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.api.arrivals.CROWDED_GRACE_S", 0.2)
+    monkeypatch.setattr("service.api.limits.arrivals.CROWDED_GRACE_S", 0.2)
     with serving(create_app(context)) as client, ExitStack() as held:
         for _ in range(2 * ARRIVING_AT_ONCE):
             held.enter_context(begun(client))
@@ -75,8 +75,8 @@ def test_an_upload_that_is_too_slow_on_average_is_given_up(
 def test_uploads_that_arrive_wait_for_one_another(
     context: ApiContext, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.api.arrivals.ARRIVAL_WAIT_S", 0.2)
-    monkeypatch.setattr("service.api.arrivals.CROWDED_GRACE_S", 60.0)
+    monkeypatch.setattr("service.api.limits.arrivals.ARRIVAL_WAIT_S", 0.2)
+    monkeypatch.setattr("service.api.limits.arrivals.CROWDED_GRACE_S", 60.0)
     with serving(create_app(context)) as client:
         with ExitStack() as held:
             for _ in range(ARRIVING_AT_ONCE):

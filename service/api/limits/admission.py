@@ -4,12 +4,7 @@ import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-
-class BusyError(Exception):
-    """There was no turn within the time one may wait."""
-
-    def __init__(self, what: str, most: int) -> None:
-        super().__init__(f"{most} {what} are under way, and none came to its end in time")
+from service.api.problems import BusyError
 
 
 class Admission:

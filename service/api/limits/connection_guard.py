@@ -4,7 +4,7 @@ from http import HTTPStatus
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
-from service.api.connections import OVERLOADED, OpenConnections
+from service.api.limits.connections import OVERLOADED, OpenConnections
 from service.api.problems import RETRY_AFTER_S, problem_response
 
 ALWAYS_ANSWERED = "/healthz"
