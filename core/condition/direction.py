@@ -1,23 +1,36 @@
 """A motor's records in one direction of rotation: its standing errors, and what changes."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any, cast
 
 import numpy as np
 
+from core.condition.alarm import Alarm, Weighing, confirm, turns_level, weigh
 from core.condition.assessment import Assessment, Level, Reference
 from core.condition.bus import Neighbour, StandingEstimate, common_asymmetry
-from core.condition.differences import BusDifferences, Pair
+from core.condition.change import change_of
 from core.condition.events import Event, EventKind
-from core.condition.kalman import TEMPERATURE, WANDER_EC, learn_noise, predict, update
+from core.condition.folding import fold_first, fold_record, restart
+from core.condition.header import Header
+from core.condition.hypotheses import Hypotheses, hypotheses_of
+from core.condition.kalman import TEMPERATURE, WANDER_EC
 from core.condition.measurement import Measurement, measure, negative_impedance
-from core.condition.observation import Observation, VoltageChannels
+from core.condition.observation import Observation
 from core.condition.prior import IMPEDANCE, prior_of
 from core.condition.signatures import terminal_turn
-from core.condition.standing import STANDING_SCORE, standing_of, without_prior
+from core.condition.standing import STANDING_SCORE, Standing, standing_of, without_prior
 from core.condition.start import NOISE_STEPS, in_order, starting_noise
-from core.condition.state import FILTER, START, FilterState
+from core.condition.state import (
+    CANDIDATE,
+    CANDIDATES,
+    FILTER,
+    RECENT,
+    RECENT_RECORD,
+    SIDE,
+    SIDES,
+    START,
+    FilterState,
+)
 from core.machines.base import Array
 from core.machines.parameters import Motor
 from core.machines.winding_frame import terminal_winding
@@ -25,36 +38,9 @@ from core.signals.sequence import PhaseSequence
 
 UNCONFIRMED = 30.0
 """Chi-square of 2 above which a record has to be confirmed by another: one in three million."""
+CLEARED = 3.0
+"""Log of the detector's statistic below which a change has gone again."""
 NANOSECONDS = 1e-9
-
-
-@dataclass(slots=True)
-class Header:
-    """What a state tells in words and whole numbers.
-
-    Parameters
-    ----------
-    recorder : str
-        What measured the latest record.
-    voltage_channels : VoltageChannels
-        Which voltages it measured.
-    as_of_ns, since_ns : int
-        Time of the latest record, and of the first since the reference began, UTC [ns].
-    accepted : bool
-        Whether a person has declared the standing asymmetry healthy.
-    bus : BusDifferences
-        Differences from the bus's other motors.
-    start : list of Measurement
-        The first records of a reference, until there are eight.
-    """
-
-    recorder: str = ""
-    voltage_channels: VoltageChannels = VoltageChannels.PHASE
-    as_of_ns: int = 0
-    since_ns: int = 0
-    accepted: bool = False
-    bus: BusDifferences = field(default_factory=BusDifferences)
-    start: list[Measurement] = field(default_factory=list)
 
 
 class Direction:
@@ -73,6 +59,10 @@ class Direction:
         self._header = Header()
         self._filter = np.zeros(1, FILTER).view(np.recarray)
         self._state = cast(FilterState, self._filter[0])
+        self._bank: Any = np.zeros(CANDIDATES, CANDIDATE).view(np.recarray)
+        self._sides: Any = np.zeros(SIDES, SIDE).view(np.recarray)
+        self._recent: Any = np.zeros(RECENT, RECENT_RECORD).view(np.recarray)
+        self._see(motor)
         self._prior = prior_of(motor)
         self._restart(keep_impedance=False)
 
@@ -98,27 +88,32 @@ class Direction:
         ValueError
             If a number is missing or infinite, or the motor was not running.
         """
-        header = self._header
+        header, state = self._header, self._state
         elapsed_s = max(observation.time_ns - header.as_of_ns, 0) * NANOSECONDS if header.recorder else 0.0
         record = measure(observation, motor, self._prior.scale_ohm, elapsed_s)
         moved, _ = header.bus.fold(record.v2, self._sequence, neighbours)
         if moved is not None:
             record = record._replace(bus=moved, has_bus=True)
-        measures = (observation.recorder, observation.voltage_channels)
-        if header.recorder and measures != (header.recorder, header.voltage_channels):
+        if header.recorder and header.measured_by(observation):
             self._restart(keep_impedance=True)
-        header.recorder, header.voltage_channels = measures
+        header.recorder, header.voltage_channels = observation.recorder, observation.voltage_channels
         header.as_of_ns = observation.time_ns
-        state = self._state
         if state.records < START:
             if not header.start:
                 header.since_ns = observation.time_ns
             self._begin(record)
-        else:
-            predict(state, record.elapsed_s)
-            update(state, record.y, record.j1, record.j2)
-            learn_noise(state)
-            state.records += 1.0
+            return
+        alarm = header.alarm
+        hypotheses = self._see(motor)
+        fold_record(
+            state, self._bank, self._sides, self._recent, hypotheses, self._recorder,
+            record, observation.time_ns, alarm is not None,
+        )  # fmt: skip
+        if alarm is None and state.statistic >= state.threshold:
+            alarm = header.alarm = Alarm(observation.time_ns)
+            header.standing = self._standing(motor, ())
+        if alarm is not None:
+            self._follow_up(alarm)
 
     def apply(self, event: Event, motor: Motor, edited: Motor) -> None:
         """Let something be known that happened between two records.
@@ -131,10 +126,7 @@ class Direction:
             The motor before and after it.
         """
         if event.kind is EventKind.PARAMETERS_EDITED:
-            f = motor.nameplate.rated_frequency_Hz
-            shift = negative_impedance(motor.parameters, f) - negative_impedance(edited.parameters, f)
-            self._state.x[4] += shift.real / self._prior.scale_ohm
-            self._state.x[5] += shift.imag / self._prior.scale_ohm
+            self._move_impedance(motor, edited)
         elif event.kind in (EventKind.RECORDER_CHANGED, EventKind.MAINTENANCE):
             self._restart(keep_impedance=True)
         elif event.kind is EventKind.REFERENCE_RESTARTED:
@@ -157,18 +149,19 @@ class Direction:
             What is seen.
         """
         state, header = self._state, self._header
-        own = self.standing_estimate(motor)
-        common = common_asymmetry(own, bus)
-        if common is None:
-            estimate, covariance = without_prior(state.x[:2], state.P[:2, :2], self._prior_of_E())
-            standing = standing_of(motor, estimate, covariance)
-        else:
-            turn = terminal_turn(motor)
-            standing = standing_of(
-                motor, _turned(own.asymmetry - common[0], turn), own.covariance + common[1]
-            )
-        records = int(state.records)
-        winding = terminal_winding(standing.winding, self._sequence, motor.nameplate.connection)
+        standing = header.standing or self._standing(motor, bus)
+        records, alarm = int(state.records), header.alarm
+        connection = motor.nameplate.connection
+        winding = terminal_winding(standing.winding, self._sequence, connection)
+        change, levels = None, ()
+        if alarm is not None:
+            weighing = self._weighing()
+            level = turns_level(state, self._bank, self._recent, self._hypotheses, weighing)
+            change = change_of(
+                alarm, weighing, level, self._hypotheses, self._bank, connection, self._sequence,
+                header.voltage_channels,
+            )  # fmt: skip
+            levels = level.levels
         return Assessment(
             as_of_ns=header.as_of_ns,
             reference=Reference(
@@ -178,12 +171,13 @@ class Direction:
                 detectable=None,
                 standing=Level(standing.level, standing.deviation, winding, standing.path_ratio),
                 standing_score=standing.score,
-                from_bus=common is not None,
+                from_bus=standing.from_bus,
             ),
-            change=None,
+            change=change,
             standing_fault=standing.score >= STANDING_SCORE and not header.accepted,
-            statistic=0.0,
-            threshold=16.0,
+            statistic=float(state.statistic),
+            threshold=float(state.threshold),
+            levels=levels,
             unconfirmed=records > START and bool(state.surprise > UNCONFIRMED),
         )
 
@@ -200,18 +194,15 @@ class Direction:
         StandingEstimate
             Asymmetry at the terminals.
         """
-        state = self._state
-        prior = self._prior_of_E()
+        state, prior = self._state, self._prior_of_E()
         estimate, covariance = without_prior(state.x[:2], state.P[:2, :2], prior)
         own = np.eye(2) * self._prior.own_voltage**2
         difference, others = self._header.bus.mean()
-        asymmetry = _turned(estimate, 1.0 / terminal_turn(motor)) - np.array(
-            [difference.real, difference.imag]
-        )
+        asymmetry = _turned(estimate, 1.0 / terminal_turn(motor))
         return StandingEstimate(
             motor=motor.name,
             sequence=self._sequence,
-            asymmetry=asymmetry,
+            asymmetry=asymmetry - np.array([difference.real, difference.imag]),
             covariance=covariance - prior + own,
             channel_variance=self._prior.voltage**2 - self._prior.own_voltage**2,
             others=others,
@@ -227,19 +218,9 @@ class Direction:
         body : bytes
             Numbers.
         """
-        header = self._header
-        words = {
-            "recorder": header.recorder,
-            "voltage_channels": str(header.voltage_channels),
-            "as_of_ns": header.as_of_ns,
-            "since_ns": header.since_ns,
-            "accepted": header.accepted,
-            "scale_ohm": self._prior.scale_ohm,
-            "moved": [header.bus.moved.real, header.bus.moved.imag],
-            "pairs": {n: [p.mean.real, p.mean.imag, p.records] for n, p in header.bus.pairs.items()},
-            "start": [_as_list(record) for record in header.start],
-        }
-        return words, self._filter.tobytes()
+        arrays = (self._filter, self._sides, self._bank, self._recent)
+        words = self._header.as_dict() | {"scale_ohm": self._prior.scale_ohm}
+        return words, b"".join(array.tobytes() for array in arrays)
 
     @classmethod
     def unpacked(
@@ -269,37 +250,70 @@ class Direction:
             If the body is of another length.
         """
         direction = cls(motor, sequence)
-        if len(body) != FILTER.itemsize:
+        arrays = (direction._filter, direction._sides, direction._bank, direction._recent)
+        if len(body) != sum(array.nbytes for array in arrays):
             raise ValueError("the saved state has another layout: fold the records again")
-        direction._filter[0] = np.frombuffer(body, FILTER)[0]
-        direction._header = Header(
-            recorder=words["recorder"],
-            voltage_channels=VoltageChannels(words["voltage_channels"]),
-            as_of_ns=words["as_of_ns"],
-            since_ns=words["since_ns"],
-            accepted=words["accepted"],
-            bus=BusDifferences(
-                {n: Pair(complex(re, im), count) for n, (re, im, count) in words["pairs"].items()},
-                complex(*words["moved"]),
-            ),
-            start=[_from_list(values) for values in words["start"]],
-        )
+        start = 0
+        for array in arrays:
+            array[:] = np.frombuffer(body, array.dtype, count=array.size, offset=start)
+            start += array.nbytes
+        direction._header = Header.from_dict(words)
         return direction
 
-    def _restart(self, keep_impedance: bool) -> None:
+    def _see(self, motor: Motor) -> Hypotheses:
+        """Return what changes of the motor look like."""
+        seen = (motor, self._header.voltage_channels)
+        if getattr(self, "_seen", None) != seen:
+            prior = prior_of(motor)
+            self._seen = seen
+            self._hypotheses = hypotheses_of(*seen)
+            self._recorder = np.sqrt(2.0) * np.array([prior.voltage] * 2 + [prior.current] * 2)
+        return self._hypotheses
+
+    def _weighing(self) -> Weighing:
+        return weigh(self._state, self._bank, self._hypotheses, self._recorder)
+
+    def _follow_up(self, alarm: Alarm) -> None:
+        confirm(alarm, self._weighing())
+        if self._state.statistic < CLEARED:
+            self._header.alarm = self._header.standing = None
+            self._state.candidates = 0.0
+
+    def _standing(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Standing:
+        own = self.standing_estimate(motor)
+        common = common_asymmetry(own, bus)
+        if common is None:
+            state = self._state
+            return standing_of(
+                motor, *without_prior(state.x[:2], state.P[:2, :2], self._prior_of_E()), from_bus=False
+            )
+        asymmetry = _turned(own.asymmetry - common[0], terminal_turn(motor))
+        return standing_of(motor, asymmetry, own.covariance + common[1], from_bus=True)
+
+    def _move_impedance(self, motor: Motor, edited: Motor) -> None:
+        f = motor.nameplate.rated_frequency_Hz
+        shift = negative_impedance(motor.parameters, f) - negative_impedance(edited.parameters, f)
+        shift /= self._prior.scale_ohm
+        state, start = self._state, self._header.start
+        for x in (state.x, state.x0):
+            x[4] += shift.real
+            x[5] += shift.imag
+        start[:] = [record._replace(y=record.y + shift * record.j2) for record in start]
+
+    def _restart(self, *, keep_impedance: bool) -> None:
         """Let the reference be learnt anew."""
-        state, prior = self._state, self._prior
+        state, prior, header = self._state, self._prior, self._header
         errors = np.array([prior.voltage] * 2 + [prior.current] * 2 + [IMPEDANCE] * 2 + [TEMPERATURE]) ** 2
         x, P = np.zeros(7), np.diag(errors)
         if keep_impedance:
             x[4:] = state.x[4:]
             P[4:, 4:] = state.P[4:, 4:]
-        state.x[:], state.P[:] = x, P
         state.x0[:], state.P0[:] = x, P
         state.current_deviation = prior.current
-        state.records = 0.0
-        self._header.start.clear()
-        self._header.accepted = False
+        restart(state, self._sides)
+        header.start.clear()
+        header.accepted = False
+        header.alarm = header.standing = None
 
     def _begin(self, record: Measurement) -> None:
         """Fold the first records in their order of ordinariness, with the noise that makes them likeliest."""
@@ -314,13 +328,11 @@ class Direction:
 
     def _fold_start(self, records: Sequence[Measurement], s2: float) -> float:
         state = self._state
-        state.x[:], state.P[:] = state.x0, state.P0
-        state.records, state.s2 = 0.0, s2
+        restart(state, self._sides)
+        state.s2 = s2
         total = 0.0
         for record in records:
-            predict(state, record.elapsed_s)
-            update(state, record.y, record.j1, record.j2)
-            state.records += 1.0
+            fold_first(state, self._sides, record)
             total += state.log_likelihood
         return total
 
@@ -333,18 +345,3 @@ def _turned(vector: Array, factor: complex) -> Array:
     """Multiply a complex number given by its parts."""
     value = complex(vector[0], vector[1]) * factor
     return np.array([value.real, value.imag])
-
-
-def _as_list(record: Measurement) -> list[float | bool]:
-    values: list[float | bool] = []
-    for value in record:
-        values.extend((value.real, value.imag) if isinstance(value, complex) else (value,))
-    return values
-
-
-def _from_list(values: Sequence[float]) -> Measurement:
-    elapsed_s, *parts = values
-    complexes = [complex(parts[2 * k], parts[2 * k + 1]) for k in range(8)]
-    scatter, has_v0, has_bus = parts[16:]
-    y, j1, j2, v2, v0, i0, i2, bus = complexes
-    return Measurement(elapsed_s, y, j1, j2, v2, v0, i0, i2, bus, scatter, bool(has_v0), bool(has_bus))

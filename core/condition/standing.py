@@ -29,6 +29,8 @@ class Standing:
         Resistance of the path over that of the shorted turns.
     score : float
         Standard deviations by which it lies above what a sound motor with such sensors shows.
+    from_bus : bool
+        Whether other motors of the bus took part in judging it.
     """
 
     level: float
@@ -36,9 +38,10 @@ class Standing:
     winding: int
     path_ratio: float
     score: float
+    from_bus: bool
 
 
-def standing_of(motor: Motor, asymmetry: Array, covariance: Array) -> Standing:
+def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: bool) -> Standing:
     """Judge a standing asymmetry.
 
     Parameters
@@ -49,6 +52,8 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array) -> Standing:
         Real and imaginary part of the asymmetry, estimated without a prior.
     covariance : ndarray, shape (2, 2)
         Covariance of what it would be in a sound motor, its estimation error included.
+    from_bus : bool
+        Whether other motors of the bus took part in it.
 
     Returns
     -------
@@ -67,6 +72,7 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array) -> Standing:
         winding=best // len(PATHS),
         path_ratio=PATHS[best % len(PATHS)],
         score=float(score[best]),
+        from_bus=from_bus,
     )
 
 

@@ -1,0 +1,236 @@
+"""A change that the detector has raised: naming it, and how large it is."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import sqrt
+from typing import Any, Final
+
+import numpy as np
+
+from core.condition.evidence import DIRECTION, along
+from core.condition.hypotheses import CAUSES, Cause, Hypotheses
+from core.condition.kinds import Kind
+from core.condition.levels import level_now, levels_since
+from core.condition.naming import name, probabilities
+from core.condition.signatures import PATHS
+from core.condition.state import RECENT
+from core.machines.base import Array
+
+CERTAIN: Final = 0.98
+"""Posterior probability at which a cause is named."""
+RUNNING: Final = 3
+"""Records in a row that have to agree on it."""
+WINDOW: Final = 64
+"""Records after the alarm within which a cause is named."""
+
+KINDS: Final[Mapping[Cause, Kind]] = {
+    Cause.SHORTED_TURNS: Kind.SHORTED_TURNS,
+    Cause.VOLTAGE_CHANNEL: Kind.VOLTAGE_CHANNEL,
+    Cause.CURRENT_CHANNEL: Kind.CURRENT_CHANNEL,
+    Cause.JOINT: Kind.CONNECTION,
+    Cause.IMPEDANCE: Kind.PARAMETERS,
+}
+"""What each cause is told as; another recorder changes voltage and current channels."""
+
+Names = tuple[Kind, ...]
+
+
+@dataclass(slots=True)
+class Alarm:
+    """A change that the detector has raised.
+
+    Parameters
+    ----------
+    detected_ns : int
+        Time of the record with which it was raised, UTC [ns].
+    records : int
+        Number of records since then.
+    named : tuple of Kind
+        Kinds that are certain.
+    pending : tuple of Kind
+        Kinds that the latest records are sure of.
+    running : int
+        Number of such records in a row.
+    """
+
+    detected_ns: int
+    records: int = 0
+    named: Names = ()
+    pending: Names = ()
+    running: int = 0
+
+
+@dataclass(slots=True)
+class Weighing:
+    """What may have changed, as weighed after one record.
+
+    Parameters
+    ----------
+    probabilities : ndarray, shape (6,)
+        Posterior probability by `Cause`.
+    logs : ndarray, shape (places + 2,)
+        Log of evidence times prior of every place.
+    best : ndarray, shape (places + 2, 5)
+        Onset, whether it drifts, size, its deviation and log of evidence that fit every place best.
+    """
+
+    probabilities: Array = field(default_factory=lambda: np.zeros(CAUSES))
+    logs: Array = field(default_factory=lambda: np.zeros(0))
+    best: Array = field(default_factory=lambda: np.zeros((0, 5)))
+
+
+def weigh(state: Any, bank: Any, hypotheses: Hypotheses, recorder: Array) -> Weighing:
+    """Weigh all causes of a change.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    bank : array of Candidate
+        Candidates.
+    hypotheses : array of Hypothesis
+        All places of all causes.
+    recorder : ndarray, shape (4,)
+        Standard deviations of the jumps that another recorder makes.
+
+    Returns
+    -------
+    Weighing
+        Their probabilities.
+    """
+    places = len(hypotheses) + 2
+    found = Weighing(logs=np.zeros(places), best=np.zeros((places, 5)))
+    name(state, bank, hypotheses, recorder, found.logs, found.best)
+    probabilities(hypotheses, found.logs, found.probabilities)
+    return found
+
+
+def confirm(alarm: Alarm, weighing: Weighing) -> None:
+    """Name the kind once several records in a row are sure of it.
+
+    Parameters
+    ----------
+    alarm : Alarm
+        The alarm.
+    weighing : Weighing
+        Weights after the latest record.
+    """
+    alarm.records += 1
+    sure = _certain(weighing.probabilities)
+    alarm.running = alarm.running + 1 if sure == alarm.pending else 1
+    alarm.pending = sure
+    if sure and alarm.running >= RUNNING and alarm.records <= WINDOW:
+        alarm.named = sure
+
+
+def by_kind(probabilities: Array) -> dict[Kind, float]:
+    """Return the probability of each kind.
+
+    Parameters
+    ----------
+    probabilities : ndarray, shape (6,)
+        Posterior probability by `Cause`.
+
+    Returns
+    -------
+    dict of Kind to float
+        Probabilities; they sum to one.
+    """
+    found = {kind: float(probabilities[cause]) for cause, kind in KINDS.items()}
+    half = 0.5 * float(probabilities[Cause.RECORDER])
+    found[Kind.VOLTAGE_CHANNEL] += half
+    found[Kind.CURRENT_CHANNEL] += half
+    return found
+
+
+def _certain(p: Array) -> Names:
+    for cause, kind in KINDS.items():
+        if p[cause] >= CERTAIN:
+            return (kind,)
+    if p[Cause.SHORTED_TURNS] + p[Cause.JOINT] >= CERTAIN:
+        return (Kind.SHORTED_TURNS, Kind.CONNECTION)
+    if p[Cause.VOLTAGE_CHANNEL] + p[Cause.CURRENT_CHANNEL] + p[Cause.RECORDER] >= CERTAIN:
+        return (Kind.VOLTAGE_CHANNEL, Kind.CURRENT_CHANNEL)
+    return ()
+
+
+@dataclass(frozen=True, slots=True)
+class TurnsLevel:
+    """Change of the fault level if the change is shorted turns.
+
+    Parameters
+    ----------
+    value, deviation : float
+        Level now and its standard deviation from all causes.
+    winding : int
+        Winding of the positive-sequence frame.
+    path_ratio : float
+        Resistance of the path over that of the shorted turns.
+    onset_ns : int
+        Time of the first record that likeliest shows it, UTC [ns].
+    levels : tuple of tuple of int and float
+        Time [ns] and level of each record since then, or of means of several.
+    """
+
+    value: float
+    deviation: float
+    winding: int
+    path_ratio: float
+    onset_ns: int
+    levels: tuple[tuple[int, float], ...]
+
+
+def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weighing: Weighing) -> TurnsLevel:
+    """Return the change of the fault level, should the change be shorted turns.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    bank : array of Candidate
+        Candidates.
+    recent : array of Recent
+        Latest records.
+    hypotheses : array of Hypothesis
+        All places of all causes.
+    weighing : Weighing
+        Weights after the latest record.
+
+    Returns
+    -------
+    TurnsLevel
+        The level, averaged over what the path may be.
+    """
+    count = 3 * len(PATHS)
+    logs = weighing.logs[:count].reshape(3, len(PATHS))
+    winding = int(np.argmax(np.logaddexp.reduce(logs, axis=1)))
+    likeliest = int(np.argmax(logs[winding]))
+    shares = np.exp(logs[winding] - np.max(logs[winding]))
+    shares /= shares.sum()
+    at = winding * len(PATHS) + likeliest
+    one, size = bank[int(weighing.best[at, 0])], weighing.best[at, 2]
+    drifts = int(weighing.best[at, 1])
+    u = complex(hypotheses[at].u)
+    # What the filter has taken up of the change comes off, so that the state is that of before it.
+    column = 6 if drifts else 0
+    jump = size * np.array([u.real, u.imag])
+    reference = np.array(state.x) - np.array(one.f)[:, column : column + 2] @ jump
+    values, spreads = [], []
+    told: tuple[tuple[int, float], ...] = ()
+    table, out = np.zeros((RECENT, 3)), np.zeros(5)
+    for p in range(len(PATHS)):
+        signature = complex(hypotheses[winding * len(PATHS) + p].u)
+        first = levels_since(state, recent, reference, signature, one.time_ns, table)
+        taken = int(state.recent) - first
+        value, wandering = level_now(table[:taken])
+        along(one, 0, False, signature, out)
+        a, b, c = out[0], out[1], out[2]
+        information = a - b * b / (c + 1.0 / max((DIRECTION * value) ** 2, 1e-12))
+        values.append(value)
+        spreads.append(wandering + 1.0 / max(information, 1e-9))
+        if p == likeliest:
+            times = [int(recent[first + i].time_ns) for i in range(taken)]
+            told = tuple(zip(times, table[:taken, 0].tolist(), strict=True))
+    mean = float(shares @ values)
+    variance = float(shares @ (np.array(spreads) + (np.array(values) - mean) ** 2))
+    return TurnsLevel(mean, sqrt(variance), winding, PATHS[likeliest], int(one.time_ns), told)
