@@ -223,7 +223,7 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
         first = levels_since(state, recent, reference, signature, one.time_ns, table)
         taken = int(state.recent) - first
         value, wandering = level_now(table[:taken])
-        along(one, 0, False, signature, out)
+        along(one, 0, ramp=False, u=signature, out=out)
         a, b, c = out[0], out[1], out[2]
         information = a - b * b / (c + 1.0 / max((DIRECTION * value) ** 2, 1e-12))
         values.append(value)

@@ -82,20 +82,10 @@ def fold_candidates(state: FilterState, bank: list[Candidate], sides: list[SideS
     for i in range(int(state.candidates)):
         one = bank[i]
         ramp = (state.records - one.onset + 1.0) / RAMP_LENGTH
-        for r in range(2):
-            for c in range(6):
-                J[r, c] = H[r, c]
-            for c in range(4):
-                J[r, 6 + c] = ramp * H[r, c]
         f = one.f
         for c in range(COLUMNS):
             f[STATES - 1, c] *= rho
-        for r in range(2):
-            for c in range(COLUMNS):
-                total = J[r, c]
-                for k in range(STATES):
-                    total -= H[r, k] * f[k, c]
-                G[r, c] = total
+        _seen(H, f, ramp, J, G)
         for c in range(COLUMNS):
             W[0, c] = Si[0, 0] * G[0, c] + Si[0, 1] * G[1, c]
             W[1, c] = Si[1, 0] * G[0, c] + Si[1, 1] * G[1, c]
@@ -109,6 +99,21 @@ def fold_candidates(state: FilterState, bank: list[Candidate], sides: list[SideS
         for s in range(SIDES):
             if sides[s].S > 0.0:
                 _fold_side_candidate(one, s, sides[s], ramp)
+
+
+@compiled
+def _seen(H: Array, f: Array, ramp: float, J: Array, G: Array) -> None:
+    """Compute G = J - H f."""
+    for r in range(2):
+        for c in range(6):
+            J[r, c] = H[r, c]
+        for c in range(4):
+            J[r, 6 + c] = ramp * H[r, c]
+        for c in range(COLUMNS):
+            total = J[r, c]
+            for k in range(STATES):
+                total -= H[r, k] * f[k, c]
+            G[r, c] = total
 
 
 @compiled

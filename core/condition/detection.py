@@ -15,7 +15,7 @@ from math import exp, log
 import numpy as np
 
 from core.condition.evidence import along, most_of_pair, of_free, of_size
-from core.condition.hypotheses import CAUSES, IMPEDANCE, WEIGHTS, Cause, Hypothesis
+from core.condition.hypotheses import IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.state import START, Candidate, FilterState
 from core.machines.compiled import compiled
 
@@ -98,7 +98,7 @@ def _of_candidate(
         for column in range(2):
             if most[column, drifts] < NEGLIGIBLE:
                 continue
-            for h in range(hypotheses.shape[0]):
+            for h in range(len(hypotheses)):
                 it = hypotheses[h]
                 if it.column != column:
                     continue

@@ -153,7 +153,8 @@ class Direction:
         records, alarm = int(state.records), header.alarm
         connection = motor.nameplate.connection
         winding = terminal_winding(standing.winding, self._sequence, connection)
-        change, levels = None, ()
+        change = None
+        levels: tuple[tuple[int, float], ...] = ()
         if alarm is not None:
             weighing = self._weighing()
             level = turns_level(state, self._bank, self._recent, self._hypotheses, weighing)

@@ -11,6 +11,7 @@ from core.machines.compiled import compiled
 DIRECTION = 0.12
 """Standard deviation of a signature's direction: g = m (1 + j e), e of this standard deviation."""
 LOG_2PI = 1.8378770664093453
+LOG_2 = 0.6931471805599453
 TINY = 1e-300
 
 
@@ -155,7 +156,8 @@ def most_of_pair(information: Array, first: int, vector: Array, second: int) -> 
     determinant = a * c - b * b
     if determinant <= 1e-12 * a * c or a <= 0.0:
         return 0.0
-    return 0.5 * (d0 * d0 * c - 2.0 * d0 * d1 * b + d1 * d1 * a) / determinant + 0.6931471805599453
+    most: float = 0.5 * (d0 * d0 * c - 2.0 * d0 * d1 * b + d1 * d1 * a) / determinant
+    return most + LOG_2
 
 
 @compiled

@@ -32,8 +32,8 @@ WEIGHTS: Final = (1.0, 1.0, 1.0, 1.0, 0.01, 0.01)
 LEVEL: Final = 0.01
 CHANNEL: Final = 0.02
 JOINT_DROP: Final = 0.015
-"""Standard deviations of their sizes: equivalent level, relative error, and voltage drop at rated current over
-the rated voltage."""
+"""Standard deviations of their sizes: equivalent level, relative error, and voltage drop at rated current
+over the rated voltage."""
 IMPEDANCE: Final = 0.1
 LOAD: Final = 0.75
 """Efficiency times power factor of a motor at rated load, from which its rated current follows."""

@@ -58,7 +58,7 @@ def name(
     best : ndarray, shape (places + 2, 5)
         Filled with what fits each best: candidate, whether it drifts, size, its deviation, log of evidence.
     """
-    places = hypotheses.shape[0]
+    places = len(hypotheses)
     logs[:] = NOTHING
     best[:] = 0.0
     best[:, 4] = NOTHING
@@ -182,7 +182,7 @@ def probabilities(hypotheses: list[Hypothesis], logs: Array, out: Array) -> None
     out : ndarray, shape (6,)
         Filled with probabilities by `Cause`.
     """
-    places = hypotheses.shape[0]
+    places = len(hypotheses)
     sums = np.full(CAUSES, NOTHING)
     for h in range(places):
         cause = hypotheses[h].cause
