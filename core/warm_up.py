@@ -3,6 +3,7 @@
 import numpy as np
 
 from core.condition.follower import Follower
+from core.condition.forecast import forecast
 from core.condition.observation import Observation, VoltageChannels
 from core.machines.candidates import Candidates
 from core.machines.parameters import MachineParameters, Motor, Nameplate
@@ -10,6 +11,7 @@ from core.machines.playback import Playback, window_of_record
 from core.machines.split_winding import SplitWinding
 from core.machines.supply import supply
 from core.signals.sequence import PhaseSequence
+from core.units import NANOSECONDS_PER_DAY
 
 FOLLOWED = 40
 """Records that are followed."""
@@ -35,6 +37,7 @@ def warm_up() -> None:
     for k in range(FOLLOWED):
         follower.fold(_record(k))
     follower.assessment()
+    forecast([(k * NANOSECONDS_PER_DAY, 0.0) for k in range(FOLLOWED)], motor.limits.fault_level)
 
 
 def _record(k: int) -> Observation:

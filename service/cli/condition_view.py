@@ -21,6 +21,9 @@ PLAIN_BARS = " .:-=+*#%"
 MOST_BARS = 60
 MOST_SKIPPED = 10
 MOST_ROWS = 20
+LEAST_SHOWN = 5e-5
+"""A level that percent shows as other than 0.00."""
+
 INDENT = "  "
 
 
@@ -96,7 +99,7 @@ def _print_course(console: Console, course: Sequence[Condition]) -> None:
     levels = [condition.mu_f or 0.0 for condition in course]
     console.print()
     top = max(levels, default=0.0)
-    if top > 0.0:
+    if top >= LEAST_SHOWN:
         bars = _bars(levels, top, BARS if _has_blocks(console) else PLAIN_BARS)
         console.print(Text(f"Level over {len(course)} records, 0 to {percent(top)} %"), soft_wrap=True)
         console.print(Text(f"{INDENT}|{bars}|"), soft_wrap=True)

@@ -5,6 +5,8 @@ from enum import StrEnum
 
 import pytest
 
+from core.condition.events import EventKind
+from core.condition.kinds import Kind, State
 from core.diagnosis.verdict import Verdict
 from service.storage.states import (
     AlarmKind,
@@ -21,6 +23,9 @@ from tests.docs.pages import ROOT
 PAGE = (ROOT / "docs" / "reference" / "glossary.md").read_text(encoding="utf-8")
 SHOWN = [
     Verdict,
+    State,
+    Kind,
+    EventKind,
     AlarmKind,
     ClockQuality,
     JobState,

@@ -9,7 +9,16 @@ import pytest
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
-@pytest.mark.parametrize("name", ["commission_motor", "diagnose_recording", "picture_of_a_demo"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "commission_motor",
+        "diagnose_recording",
+        "make_month_of_records",
+        "picture_of_a_condition",
+        "picture_of_a_demo",
+    ],
+)
 def test_an_example_without_arguments_says_how_it_is_run(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "argv", [f"{name}.py"])
     with pytest.raises(SystemExit, match=rf"python examples/{name}\.py"):
