@@ -22,11 +22,11 @@ NO_REFERENCE = ConditionReference(
 )
 
 
-def condition_document(entry: ConditionEntry, now_ns: int) -> Condition:
+def condition_document(entry: ConditionEntry, now_ns: int, stale_after_ns: int) -> Condition:
     """Return a motor's condition as it is seen now: a condition gets stale without any record."""
     if entry.document is None:
         return _unknown(entry.motor)
-    condition = conditions.Condition.from_dict(entry.document).seen_at(now_ns)
+    condition = conditions.Condition.from_dict(entry.document).seen_at(now_ns, stale_after_ns)
     document = condition.as_dict()
     if condition.reference is None:
         document["reference"] = NO_REFERENCE

@@ -23,6 +23,7 @@ from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import FieldError, ProblemError, problems
 from service.api.times import rfc3339
+from service.condition.staleness import stale_after_ns
 
 LATEST_POINTS = 20
 MOST_POINTS = 100
@@ -47,7 +48,8 @@ def get_condition(
 ) -> ConditionDetails:
     """Return the condition of a motor over time, with what was said from each of its latest records on."""
     now_ns = time.time_ns()
-    condition = condition_document(context.repository.condition(name), now_ns)
+    oldest_ns = stale_after_ns(context.repository.motor(name).schedule, context.settings.stale_after_days)
+    condition = condition_document(context.repository.condition(name), now_ns, oldest_ns)
     points = context.repository.latest_condition_points(name, limit=history)
     return ConditionDetails(
         **dict(condition), history=[ConditionPoint.model_validate(point) for point in points]

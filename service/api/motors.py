@@ -13,6 +13,8 @@ from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, pa
 from service.api.problems import problems
 from service.api.schemas import Health, ListedMotor, Motor, Recording, Site, TrendPoint
 from service.api.times import TimeParameter, rfc3339
+from service.condition.staleness import stale_after_ns
+from service.configuration.settings import Settings
 from service.storage.records import ConditionPoint, MotorHealth, Quantity
 
 ConditionQuantity = Literal["condition_level", "change"]
@@ -37,7 +39,7 @@ def list_motors(
     after = decode(cursor, str)
     if health:
         healths = context.repository.health_of_motors(limit=limit, after=after)
-        return page(healths, partial(_with_health, now_ns=time.time_ns()))
+        return page(healths, partial(_with_health, now_ns=time.time_ns(), settings=context.settings))
     return page(context.repository.motors(limit=limit, after=after), ListedMotor.model_validate)
 
 
@@ -50,7 +52,7 @@ def get_motor(context: Context, name: Name) -> Motor:
 @router.get("/motors/{name}/health", responses=problems(404), tags=["condition"])
 def get_health(context: Context, name: Name) -> Health:
     """Return a motor's condition, what its latest recording says by itself, and whether its relay answers."""
-    return _health(context.repository.health(name), time.time_ns())
+    return _health(context.repository.health(name), time.time_ns(), context.settings)
 
 
 @router.get(
@@ -107,11 +109,14 @@ def _point_of_condition(point: ConditionPoint, quantity: ConditionQuantity) -> T
     )
 
 
-def _with_health(health: MotorHealth, now_ns: int) -> ListedMotor:
-    return ListedMotor.model_validate(health.motor).model_copy(update={"health": _health(health, now_ns)})
+def _with_health(health: MotorHealth, now_ns: int, settings: Settings) -> ListedMotor:
+    return ListedMotor.model_validate(health.motor).model_copy(
+        update={"health": _health(health, now_ns, settings)}
+    )
 
 
-def _health(health: MotorHealth, now_ns: int) -> Health:
+def _health(health: MotorHealth, now_ns: int, settings: Settings) -> Health:
+    oldest_ns = stale_after_ns(health.motor.schedule, settings.stale_after_days)
     diagnosis = health.diagnosis
     link = health.ied
     last = health.last_recording
@@ -119,7 +124,7 @@ def _health(health: MotorHealth, now_ns: int) -> Health:
         motor=health.motor.name,
         site=health.motor.site,
         ied=health.motor.ied,
-        condition=condition_document(health.condition, now_ns),
+        condition=condition_document(health.condition, now_ns, oldest_ns),
         verdict=None if diagnosis is None else diagnosis.verdict,
         mu_f=None if diagnosis is None else diagnosis.mu_f,
         mu_f_ci95=None if diagnosis is None else diagnosis.mu_f_ci95,

@@ -23,6 +23,8 @@ from service.application.parts import Part, running
 from service.background.workers import background_workers
 from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.gateway_supervisor import RESTART_POLICY
+from service.condition.motor_data import document_of
+from service.condition.work import ConditionWork
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings
 from service.jobs import JobRunner
@@ -77,6 +79,8 @@ def _prepared(settings: Settings, plant: Plant) -> Repository:
         migrate(settings.database_url)
         repository = Repository(connect(settings.database_url))
         repository.sync_plant(plant)
+        documents = {motor.name: document_of(motor.motor) for motor in plant.motors}
+        repository.note_motors(documents, now_ns=time.time_ns())
         repository.reset_links(now_ns=time.time_ns())
     except OperationalError as error:
         raise ServeError(
@@ -129,10 +133,18 @@ def _parts(
 ) -> tuple[JobRunner, Mapping[str, Part]]:
     """The job runner, and all parts of the service by the names that GET /readyz lists."""
     gateways = GatewayProcesses(settings, plant, repository)
+    motors = {motor.name: motor.motor for motor in plant.motors}
+    conditions = ConditionWork(
+        repository,
+        store,
+        motors,
+        database_url=settings.database_url,
+        most_observing=max(1, settings.workers - 1),
+    )
     jobs = JobRunner(
         repository,
         store,
-        {motor.name: motor.motor for motor in plant.motors},
+        motors,
         diagnose_recording,
         limits=JobLimits(
             workers=settings.workers,
@@ -142,6 +154,7 @@ def _parts(
             lease_s=settings.lease_s,
         ),
         installation=installation_id(settings.data_directory),
+        conditions=conditions,
         prepare_worker=prepare_worker,
     )
     workers = background_workers(

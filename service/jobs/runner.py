@@ -15,6 +15,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
+from service.condition.work import ConditionTask, ConditionWork
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
 from service.jobs.worker_process import follow_service
@@ -32,6 +33,9 @@ from service.timing.periodic_worker import PeriodicWorker
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
 RENEWALS_A_LEASE = 3
+
+CONDITION_TIMEOUT_S = 60.0
+"""Tasks for conditions end after a second; one that lasts so long hangs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +71,11 @@ class JobRunner:
         *,
         limits: JobLimits,
         installation: str,
+        conditions: ConditionWork | None = None,
         prepare_worker: Callable[[], None] = follow_service,
         poll_period_s: float = 0.2,
     ) -> None:
+        """conditions: what workers do that have nothing to diagnose."""
         self._repository = repository
         self._store = store
         self._motors = motors
@@ -83,6 +89,8 @@ class JobRunner:
         self._pool_problem: str | None = None
         self._in_flight: dict[str, Future[Outcome]] = {}
         self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()
+        self._conditions = conditions
+        self._condition_results: deque[tuple[ConditionTask, Future[int]]] = deque()
         self._loading = limits.workers
         self._worker = PeriodicWorker("the job runner", self._step, period_s=poll_period_s, at_once=True)
 
@@ -114,6 +122,8 @@ class JobRunner:
         while self._results:
             self._settle(*self._results[0])
             self._results.popleft()
+        while self._conditions is not None and self._condition_results:
+            self._conditions.ended(*self._condition_results.popleft())
         if self._pool.has_ended():
             self._give_back()
             self._pool.renew()
@@ -121,8 +131,31 @@ class JobRunner:
         if self._pool_problem is not None:
             return
         self._loading = self._pool.loading()
-        while len(self._in_flight) < self._limits.workers and self._claim():
+        while self._has_free_worker() and self._claim():
             pass
+        while self._has_free_worker() and self._begin_condition_task():
+            pass
+
+    def _has_free_worker(self) -> bool:
+        others = 0 if self._conditions is None else self._conditions.tasks_under_way
+        return len(self._in_flight) + others < self._limits.workers
+
+    def _begin_condition_task(self) -> bool:
+        """Give a worker something to do for a condition. Returns False where there is nothing to do."""
+        if self._conditions is None or (task := self._conditions.next_task()) is None:
+            return False
+        try:
+            future = self._pool.schedule(task.function, task.argument, CONDITION_TIMEOUT_S)
+        except NoWorkersError:
+            self._conditions.give_back()
+            return False
+        future.add_done_callback(partial(self._condition_task_done, task))
+        return True
+
+    def _condition_task_done(self, task: ConditionTask, future: "Future[int]") -> None:
+        """Hand a result over to the runner's thread; a thread of the pool calls this."""
+        self._condition_results.append((task, future))
+        self._worker.wake()
 
     def _register(self) -> None:
         """Begin as a new runner, which holds no job."""
@@ -156,6 +189,8 @@ class JobRunner:
         for job_id in list(self._in_flight):
             self._release(job_id)
             del self._in_flight[job_id]
+        if self._conditions is not None:
+            self._conditions.give_back()
 
     def _release(self, job_id: str) -> None:
         with suppress(NotFoundError):  # its recording was deleted meanwhile
@@ -236,7 +271,7 @@ class JobRunner:
             case Rejected(reason):
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
-            case Diagnosed(diagnosis, recorded_ns):
+            case Diagnosed(diagnosis, recorded_ns, observation):
                 try:
                     kept = self._repository.finish_job(
                         job.id,
@@ -244,6 +279,7 @@ class JobRunner:
                         recorded_ns=recorded_ns,
                         now_ns=time.time_ns(),
                         runner=self._id,
+                        observation=observation,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")

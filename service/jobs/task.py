@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from core.condition.observation import Observation
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
 
@@ -24,13 +25,14 @@ class DiagnosisTask:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosed:
-    """Hold a diagnosis and the time of its record.
+    """Hold a diagnosis, the time of its record, and what the record tells of its motor's condition.
 
-    recorded_ns: trigger time written in the record, UTC [ns].
+    recorded_ns: trigger time written in the record, UTC [ns].  observation: None where it tells nothing.
     """
 
     diagnosis: Diagnosis
     recorded_ns: int
+    observation: Observation | None = None
 
 
 @dataclass(frozen=True, slots=True)

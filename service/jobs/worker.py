@@ -34,11 +34,11 @@ def prepare_worker() -> None:
 
 def diagnose_recording(task: DiagnosisTask) -> Outcome:
     """Read and diagnose one recording; what would fail again is an outcome, not an error."""
-    from core.diagnosis.stator import diagnose
+    from core.condition.observing import examine
 
     try:
         recording = read(task.entry, most_values=MOST_VALUES)
-        diagnosis = diagnose(
+        examined = examine(
             recording,
             task.motor,
             method=task.method,
@@ -47,7 +47,7 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         )
     except (RecordingError, DiagnosisError) as error:
         return Rejected(str(error))
-    return Diagnosed(diagnosis, recording.trigger_time_ns)
+    return Diagnosed(examined.diagnosis, recording.trigger_time_ns, examined.observation)
 
 
 @lru_cache(maxsize=64)

@@ -12,14 +12,17 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from multiprocessing.synchronize import Semaphore
 from threading import Thread
+from typing import TypeVar
 
 import structlog
 from pebble import ProcessPool
 
-from service.jobs.task import DiagnosisTask, Outcome, Task
 from service.timing.backoff import RestartDelay
 
 log = structlog.get_logger(__name__)
+
+Argument = TypeVar("Argument")
+Result = TypeVar("Result")
 
 STOP_TIMEOUT_S = 10.0
 
@@ -63,7 +66,9 @@ class WorkerPool:
         if self._pool is None and time.monotonic() >= self._retry_at_s:
             self._start()
 
-    def schedule(self, function: Task, task: DiagnosisTask, timeout_s: float) -> "Future[Outcome]":
+    def schedule(
+        self, function: Callable[[Argument], Result], task: Argument, timeout_s: float
+    ) -> "Future[Result]":
         """Give a task to a worker. Raises NoWorkersError.
 
         A task that was accepted ends with BrokenExecutor where the workers end.

@@ -1,5 +1,6 @@
 """When a motor is recorded regularly: a cron expression, in UTC."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Self
@@ -34,5 +35,10 @@ class Schedule:
 
     def next_after(self, time_ns: int) -> int:
         """Return the first time later than `time_ns` [ns UTC]."""
+        return next(self.times_after(time_ns))
+
+    def times_after(self, time_ns: int) -> Iterator[int]:
+        """Yield the times later than `time_ns`, in their order [ns UTC]."""
         after = datetime.fromtimestamp(time_ns // NANOSECONDS_PER_SECOND, UTC)
-        return int(next(CronSim(self.expression, after)).timestamp()) * NANOSECONDS_PER_SECOND
+        for due in CronSim(self.expression, after):
+            yield int(due.timestamp()) * NANOSECONDS_PER_SECOND

@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from core.condition.observation import Observation, VoltageChannels
 from core.signals.sequence import PhaseSequence
 from core.units import NANOSECONDS_PER_SECOND
@@ -31,3 +33,27 @@ def observation(hour: float, negative_voltage_V: complex = OBSERVATION.negative_
     """The observation of a record so many hours after NOW_NS."""
     time_ns = NOW_NS + round(hour * HOUR_NS)
     return replace(OBSERVATION, time_ns=time_ns, negative_voltage_V=negative_voltage_V)
+
+
+def records_of_a_motor(number: int, *, fault_from: int | None = None, seed: int = 1) -> list[Observation]:
+    """Hourly records of one motor on a supply that wanders; from a record on with about 2 % shorted turns."""
+    rng = np.random.default_rng(seed)
+    Z2 = complex(15.0, 20.5)
+    standing = 0.002 + 0.001j
+    records = []
+    for at in range(number):
+        v2 = 0.008 * rng.random() * np.exp(2j * np.pi * rng.random())
+        noise = 2e-4 * complex(*rng.normal(size=2))
+        I1 = rng.uniform(1.0, 2.0) * np.exp(-0.7j)
+        fault = 0.0 if fault_from is None or at < fault_from else 0.012 * np.exp(0.3j)
+        records.append(
+            replace(
+                OBSERVATION,
+                time_ns=NOW_NS + at * HOUR_NS,
+                positive_voltage_V=310.0 + 0.0j,
+                negative_voltage_V=complex(310.0 * (v2 + noise)),
+                positive_current_A=complex(I1),
+                negative_current_A=complex(310.0 * (v2 + standing + fault) / Z2),
+            )
+        )
+    return records

@@ -67,7 +67,8 @@ class ConditionRow(Figures, Base):
     """A motor's condition: one row for each motor.
 
     version: counts the folds; who folded from an older version writes nothing.  document: what
-    `Condition.as_dict()` gave; null before the first fold, as is as_of_ns.
+    `Condition.as_dict()` gave; null before the first fold, as is as_of_ns.  standing: its standing asymmetry,
+    for the other motors of its bus.
     """
 
     __tablename__ = "conditions"
@@ -79,6 +80,7 @@ class ConditionRow(Figures, Base):
     since_ns: Mapped[int | None]
     as_of_ns: Mapped[int | None]
     document: Mapped[Mapping[str, object] | None]
+    standing: Mapped[Mapping[str, object] | None]
 
 
 class ConditionChangeRow(Figures, Base):

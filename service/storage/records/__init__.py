@@ -2,6 +2,7 @@
 
 from service.storage.records.conditions import (
     Backlog,
+    BusMotor,
     Checkpoint,
     ConditionChange,
     ConditionEntry,
@@ -47,6 +48,7 @@ __all__ = [
     "Alarm",
     "Amount",
     "Backlog",
+    "BusMotor",
     "Checkpoint",
     "ClaimedJob",
     "ClockReading",

@@ -127,6 +127,15 @@ class MotorVersion:
 
 
 @dataclass(frozen=True, slots=True)
+class BusMotor:
+    """Another motor of a motor's bus: what the motors file says of it, and its standing asymmetry."""
+
+    motor: str
+    document: Mapping[str, object] | None
+    standing: Mapping[str, object] | None
+
+
+@dataclass(frozen=True, slots=True)
 class FoldInput:
     """All that a fold of a motor needs, as it is in the database when it begins.
 
@@ -135,7 +144,7 @@ class FoldInput:
     those before it, by their times.
     observations: the next ones, in their order.  next_ns: time of the first one beyond them; None at the end.
     events: those up to next_ns, in their order.
-    neighbours: observations of other motors on the bus at about the same times.
+    bus: the other motors of its bus.  neighbours: their observations at about the same times.
     latest_change: the last change before; None where there is none.
     """
 
@@ -147,6 +156,7 @@ class FoldInput:
     observations: tuple[RecordObservation, ...]
     next_ns: int | None
     events: tuple[ConditionEvent, ...]
+    bus: tuple[BusMotor, ...]
     neighbours: tuple[RecordObservation, ...]
     motor_versions: tuple[MotorVersion, ...]
     latest_change: ConditionChange | None
@@ -157,7 +167,8 @@ class FoldResult:
     """What a fold found: what is said from each record on, the changes, and the motor's condition at the end.
 
     checkpoints: new ones.  kept_checkpoints: times of the earlier ones that are kept; the others go.
-    condition: None where more is to be folded.
+    condition, standing: what is said of the motor, and its standing asymmetry; None where more is to be
+    folded.
     """
 
     points: Sequence[ConditionPoint]
@@ -165,6 +176,7 @@ class FoldResult:
     checkpoints: Sequence[Checkpoint]
     kept_checkpoints: Sequence[int]
     condition: ConditionEntry | None
+    standing: Mapping[str, object] | None = None
 
 
 @dataclass(frozen=True, slots=True)

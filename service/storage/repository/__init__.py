@@ -14,6 +14,7 @@ from service.storage.repository.leases import LeaseRows
 from service.storage.repository.links import LinkRows
 from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.motor_health import MotorHealthRows
+from service.storage.repository.motor_versions import MotorVersionRows
 from service.storage.repository.observations import ObservationRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.quarantines import QuarantineRows
@@ -37,6 +38,7 @@ class Repository(
     JobRows,
     JobRunnerRows,
     MotorHealthRows,
+    MotorVersionRows,
     ObservationRows,
     ConditionEventRows,
     ConditionRows,

@@ -2,8 +2,8 @@
 
 import uuid
 
-from sqlalchemy import func, select
-from sqlalchemy.orm import Session
+from sqlalchemy import Select, func, select
+from sqlalchemy.orm import Session, aliased
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.storage.models import FoldMarkRow, MotorRow, ObservationRow
@@ -23,18 +23,23 @@ def mark(session: Session, motor: str, from_ns: int) -> None:
 def mark_with_bus(session: Session, motor: str, time_ns: int) -> None:
     """Have a motor folded from a record of it on, and the others of its bus from about that time on."""
     mark(session, motor, time_ns)
-    of_the_bus = (
-        select(MotorRow.bus).where(MotorRow.name == motor, MotorRow.bus.is_not(None)).scalar_subquery()
-    )
     neighbours = (
         select(ObservationRow.motor, func.min(ObservationRow.time_ns))
-        .join(MotorRow, MotorRow.name == ObservationRow.motor)
         .where(
-            MotorRow.bus == of_the_bus,
-            MotorRow.name != motor,
+            ObservationRow.motor.in_(others_of_bus(motor)),
             ObservationRow.time_ns.between(time_ns - NEIGHBOURS_WITHIN_NS, time_ns + NEIGHBOURS_WITHIN_NS),
         )
         .group_by(ObservationRow.motor)
     )
     for neighbour, from_ns in session.execute(neighbours).all():
         mark(session, neighbour, from_ns)
+
+
+def others_of_bus(motor: str) -> Select[str]:
+    """Return the query of the other motors of a motor's bus; of none where it has no bus."""
+    own = aliased(MotorRow)
+    return (
+        select(MotorRow.name)
+        .join(own, own.bus == MotorRow.bus)
+        .where(own.name == motor, MotorRow.name != motor)
+    )

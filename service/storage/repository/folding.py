@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 
 from sqlalchemy import bindparam, delete, func, insert, or_, select, update
-from sqlalchemy.orm import Session, aliased
+from sqlalchemy.orm import Session
 
 from core.condition.events import EventKind
 from service.storage.models import (
@@ -24,6 +24,7 @@ from service.storage.models import (
     ObservationRow,
 )
 from service.storage.records import (
+    BusMotor,
     Checkpoint,
     ConditionChange,
     ConditionEvent,
@@ -33,7 +34,12 @@ from service.storage.records import (
     RecordObservation,
 )
 from service.storage.repository.condition_alarms import settle_alarm
-from service.storage.repository.fold_marks import EARLIEST_NS, NEIGHBOURS_WITHIN_NS, mark
+from service.storage.repository.fold_marks import (
+    EARLIEST_NS,
+    NEIGHBOURS_WITHIN_NS,
+    mark,
+    others_of_bus,
+)
 from service.storage.repository.observations import record_observation
 from service.storage.repository.sessions import Sessions, found, only, record_of
 
@@ -75,6 +81,7 @@ class FoldingRows(Sessions):
                 observations=observations,
                 next_ns=next_ns,
                 events=_events(session, motor, done_ns, next_ns),
+                bus=_bus(session, motor),
                 neighbours=_neighbours(session, motor, observations),
                 motor_versions=tuple(_versions(session, motor)),
                 latest_change=_latest_change(session, motor, done_ns),
@@ -105,7 +112,17 @@ class FoldingRows(Sessions):
                     setattr(row, name, figures[name])
                 motor = found(session, MotorRow, fold.motor, "motor")
                 settle_alarm(session, motor, result.condition, now_ns=now_ns)
+                if row.standing != result.standing:
+                    row.standing = result.standing
+                    _mark_latest_of_bus(session, fold.motor)
             return True
+
+    def forget_checkpoints(self, motor: str) -> None:
+        """Have a motor folded from its first record on. Raises NotFoundError."""
+        with self._write() as session:
+            found(session, ConditionRow, motor, "motor", lock=True).version += 1
+            session.execute(delete(ConditionCheckpointRow).where(ConditionCheckpointRow.motor == motor))
+            mark(session, motor, EARLIEST_NS)
 
     def checkpoints(self, motor: str) -> tuple[Checkpoint, ...]:
         """Return a motor's checkpoints, oldest first."""
@@ -179,20 +196,42 @@ def _neighbours(
     """Return the observations of other motors of the bus in the time of these, in their order."""
     if not observations:
         return ()
-    own = aliased(MotorRow)
     first_ns, last_ns = (observations[at].observation.time_ns for at in (0, -1))
     query = (
         select(ObservationRow)
-        .join(MotorRow, MotorRow.name == ObservationRow.motor)
-        .join(own, own.bus == MotorRow.bus)
         .where(
-            own.name == motor,
-            MotorRow.name != motor,
+            ObservationRow.motor.in_(others_of_bus(motor)),
             ObservationRow.time_ns.between(first_ns - NEIGHBOURS_WITHIN_NS, last_ns + NEIGHBOURS_WITHIN_NS),
         )
         .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
     )
     return tuple(record_observation(row) for row in session.scalars(query))
+
+
+def _bus(session: Session, motor: str) -> tuple[BusMotor, ...]:
+    document = (
+        select(MotorVersionRow.document)
+        .where(MotorVersionRow.motor == ConditionRow.motor)
+        .order_by(MotorVersionRow.from_ns.desc())
+        .limit(1)
+        .scalar_subquery()
+    )
+    query = (
+        select(ConditionRow.motor, document, ConditionRow.standing)
+        .where(ConditionRow.motor.in_(others_of_bus(motor)))
+        .order_by(ConditionRow.motor)
+    )
+    return tuple(BusMotor(*row) for row in session.execute(query))
+
+
+def _mark_latest_of_bus(session: Session, motor: str) -> None:
+    """Have the others of the bus judged anew: what stands in all of them is the bus's, not theirs."""
+    query = select(ConditionRow.motor, ConditionRow.as_of_ns).where(
+        ConditionRow.motor.in_(others_of_bus(motor)), ConditionRow.as_of_ns.is_not(None)
+    )
+    for other, as_of_ns in session.execute(query).all():
+        if as_of_ns is not None:
+            mark(session, other, as_of_ns)
 
 
 def _versions(session: Session, motor: str) -> Iterator[MotorVersion]:

@@ -5,7 +5,7 @@ from dataclasses import fields
 from math import isfinite
 from typing import Any
 
-from sqlalchemy import delete, func, select
+from sqlalchemy import delete, exists, func, select
 from sqlalchemy.orm import Session
 
 from core.condition.observation import Observation
@@ -94,8 +94,9 @@ class ObservationRows(Sessions):
     def motors_to_observe(self) -> tuple[str, ...]:
         """Return the motors that have recordings from before there were observations."""
         with self._read() as session:
-            query = select(UnobservedRecordingRow.motor).distinct().order_by(UnobservedRecordingRow.motor)
-            return tuple(session.scalars(query))
+            # One look into the index for each motor, however many recordings there are.
+            of_motor = exists().where(UnobservedRecordingRow.motor == MotorRow.name)
+            return tuple(session.scalars(select(MotorRow.name).where(of_motor).order_by(MotorRow.name)))
 
     def recordings_to_observe(self, motor: str, limit: int) -> tuple[ToObserve, ...]:
         """Return some of a motor's recordings that are yet to be observed, oldest first."""

@@ -9,7 +9,7 @@ from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
-from core.condition.observation import Observation, VoltageChannels
+from core.condition.observation import VoltageChannels
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.errors import UnstorableDiagnosisError
@@ -23,45 +23,9 @@ from service.storage.records import (
     FoldResult,
 )
 from service.storage.states import DeletedBy
-from testing.service.job_runner import RUNNER
+from testing.service.following import FAN, PUMP, Recorder
 from testing.service.observations import HOUR_NS, OBSERVATION, observation
-from testing.service.plants import NOW_NS, SECOND_NS, healthy
-
-PUMP, FAN = "PUMP-A1", "FAN-A2"
-
-
-class Recorder:
-    """Brings recordings and their diagnoses, as the job runner does."""
-
-    def __init__(self, repository: Repository, store: RecordingStore) -> None:
-        self._repository = repository
-        self._store = store
-        self._number = 0
-
-    def record(self, observed: Observation | None, motor: str = PUMP) -> str:
-        """Add a recording that is diagnosed with this observation; return its id."""
-        self._number += 1
-        stored = self._store.store({"E.CFF": f"record {self._number}".encode()})
-        added = self._repository.add_recording(stored, motor=motor, now_ns=NOW_NS)
-        self.diagnose(observed)
-        return added.recording.id
-
-    def diagnose(self, observed: Observation | None) -> None:
-        """Diagnose what is queued."""
-        claimed = self._repository.claim_job(now_ns=NOW_NS + HOUR_NS, runner=RUNNER)
-        assert claimed is not None
-        assert self._repository.finish_job(
-            claimed.job.id,
-            healthy(),
-            recorded_ns=NOW_NS if observed is None else observed.time_ns,
-            now_ns=NOW_NS,
-            runner=RUNNER,
-            observation=observed,
-        )
-
-    def diagnose_again(self, recording_id: str, observed: Observation | None) -> None:
-        self._repository.request_diagnosis(recording_id, now_ns=NOW_NS)
-        self.diagnose(observed)
+from testing.service.plants import NOW_NS, SECOND_NS
 
 
 @pytest.fixture

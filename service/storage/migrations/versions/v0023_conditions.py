@@ -56,6 +56,7 @@ def upgrade() -> None:
         sa.Column("since_ns", sa.BigInteger(), nullable=True),
         sa.Column("as_of_ns", sa.BigInteger(), nullable=True),
         sa.Column("document", sa.JSON(), nullable=True),
+        sa.Column("standing", sa.JSON(), nullable=True),
         *_figures(),
         sa.ForeignKeyConstraint(["motor"], ["motors.name"], name=op.f("fk_conditions_motor_motors")),
         sa.PrimaryKeyConstraint("motor", name=op.f("pk_conditions")),

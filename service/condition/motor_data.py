@@ -1,0 +1,50 @@
+"""What the motors file says of a motor, as it is stored: a record is judged by what was said at its time."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
+from service.storage.records import MotorVersion
+
+
+def document_of(motor: Motor) -> dict[str, Any]:
+    """Return all that a motor's condition depends on."""
+    return {
+        "nameplate": asdict(motor.nameplate),
+        "parameters": asdict(motor.parameters),
+        "limits": asdict(motor.limits),
+        "sensors": asdict(motor.sensors),
+    }
+
+
+def motor_of(motor: Motor, document: Mapping[str, Any]) -> Motor:
+    """Return a motor with the nameplate and the parameters that it had."""
+    nameplate = document["nameplate"]
+    return replace(
+        motor,
+        nameplate=Nameplate(**{**nameplate, "connection": Connection(nameplate["connection"])}),
+        parameters=MachineParameters(**document["parameters"]),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class MotorHistory:
+    """A motor over time. motor: as it is now.  versions: what was said of it, oldest first."""
+
+    motor: Motor
+    versions: Sequence[MotorVersion]
+
+    def at(self, time_ns: int) -> Motor:
+        """Return the motor as it was: before the first version, as in that one."""
+        current: MotorVersion | None = None
+        for version in self.versions:
+            if current is None or version.from_ns <= time_ns:
+                current = version
+        return self.motor if current is None else motor_of(self.motor, current.document)
+
+    def edited_at(self, time_ns: int) -> Motor | None:
+        """Return the motor as it is from exactly this time on; None where nothing was edited then."""
+        found: Iterable[MotorVersion] = (one for one in self.versions if one.from_ns == time_ns)
+        version = next(iter(found), None)
+        return None if version is None else motor_of(self.motor, version.document)

@@ -1,0 +1,176 @@
+"""What there is to do for the conditions of motors, for workers that have nothing to diagnose."""
+
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import BrokenExecutor, Future
+from dataclasses import dataclass, field
+
+import structlog
+from structlog.typing import FilteringBoundLogger
+
+from core.machines.parameters import Motor
+from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_recordings
+from service.recording_store.store import RecordingStore
+from service.storage.repository import Repository
+from service.timing.backoff import Backoff
+
+log: FilteringBoundLogger = structlog.get_logger(__name__)
+
+RECORDINGS_A_TASK = 20
+"""Recordings that one task observes at most, oldest first."""
+
+FAILURES = Backoff(first_s=1.0, longest_s=300.0)
+"""Before a motor whose task has failed is tried again."""
+
+MOST_FAILURES = 3
+"""After so many in a row, the recording that cannot be observed is left out."""
+
+REPORT_S = 60.0
+"""Time between two lines of the log on how many recordings are yet to be observed."""
+
+
+@dataclass(frozen=True, slots=True)
+class ConditionTask:
+    """A task for a worker: call `function` with `argument`."""
+
+    motor: str
+    function: Callable[..., int]
+    argument: FoldTask | ObserveTask
+
+
+@dataclass(slots=True)
+class _Trouble:
+    """Failures in a row of a motor's tasks, the latest error, and when the next one may begin."""
+
+    failures: int = 0
+    error: str = ""
+    until_s: float = 0.0
+
+
+@dataclass(slots=True)
+class _Progress:
+    reported_s: float = field(default_factory=time.monotonic)
+    observed: int = 0
+
+
+class ConditionWork:
+    """Says which motor is folded next, or which recordings are observed. For use by one thread.
+
+    One task a motor at a time. Several services may share a database: what two of them do twice is kept
+    once.
+    """
+
+    def __init__(
+        self,
+        repository: Repository,
+        store: RecordingStore,
+        motors: Mapping[str, Motor],
+        *,
+        database_url: str,
+        most_observing: int = 1,
+    ) -> None:
+        """most_observing: so many tasks may observe at a time; the other workers are free for what is new."""
+        self._repository = repository
+        self._motors = motors
+        self._database_url = database_url
+        self._store = store
+        self._most_observing = most_observing
+        self._under_way: dict[str, ConditionTask] = {}
+        self._trouble: dict[str, _Trouble] = {}
+        self._latest: str = ""
+        self._all_observed = False
+        self._progress = _Progress()
+
+    def next_task(self) -> ConditionTask | None:
+        """Return the next task, which is under way from now on; None where there is nothing to do.
+
+        Raises SQLAlchemyError.
+        """
+        task = self._next_fold() or self._next_observation()
+        if task is not None:
+            self._under_way[task.motor] = task
+        return task
+
+    def ended(self, task: ConditionTask, future: "Future[int]") -> None:
+        """Take note of a task that has ended, however it did. Raises SQLAlchemyError."""
+        if self._under_way.get(task.motor) is not task:
+            return  # it was given back before its worker ended
+        del self._under_way[task.motor]
+        error = None if future.cancelled() else future.exception()
+        if future.cancelled() or isinstance(error, BrokenExecutor):
+            return  # the pool's end, not the task's fault
+        if error is not None:
+            self._failed(task, error)
+            return
+        self._trouble.pop(task.motor, None)
+        if isinstance(task.argument, ObserveTask):
+            self._report(future.result())
+
+    @property
+    def tasks_under_way(self) -> int:
+        """Return how many tasks workers have."""
+        return len(self._under_way)
+
+    def give_back(self) -> None:
+        """Take all tasks back as if they had not been given: the workers are gone, or there are none."""
+        self._under_way.clear()
+
+    def problem(self) -> str | None:
+        """Return which motor cannot be followed, and why; None while all is well."""
+        for motor, trouble in self._trouble.items():
+            if trouble.failures >= MOST_FAILURES:
+                return f"the condition of {motor} cannot be followed: {trouble.error}"
+        return None
+
+    def _next_fold(self) -> ConditionTask | None:
+        """Return the next motor to fold. They take turns: none waits until another has no more to do."""
+        due = [motor for motor in self._repository.motors_to_fold() if self._is_free(motor)]
+        if not due:
+            return None
+        motor = next((one for one in due if one > self._latest), due[0])
+        self._latest = motor
+        return ConditionTask(motor, fold_motor, FoldTask(self._database_url, self._motors[motor]))
+
+    def _next_observation(self) -> ConditionTask | None:
+        if self._all_observed:
+            return None
+        observing = sum(isinstance(one.argument, ObserveTask) for one in self._under_way.values())
+        if observing >= self._most_observing:
+            return None
+        left = self._repository.motors_to_observe()
+        self._all_observed = not left
+        for motor in left:
+            if not self._is_free(motor):
+                continue
+            failures = self._trouble[motor].failures if motor in self._trouble else 0
+            recordings = self._repository.recordings_to_observe(motor, 1 if failures else RECORDINGS_A_TASK)
+            if recordings:
+                argument = ObserveTask(self._database_url, self._store, self._motors[motor], recordings)
+                return ConditionTask(motor, observe_recordings, argument)
+        return None
+
+    def _is_free(self, motor: str) -> bool:
+        trouble = self._trouble.get(motor)
+        is_pausing = trouble is not None and time.monotonic() < trouble.until_s
+        return motor in self._motors and motor not in self._under_way and not is_pausing
+
+    def _failed(self, task: ConditionTask, error: BaseException) -> None:
+        trouble = self._trouble.setdefault(task.motor, _Trouble())
+        trouble.failures += 1
+        trouble.error = f"{type(error).__name__}: {error}"
+        trouble.until_s = time.monotonic() + FAILURES.pause_s(trouble.failures)
+        log.error("work on a condition failed", motor=task.motor, error=trouble.error, exc_info=error)
+        if isinstance(task.argument, ObserveTask) and trouble.failures >= MOST_FAILURES:
+            (recording, *_) = task.argument.recordings
+            log.error("recording is left out of the condition", recording=recording.recording_id)
+            self._repository.add_observations([(recording.recording_id, None)])
+            del self._trouble[task.motor]
+
+    def _report(self, observed: int) -> None:
+        """Log now and then how far observing has come."""
+        self._progress.observed += observed
+        if time.monotonic() < self._progress.reported_s + REPORT_S:
+            return
+        left = self._repository.backlog().unobserved_recordings
+        log.info("stored recordings observed", number=self._progress.observed, left=left)
+        self._progress = _Progress()

@@ -1,0 +1,111 @@
+"""What worker processes do for the conditions of motors: fold what is new, observe what is stored.
+
+A task reads from the database and writes to it itself, in short transactions, and ends soon: a diagnosis that
+waits for a worker does not wait long. A worker that is killed loses the transaction under way, no more.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from time import monotonic, time_ns
+
+import structlog
+
+from core.condition.observation import Observation
+from core.diagnosis.errors import DiagnosisError
+from core.machines.parameters import Motor
+from core.recordings import RecordingError, read
+from service.recording_store.store import RecordingStore, RecordingStoreError
+from service.storage.engine import connect
+from service.storage.records import ToObserve
+from service.storage.repository import Repository
+
+log = structlog.get_logger(__name__)
+
+ROUND_S = 0.5
+"""A task ends after about so long; the next one goes on."""
+
+RECORDS_A_FOLD = 500
+"""Records that are folded before the database has them: a transaction takes a few milliseconds."""
+
+MOST_VALUES = 8_000_000
+"""A longer recording tells nothing of the condition, as it is not diagnosed either."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoldTask:
+    """Name a motor to fold, as the motors file has it, and the database."""
+
+    database_url: str
+    motor: Motor
+    round_s: float = ROUND_S
+
+
+@dataclass(frozen=True, slots=True)
+class ObserveTask:
+    """Name recordings of a motor to observe, and the store that has their files."""
+
+    database_url: str
+    store: RecordingStore
+    motor: Motor
+    recordings: Sequence[ToObserve]
+
+
+def fold_motor(task: FoldTask) -> int:
+    """Fold what is due of a motor, for about a round; return how many records that were.
+
+    Raises NotFoundError, SQLAlchemyError.
+    """
+    return fold_due(_repository(task.database_url), task.motor, task.round_s)
+
+
+def fold_due(repository: Repository, motor: Motor, round_s: float = ROUND_S) -> int:
+    """Fold what is due of a motor, for about a round; return how many records that were.
+
+    Of two that fold the same motor, the slower begins again. Raises NotFoundError, SQLAlchemyError.
+    """
+    from service.condition.folding import UnreadableCheckpointError, fold
+
+    end_s = monotonic() + round_s
+    number = 0
+    while (due := repository.begin_fold(motor.name, RECORDS_A_FOLD)) is not None:
+        try:
+            result = fold(due, motor)
+        except UnreadableCheckpointError as error:
+            log.info("folded from the first record on", motor=motor.name, reason=str(error))
+            repository.forget_checkpoints(motor.name)
+            continue
+        if repository.finish_fold(due, result, now_ns=time_ns()):
+            number += len(due.observations)
+        if monotonic() >= end_s:
+            break
+    return number
+
+
+def observe_recordings(task: ObserveTask) -> int:
+    """Observe recordings that were diagnosed before there were observations; return how many.
+
+    Raises SQLAlchemyError.
+    """
+    return _repository(task.database_url).add_observations(list(_observed(task)))
+
+
+def _observed(task: ObserveTask) -> Iterator[tuple[str, Observation | None]]:
+    """Yield what each recording tells, for about a round."""
+    from core.condition.observing import observe
+
+    end_s = monotonic() + ROUND_S
+    for one in task.recordings:
+        try:
+            recording = read(task.store.entry(one.digest), most_values=MOST_VALUES)
+            yield one.recording_id, observe(recording, task.motor)
+        except (RecordingError, DiagnosisError, RecordingStoreError) as error:
+            log.warning("recording tells nothing", recording=one.recording_id, reason=str(error))
+            yield one.recording_id, None
+        if monotonic() >= end_s:
+            return
+
+
+@lru_cache(maxsize=4)
+def _repository(database_url: str) -> Repository:
+    return Repository(connect(database_url))
