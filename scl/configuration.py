@@ -8,7 +8,8 @@ from pathlib import Path
 
 from scl.errors import Finding, SclError
 from scl.ied_model import Ied
-from scl.substation_model import MotorFeeder, Substation, motor_feeders
+from scl.motor_feeders import motor_feeders
+from scl.substation_model import MotorFeeder, Substation
 
 MMS_PORT = 102
 

@@ -150,6 +150,7 @@ def _bay(document: Document, level: etree._Element, bay: etree._Element, ieds: d
             for element in document.children(bay, "ConductingEquipment")
         ),
         ieds=attached,
+        nodes=tuple(node.get("pathName", "") for node in document.children(bay, "ConnectivityNode")),
     )
 
 
@@ -162,6 +163,9 @@ def _equipment(
         type=element.get("type", ""),
         description=element.get("desc", ""),
         ieds=attached,
+        nodes=tuple(
+            terminal.get("connectivityNode", "") for terminal in document.children(element, "Terminal")
+        ),
     )
     relays = attached or of_bay
     if equipment.type == "MOT" and not relays:

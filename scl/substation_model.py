@@ -1,7 +1,9 @@
 """The substation section (IEC 61850-6 clause 9.2): sites, bays and motors, and the relay of each motor."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
+
+MOTOR = "MOT"
+"""Type of a motor among the conducting equipment."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,12 +20,15 @@ class Equipment:
         Description for people.
     ieds : tuple of str
         IEDs whose logical nodes are attached to the equipment.
+    nodes : tuple of str
+        Path names of the connectivity nodes at its terminals.
     """
 
     name: str
     type: str
     description: str
     ieds: tuple[str, ...]
+    nodes: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +47,8 @@ class Bay:
         Its conducting equipment.
     ieds : tuple of str
         IEDs attached to the bay itself.
+    nodes : tuple of str
+        Path names of its connectivity nodes.
     """
 
     name: str
@@ -49,6 +56,7 @@ class Bay:
     voltage_level: str
     equipment: tuple[Equipment, ...]
     ieds: tuple[str, ...]
+    nodes: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +96,8 @@ class MotorFeeder:
         Its description.
     ied : str
         Name of the relay's IED.
+    bus : str or None
+        Path name of the bus's connectivity node; None where the file does not tell it.
     """
 
     site: str
@@ -96,35 +106,4 @@ class MotorFeeder:
     motor: str
     motor_description: str
     ied: str
-
-
-def motor_feeders(substations: Iterable[Substation]) -> tuple[MotorFeeder, ...]:
-    """List every motor with the IED attached to it or else to its bay.
-
-    A motor is a ConductingEquipment of type MOT.
-
-    Parameters
-    ----------
-    substations : iterable of Substation
-        The substations.
-
-    Returns
-    -------
-    tuple of MotorFeeder
-        The motors in file order.
-    """
-    return tuple(
-        MotorFeeder(
-            site=substation.name,
-            site_description=substation.description,
-            bay=bay.name,
-            motor=motor.name,
-            motor_description=motor.description,
-            ied=ieds[0],
-        )
-        for substation in substations
-        for bay in substation.bays
-        for motor in bay.equipment
-        for ieds in [motor.ieds or bay.ieds]
-        if motor.type == "MOT" and motor.name and ieds
-    )
+    bus: str | None

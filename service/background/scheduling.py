@@ -1,8 +1,8 @@
-"""Requests recordings at the times of the motors' schedules.
+"""Requests recordings at the times of the motors' and the buses' schedules.
 
 Several services may share a database. The due time is the key of the request, so that each recording is
-requested once. A time that passed while no service ran is not made up for: the condition it was meant for is
-gone.
+requested once. The motors of a bus are all requested in one go, so that their records show the same supply. A
+time that passed while no service ran is not made up for: the condition it was meant for is gone.
 """
 
 import time
@@ -11,7 +11,7 @@ from collections.abc import Iterable
 import structlog
 
 from core.units import NANOSECONDS_PER_SECOND
-from service.plant import PlantMotor, Schedule
+from service.plant import Bus, PlantMotor, Schedule
 from service.storage import Repository
 
 log = structlog.get_logger(__name__)
@@ -25,15 +25,21 @@ class Scheduler:
     """Compares the schedules with the wall clock."""
 
     def __init__(
-        self, motors: Iterable[PlantMotor], repository: Repository, *, since_ns: int | None = None
+        self,
+        motors: Iterable[PlantMotor],
+        repository: Repository,
+        *,
+        buses: Iterable[Bus] = (),
+        since_ns: int | None = None,
     ) -> None:
         """since_ns: times from then on are due; now if None."""
-        self._schedules: dict[str, Schedule] = {
-            motor.name: motor.schedule for motor in motors if motor.schedule is not None
-        }
+        self._schedules: list[tuple[Schedule, tuple[str, ...]]] = [
+            *((motor.schedule, (motor.name,)) for motor in motors if motor.schedule is not None),
+            *((bus.schedule, bus.motors) for bus in buses if bus.schedule is not None),
+        ]
         self._repository = repository
         self._checked_ns = time.time_ns() if since_ns is None else since_ns
-        self._next_ns: dict[str, int] = {}
+        self._next_ns: dict[int, int] = {}
 
     def request_due(self, now_ns: int) -> None:
         """Request the recordings that became due since the last call.
@@ -43,14 +49,15 @@ class Scheduler:
         if not self._checked_ns <= now_ns <= self._checked_ns + LONGEST_DELAY_NS:
             self._checked_ns = min(now_ns, max(self._checked_ns, now_ns - LONGEST_DELAY_NS))
             self._next_ns.clear()
-        for motor, schedule in self._schedules.items():
-            due_ns = self._next_ns.get(motor)
+        for number, (schedule, motors) in enumerate(self._schedules):
+            due_ns = self._next_ns.get(number)
             if due_ns is None:
-                due_ns = self._next_ns[motor] = schedule.next_after(self._checked_ns)
+                due_ns = self._next_ns[number] = schedule.next_after(self._checked_ns)
             if due_ns > now_ns:
                 continue
-            request = self._repository.schedule_recording(motor, due_ns=due_ns, now_ns=now_ns)
-            if request is None:
-                log.warning("schedule skipped: the previous recording request is still open", motor=motor)
-            del self._next_ns[motor]
+            for motor in motors:
+                request = self._repository.schedule_recording(motor, due_ns=due_ns, now_ns=now_ns)
+                if request is None:
+                    log.warning("schedule skipped: the previous recording request is still open", motor=motor)
+            del self._next_ns[number]
         self._checked_ns = now_ns

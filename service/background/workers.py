@@ -45,7 +45,7 @@ def background_workers(
     gateway_problem: why gateways of this service do not run; None while all do.  restart_delay_s: the longest
     pause before a gateway that ended is started again.
     """
-    scheduler = Scheduler(plant.motors, repository)
+    scheduler = Scheduler(plant.motors, repository, buses=plant.buses)
     housekeeping_ends, retention_ends = Event(), Event()
     keeper = Housekeeping(settings, repository, housekeeping_ends)
     retained = Retention(settings, repository, store, retention_ends)

@@ -5,7 +5,7 @@ from service.plant.differences import Difference, differences
 from service.plant.errors import PlantError
 from service.plant.files import read_plant
 from service.plant.metering import Measurand
-from service.plant.model import Plant, PlantMotor, Relay, Site
+from service.plant.model import Bus, Plant, PlantMotor, Relay, Site
 from service.plant.offer import Offer, ReportBlock
 from service.plant.overrides import Overrides, TriggerAction
 from service.plant.quantities import AveragingStep, MeteredQuantity
@@ -14,6 +14,7 @@ from service.plant.schedule import Schedule
 __all__ = [
     "Acquisition",
     "AveragingStep",
+    "Bus",
     "Difference",
     "Measurand",
     "MeteredQuantity",

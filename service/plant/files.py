@@ -1,26 +1,26 @@
 """Reads the plant from its two files.
 
 The SCD says which relay protects which motor, at which address, and what it offers. The motors file gives the
-nameplate and the equivalent circuit of each motor. Both must name the same motors.
+nameplate and the equivalent circuit of each motor. Both must name the same motors. Either may say on which
+bus a motor is; the motors file wins.
 """
 
-import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import scl
-from core.machines.motor_file import MotorFileError, motor_from_table
-from core.machines.parameters import Motor
+from core.machines.sensors import SensorClass
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
 from service.configuration.settings import Settings, SettingsError
 from service.plant.errors import PlantError
 from service.plant.metering import measurands_from_scl
-from service.plant.model import Plant, PlantMotor, Relay, Site
+from service.plant.model import Bus, Plant, PlantMotor, Relay, Site
+from service.plant.motors_file import BusEntry, read_motors_file
 from service.plant.offer import offer_from_scl
-from service.plant.overrides import OverrideError, Overrides, overrides_from_table
+from service.plant.overrides import Overrides
 from service.plant.recognition import recognise
-from service.plant.schedule import Schedule
+from service.plant.sensor_classes import typical_sensors
 
 
 def read_plant(settings: Settings) -> Plant:
@@ -56,7 +56,7 @@ def plant_of_files(scd_path: Path, motors_path: Path, subnetwork: str | None = N
         configuration = scl.read(scd_path)
         if subnetwork is not None:
             configuration = configuration.seen_from(subnetwork)
-        return _plant(configuration, _motors(motors_path), motors_path)
+        return _plant(configuration, motors_path)
     except scl.SclError as error:
         line = "" if error.line is None else f"line {error.line}: "
         raise PlantError(
@@ -70,63 +70,11 @@ def _given(path: Path | None, name: str, expected: str) -> Path:
     return path
 
 
-@dataclass(frozen=True, slots=True)
-class _Entry:
-    """What the motors file says of one motor and its relay."""
-
-    motor: Motor
-    schedule: Schedule | None
-    overrides: Overrides
-
-
-def _motors(path: Path) -> dict[str, _Entry]:
-    """Return what the motors file says of each motor, by its name."""
-    try:
-        document = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise PlantError(
-            path, "file", expected="a TOML file with [[motor]] tables", found="no file"
-        ) from error
-    except OSError as error:
-        raise PlantError(path, "file", expected="a readable file", found=str(error)) from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise PlantError(path, "file", expected="valid TOML in UTF-8", found=str(error)) from error
-    tables = document.pop("motor", None)
-    if document or not isinstance(tables, list):
-        found = ", ".join(document) or "none"
-        raise PlantError(path, "top level", expected="[[motor]] tables and nothing else", found=found)
-    entries: dict[str, _Entry] = {}
-    for number, table in enumerate(tables, start=1):
-        name = table.pop("name", None)
-        if not isinstance(name, str) or not name:
-            raise PlantError(path, f"motor {number}: name", expected="the motor's name", found=repr(name))
-        if name in entries:
-            raise PlantError(path, f"motor {number}: name", expected="each motor once", found=f"{name} again")
-        expression = table.pop("schedule", None)
-        schedule = None if expression is None else _schedule(expression, path, name)
-        try:
-            overrides = overrides_from_table(table.pop("relay", {}))
-            motor = motor_from_table(table, name=name, source=str(path))
-        except (MotorFileError, OverrideError) as error:
-            raise PlantError(
-                path, f"motor {name}: {error.field}", expected=error.expected, found=error.found
-            ) from error
-        entries[name] = _Entry(motor, schedule, overrides)
-    return entries
-
-
-def _schedule(expression: object, path: Path, motor: str) -> Schedule:
-    try:
-        return Schedule.parse(expression if isinstance(expression, str) else "")
-    except ValueError as error:
-        raise PlantError(
-            path, f"motor {motor}: schedule", expected=str(error), found=repr(expression)
-        ) from error
-
-
-def _plant(configuration: scl.Scl, entries: dict[str, _Entry], motors_path: Path) -> Plant:
+def _plant(configuration: scl.Scl, motors_path: Path) -> Plant:
     path = configuration.path
     feeders = configuration.feeders()
+    told = read_motors_file(motors_path, _typical_sensors(configuration, feeders))
+    entries = told.motors
     if not feeders:
         raise PlantError(
             path,
@@ -153,6 +101,7 @@ def _plant(configuration: scl.Scl, entries: dict[str, _Entry], motors_path: Path
             expected=f"a motor of {path.name} ({known})",
             found="another name",
         )
+    bus_of = {feeder.motor: entries[feeder.motor].bus or feeder.bus for feeder in feeders}
     sites = {feeder.site: Site(feeder.site, feeder.site_description) for feeder in feeders}
     return Plant(
         sites=tuple(sites.values()),
@@ -164,9 +113,41 @@ def _plant(configuration: scl.Scl, entries: dict[str, _Entry], motors_path: Path
                 feeder.site,
                 feeder.ied,
                 entries[feeder.motor].schedule,
+                bus_of[feeder.motor],
             )
             for feeder in feeders
         ),
+        buses=_buses(bus_of, told.buses, motors_path),
+    )
+
+
+def _typical_sensors(configuration: scl.Scl, feeders: Iterable[scl.MotorFeeder]) -> dict[str, SensorClass]:
+    """Return the class of sensors that is typical of each motor's relay."""
+    relays = {feeder.motor: configuration.ied(feeder.ied) for feeder in feeders}
+    return {motor: typical_sensors(relay.manufacturer, relay.type) for motor, relay in relays.items()}
+
+
+def _buses(
+    bus_of: Mapping[str, str | None], told: Mapping[str, BusEntry], motors_path: Path
+) -> tuple[Bus, ...]:
+    """Return the buses in the order of their first motors. Raises PlantError for a bus without motors."""
+    buses: dict[str, list[str]] = {}
+    for motor, bus in bus_of.items():
+        if bus is not None:
+            buses.setdefault(bus, []).append(motor)
+    for unknown in sorted(told.keys() - buses.keys()):
+        known = ", ".join(sorted(buses)) or "none is known"
+        raise PlantError(
+            motors_path,
+            f"bus {unknown}",
+            expected=f"a bus of the SCD, or one that a motor names ({known})",
+            found="a bus without motors",
+        )
+    nothing_told = BusEntry(schedule=None, common_voltage_transformer=False)
+    entries = {name: told.get(name, nothing_told) for name in buses}
+    return tuple(
+        Bus(name, tuple(motors), entries[name].schedule, entries[name].common_voltage_transformer)
+        for name, motors in buses.items()
     )
 
 

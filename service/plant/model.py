@@ -1,4 +1,4 @@
-"""Sites, relays and motors as plain values."""
+"""Sites, relays, motors and buses as plain values."""
 
 from dataclasses import dataclass, field
 
@@ -53,6 +53,7 @@ class PlantMotor:
     motor: its data for the diagnosis.
     relay: name of the relay that protects it.
     schedule: when it is recorded regularly; None where it is not.
+    bus: name of the bus it is fed from; None where that is not known.
     """
 
     motor: Motor
@@ -60,6 +61,7 @@ class PlantMotor:
     site: str
     relay: str
     schedule: Schedule | None = None
+    bus: str | None = None
 
     @property
     def name(self) -> str:
@@ -67,14 +69,35 @@ class PlantMotor:
 
 
 @dataclass(frozen=True, slots=True)
+class Bus:
+    """A bus with the motors that it feeds: their relays see the same supply.
+
+    motors: names of its motors.
+    schedule: when all of them are recorded, at once; None where they are not.
+    common_voltage_transformer: whether all relays have their voltages from one transformer, whose errors they
+    share; otherwise each has its own.
+    """
+
+    name: str
+    motors: tuple[str, ...]
+    schedule: Schedule | None = None
+    common_voltage_transformer: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Plant:
     sites: tuple[Site, ...]
     relays: tuple[Relay, ...]
     motors: tuple[PlantMotor, ...]
+    buses: tuple[Bus, ...] = ()
 
     def motor(self, name: str) -> PlantMotor:
         """Return a motor by its name. Raises KeyError."""
         return {motor.name: motor for motor in self.motors}[name]
+
+    def bus_of(self, motor: str) -> Bus | None:
+        """Return the bus that feeds a motor; None where it is not known."""
+        return next((bus for bus in self.buses if motor in bus.motors), None)
 
     def relay(self, name: str) -> Relay:
         """Return a relay by its name. Raises KeyError."""

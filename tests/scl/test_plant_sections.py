@@ -118,3 +118,78 @@ def test_motor_with_two_relays_takes_the_first_and_says_so(tmp_path: Path) -> No
     read_scl = scl.read(write_scl(tmp_path / "plant.scd", text))
     assert [feeder.ied for feeder in read_scl.feeders()] == ["R2"]
     assert "several IEDs (R2, R1)" in messages(read_scl)
+
+
+def terminals(*nodes: str) -> str:
+    return "".join(
+        f'<Terminal connectivityNode="{node}" cNodeName="{node.rpartition("/")[2]}"/>' for node in nodes
+    )
+
+
+def motor_bay(number: int, *buses: str) -> str:
+    """A bay with a motor behind a breaker and current transformers; a disconnector to each bus."""
+    bay = f"S/LV/F{number}"
+    switches = "".join(
+        f'<ConductingEquipment name="Q{k}" type="DIS">{terminals(bus, f"{bay}/N2")}</ConductingEquipment>'
+        for k, bus in enumerate(buses)
+    )
+    return (
+        f'<Bay name="F{number}"><LNode iedName="R1" lnClass="PTRC"/>{switches}'
+        f'<ConductingEquipment name="Q9" type="CBR">{terminals(f"{bay}/N2", f"{bay}/N1")}'
+        "</ConductingEquipment>"
+        f'<ConductingEquipment name="T1" type="VTR">{terminals(f"{bay}/N1")}</ConductingEquipment>'
+        f'<ConductingEquipment name="M-{number}" type="MOT">{terminals(f"{bay}/N1")}</ConductingEquipment>'
+        f'<ConnectivityNode name="N1" pathName="{bay}/N1"/><ConnectivityNode name="N2" pathName="{bay}/N2"/>'
+        "</Bay>"
+    )
+
+
+def bus_bays(*names: str) -> str:
+    """Bays of busbars with a coupler between them, whose position nobody knows."""
+    nodes = [f"S/LV/{name}/BB" for name in names]
+    bays = "".join(
+        f'<Bay name="{name}"><ConnectivityNode name="BB" pathName="{node}"/></Bay>'
+        for name, node in zip(names, nodes, strict=True)
+    )
+    coupler = f'<ConductingEquipment name="Q0" type="CBR">{terminals(*nodes)}</ConductingEquipment>'
+    return f'{bays}<Bay name="COUPLER">{coupler}</Bay>' if len(nodes) > 1 else bays
+
+
+def test_motors_are_on_the_bus_behind_their_switches(tmp_path: Path) -> None:
+    bays = (
+        bus_bays("W1", "W2")
+        + motor_bay(1, "S/LV/W1/BB")
+        + motor_bay(2, "S/LV/W1/BB")
+        + motor_bay(3, "S/LV/W2/BB")
+        + motor_bay(4, "S/LV/W1/BB", "S/LV/W2/BB")
+    )
+    section = f'<Substation name="S"><VoltageLevel name="LV">{bays}</VoltageLevel></Substation>'
+    feeders = read(tmp_path, substation=section).feeders()
+    assert {feeder.motor: feeder.bus for feeder in feeders} == {
+        "M-1": "S/LV/W1/BB",
+        "M-2": "S/LV/W1/BB",
+        "M-3": "S/LV/W2/BB",
+        "M-4": None,
+    }
+
+
+def test_motors_of_one_bay_share_its_bus(tmp_path: Path) -> None:
+    node = "S/LV/B1/BB"
+    motors = "".join(
+        f'<ConductingEquipment name="M-{k}" type="MOT"><LNode iedName="R1" lnClass="PTRC"/>'
+        f"{terminals(f'S/LV/B1/N{k}')}</ConductingEquipment>"
+        f'<ConductingEquipment name="Q{k}" type="CBR">{terminals(f"S/LV/B1/N{k}", node)}'
+        "</ConductingEquipment>"
+        for k in (1, 2)
+    )
+    nodes = "".join(
+        f'<ConnectivityNode name="{name}" pathName="S/LV/B1/{name}"/>' for name in ("N1", "N2", "BB")
+    )
+    feeders = read(tmp_path, substation=substation(motors + nodes)).feeders()
+    assert [feeder.bus for feeder in feeders] == [node, node]
+
+
+def test_without_topology_no_bus_is_known(tmp_path: Path) -> None:
+    motor = '<ConductingEquipment name="M-1" type="MOT"><LNode iedName="R1" lnClass="PTRC"/>'
+    (feeder,) = read(tmp_path, substation=substation(f"{motor}</ConductingEquipment>")).feeders()
+    assert feeder.bus is None

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from core.units import NANOSECONDS_PER_DAY
 from service.background.scheduling import LONGEST_DELAY_NS, Scheduler
-from service.plant import Schedule
+from service.plant import Bus, Schedule
 from service.storage import Repository
 from service.storage.records import RecordingRequest
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
@@ -94,6 +94,35 @@ def test_a_clock_that_jumps_back_repeats_nothing(repository: Repository) -> None
     assert len(reports(repository)) == 1
     scheduled.request_due(DUE_NS - NANOSECONDS_PER_DAY + MINUTE_NS)
     assert len(reports(repository)) == 2, "it goes on by the new time, not in a day"
+
+
+def test_all_motors_of_a_bus_are_asked_for_in_one_go(repository: Repository) -> None:
+    pump, fan = two_motor_plant().motors
+    bus = Bus("MCC-A", (pump.name, fan.name), Schedule.parse("* * * * *"))
+    scheduled = Scheduler([pump, fan], repository, buses=[bus], since_ns=NOW_NS)
+    scheduled.request_due(DUE_NS - 1)
+    assert reports(repository) == []
+    scheduled.request_due(DUE_NS)
+    asked = reports(repository)
+    assert sorted(report.motor for report in asked) == [fan.name, pump.name]
+    assert {report.requested_ns for report in asked} == {DUE_NS}
+
+
+def test_a_motor_that_is_scheduled_alone_and_with_its_bus_is_asked_for_once(repository: Repository) -> None:
+    pump, fan = two_motor_plant().motors
+    every_minute = Schedule.parse("* * * * *")
+    alone = [replace(pump, schedule=every_minute), fan]
+    bus = Bus("MCC-A", (pump.name,), every_minute)
+    Scheduler(alone, repository, buses=[bus], since_ns=NOW_NS).request_due(DUE_NS)
+    assert [report.motor for report in reports(repository)] == [pump.name]
+
+
+def test_a_motor_that_still_waits_does_not_keep_its_bus_waiting(repository: Repository) -> None:
+    pump, fan = two_motor_plant().motors
+    bus = Bus("MCC-A", (pump.name, fan.name), Schedule.parse("* * * * *"))
+    repository.request_recording(pump.name, now_ns=NOW_NS)
+    Scheduler([pump, fan], repository, buses=[bus], since_ns=NOW_NS).request_due(DUE_NS)
+    assert [report.motor for report in reports(repository) if report.origin == "schedule"] == [fan.name]
 
 
 def test_a_new_scheduler_requests_nothing_of_the_past(repository: Repository) -> None:

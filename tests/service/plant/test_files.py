@@ -3,8 +3,9 @@ from pathlib import Path
 import pytest
 
 import scl
+from core.machines.sensors import SensorClass
 from service.configuration.settings import Settings, SettingsError
-from service.plant import Overrides, PlantError, Schedule, read_plant
+from service.plant import Bus, Overrides, PlantError, Schedule, read_plant
 
 DEMO_MOTORS = Path(__file__).parents[3] / "service" / "demo" / "motors.toml"
 
@@ -58,7 +59,7 @@ def test_the_demo_plant(motors: Path) -> None:
         (
             "# The demo",
             "motors = 6 # The demo",
-            "top level: expected [[motor]] tables and nothing else, found motors",
+            "top level: expected [[motor]] and [[bus]] tables and nothing else, found motors",
         ),
         ("[[motor]]", "[[motor", "expected valid TOML in UTF-8"),
     ],
@@ -183,3 +184,96 @@ def test_a_motor_may_have_a_schedule(motors: Path) -> None:
     motors.write_text(text.replace('name = "FAN-A2"', 'name = "FAN-A2"\nschedule = "at dawn"'))
     with pytest.raises(PlantError, match=r"motor FAN-A2: schedule: expected 5 fields.*found 'at dawn'"):
         read_plant(settings(motors))
+
+
+def test_the_motors_file_says_which_motors_share_a_bus(motors: Path) -> None:
+    text = motors.read_text(encoding="utf-8")
+    for name, bus in [("PUMP-A1", "MCC-A"), ("FAN-A2", "MCC-A"), ("PUMP-B3", "MCC-B")]:
+        text = text.replace(f'name = "{name}"', f'name = "{name}"\nbus = "{bus}"')
+    motors.write_text(
+        text + '\n[[bus]]\nname = "MCC-A"\nschedule = "0 * * * *"\ncommon_voltage_transformer = true\n'
+    )
+    plant = read_plant(settings(motors))
+    assert plant.buses == (
+        Bus("MCC-A", ("PUMP-A1", "FAN-A2"), Schedule("0 * * * *"), common_voltage_transformer=True),
+        Bus("MCC-B", ("PUMP-B3",)),
+    )
+    assert plant.motor("FAN-A2").bus == "MCC-A"
+    assert plant.bus_of("FAN-A2") is plant.buses[0]
+    assert plant.motor("MILL-A3").bus is None
+    assert plant.bus_of("MILL-A3") is None
+
+
+BUSBAR = "FACTORY_A/LV/W1/BB"
+
+
+def scd_with_a_busbar(folder: Path) -> Path:
+    """The demo plant's SCD with a busbar of which the first two motors are fed through a breaker."""
+    text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
+    busbar = f'<Bay name="W1"><ConnectivityNode name="BB" pathName="{BUSBAR}"/></Bay>'
+    for bay in ("A1", "A2"):
+        node = f"FACTORY_A/LV/{bay}/N1"
+        start = text.index(f'<Bay name="{bay}"')
+        end = text.index("</Bay>", start)
+        breaker = "".join(
+            f'<Terminal connectivityNode="{one}" cNodeName="{one.rpartition("/")[2]}"/>'
+            for one in (BUSBAR, node)
+        )
+        inner = text[start:end].replace(
+            "</ConductingEquipment>",
+            f'<Terminal connectivityNode="{node}" cNodeName="N1"/></ConductingEquipment>'
+            f'<ConductingEquipment name="Q0" type="CBR">{breaker}</ConductingEquipment>',
+        )
+        text = f'{text[:start]}{inner}<ConnectivityNode name="N1" pathName="{node}"/>{text[end:]}'
+    text = text.replace('<Bay name="A1"', f'{busbar}<Bay name="A1"')
+    path = folder / "plant.scd"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_scd_says_which_motors_share_a_bus_and_the_motors_file_wins(motors: Path, tmp_path: Path) -> None:
+    scd = scd_with_a_busbar(tmp_path)
+    assert read_plant(settings(motors, scd)).buses == (Bus(BUSBAR, ("PUMP-A1", "FAN-A2")),)
+    text = motors.read_text(encoding="utf-8").replace('name = "FAN-A2"', 'name = "FAN-A2"\nbus = "SPARE"')
+    motors.write_text(f'{text}\n[[bus]]\nname = "{BUSBAR}"\nschedule = "5 * * * *"\n')
+    assert read_plant(settings(motors, scd)).buses == (
+        Bus(BUSBAR, ("PUMP-A1",), Schedule("5 * * * *")),
+        Bus("SPARE", ("FAN-A2",)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ('name = "MCC-A"\n', r"bus MCC-A: expected a bus of the SCD.*\(none is known\), found a bus without"),
+        ("schedule = 3\n", "bus 1: name: expected the bus's name, found None"),
+        ('name = "B"\nschedule = "at dawn"\n', "bus B: schedule: expected 5 fields"),
+        ('name = "B"\ncommon_voltage_transformer = 1\n', "bus B: common_voltage_transformer: expected true"),
+        ('name = "B"\nmotors = []\n', "bus B: motors: expected one of name, schedule"),
+        ('name = "B"\n[[bus]]\nname = "B"\n', "bus 2: name: expected each bus once, found B again"),
+    ],
+)
+def test_what_is_wrong_in_a_bus_is_named(motors: Path, table: str, message: str) -> None:
+    motors.write_text(motors.read_text(encoding="utf-8") + "\n[[bus]]\n" + table)
+    with pytest.raises(PlantError, match=message):
+        read_plant(settings(motors))
+
+
+def test_sensors_are_those_of_the_file_or_typical_of_the_relay(motors: Path, tmp_path: Path) -> None:
+    text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
+    scd = tmp_path / "plant.scd"
+    scd.write_text(
+        text.replace('manufacturer="SEL"', 'manufacturer="Siemens AG"').replace(
+            'type="SEL_710"', 'type="7SK806"'
+        ),
+        encoding="utf-8",
+    )
+    named = motors.read_text(encoding="utf-8").replace(
+        "[motor.nameplate]", "[motor.sensors]\nvoltage_gain = 0.002\n\n[motor.nameplate]", 1
+    )
+    motors.write_text(named)
+    plant = read_plant(settings(motors, scd))
+    assert plant.motor("PUMP-A1").motor.sensors == SensorClass(voltage_gain=0.002, current_gain=0.015)
+    assert plant.motor("FAN-A2").motor.sensors == SensorClass(current_gain=0.015)
+    usual = read_plant(settings(motors))
+    assert usual.motor("FAN-A2").motor.sensors == SensorClass()
