@@ -3,9 +3,9 @@
 python examples/make_month_of_records.py FOLDER
 
 One record every four hours of the motor of examples/motor.toml, whose load and supply wander and whose
-relay's channels are some tenths of a percent off. On the twentieth day a path opens across turns of phase b.
-It has twice their resistance, and every day it reaches 0.3 % more of the turns, which counts as 0.1 % more of
-dead-shorted ones. The physics are the simulator's own and share nothing with what judges them.
+relay's channels are some tenths of a percent off. After twenty days 0.6 % of the turns of phase b are
+shorted, and 0.05 % more every day. The physics are the simulator's own, which share nothing with what judges
+them.
 """
 
 import sys
@@ -29,7 +29,7 @@ FULL_SCALE_A, FULL_SCALE_V = 80.0, 700.0
 BEGUN_NS = 1_772_323_200 * NANOSECONDS_PER_SECOND
 DAYS, EVERY_S = 30, 4 * 3600
 PHASE_B, FAULTY_AFTER_DAYS = 1, 20.0
-PATH_RATIO, GROWTH_A_DAY = 2.0, 0.003
+STEP, GROWTH_A_DAY = 0.006, 0.0005
 GAIN_ERRORS = (-0.003, 0.002, 0.001, 0.004, -0.002, 0.003)
 
 
@@ -40,8 +40,7 @@ def records() -> Iterator[Recording]:
     begins_s, ends_s = FAULTY_AFTER_DAYS * SECONDS_PER_DAY, float(DAYS * SECONDS_PER_DAY)
     fault = FaultCourse(
         PHASE_B,
-        ((begins_s, 0.0), (ends_s, GROWTH_A_DAY * (DAYS - FAULTY_AFTER_DAYS))),
-        turns_resistance_ohm=PATH_RATIO * motor.parameters.stator_resistance_ohm,
+        ((begins_s - 1.0, 0.0), (begins_s, STEP), (ends_s, STEP + GROWTH_A_DAY * (DAYS - FAULTY_AFTER_DAYS))),
     )
     supply = Supply(
         plate.rated_voltage_V,

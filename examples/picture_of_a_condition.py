@@ -47,8 +47,9 @@ def main() -> None:
     if condition["since"] is not None:
         axes.axvline(days(condition["since"]), color=GREY, linewidth=1)
         axes.annotate(" since", (days(condition["since"]), 0.9 * limit), color=GREY)
+    kind = " or ".join(condition["candidates"]) or condition["kind"]
     phase = f", phase {condition['phase']}" if condition["phase"] else ""
-    axes.set_title(f"{condition['motor']}: {condition['state']}, {condition['kind']}{phase}", loc="left")
+    axes.set_title(f"{condition['motor']}: {condition['state']}, {kind}{phase}", loc="left")
     axes.set(xlabel="days from the latest record", ylabel="shorted turns, % of the phase")
     axes.legend(loc="upper left", title="dashed: limit; bar: 80 % forecast")
     figure.savefig(sys.argv[2], dpi=110)

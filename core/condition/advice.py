@@ -13,6 +13,9 @@ UNKNOWN = (
 FAULT_URGENCY = (
     "Stop the motor at the next opportunity, within days: shorted turns run hot and take others with them."
 )
+FAULT_OR_JOINT_URGENCY = (
+    "Stop the motor at the next opportunity, within days: either runs hot and gets worse by itself."
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +148,8 @@ def advice(state: State, kind: Kind, *, phase: str | None = None, candidates: It
     if kind is Kind.UNCLEAR:
         likeliest = frozenset(tuple(candidates)[:2])
         task = _TELLING.get(likeliest, task) if likeliest else _UNCONFIRMED
-    urgency = FAULT_URGENCY if state is State.FAULT else task.urgency
+    urgency = task.urgency
+    if state is State.FAULT:
+        urgency = FAULT_OR_JOINT_URGENCY if kind is Kind.UNCLEAR else FAULT_URGENCY
     where = "" if phase is None else f" of phase {phase}"
     return " ".join((task.check, urgency, task.surer)).replace("{where}", where)

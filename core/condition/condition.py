@@ -345,7 +345,7 @@ def _forecast(assessment: Assessment, level: Level | None, mu_f: float, limit: f
     if level is None:
         return Forecast(limit)
     standing = mu_f - max(0.0, level.value)
-    return forecast(assessment.levels, limit, standing=standing, deviation=level.deviation)
+    return forecast(assessment.levels, limit, today=level.value, deviation=level.deviation, standing=standing)
 
 
 def _is_shorted_turns(change: Change | None) -> bool:

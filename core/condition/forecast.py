@@ -18,7 +18,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from core.condition.trends import filtered, moved
+from core.condition.trends import filtered, moved, onset
 from core.units import NANOSECONDS_PER_DAY
 
 Array = NDArray[np.float64]
@@ -40,6 +40,12 @@ FEWEST: Final = 4
 
 FEW: Final = 8.0
 """So many records tell their own variance within about half; it is taken as larger where there are few."""
+
+MEDIAN_OF_SQUARES: Final = 0.4549
+"""Median of the square of a standard normal variable."""
+
+MOST_SCALE: Final = 3.0
+"""Paths change a level by no more than that."""
 
 LEAST_VARIANCE: Final = 1e-14
 
@@ -102,7 +108,12 @@ def limit_ahead(level: float, limit: float) -> float:
 
 
 def forecast(
-    levels: Sequence[tuple[int, float]], limit: float, *, standing: float = 0.0, deviation: float = 0.0
+    levels: Sequence[tuple[int, float]],
+    limit: float,
+    *,
+    today: float | None = None,
+    deviation: float = 0.0,
+    standing: float = 0.0,
 ) -> Forecast:
     """Tell when a level that changes reaches a limit.
 
@@ -112,10 +123,13 @@ def forecast(
         Time [ns] and change of the level at each record, oldest first.
     limit : float
         The limit, a fraction of the phase turns.
+    today : float or None, optional
+        Change of the level today from all that is known, to which the levels are scaled: single ones are
+        those of the likeliest path. None where they are taken as they are.
+    deviation : float, optional
+        Its standard deviation from all causes.
     standing : float, optional
         Level before the change, which adds to it.
-    deviation : float, optional
-        Standard deviation of today's level from all causes.
 
     Returns
     -------
@@ -129,30 +143,43 @@ def forecast(
     days = (times_ns - times_ns[-1]) / NANOSECONDS_PER_DAY
     spacing_days = -days[0] / (days.size - 1)
     t = days / spacing_days
-    m = np.array([level for _, level in levels]) + standing
-    state, covariance, ln_likelihood = filtered(t, m, _variance(t, m), _LAMBDA, _Q)
+    m = np.array([level for _, level in levels])
+    scatter = _variance(t, m)
+    first = onset(t, m, scatter, _Q[_LAMBDA == 0.0])
+    state, covariance, ln_likelihood = filtered(t[first:], m[first:], scatter, _LAMBDA, _Q)
     weight = np.exp(ln_likelihood + _LN_PRIOR - np.max(ln_likelihood + _LN_PRIOR))
     weight /= weight.sum()
     horizon = LONGEST_DAYS / spacing_days
     # Steps grow with the time itself, from a hundredth of a record on.
     ahead = np.concatenate(([0.0], np.geomspace(0.01, max(horizon, 0.02), STEPS - 1)))
     mean, variance = moved(ahead, state, covariance, _LAMBDA, _Q)
-    common = max(0.0, deviation**2 - float(weight @ covariance[:, 0, 0]))
+    scale = _scale(float(weight @ state[:, 0]), today)
+    mean, variance = standing + scale * mean, scale * scale * variance
+    common = max(0.0, deviation**2 - float(weight @ variance[:, 0]))
     reached = weight @ _normal((mean - limit) / np.sqrt(variance + common))
     reached = np.maximum.accumulate(reached)
     return Forecast(
         limit,
         days=_quantiles(reached, ahead * spacing_days),
-        growth_per_day=float(weight @ state[:, 1]) / spacing_days,
+        growth_per_day=scale * float(weight @ state[:, 1]) / spacing_days,
     )
 
 
 def _variance(t: Array, m: Array) -> float:
-    """Return the variance of single levels, from how far each lies beside the line through its neighbours."""
+    """Return the variance of single levels, from how far each lies beside the line through its neighbours.
+
+    It is that of the median, so that a step in the levels is not taken for scatter.
+    """
     share = (t[1:-1] - t[:-2]) / np.maximum(t[2:] - t[:-2], 1e-9)
     beside = m[1:-1] - (1.0 - share) * m[:-2] - share * m[2:]
     squares = beside**2 / (1.0 + share**2 + (1.0 - share) ** 2)
-    return max(float(np.mean(squares)) * (1.0 + FEW / t.size), LEAST_VARIANCE)
+    return max(float(np.median(squares)) / MEDIAN_OF_SQUARES * (1.0 + FEW / t.size), LEAST_VARIANCE)
+
+
+def _scale(level: float, today: float | None) -> float:
+    if today is None or level <= 0.0:
+        return 1.0
+    return min(max(today / level, 1.0 / MOST_SCALE), MOST_SCALE)
 
 
 def _quantiles(reached: Array, days: Array) -> tuple[float, float, float] | None:

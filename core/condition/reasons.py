@@ -51,7 +51,7 @@ def reasons_of(assessment: Assessment, limit: float, forecast: Forecast) -> tupl
     found += _of_forecast(forecast)
     found += _of_standing(assessment)
     found += _of_reference(assessment.reference)
-    if assessment.unconfirmed:
+    if assessment.unconfirmed and assessment.change is None:
         found.insert(0, "the latest record differs from all before: another has to confirm it")
     return tuple(found)
 
@@ -132,6 +132,8 @@ def _interval(level: Level) -> str:
 
 
 def _days(days: float) -> str:
+    if days * HOURS_PER_DAY < 1.0:
+        return "an hour"
     return f"{days * HOURS_PER_DAY:.0f} hours" if days < 2.0 else f"{days:.0f} days"
 
 

@@ -15,6 +15,9 @@ LEVEL_DEVIATION = 0.05
 GROWTH_DEVIATION = 0.001
 """Prior standard deviation of the first growth, a record."""
 
+MOST_BEFORE = 12
+"""Records before the onset that are looked for among the first: it is known no better than that."""
+
 MOST_GROWTH = 40.0
 """Largest lambda h: beyond it every level is reached."""
 
@@ -108,6 +111,37 @@ def filtered(
         covariance[i, 0, 1] = covariance[i, 1, 0] = p01
         ln_likelihood[i] = total
     return state, covariance, ln_likelihood
+
+
+@compiled
+def onset(t: Array, m: Array, variance: float, densities: Array) -> int:
+    """Tell which of the first levels are from before the change.
+
+    Parameters
+    ----------
+    t : ndarray, shape (n,)
+        Times [records].
+    m : ndarray, shape (n,)
+        Changes of the level, which are zero before the change but for their scatter.
+    variance : float
+        Variance of a single level.
+    densities : ndarray, shape (k,)
+        q of trends whose growth does not feed itself.
+
+    Returns
+    -------
+    int
+        Number of levels from before the change, likeliest; at most a third of all.
+    """
+    still, best, highest = 0.0, 0, -np.inf
+    for first in range(min(MOST_BEFORE, t.size // 3) + 1):
+        if first > 0:
+            still -= 0.5 * (log(2.0 * pi * variance) + m[first - 1] * m[first - 1] / variance)
+        _, _, ln_likelihood = filtered(t[first:], m[first:], variance, 0.0 * densities, densities)
+        total = still + np.max(ln_likelihood)
+        if total > highest:
+            best, highest = first, total
+    return best
 
 
 @compiled

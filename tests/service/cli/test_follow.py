@@ -21,6 +21,7 @@ from service.cli import main
 from service.cli.condition_view import print_condition
 from service.cli.followed_records import FEW, find_records, observe_all, observe_record
 from testing.machines.motors import REFERENCE
+from testing.machines.phase_circuits import Fault
 from testing.machines.record_series import BEGUN_NS, HOUR_NS, write_series
 
 RECORDS = FEW + 2
@@ -72,6 +73,24 @@ def test_the_document_is_that_of_the_records_folded_in_their_order(
     ]
     assert document["history"][-1]["state"] == document["state"]
     assert document["skipped"] == []
+
+
+def test_turns_that_short_are_found_with_their_phase(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_motor(tmp_path / "PUMP.toml", REFERENCE)
+    faulty_from = 30
+    write_series(
+        tmp_path, REFERENCE, 50, fault=lambda k: Fault(0.02, winding=2) if k >= faulty_from else None
+    )
+    document = followed(capsys, tmp_path, str(tmp_path))
+    assert (document["state"], document["phase"]) == ("fault", "c")
+    assert "shorted-turns" in (document["kind"], *document["candidates"])
+    assert document["change_ci95"][0] < 0.02 < document["change_ci95"][1]
+    assert document["since"] == rfc3339(BEGUN_NS + faulty_from * HOUR_NS)
+    states = [entry["state"] for entry in document["history"]]
+    assert set(states[:faulty_from]) == {"healthy"}
+    assert "watch" in states[faulty_from:]
 
 
 def test_several_processes_see_what_one_sees(plant: Path) -> None:
