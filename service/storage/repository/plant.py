@@ -1,5 +1,7 @@
 """Sites, relays and motors."""
 
+from collections.abc import Mapping
+
 from sqlalchemy import select, update
 
 from service.plant import Plant
@@ -7,6 +9,7 @@ from service.storage.engine import one_at_a_time
 from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow
 from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
 from service.storage.repository.conditions import new_condition
+from service.storage.repository.fold_marks import EARLIEST_NS, mark
 from service.storage.repository.sessions import Sessions, columns_of, found, page_of, record_of
 from service.storage.states import LinkState
 
@@ -15,7 +18,8 @@ class PlantRows(Sessions):
     def sync_plant(self, plant: Plant) -> None:
         """Make the tables say what the plant's files say.
 
-        What left the plant is put out of service, not deleted: its recordings stay.
+        What left the plant is put out of service, not deleted: its recordings stay. Motors of a bus that
+        others joined or left are folded anew, because what its motors see is compared.
         """
         with self._write() as session:
             one_at_a_time(session.connection(), "sync plant")
@@ -32,6 +36,7 @@ class PlantRows(Sessions):
                 row.site, row.host, row.port = relay.site, relay.host, relay.port
                 row.manufacturer, row.type, row.in_service = relay.manufacturer, relay.type, True
             session.flush()
+            buses_before = {row.name: row.bus for row in session.scalars(select(MotorRow))}
             for motor in plant.motors:
                 session.merge(
                     MotorRow(
@@ -41,9 +46,12 @@ class PlantRows(Sessions):
                         ied=motor.relay,
                         in_service=True,
                         schedule=None if motor.schedule is None else motor.schedule.expression,
+                        bus=motor.bus,
                     )
                 )
             session.flush()
+            for name in _of_changed_buses(buses_before, plant):
+                mark(session, name, EARLIEST_NS)
             for motor in plant.motors:
                 if session.get(ConditionRow, motor.name) is None:
                     session.add(new_condition(motor.name))
@@ -108,3 +116,11 @@ def _relay(row: IedRow) -> IedEntry:
 
 def _motor(row: MotorRow) -> MotorEntry:
     return record_of(MotorEntry, row)
+
+
+def _of_changed_buses(before: Mapping[str, str | None], plant: Plant) -> list[str]:
+    """Return the motors known before that are, or were, on a bus which a motor joined or left."""
+    now = {**before, **{motor.name: motor.bus for motor in plant.motors}}
+    moved = [name for name in now if before.get(name) != now[name]]
+    changed = {bus for name in moved for bus in (before.get(name), now[name]) if bus is not None}
+    return [name for name, bus in before.items() if changed.intersection((bus, now[name]))]

@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session
 from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
 from core.condition.observation import VoltageChannels
+from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.errors import UnstorableDiagnosisError
@@ -25,7 +26,7 @@ from service.storage.records import (
 from service.storage.states import DeletedBy
 from testing.service.following import FAN, PUMP, Recorder
 from testing.service.observations import HOUR_NS, OBSERVATION, observation
-from testing.service.plants import NOW_NS, SECOND_NS
+from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 
 
 @pytest.fixture
@@ -284,3 +285,34 @@ def test_recordings_from_before_are_observed_once(
     assert repository.backlog().motors_to_fold == 1
     assert repository.motors_to_observe() == ()
     assert len(began(repository).observations) == 2
+
+
+def test_motors_of_a_bus_that_another_joins_are_folded_anew(
+    repository: Repository, recorder: Recorder
+) -> None:
+    plant = two_motor_plant()
+    for motor in (PUMP, FAN):
+        recorder.record(observation(0), motor)
+        fold = began(repository, motor)
+        repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
+    repository.sync_plant(plant)
+    assert repository.motors_to_fold() == ()
+    repository.sync_plant(on_buses(plant, {PUMP: "A", FAN: "B"}))
+    together = on_buses(plant, {PUMP: "A", FAN: "A"})
+    for motor in (PUMP, FAN):
+        fold = began(repository, motor)
+        assert fold.neighbours == ()
+        repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
+    repository.sync_plant(together)
+    assert repository.motors_to_fold() == (FAN, PUMP)
+    for motor, other in ((PUMP, FAN), (FAN, PUMP)):
+        fold = began(repository, motor)
+        assert fold.checkpoint is None
+        assert [one.motor for one in fold.neighbours] == [other]
+        repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
+    repository.sync_plant(together)
+    assert repository.motors_to_fold() == ()
+
+
+def on_buses(plant: Plant, buses: dict[str, str]) -> Plant:
+    return replace(plant, motors=tuple(replace(one, bus=buses[one.name]) for one in plant.motors))
