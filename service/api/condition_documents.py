@@ -1,56 +1,39 @@
 """From what the database keeps of a motor's condition to the document of the API."""
 
-from core.condition import condition as conditions
+from collections.abc import Mapping
+
 from core.condition.advice import advice
 from core.condition.kinds import Kind, State
-from service.api.condition_schemas import Condition, ConditionReference, Forecast
+from service.api.condition_schemas import Condition, ConditionReference
 from service.storage.records import ConditionEntry
 
 NOT_JUDGED = "no valid record of the motor has been judged yet"
 
-NO_REFERENCE = ConditionReference(
-    records=0,
-    complete=False,
-    standing=None,
-    standing_deviation=None,
-    standing_phase=None,
-    standing_path_ratio=None,
-    standing_score=None,
-    detectable=None,
-    since=None,
-    from_bus=False,
-)
+_NO_REFERENCE: Mapping[str, object] = {
+    **dict.fromkeys(ConditionReference.model_fields),
+    "records": 0,
+    "complete": False,
+    "from_bus": False,
+    "accepted": False,
+}
+_NOTHING: Mapping[str, object] = {
+    **dict.fromkeys(Condition.model_fields),
+    "state": State.UNKNOWN,
+    "kind": Kind.NONE,
+    "candidates": [],
+    "forecast": {"limit": None, "days": None},
+    "reference": {},
+    "advice": advice(State.UNKNOWN, Kind.NONE),
+    "reasons": [NOT_JUDGED],
+}
 
 
 def condition_document(entry: ConditionEntry, now_ns: int, stale_after_ns: int) -> Condition:
     """Return a motor's condition as it is seen now: a condition gets stale without any record."""
-    if entry.document is None:
-        return _unknown(entry.motor)
-    condition = conditions.Condition.from_dict(entry.document).seen_at(now_ns, stale_after_ns)
-    document = condition.as_dict()
-    if condition.reference is None:
-        document["reference"] = NO_REFERENCE
-    return Condition.model_validate(document)
-
-
-def _unknown(motor: str) -> Condition:
-    return Condition(
-        motor=motor,
-        state=State.UNKNOWN,
-        kind=Kind.NONE,
-        candidates=[],
-        phase=None,
-        mu_f=None,
-        mu_f_ci95=None,
-        change=None,
-        change_ci95=None,
-        size=None,
-        since=None,
-        growth_per_day=None,
-        forecast=Forecast(limit=None, days=None),
-        reference=NO_REFERENCE,
-        as_of=None,
-        stale=True,
-        advice=advice(State.UNKNOWN, Kind.NONE),
-        reasons=[NOT_JUDGED],
+    document = {**_NOTHING, **(entry.document or {})}
+    reference = document["reference"]
+    known = reference if isinstance(reference, Mapping) else {}
+    is_stale = entry.as_of_ns is None or now_ns - entry.as_of_ns > stale_after_ns
+    return Condition.model_validate(
+        {**document, "motor": entry.motor, "stale": is_stale, "reference": {**_NO_REFERENCE, **known}}
     )

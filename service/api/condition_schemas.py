@@ -29,6 +29,7 @@ class ConditionReference(Document):
     would mean if it were shorted turns (..._deviation: standard deviation, ..._score: standard deviations
     beyond what the sensors leave). detectable: step of the level that would be seen within ten records in
     nine of ten cases. from_bus: whether other motors of the bus took part in judging it.
+    accepted: whether a person said that the motor is healthy as it is.
     """
 
     records: int
@@ -41,6 +42,7 @@ class ConditionReference(Document):
     detectable: float | None
     since: Time | None
     from_bus: bool
+    accepted: bool
 
 
 class Condition(Document):

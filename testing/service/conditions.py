@@ -10,6 +10,7 @@ from core.condition.kinds import Kind, State
 from core.units import NANOSECONDS_PER_DAY
 from service.storage import Repository
 from service.storage.records import (
+    Checkpoint,
     ConditionChange,
     ConditionEntry,
     ConditionFigures,
@@ -119,5 +120,6 @@ def tell(repository: Repository, condition: Condition, *, now_ns: int = NOW_NS) 
     change = ConditionChange(
         motor=condition.motor, time_ns=now_ns, recording_id=None, event_id=kept.id, **figures
     )
-    result = FoldResult(points, [change], [], tuple(fold.earlier), entry)
+    folded = Checkpoint(max([now_ns, *(point.time_ns for point in points)]), len(points), b"")
+    result = FoldResult(points, [change], [folded], tuple(fold.earlier), entry)
     assert repository.finish_fold(fold, result, now_ns=now_ns)

@@ -1,0 +1,316 @@
+"""The condition of motors over time, by REST, on both databases."""
+
+import time
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from threading import Barrier
+from typing import Any
+
+import httpx
+import pytest
+
+from core.condition.condition import Condition
+from core.condition.observation import Observation
+from core.time_stamps import rfc3339
+from core.units import NANOSECONDS_PER_DAY
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
+from testing.service.job_runner import RUNNER
+from testing.service.observations import HOUR_NS, observation
+from testing.service.plants import NOW_NS, healthy
+from tests.service.fixtures import database_url as sqlite_database_url
+
+__all__ = ["sqlite_database_url"]
+
+MOTOR = "/api/v1/motors/PUMP-A1"
+NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
+FIGURES = ("state", "kind", "phase", "mu_f", "mu_f_ci95", "change", "change_ci95")
+
+Record = Callable[[float], str]
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url(request: pytest.FixtureRequest) -> str:
+    url = request.getfixturevalue("sqlite_database_url" if request.param == "sqlite" else "postgresql_url")
+    assert isinstance(url, str)
+    return url
+
+
+@pytest.fixture
+def record(repository: Repository, store: RecordingStore) -> Record:
+    """Add a diagnosed recording of PUMP-A1, so many hours after NOW_NS; returns its id."""
+
+    def add(hour: float) -> str:
+        observed: Observation = observation(hour)
+        stored = store.store({"E.CFF": b"record of hour %f" % hour})
+        added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS)
+        claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
+        assert claimed is not None
+        assert repository.finish_job(
+            claimed.job.id,
+            healthy(),
+            recorded_ns=observed.time_ns,
+            now_ns=NOW_NS,
+            runner=RUNNER,
+            observation=observed,
+        )
+        return added.recording.id
+
+    return add
+
+
+def told(condition: Condition) -> dict[str, Any]:
+    """What the API says of a condition whose latest record is from long ago."""
+    return {**condition.as_dict(), "stale": True}
+
+
+def test_nothing_is_known_of_a_motor_before_its_first_record(client: httpx.Client) -> None:
+    found = client.get(f"{MOTOR}/condition").json()
+    known = {name: value for name, value in found.items() if value not in (None, [])}
+    assert known.pop("advice").startswith("Have the motor recorded while it runs")
+    assert known.pop("reasons") == ["no valid record of the motor has been judged yet"]
+    assert {**known.pop("reference"), "records": 0, "complete": False} == {
+        **dict.fromkeys(told(FAULT)["reference"]),
+        "records": 0,
+        "complete": False,
+        "from_bus": False,
+        "accepted": False,
+    }
+    assert known == {
+        "motor": "PUMP-A1",
+        "state": "unknown",
+        "kind": "none",
+        "forecast": {"limit": None, "days": None},
+        "stale": True,
+    }
+    assert set(found) == {*told(FAULT), "history"}
+    assert client.get(f"{MOTOR}/condition/history").json() == {"items": [], "next_cursor": None}
+    assert client.get(f"{MOTOR}/notes").json() == {"items": [], "next_cursor": None}
+
+
+def test_a_condition_comes_with_what_was_said_from_the_latest_records_on(
+    client: httpx.Client, repository: Repository, record: Record
+) -> None:
+    ids = [record(hour) for hour in range(3)]
+    tell(repository, DRIFTING)
+    found = client.get(f"{MOTOR}/condition").json()
+    history = found.pop("history")
+    assert found == told(DRIFTING)
+    assert [point["record"] for point in history] == ids
+    said = {name: found[name] for name in FIGURES}
+    assert history[1] == {**said, "record": ids[1], "time": rfc3339(NOW_NS + HOUR_NS)}
+    latest = client.get(f"{MOTOR}/condition", params={"history": 2}).json()["history"]
+    assert latest == history[1:]
+    assert client.get(f"{MOTOR}/condition", params={"history": 0}).json()["history"] == []
+    assert client.get(f"{MOTOR}/condition", params={"history": 101}).status_code == 422
+
+
+def test_a_condition_is_not_stale_while_its_latest_record_is_fresh(
+    client: httpx.Client, repository: Repository
+) -> None:
+    now_ns = time.time_ns()
+    tell(repository, replace(HEALTHY, as_of_ns=now_ns - NANOSECONDS_PER_DAY, stale=True))
+    assert client.get(f"{MOTOR}/condition").json()["stale"] is False
+    tell(repository, replace(HEALTHY, as_of_ns=now_ns - 8 * NANOSECONDS_PER_DAY), now_ns=NOW_NS + 1)
+    assert client.get(f"{MOTOR}/condition").json()["stale"] is True
+
+
+def test_the_history_says_what_changed_a_condition_latest_first(
+    client: httpx.Client, repository: Repository
+) -> None:
+    for number, condition in enumerate((HEALTHY, DRIFTING, FAULT)):
+        tell(repository, condition, now_ns=NOW_NS + number)
+    url = f"{MOTOR}/condition/history"
+    items = client.get(url).json()["items"]
+    assert [(item["state"], item["time"]) for item in items] == [
+        ("fault", rfc3339(NOW_NS + 2)),
+        ("watch", rfc3339(NOW_NS + 1)),
+        ("healthy", rfc3339(NOW_NS)),
+    ]
+    notes = client.get(f"{MOTOR}/notes").json()["items"]
+    assert [item["note_id"] for item in items] == [note["id"] for note in notes]
+    assert {item["recording_id"] for item in items} == {None}
+    assert {name: items[0][name] for name in FIGURES} == {name: told(FAULT)[name] for name in FIGURES}
+    first = client.get(url, params={"limit": 2}).json()
+    rest = client.get(url, params={"limit": 2, "cursor": first["next_cursor"]}).json()
+    assert first["items"] + rest["items"] == items
+    assert rest["next_cursor"] is None
+    assert client.get("/api/v1/motors/FAN-A2/condition/history").json()["items"] == []
+
+
+def test_health_leads_with_the_condition(
+    client: httpx.Client, repository: Repository, record: Record
+) -> None:
+    recording_id = record(0)
+    tell(repository, FAULT)
+    health = client.get(f"{MOTOR}/health").json()
+    assert list(health)[:4] == ["motor", "site", "ied", "condition"]
+    assert health["condition"] == told(FAULT)
+    assert (health["verdict"], health["phase"], health["recording_id"]) == ("healthy", None, recording_id)
+    listed = client.get("/api/v1/motors", params={"health": "true"}).json()["items"]
+    assert [one["health"]["condition"]["state"] for one in listed] == ["unknown", "fault"]
+    assert listed[1]["health"] == health
+
+
+def test_the_trend_of_the_condition_has_a_point_for_each_record(
+    client: httpx.Client, repository: Repository, record: Record
+) -> None:
+    ids = [record(hour) for hour in range(3)]
+    tell(repository, FAULT)
+    url = f"{MOTOR}/trend"
+    level = client.get(url, params={"quantity": "condition_level"}).json()["items"]
+    assert level[1] == {
+        "time": rfc3339(NOW_NS + HOUR_NS),
+        "value": 0.0121,
+        "ci95": [0.009, 0.0225],
+        "scatter95": None,
+        "detection_limit": None,
+        "verdict": None,
+        "recording_id": ids[1],
+        "state": "fault",
+        "kind": "shorted-turns",
+        "phase": "b",
+    }
+    change = client.get(url, params={"quantity": "change", "to": level[2]["time"]}).json()["items"]
+    assert [(point["value"], point["ci95"]) for point in change] == [(0.012, [0.009, 0.015])] * 2
+    page = client.get(url, params={"quantity": "change", "limit": 1}).json()
+    params = {"quantity": "change", "cursor": page["next_cursor"], "from": level[0]["time"]}
+    rest = client.get(url, params=params).json()["items"]
+    assert [point["recording_id"] for point in page["items"] + rest] == ids
+    of_record = client.get(url).json()["items"][0]
+    assert (of_record["verdict"], "state" in of_record) == ("healthy", False)
+
+
+def test_an_alarm_says_what_to_do_about_a_motor(client: httpx.Client, repository: Repository) -> None:
+    tell(repository, FAULT)
+    (alarm,) = client.get("/api/v1/alarms", params={"motor": "PUMP-A1", "standing": "true"}).json()["items"]
+    del alarm["id"]
+    assert alarm == {
+        "ied": "A1_SEL710",
+        "motor": "PUMP-A1",
+        "kind": "condition-fault",
+        "subject": "shorted turns in phase b",
+        "reason": "; ".join(FAULT.reasons),
+        "advice": FAULT.advice,
+        "raised_time": rfc3339(NOW_NS),
+        "cleared_time": None,
+    }
+    assert client.get("/api/v1/ieds/A1_SEL710").json()["alarms"] == []
+    assert client.get("/api/v1/alarms", params={"motor": "FAN-A2"}).json()["items"] == []
+    tell(repository, HEALTHY, now_ns=NOW_NS + 5)
+    (over,) = client.get("/api/v1/alarms").json()["items"]
+    assert over["cleared_time"] == rfc3339(NOW_NS + 5)
+
+
+def test_the_metrics_have_the_conditions(client: httpx.Client, repository: Repository) -> None:
+    tell(repository, FAULT)
+    assert client.post(f"{MOTOR}/notes", json=NOTE).status_code == 201
+    lines = set(client.get("/metrics").text.splitlines())
+    motor = 'motor="PUMP-A1"'
+    assert lines >= {
+        'mcc_motors{state="healthy"} 0.0',
+        'mcc_motors{state="fault"} 1.0',
+        'mcc_motors{state="unknown"} 1.0',
+        f'mcc_motor_state{{{motor},state="fault"}} 1.0',
+        f'mcc_motor_state{{{motor},state="watch"}} 0.0',
+        'mcc_motor_state{motor="FAN-A2",state="unknown"} 1.0',
+        f"mcc_motor_fault_level_ratio{{{motor}}} 0.0121",
+        f"mcc_motor_fault_level_change_ratio{{{motor}}} 0.012",
+        f"mcc_motor_condition_timestamp_seconds{{{motor}}} 1.76e+09",
+        'mcc_alarms{kind="condition-fault"} 1.0',
+        "mcc_recordings_to_observe 0.0",
+        "mcc_motors_to_fold 1.0",
+    }
+    assert not [line for line in lines if line.startswith("mcc_motor_fault_level") and "FAN-A2" in line]
+
+
+def test_a_note_is_kept_and_the_condition_is_to_follow_it(
+    client: httpx.Client, repository: Repository
+) -> None:
+    wanted = {**NOTE, "time": "2025-10-09T10:00:00+02:00"}
+    answer = client.post(f"{MOTOR}/notes", json=wanted)
+    assert answer.status_code == 201
+    note = answer.json()
+    assert {name: note[name] for name in ("motor", "kind", "text", "by", "time")} == {
+        "motor": "PUMP-A1",
+        "kind": "maintenance",
+        "text": "terminals cleaned",
+        "by": "A. Miller",
+        "time": "2025-10-09T08:00:00.000000000Z",
+    }
+    assert answer.headers["location"] == f"{MOTOR}/notes/{note['id']}"
+    assert client.get(answer.headers["location"]).json() == note
+    assert client.get(f"{MOTOR}/notes").json()["items"] == [note]
+    assert client.get(f"/api/v1/motors/FAN-A2/notes/{note['id']}").status_code == 404
+    assert repository.motors_to_fold() == ("PUMP-A1",)
+
+
+def test_a_remark_is_for_people_only(client: httpx.Client, repository: Repository) -> None:
+    before_ns = time.time_ns()
+    answer = client.post(f"{MOTOR}/notes", json={"text": "noisy\nbearing \N{SNOWMAN}", "by": "Zoë"})
+    note = answer.json()
+    assert (note["kind"], note["text"], note["by"]) == ("note", "noisy\nbearing \N{SNOWMAN}", "Zoë")
+    assert rfc3339(before_ns) <= note["time"] == note["made_time"] <= rfc3339(time.time_ns())
+    assert repository.motors_to_fold() == ()
+    assert client.get(f"{MOTOR}/condition/history").json()["items"] == []
+
+
+def test_a_reference_is_restarted_with_a_reason(client: httpx.Client, repository: Repository) -> None:
+    answer = client.post(f"{MOTOR}/reference", json={"reason": "surge test passed", "by": "A. Miller"})
+    assert answer.status_code == 201
+    note = client.get(answer.headers["location"]).json()
+    assert note == answer.json()
+    assert (note["kind"], note["text"], note["by"]) == (
+        "reference-restarted",
+        "surge test passed",
+        "A. Miller",
+    )
+    assert repository.motors_to_fold() == ("PUMP-A1",)
+    for wanted in ({"by": "A. Miller"}, {"reason": " ", "by": "A. Miller"}, {"reason": "passed"}):
+        assert client.post(f"{MOTOR}/reference", json=wanted).status_code == 422
+    assert len(client.get(f"{MOTOR}/notes").json()["items"]) == 1
+
+
+def test_notes_made_at_once_are_all_kept(client: httpx.Client, repository: Repository) -> None:
+    together = Barrier(4)
+
+    def add(number: int) -> httpx.Response:
+        together.wait(10)
+        wanted = {**NOTE, "text": f"note {number}", "time": rfc3339(NOW_NS)}
+        return client.post(f"{MOTOR}/notes", json=wanted)
+
+    with ThreadPoolExecutor(4) as pool:
+        answers = list(pool.map(add, range(4), timeout=60))
+    assert {answer.status_code for answer in answers} == {201}
+    kept = client.get(f"{MOTOR}/notes").json()["items"]
+    assert sorted(note["text"] for note in kept) == [f"note {number}" for number in range(4)]
+    assert sorted(note["id"] for note in kept) == sorted(answer.json()["id"] for answer in answers)
+    fold = repository.begin_fold("PUMP-A1", 10)
+    assert fold is not None
+    assert len(fold.events) == 4
+
+
+def test_a_motor_that_is_not_there_is_not_found(client: httpx.Client) -> None:
+    note = "notes/00000000-0000-0000-0000-000000000000"
+    for path in ("condition", "condition/history", "notes", note, "reference"):
+        url = f"/api/v1/motors/NOPE/{path}"
+        wanted = {"reason": "tested", "by": "A. Miller"}
+        answer = client.post(url, json=wanted) if path == "reference" else client.get(url)
+        assert answer.status_code == 404
+        assert answer.headers["content-type"] == "application/problem+json"
+        assert "there is no motor 'NOPE'" in answer.json()["detail"]
+
+
+def in_days(days: float) -> str:
+    return rfc3339(time.time_ns() + round(days * NANOSECONDS_PER_DAY))
+
+
+def test_a_time_may_be_a_little_ahead(client: httpx.Client) -> None:
+    assert client.post(f"{MOTOR}/notes", json={**NOTE, "time": in_days(0.9)}).status_code == 201
+    refused = client.post(f"{MOTOR}/notes", json={**NOTE, "time": in_days(1.1)})
+    assert refused.status_code == 422
+    (error,) = refused.json()["errors"]
+    assert error["location"] == "body.time"
+    assert "at most a day ahead" in error["message"]

@@ -1,0 +1,191 @@
+"""The commands about conditions, against the API on a real port."""
+
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from io import StringIO
+from pathlib import Path
+
+import httpx
+import pytest
+from rich.console import Console
+
+from core.condition.condition import Condition
+from core.time_stamps import rfc3339
+from service.api import ApiContext, create_app
+from service.cli.app import main
+from service.cli.motors import motors_table
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from service.storage.states import LinkState
+from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
+from testing.service.job_runner import RUNNER
+from testing.service.plants import NOW_NS, fault
+from tests.service.api.serving import serving
+from tests.service.fixtures import database_url, engine, repository
+
+__all__ = ["database_url", "engine", "repository"]
+
+Mcc = Callable[..., str]
+
+
+@pytest.fixture
+def client(repository: Repository, tmp_path: Path) -> Iterator[httpx.Client]:
+    context = ApiContext(
+        Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings")
+    )
+    with serving(create_app(context)) as client:
+        yield client
+
+
+@pytest.fixture
+def mcc(client: httpx.Client, capsys: pytest.CaptureFixture[str]) -> Mcc:
+    """Run a command that succeeds; returns what it prints."""
+
+    def run(*words: str) -> str:
+        assert main([*words, "--url", str(client.base_url)]) == 0
+        return capsys.readouterr().out
+
+    return run
+
+
+def unframed(shown: str) -> str:
+    """The words of a table."""
+    return " ".join(shown.translate({0x2502: " "}).split())
+
+
+def test_the_motors_lead_with_their_condition(mcc: Mcc, repository: Repository) -> None:
+    tell(repository, FAULT)
+    shown = mcc("motors")
+    row = next(line for line in shown.splitlines() if "PUMP-A1" in line)
+    assert " ".join(row.split()) == (
+        "PUMP-A1 fault: shorted turns b 1.21 [0.90..2.25] 2025-10-06 2025-10-09 08:53 stale unknown"
+    )
+    idle = next(line for line in shown.splitlines() if "FAN-A2" in line)
+    assert idle.split() == ["FAN-A2", "unknown", "-", "-", "-", "unknown"]
+    listed = json.loads(mcc("motors", "--json"))["motors"]
+    assert listed[1]["health"]["condition"] == {**FAULT.as_dict(), "stale": True}
+
+
+@pytest.mark.parametrize("condition", [FAULT, DRIFTING, HEALTHY])
+def test_80_columns_hold_the_list_of_motors(
+    client: httpx.Client, repository: Repository, condition: Condition
+) -> None:
+    tell(repository, condition)
+    repository.set_link_state("A1_SEL710", LinkState.QUARANTINED, "it lied " * 20, now_ns=NOW_NS)
+    motors = client.get("/api/v1/motors", params={"health": "true"}).json()["items"]
+    healths = [{**motor["health"], "motor": f"COMPRESSOR-{motor['ied'][:2]}"} for motor in motors]
+    console = Console(file=StringIO(), width=80)
+    console.print(motors_table(healths))
+    assert isinstance(console.file, StringIO)
+    lines = console.file.getvalue().splitlines()
+    assert max(len(line.rstrip()) for line in lines) <= 80
+    shown = " ".join(lines)
+    for words in ("COMPRESSOR-A1", str(condition.state), "08:53", "stale", "quarantined"):
+        assert words in shown
+    assert condition.mu_f_ci95 is not None
+    assert f"..{100 * condition.mu_f_ci95[1]:.2f}]" in shown
+
+
+def test_health_says_what_to_do_then_why_then_what_the_latest_recording_says(
+    mcc: Mcc, repository: Repository, tmp_path: Path
+) -> None:
+    stored = RecordingStore(tmp_path / "recordings").store({"E.CFF": b"samples"})
+    repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS)
+    claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
+    assert claimed is not None
+    repository.finish_job(claimed.job.id, fault(0.05), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    tell(repository, FAULT)
+    shown = unframed(mcc("health", "PUMP-A1"))
+    in_order = [
+        "condition fault: shorted turns b",
+        "what to do Check the winding of phase b.",
+        "fault level 1.21 % [0.90..2.25]",
+        "since 2025-10-06 08:53:20 UTC",
+        "change 1.20 % [0.90..1.50]",
+        "growth 0.04 % a day; 2.00 % in about 20 days, in eight of ten cases 12 to 41",
+        "why shorted turns in phase b: 1.20 %",
+        "reference learnt from 64 records; a step of 0.45 % would be seen within ten records",
+        "as of 2025-10-09 08:53:20 UTC; stale",
+        "latest verdict fault",
+        "equivalent fault level 5.00 % [4.60..5.40]",
+    ]
+    places = [shown.index(words) for words in in_order]
+    assert places == sorted(places)
+
+
+def test_a_motor_without_a_record_has_no_figures(mcc: Mcc) -> None:
+    shown = unframed(mcc("condition", "FAN-A2"))
+    assert "condition unknown what to do Have the motor recorded while it runs" in shown
+    assert "reference none yet as of no record yet" in shown
+    assert "%" not in shown
+
+
+def test_a_reference_that_is_not_complete_says_so(mcc: Mcc, repository: Repository) -> None:
+    reference = HEALTHY.reference
+    assert reference is not None
+    learning = replace(reference, records=5, complete=False, detectable=None)
+    tell(repository, replace(HEALTHY, reference=learning, change=None))
+    assert "learnt from 5 records so far; no change can be seen" in unframed(mcc("condition", "PUMP-A1"))
+
+
+def test_the_history_of_a_condition_tells_what_changed_it(mcc: Mcc, repository: Repository) -> None:
+    tell(repository, DRIFTING)
+    tell(repository, FAULT, now_ns=NOW_NS + 1)
+    lines = [" ".join(line.split()) for line in mcc("condition", "PUMP-A1", "--history").splitlines()]
+    assert lines[-3:-1] == [
+        "2025-10-09 08:53:20 UTC fault: shorted turns b 1.21 % [0.90..2.25] maintenance: new bearing (ann)",
+        "2025-10-09 08:53:20 UTC watch: unclear c 0.04 % [0.00..1.20] maintenance: new bearing (ann)",
+    ]
+    found = json.loads(mcc("condition", "PUMP-A1", "--history", "--json"))
+    assert [change["state"] for change in found["changes"]] == ["fault", "watch"]
+    assert "changes" not in json.loads(mcc("condition", "PUMP-A1", "--json"))
+
+
+def test_what_may_have_changed_is_named(mcc: Mcc, repository: Repository) -> None:
+    tell(repository, DRIFTING)
+    assert "watch: voltage channel or shorted turns c" in mcc("motors")
+
+
+def test_notes_are_taken_and_shown(mcc: Mcc, repository: Repository) -> None:
+    when = "2025-10-09T08:00:00Z"
+    told = mcc(
+        "note", "PUMP-A1", "new winding\nby Miller", "--kind", "rewound", "--time", when, "--by", "Ann"
+    )
+    assert told == "PUMP-A1: rewound of 2025-10-09 08:00:00 UTC is noted\n"
+    kept = json.loads(mcc("note", "PUMP-A1", "hums", "--json"))
+    assert kept["kind"] == "note"
+    assert kept["by"], "who is logged in says it"
+    restarted = mcc("restart-reference", "PUMP-A1", "--reason", "surge test passed", "--by", "Ann")
+    assert restarted.startswith("PUMP-A1: reference-restarted of 20")
+    rows = [" ".join(line.split()) for line in mcc("notes", "PUMP-A1").splitlines()]
+    assert "2025-10-09 08:00:00 UTC rewound Ann new winding by Miller" in rows
+    notes = json.loads(mcc("notes", "PUMP-A1", "--json"))["notes"]
+    assert [note["kind"] for note in notes] == ["reference-restarted", "note", "rewound"]
+    assert notes[-1]["time"] == rfc3339(NOW_NS - 3200 * 10**9)
+
+
+@pytest.mark.parametrize(
+    ("words", "status", "message"),
+    [
+        (("note", "NOPE", "hums"), 1, "there is no motor 'NOPE'"),
+        (("note", "PUMP-A1", " "), 1, "TEXT: expected a few words, found none"),
+        (("note", "PUMP-A1", "x" * 501), 1, "at most 500 characters"),
+        (("note", "PUMP-A1", "hums", "--time", "yesterday"), 1, "body.time"),
+        (("note", "PUMP-A1", "hums", "--kind", "exploded"), 2, "exploded"),
+        (("restart-reference", "PUMP-A1"), 2, "--reason"),
+        (("restart-reference", "PUMP-A1", "--reason", " "), 1, "--reason: expected a few words, found none"),
+        (("condition", "NOPE"), 1, "there is no motor 'NOPE'"),
+        (("notes", "NOPE"), 1, "there is no motor 'NOPE'"),
+    ],
+)
+def test_what_is_wrong_is_said(
+    client: httpx.Client,
+    capsys: pytest.CaptureFixture[str],
+    words: tuple[str, ...],
+    status: int,
+    message: str,
+) -> None:
+    assert main([*words, "--url", str(client.base_url)]) == status
+    assert message in capsys.readouterr().err
