@@ -1,7 +1,7 @@
 """Five motors on one bus: channels judged against each other, and motors faulty from the beginning."""
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks.condition.courses import Course, healthy, shape, with_fault, with_unbalance
 from benchmarks.condition.disturbances import Disturbance, disturbed, outcome_row
-from benchmarks.condition.following import Outcome, Said, outcome, quantile_text, said_of
+from benchmarks.condition.following import Outcome, Said, judged_around, outcome, quantile_text, said_of
 from benchmarks.condition.operation import Operation, draw_operation
 from benchmarks.condition.population import SimulatedMotor, draw_motor, draw_site
 from benchmarks.condition.records import REAL_NOISE, measure
@@ -99,7 +99,7 @@ def follow_bus(task: Task) -> Result:
         measure(random, one, _at_the_bus(random, supply, records), course, REAL_NOISE).observations()
         for one, course in zip(motors, courses, strict=True)
     ]
-    said, others_called = _follow_together(motors, every)
+    said, others_called = _follow_together(motors, every, judged_around(first, records))
     found = outcome(said, first)
     place = "abc"[motors[0].terminal(winding)]
     return Result(found, found.phase == place, others_called)
@@ -134,23 +134,24 @@ def _at_the_bus(random: np.random.Generator, supply: Operation, records: int) ->
 
 
 def _follow_together(
-    motors: Sequence[SimulatedMotor], every: Sequence[Sequence[Observation]]
+    motors: Sequence[SimulatedMotor], every: Sequence[Sequence[Observation]], judged: Container[int]
 ) -> tuple[list[Said], int]:
     """What is said of the first motor after each record; how many others were a fault at their last."""
     followers = [Follower(one.motor) for one in motors]
     said = []
-    for records in zip(*every, strict=True):
+    for number, records in enumerate(zip(*every, strict=True)):
         seen = [neighbour_of(one.motor, record) for one, record in zip(motors, records, strict=True)]
         for k, (follower, record) in enumerate(zip(followers, records, strict=True)):
             follower.fold(record, [*seen[:k], *seen[k + 1 :]])
-        said.append(_said(followers, motors, 0))
-    others = [_said(followers, motors, k) for k in range(1, len(motors))]
+        if number in judged:
+            said.append(_said(followers, motors, 0, number))
+    others = [_said(followers, motors, k, number) for k in range(1, len(motors))]
     return said, sum(one.condition.state is State.FAULT for one in others)
 
 
-def _said(followers: Sequence[Follower], motors: Sequence[SimulatedMotor], k: int) -> Said:
+def _said(followers: Sequence[Follower], motors: Sequence[SimulatedMotor], k: int, record: int) -> Said:
     estimates = [one.standing_estimate() for j, one in enumerate(followers) if j != k]
-    return said_of(followers[k], motors[k].motor, [one for one in estimates if one is not None])
+    return said_of(followers[k], motors[k].motor, record, [one for one in estimates if one is not None])
 
 
 def bus(buses: int, pool: Executor) -> Iterator[str]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.condition.courses import healthy, shape, with_fault
-from benchmarks.condition.following import Outcome, follow, outcome, quantile_text
+from benchmarks.condition.following import Outcome, follow, judged_around, outcome, quantile_text
 from benchmarks.condition.operation import draw_operation
 from benchmarks.condition.population import SimulatedMotor, draw_motor
 from benchmarks.condition.records import HARSH_NOISE, REAL_NOISE, measure
@@ -52,7 +52,8 @@ def follow_step(task: Task) -> Result:
     winding = int(random.integers(3))
     course = with_fault(healthy(records), winding, task.level * shape(records, first), task.path_ratio)
     observations = measure(random, simulated, operation, course, task.noise).observations()
-    found = outcome(list(follow(simulated.motor, observations)), first)
+    said = follow(simulated.motor, observations, judged_around(first, records))
+    found = outcome(list(said), first)
     return Result(found, found.phase == true_phase(simulated, winding))
 
 

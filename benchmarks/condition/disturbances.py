@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -19,7 +19,7 @@ from benchmarks.condition.courses import (
     with_unbalance,
     with_voltage_error,
 )
-from benchmarks.condition.following import Outcome, follow, outcome
+from benchmarks.condition.following import Outcome, follow, judged_around, outcome
 from benchmarks.condition.operation import draw_operation
 from benchmarks.condition.population import SimulatedMotor, draw_motor
 from benchmarks.condition.records import HARSH_NOISE, REAL_NOISE, measure
@@ -50,6 +50,7 @@ class Disturbance(StrEnum):
     RELAY_UNTOLD = "relay exchanged, unannounced"
     REWOUND = "rewound, unannounced"
     SUPPLY = "supply, step of V2/V1"
+    QUIET_SUPPLY = "supply, step of a V2/V1 that was constant"
     JOINT_STEP = "joint, step"
     JOINT_GROWTH = "joint, growth"
 
@@ -93,7 +94,7 @@ def disturbed(
             return with_other_relay(random, course, motor, first, announced=told)
         case Disturbance.REWOUND:
             return with_rewinding(random, course, motor, first)
-        case Disturbance.SUPPLY:
+        case Disturbance.SUPPLY | Disturbance.QUIET_SUPPLY:
             return with_unbalance(course, unbalance, sudden)
         case Disturbance.JOINT_STEP:
             return with_joint(course, place, joint_ohm, sudden)
@@ -108,9 +109,11 @@ def follow_disturbance(task: Task) -> Outcome:
     first = int(random.integers(BEFORE[0], BEFORE[1] + 1))
     records = first + AFTER
     operation = draw_operation(random, records)
+    if task.disturbance is Disturbance.QUIET_SUPPLY:
+        operation = replace(operation, unbalance=np.full(records, operation.unbalance[0]))
     course = disturbed(task.disturbance, random, simulated, records, first)
     observations = measure(random, simulated, operation, course, task.noise).observations()
-    return outcome(list(follow(simulated.motor, observations)), first)
+    return outcome(list(follow(simulated.motor, observations, judged_around(first, records))), first)
 
 
 def disturbances(motors: int, pool: Executor) -> Iterator[str]:

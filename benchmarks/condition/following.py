@@ -1,6 +1,6 @@
 """A motor followed over its simulated records, and what is said of it after each."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,11 +13,16 @@ from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
 from core.machines.parameters import Motor
 
+CLOSELY = 30
+"""Records after an event that are judged one by one."""
+
 
 @dataclass(frozen=True, slots=True)
 class Said:
-    """What is said after one record: condition, whether a change is open, and the detector's statistic."""
+    """What is said after one record, by its number from 0: condition, whether a change is open, and the
+    detector's statistic."""
 
+    record: int
     condition: Condition
     changed: bool
     statistic: float
@@ -28,21 +33,36 @@ class Said:
         return self.condition.candidates or (self.condition.kind,)
 
 
-def follow(motor: Motor, observations: Iterable[Observation]) -> Iterator[Said]:
-    """Fold records one by one and say each time what the motor's condition is."""
+def follow(
+    motor: Motor, observations: Iterable[Observation], judged: Container[int] | None = None
+) -> Iterator[Said]:
+    """Fold records one by one and say what the motor's condition is, after each or after those to be judged."""
     follower = Follower(motor)
-    for observation in observations:
+    for record, observation in enumerate(observations):
         follower.fold(observation)
-        yield said_of(follower, motor)
+        if judged is None or record in judged:
+            yield said_of(follower, motor, record)
 
 
-def said_of(follower: Follower, motor: Motor, bus: Sequence[StandingEstimate] = ()) -> Said:
+def judged_around(first: int, records: int) -> frozenset[int]:
+    """Which records are judged around an event: all of the first 30 after it, every fifth of the others."""
+    return frozenset(
+        [
+            *range(first % 5 + 4, first, 5),
+            *range(first, first + CLOSELY),
+            *range(first, records, 5),
+            records - 1,
+        ]
+    )
+
+
+def said_of(follower: Follower, motor: Motor, record: int, bus: Sequence[StandingEstimate] = ()) -> Said:
     """What is said of a motor now, beside the standing asymmetries of its bus."""
     assessment = follower.assessment(bus)
     if assessment is None:
         raise ValueError("nothing is said of a motor without a record")
     condition = condition_of(motor, assessment, assessment.as_of_ns)
-    return Said(condition, assessment.change is not None, assessment.statistic)
+    return Said(record, condition, assessment.change is not None, assessment.statistic)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +86,8 @@ def outcome(said: Sequence[Said], first: int) -> Outcome:
     """Read the outcome of an event at record `first` (from 0)."""
     seen = called = None
     phase = None
-    for k, one in enumerate(said[first:]):
+    for one in (one for one in said if one.record >= first):
+        k = one.record - first
         if seen is None and (one.changed or one.condition.state is State.FAULT):
             seen = k
         if one.condition.state is State.FAULT:
@@ -77,7 +98,7 @@ def outcome(said: Sequence[Said], first: int) -> Outcome:
         seen, called, phase,
         last.kinds if last.changed or last.condition.state is State.FAULT else (),
         last.condition.state,
-        any(one.changed for one in said[:first]),
+        any(one.changed for one in said if one.record < first),
     )  # fmt: skip
 
 

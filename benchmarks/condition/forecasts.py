@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks.condition.circuit import Array
 from benchmarks.condition.courses import healthy, shape, with_fault
 from benchmarks.condition.following import follow
-from benchmarks.condition.operation import HOUR_NS, draw_operation
+from benchmarks.condition.operation import draw_operation
 from benchmarks.condition.population import draw_motor
 from benchmarks.condition.records import HARSH_NOISE, REAL_NOISE, measure
 from benchmarks.reporting import rate_text, spread, table
@@ -21,7 +21,8 @@ LONGEST = 500
 HIGHEST_LEVEL = 0.04
 LOOKS = 4
 """Forecasts that are looked at of each motor."""
-DAY_NS = 24 * HOUR_NS
+APART = 5
+"""Records between forecasts."""
 PATHS = (0.0, 1.0, 3.0)
 
 
@@ -82,9 +83,9 @@ def follow_growth(task: Task) -> list[Look]:
     course = with_fault(healthy(records), int(random.integers(3)), level, float(random.choice(PATHS)))
     observations = measure(random, simulated, operation, course, task.noise).observations()
     looks = []
-    for k, said in enumerate(follow(simulated.motor, observations)):
-        forecast = said.condition.forecast
-        if k < REFERENCE or not said.changed or forecast.growth_per_day is None:
+    for said in follow(simulated.motor, observations, range(REFERENCE, records, APART)):
+        k, forecast = said.record, said.condition.forecast
+        if not said.changed or forecast.growth_per_day is None:
             continue
         # Times are taken from the first record of the growth, and go on hourly after the last.
         crossing = REFERENCE + int(np.searchsorted(endless, forecast.limit))
