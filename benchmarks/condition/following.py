@@ -36,7 +36,7 @@ class Said:
 def follow(
     motor: Motor, observations: Iterable[Observation], judged: Container[int] | None = None
 ) -> Iterator[Said]:
-    """Fold records one by one and say what the motor's condition is, after each or after those to be judged."""
+    """Fold records one by one and say what the motor's condition is after each, or after the judged ones."""
     follower = Follower(motor)
     for record, observation in enumerate(observations):
         follower.fold(observation)
