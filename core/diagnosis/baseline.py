@@ -14,6 +14,7 @@ from core.diagnosis.case import Case
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.hypotheses import Explanation
 from core.diagnosis.tolerance import backward_voltage
+from core.diagnosis.verdict import RELATIVE
 
 FEWEST_RECORDINGS = 3
 REMAINING = 0.3
@@ -43,6 +44,11 @@ class Baseline:
     unbalance_V: complex
     recordings: int
     remaining: float = REMAINING
+
+    @property
+    def reason(self) -> str:
+        """Reason in a diagnosis that was made relative to it."""
+        return f"{RELATIVE} {self.recordings} healthy recordings"
 
     @property
     def error_A(self) -> float:

@@ -154,7 +154,7 @@ def _diagnosed(
             1, "no voltages recorded: a balanced supply is assumed, so this is no better than a hint"
         )
     if baseline is not None:
-        reasons.append(f"relative to a baseline of {baseline.recordings} healthy recordings")
+        reasons.append(baseline.reason)
     explained = is_explained(explanation, tolerance)
     named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and explained)
     # Load and speed are those of the accepted hypothesis; an insignificant level would bias them. They do not

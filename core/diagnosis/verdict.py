@@ -1,12 +1,15 @@
 """What the diagnosis says of one recording; the shape of `mcc diagnose --json`."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
 from typing import Literal
 
 from core.quality.finding import QualityFinding
+
+RELATIVE = "relative to a baseline of"
+"""So begins the reason that tells of a baseline."""
 
 
 class Verdict(StrEnum):
@@ -162,6 +165,22 @@ class Diagnosis:
             "indicators": None if self.indicators is None else self.indicators.as_dict(),
             "currents_only": self.currents_only,
         }
+
+
+def is_relative(reasons: Iterable[str]) -> bool:
+    """Tell whether a diagnosis was made relative to a baseline.
+
+    Parameters
+    ----------
+    reasons : iterable of str
+        The reasons of the diagnosis.
+
+    Returns
+    -------
+    bool
+        Whether one of them says so.
+    """
+    return any(reason.startswith(RELATIVE) for reason in reasons)
 
 
 def not_finite(document: object) -> str | None:

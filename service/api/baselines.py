@@ -8,8 +8,7 @@ from fastapi import APIRouter
 from service.api.context import Context
 from service.api.document import Name
 from service.api.problems import problems
-from service.api.schemas import Baseline, BaselineRequest, Recording
-from service.storage.records import RecordingEntry
+from service.api.schemas import Baseline, BaselineRequest
 
 router = APIRouter(prefix="/motors/{name}/baseline", tags=["condition"])
 
@@ -17,21 +16,23 @@ router = APIRouter(prefix="/motors/{name}/baseline", tags=["condition"])
 @router.get("", responses=problems(404))
 def get_baseline(context: Context, name: Name) -> Baseline:
     """Return the recordings of a motor's baseline, oldest first; none where it has no baseline."""
-    return _document(context.repository.baseline(name))
+    return Baseline.model_validate(context.repository.baseline(name))
 
 
 @router.put("", responses=problems(400, 404, 409, 413))
 def set_baseline(context: Context, name: Name, wanted: BaselineRequest) -> Baseline:
-    """Replace a motor's baseline by recordings known to be healthy, for diagnoses from now on."""
+    """Replace a motor's baseline by recordings known to be healthy, for diagnoses from now on.
+
+    Recordings in doubt need a reason and who says so; both are kept, in a note of the motor too.
+    """
     ids = sorted(str(one) for one in wanted.recording_ids)
-    return _document(context.repository.set_baseline(name, ids, now_ns=time.time_ns()))
+    baseline = context.repository.set_baseline(
+        name, ids, reason=wanted.reason, by=wanted.by, now_ns=time.time_ns()
+    )
+    return Baseline.model_validate(baseline)
 
 
 @router.delete("", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
 def drop_baseline(context: Context, name: Name) -> None:
     """Delete a motor's baseline; its recordings stay."""
-    context.repository.set_baseline(name, [], now_ns=time.time_ns())
-
-
-def _document(recordings: tuple[RecordingEntry, ...]) -> Baseline:
-    return Baseline(recordings=[Recording.model_validate(one) for one in recordings])
+    context.repository.delete_baseline(name)

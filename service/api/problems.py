@@ -17,6 +17,7 @@ from structlog.typing import FilteringBoundLogger
 from service.process.disk_space import is_disk_full
 from service.recording_store.store import RecordingStoreError
 from service.storage.errors import (
+    DoubtfulBaselineError,
     FolderGoneError,
     NotFoundError,
     OutOfServiceError,
@@ -65,7 +66,10 @@ class FieldError(BaseModel):
 
 
 class Problem(BaseModel):
-    """RFC 9457 problem details. `errors` for requests that are not as documented, `parts` for readiness."""
+    """RFC 9457 problem details.
+
+    errors: what is wrong with which part of the request. parts: of the service, for readiness.
+    """
 
     type: str = "about:blank"
     title: str
@@ -165,6 +169,17 @@ def _busy(request: Request, error: Exception) -> JSONResponse:
     return busy_response(request.url.path, str(error))
 
 
+def _doubtful(request: Request, error: Exception) -> JSONResponse:
+    """Return the answer to a baseline of recordings in doubt. Raises any other error again."""
+    if not isinstance(error, DoubtfulBaselineError):
+        raise error
+    errors = [
+        FieldError(location=f"body.recording_ids.{each.recording_id}", message=each.doubt)
+        for each in error.doubts[:MAX_ERRORS]
+    ]
+    return problem_response(request.url.path, HTTPStatus.CONFLICT, str(error), errors=errors)
+
+
 def _full(request: Request, error: Exception) -> JSONResponse:
     """Return the answer to what found no room on a disk. Raises any other error again."""
     if not is_disk_full(error):
@@ -216,6 +231,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(DataError, _unstorable)
     app.add_exception_handler(TooManyWaitingError, _too_many)
     app.add_exception_handler(BusyError, _busy)
+    app.add_exception_handler(DoubtfulBaselineError, _doubtful)
     app.add_exception_handler(FolderGoneError, _busy)
     app.add_exception_handler(OSError, _full)
 

@@ -11,7 +11,7 @@ from core.diagnosis import methods
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
 from service.api.condition_schemas import Condition
-from service.api.document import Document, Listed, RequestDocument
+from service.api.document import Document, Listed, Person, Reason, RequestDocument
 from service.api.relay_schemas import RelayClock
 from service.api.times import Time
 from service.plant import MeteredQuantity
@@ -155,15 +155,34 @@ class Recording(RelayClock):
 
 
 class BaselineRequest(RequestDocument):
-    """The recordings that stand for a motor's healthy condition."""
+    """The recordings that stand for a motor's healthy condition.
+
+    reason, by: why they do, and who says so; needed where a recording is in doubt.
+    """
 
     recording_ids: Annotated[set[UUID], Field(min_length=3, max_length=100), FailFast()]
+    reason: Reason | None = None
+    by: Person | None = None
+
+
+class BaselineDoubt(Document):
+    """What spoke against a recording as one of a healthy motor when it was chosen."""
+
+    recording_id: str
+    doubt: str
 
 
 class Baseline(Document):
-    """The motor's healthy recordings; empty where it has no baseline."""
+    """The motor's healthy recordings; empty where it has no baseline.
+
+    When they were chosen, why and by whom, where that was said, and which of them were in doubt.
+    """
 
     recordings: Listed[Recording]
+    chosen_time: Time | None = Field(validation_alias="chosen_ns")
+    reason: str | None
+    by: str | None
+    doubts: Listed[BaselineDoubt]
 
 
 class RecordingFile(Document):

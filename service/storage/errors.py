@@ -1,5 +1,9 @@
 """Errors of the storage, in words for the person who asked."""
 
+from collections.abc import Sequence
+
+from service.storage.records import BaselineDoubt
+
 
 class StorageError(Exception):
     """The database refused what was asked of it."""
@@ -41,6 +45,18 @@ class UnusableBaselineError(StorageError):
 
     def __init__(self, recording_id: str, reason: str) -> None:
         super().__init__(f"recording {recording_id} cannot be part of a baseline: {reason}")
+
+
+class DoubtfulBaselineError(StorageError):
+    """Recordings that may show a fault are to stand for health, and nobody says why."""
+
+    def __init__(self, motor: str, doubts: Sequence[BaselineDoubt], number: int) -> None:
+        self.doubts = doubts
+        super().__init__(
+            f"{len(doubts)} of {number} recordings are in doubt as a baseline of motor {motor}: a fault that "
+            "they have would be taken off all later diagnoses; choose healthy ones, or say why these stand "
+            "for health (reason) and who says so (by)"
+        )
 
 
 class RecordingInUseError(StorageError):

@@ -74,6 +74,11 @@ def healthy() -> Diagnosis:
     return replace(fault(0.0), verdict=Verdict.HEALTHY, theta_f=None, reasons=("no shorted turns",))
 
 
+def watch() -> Diagnosis:
+    """An asymmetry that may be the sensors'."""
+    return replace(fault(0.012), verdict=Verdict.WATCH, theta_f=None, reasons=("an asymmetry",))
+
+
 def undiagnosable() -> Diagnosis:
     """What the quality gate refused: no figures."""
     return Diagnosis(

@@ -18,7 +18,7 @@ from service.api.limits.arrivals import Arrivals
 from service.api.problems import BusyError, busy_response, problem_response
 
 MAX_JSON_BYTES = 8 * 1024
-"""Twice the largest document that a route takes, a baseline of a hundred recordings."""
+"""More than the largest document that a route takes, a baseline of a hundred recordings with its reason."""
 
 UPLOAD_TYPE = "multipart/form-data"
 

@@ -21,6 +21,7 @@ from service.storage.models.measurements import MeasurementRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
 from service.storage.models.recordings import (
     BaselineRecordingRow,
+    BaselineRow,
     RecordingFileRow,
     RecordingRequestRow,
     RecordingRow,
@@ -40,6 +41,7 @@ __all__ = [
     "AlarmRow",
     "Base",
     "BaselineRecordingRow",
+    "BaselineRow",
     "ConditionChangeRow",
     "ConditionCheckpointRow",
     "ConditionEventRow",

@@ -85,14 +85,26 @@ class RecordingFileRow(Base):
     sha256: Mapped[str] = mapped_column(String(64), index=True)
 
 
+class BaselineRow(Base):
+    """When and by whom a motor's baseline was chosen, and why, where that was said."""
+
+    __tablename__ = "baselines"
+
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
+    chosen_ns: Mapped[int]
+    reason: Mapped[str | None]
+    by: Mapped[str | None]
+
+
 class BaselineRecordingRow(Base):
-    """A recording that stands for a motor's healthy condition."""
+    """A recording that stands for a motor's healthy condition; `doubt`: what spoke against that then."""
 
     __tablename__ = "baseline_recordings"
 
     motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
     recording_id: Mapped[str] = mapped_column(ForeignKey("recordings.id"), primary_key=True)
     chosen_ns: Mapped[int]
+    doubt: Mapped[str | None]
 
 
 class RecordingRequestRow(Base):

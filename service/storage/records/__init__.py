@@ -1,5 +1,6 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
+from service.storage.records.baselines import BaselineDoubt, BaselineEntry
 from service.storage.records.conditions import (
     Backlog,
     BusMotor,
@@ -48,6 +49,8 @@ __all__ = [
     "Alarm",
     "Amount",
     "Backlog",
+    "BaselineDoubt",
+    "BaselineEntry",
     "BusMotor",
     "Checkpoint",
     "ClaimedJob",

@@ -1,43 +1,87 @@
-"""The recordings that stand for a motor's healthy condition; what they show standing is no fault."""
+"""The recordings that stand for a motor's healthy condition; what they show standing is no fault.
+
+A baseline of a faulty motor hides its fault in all later diagnoses. So a recording is in doubt where anything
+says that it is not healthy, and then needs a person who says why it stands for health all the same.
+"""
 
 from collections.abc import Sequence
 
 from sqlalchemy import delete, select
 from sqlalchemy.orm import Session
 
-from core.diagnosis.verdict import Verdict
-from service.storage.errors import NotFoundError, UnusableBaselineError
-from service.storage.models import BaselineRecordingRow, DiagnosisRow, MotorRow, RecordingRow
-from service.storage.records import RecordingEntry
+from core.condition.events import Event, EventKind
+from core.condition.kinds import Kind, State
+from core.diagnosis.verdict import Verdict, is_relative
+from service.storage.errors import DoubtfulBaselineError, NotFoundError, UnusableBaselineError
+from service.storage.models import (
+    BaselineRecordingRow,
+    BaselineRow,
+    DiagnosisRow,
+    MotorRow,
+    ObservationRow,
+    RecordingRow,
+)
+from service.storage.records import BaselineDoubt, BaselineEntry, RecordingEntry
+from service.storage.repository.condition_events import keep_event
 from service.storage.repository.sessions import Sessions, found, only, record_of
+from service.storage.texts import storable
 
 
 class BaselineRows(Sessions):
-    def baseline(self, motor: str) -> tuple[RecordingEntry, ...]:
-        """Return the motor's baseline recordings, oldest first, if there are any. Raises NotFoundError."""
+    def baseline(self, motor: str) -> BaselineEntry:
+        """Return the motor's baseline, without recordings where it has none. Raises NotFoundError."""
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return tuple(record_of(RecordingEntry, row) for row in baseline_rows(session, motor))
+            return _entry(session, motor)
 
     def set_baseline(
-        self, motor: str, recording_ids: Sequence[str], *, now_ns: int
-    ) -> tuple[RecordingEntry, ...]:
-        """Replace the motor's baseline by these recordings; without any, the motor has no baseline.
+        self,
+        motor: str,
+        recording_ids: Sequence[str],
+        *,
+        reason: str | None = None,
+        by: str | None = None,
+        now_ns: int,
+    ) -> BaselineEntry:
+        """Replace the motor's baseline by these recordings.
 
-        It is used for diagnoses that begin from now on. Raises NotFoundError (for another motor's recording
-        too), UnusableBaselineError (one that is not diagnosed, or was refused).
+        It is used for diagnoses that begin from now on. A reason is also kept as a note of the motor, where
+        it stays when the baseline is replaced.
+
+        reason, by: why the recordings stand for health, and who says so; needed where one is in doubt.
+        Raises NotFoundError (for another motor's recording too), UnusableBaselineError (one that is not
+        diagnosed, or was refused), DoubtfulBaselineError.
         """
+        chosen = list(dict.fromkeys(recording_ids))
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
-            for recording_id in recording_ids:
-                _check(session, motor, recording_id)
-            session.execute(delete(BaselineRecordingRow).where(BaselineRecordingRow.motor == motor))
-            session.add_all(
-                BaselineRecordingRow(motor=motor, recording_id=recording_id, chosen_ns=now_ns)
-                for recording_id in dict.fromkeys(recording_ids)
+            causes = {one: _doubt(session, motor, one) for one in chosen}
+            doubts = [BaselineDoubt(one, cause) for one, cause in causes.items() if cause is not None]
+            if doubts and (reason is None or by is None):
+                raise DoubtfulBaselineError(motor, doubts, len(chosen))
+            _delete(session, motor)
+            session.add(
+                BaselineRow(
+                    motor=motor,
+                    chosen_ns=now_ns,
+                    reason=None if reason is None else storable(reason),
+                    by=None if by is None else storable(by),
+                )
             )
+            session.add_all(
+                BaselineRecordingRow(motor=motor, recording_id=one, chosen_ns=now_ns, doubt=cause)
+                for one, cause in causes.items()
+            )
+            if reason is not None and by is not None:
+                keep_event(session, motor, _note(now_ns, chosen, doubts, reason), by, now_ns)
             session.flush()
-            return tuple(record_of(RecordingEntry, row) for row in baseline_rows(session, motor))
+            return _entry(session, motor)
+
+    def delete_baseline(self, motor: str) -> None:
+        """Delete the motor's baseline, if it has one; its recordings stay. Raises NotFoundError."""
+        with self._write() as session:
+            found(session, MotorRow, motor, "motor", lock=True)
+            _delete(session, motor)
 
 
 def baseline_rows(session: Session, motor: str) -> Sequence[RecordingRow]:
@@ -51,7 +95,34 @@ def baseline_rows(session: Session, motor: str) -> Sequence[RecordingRow]:
     return session.scalars(query).all()
 
 
-def _check(session: Session, motor: str, recording_id: str) -> None:
+def _entry(session: Session, motor: str) -> BaselineEntry:
+    row = session.get(BaselineRow, motor)
+    if row is None:
+        return BaselineEntry()
+    doubtful = (
+        select(BaselineRecordingRow)
+        .where(BaselineRecordingRow.motor == motor, BaselineRecordingRow.doubt.is_not(None))
+        .order_by(BaselineRecordingRow.recording_id)
+    )
+    return BaselineEntry(
+        recordings=tuple(record_of(RecordingEntry, one) for one in baseline_rows(session, motor)),
+        chosen_ns=row.chosen_ns,
+        reason=row.reason,
+        by=row.by,
+        doubts=tuple(record_of(BaselineDoubt, one) for one in session.scalars(doubtful)),
+    )
+
+
+def _delete(session: Session, motor: str) -> None:
+    session.execute(delete(BaselineRecordingRow).where(BaselineRecordingRow.motor == motor))
+    session.execute(delete(BaselineRow).where(BaselineRow.motor == motor))
+
+
+def _doubt(session: Session, motor: str, recording_id: str) -> str | None:
+    """Return what speaks against a recording as one of a healthy motor; None where nothing does.
+
+    Raises NotFoundError, UnusableBaselineError.
+    """
     recording = session.get(RecordingRow, recording_id)
     if recording is None or recording.motor != motor:
         raise NotFoundError(f"recording of motor {motor}", recording_id)
@@ -61,3 +132,31 @@ def _check(session: Session, motor: str, recording_id: str) -> None:
         raise UnusableBaselineError(recording_id, f"it is {recording.state}, not diagnosed")
     if diagnosis.verdict is Verdict.UNDIAGNOSABLE:
         raise UnusableBaselineError(recording_id, "the diagnosis refused it")
+    return _doubt_of_verdict(diagnosis) or _doubt_of_condition(session.get(ObservationRow, recording_id))
+
+
+def _doubt_of_verdict(diagnosis: DiagnosisRow) -> str | None:
+    if diagnosis.verdict is not Verdict.HEALTHY:
+        phase = "" if diagnosis.theta_f is None else f", phase {'abc'[diagnosis.theta_f]}"
+        level = "" if diagnosis.mu_f is None else f": {diagnosis.mu_f:.2%} of the turns{phase}"
+        return f"its verdict is {diagnosis.verdict}{level}"
+    reasons = diagnosis.document.get("reasons")
+    if isinstance(reasons, list) and is_relative(map(str, reasons)):
+        return "its verdict is healthy only relative to the baseline of that time"
+    return None
+
+
+def _doubt_of_condition(observation: ObservationRow | None) -> str | None:
+    """Shorted turns that only the records in a row show, or that nothing tells from something else."""
+    if observation is None or observation.state is None or observation.kind is None:
+        return None
+    if observation.state is State.FAULT or (
+        observation.state is State.WATCH and observation.kind in (Kind.SHORTED_TURNS, Kind.UNCLEAR)
+    ):
+        return f"the motor's condition was {observation.state} ({observation.kind}) at it"
+    return None
+
+
+def _note(now_ns: int, chosen: Sequence[str], doubts: Sequence[BaselineDoubt], reason: str) -> Event:
+    what = f"baseline of {len(chosen)} recordings, {len(doubts)} of them in doubt"
+    return Event(now_ns, EventKind.NOTE, f"{what}: {reason}")

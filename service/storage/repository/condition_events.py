@@ -3,6 +3,7 @@
 import uuid
 
 from sqlalchemy import select
+from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
 from service.storage.errors import NotFoundError
@@ -18,20 +19,7 @@ class ConditionEventRows(Sessions):
         """Keep what somebody tells of a motor, and have its condition follow. Raises NotFoundError."""
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
-            row = ConditionEventRow(
-                id=str(uuid.uuid4()),
-                motor=motor,
-                time_ns=event.time_ns,
-                kind=event.kind,
-                reason=storable(event.reason),
-                by=storable(by),
-                made_ns=now_ns,
-            )
-            session.add(row)
-            session.flush()
-            if event.kind is not EventKind.NOTE:
-                mark(session, motor, event.time_ns)
-            return record_of(ConditionEvent, row)
+            return record_of(ConditionEvent, keep_event(session, motor, event, by, now_ns))
 
     def event(self, motor: str, event_id: str) -> ConditionEvent:
         """Return one event of a motor. Raises NotFoundError."""
@@ -49,3 +37,21 @@ class ConditionEventRows(Sessions):
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
             return page_of(session, query, order, ConditionEvent, limit=limit, after=after, descending=True)
+
+
+def keep_event(session: Session, motor: str, event: Event, by: str, now_ns: int) -> ConditionEventRow:
+    """Add an event of a motor that is locked, and have its condition follow."""
+    row = ConditionEventRow(
+        id=str(uuid.uuid4()),
+        motor=motor,
+        time_ns=event.time_ns,
+        kind=event.kind,
+        reason=storable(event.reason),
+        by=storable(by),
+        made_ns=now_ns,
+    )
+    session.add(row)
+    session.flush()
+    if event.kind is not EventKind.NOTE:
+        mark(session, motor, event.time_ns)
+    return row

@@ -23,6 +23,7 @@ DO_NOT_GROW = frozenset(
         "ieds",
         "motors",
         "baseline_recordings",
+        "baselines",
         "conditions",
         "condition_checkpoints",
         "discarded_folders",

@@ -1,5 +1,6 @@
 """A motor's baseline over the API, down to what a worker is given."""
 
+from dataclasses import replace
 from itertools import count
 from pathlib import Path
 from uuid import uuid4
@@ -7,13 +8,29 @@ from uuid import uuid4
 import httpx
 import pytest
 
-from core.diagnosis.verdict import Diagnosis
+from core.condition.kinds import Kind, State
+from core.condition.observation import Observation
+from core.diagnosis.baseline import Baseline
+from core.diagnosis.stator import diagnose, learn_baseline
+from core.diagnosis.verdict import Diagnosis, Verdict
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.storage.records import ConditionPoint, FoldResult
+from testing.machines.motors import REFERENCE
+from testing.machines.phase_circuits import Fault, recording, running
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+from testing.service.observations import observation
+from testing.service.plants import NOW_NS, SECOND_NS, healthy, undiagnosable, watch
 
 BASELINE = "/api/v1/motors/PUMP-A1/baseline"
+NOTES = "/api/v1/motors/PUMP-A1/notes"
+NO_BASELINE: dict[str, object] = {
+    "recordings": [],
+    "chosen_time": None,
+    "reason": None,
+    "by": None,
+    "doubts": [],
+}
 
 
 class Plant:
@@ -22,7 +39,13 @@ class Plant:
     def __init__(self, repository: Repository, store: RecordingStore) -> None:
         self._repository, self._store, self._numbers = repository, store, count()
 
-    def recording(self, diagnosis: Diagnosis | None = None, *, motor: str = "PUMP-A1") -> str:
+    def recording(
+        self,
+        diagnosis: Diagnosis | None = None,
+        *,
+        motor: str = "PUMP-A1",
+        observation: Observation | None = None,
+    ) -> str:
         number = next(self._numbers)
         stored = self._store.store({f"E{number}.CFF": b"record %d" % number})
         added = self._repository.add_recording(stored, motor=motor, now_ns=NOW_NS + number).recording
@@ -31,9 +54,23 @@ class Plant:
             assert claimed is not None
             recorded_ns = NOW_NS - number * SECOND_NS
             self._repository.finish_job(
-                claimed.job.id, diagnosis, recorded_ns=recorded_ns, now_ns=NOW_NS, runner=RUNNER
+                claimed.job.id,
+                diagnosis,
+                recorded_ns=recorded_ns,
+                now_ns=NOW_NS,
+                runner=RUNNER,
+                observation=observation,
             )
         return added.id
+
+
+def fold(repository: Repository, recording_id: str, state: State, kind: Kind) -> None:
+    """Have the motor's condition be this from the recording on."""
+    given = repository.begin_fold("PUMP-A1", 100)
+    assert given is not None
+    (time_ns,) = [one.observation.time_ns for one in given.observations if one.recording_id == recording_id]
+    point = ConditionPoint(recording_id=recording_id, time_ns=time_ns, state=state, kind=kind)
+    assert repository.finish_fold(given, FoldResult([point], [], [], [], None), now_ns=NOW_NS)
 
 
 @pytest.fixture
@@ -42,22 +79,22 @@ def plant(repository: Repository, store: RecordingStore) -> Plant:
 
 
 def test_a_motor_has_no_baseline_until_it_is_given_one(client: httpx.Client, plant: Plant) -> None:
-    assert client.get(BASELINE).json() == {"recordings": []}
-    ids = [plant.recording(fault()) for _ in range(4)]
+    assert client.get(BASELINE).json() == NO_BASELINE
+    ids = [plant.recording(healthy()) for _ in range(4)]
     answer = client.put(BASELINE, json={"recording_ids": ids[:3]})
     assert answer.status_code == 200
     assert [one["id"] for one in answer.json()["recordings"]] == ids[2::-1], "oldest first"
     client.put(BASELINE, json={"recording_ids": ids[1:]})
     assert [one["id"] for one in client.get(BASELINE).json()["recordings"]] == ids[:0:-1]
     assert client.delete(BASELINE).status_code == 204
-    assert client.get(BASELINE).json() == {"recordings": []}
+    assert client.get(BASELINE).json() == NO_BASELINE
     assert client.get(f"/api/v1/recordings/{ids[1]}").status_code == 200
 
 
 def test_a_worker_is_given_the_baselines_files(
     client: httpx.Client, plant: Plant, repository: Repository, store: RecordingStore
 ) -> None:
-    ids = [plant.recording(fault()) for _ in range(3)]
+    ids = [plant.recording(healthy()) for _ in range(3)]
     client.put(BASELINE, json={"recording_ids": ids})
     plant.recording(motor="FAN-A2")
     of_another = repository.claim_job(now_ns=2**62, runner=RUNNER)
@@ -70,9 +107,9 @@ def test_a_worker_is_given_the_baselines_files(
 
 
 def test_what_cannot_be_part_of_a_baseline_changes_nothing(client: httpx.Client, plant: Plant) -> None:
-    good = [plant.recording(fault()) for _ in range(3)]
+    good = [plant.recording(healthy()) for _ in range(3)]
     client.put(BASELINE, json={"recording_ids": good})
-    refused, others = plant.recording(undiagnosable()), plant.recording(fault(), motor="FAN-A2")
+    refused, others = plant.recording(undiagnosable()), plant.recording(healthy(), motor="FAN-A2")
     waiting = plant.recording()
     for wrong, status, reason in (
         (refused, 409, "the diagnosis refused it"),
@@ -85,6 +122,82 @@ def test_what_cannot_be_part_of_a_baseline_changes_nothing(client: httpx.Client,
         assert answer.status_code == status
         assert reason in answer.json()["detail"]
     assert [one["id"] for one in client.get(BASELINE).json()["recordings"]] == good[::-1]
+
+
+def test_a_motor_with_shorted_turns_is_not_its_own_baseline_without_a_reason(
+    client: httpx.Client, plant: Plant
+) -> None:
+    """What it hides: the fault becomes a hint, as the last line shows."""
+    short = Fault(0.032, 1)
+    records = [recording(running(REFERENCE, load, fault=short), noise=0.003) for load in (0.4, 0.6, 0.8)]
+    ids = [plant.recording(diagnose(record, REFERENCE)) for record in records]
+    refused = client.put(BASELINE, json={"recording_ids": ids})
+    assert refused.status_code == 409
+    assert refused.headers["content-type"] == "application/problem+json"
+    assert "3 of 3 recordings are in doubt" in refused.json()["detail"]
+    assert "(reason) and who says so (by)" in refused.json()["detail"]
+    named = {each["location"]: each["message"] for each in refused.json()["errors"]}
+    assert named.keys() == {f"body.recording_ids.{one}" for one in ids}
+    assert all("its verdict is fault: 3." in message and "phase b" in message for message in named.values())
+    assert client.get(BASELINE).json() == NO_BASELINE
+    hidden = diagnose(records[1], REFERENCE, baseline=learn_baseline(records, REFERENCE))
+    assert hidden.verdict is not Verdict.FAULT
+
+
+@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)
+def test_a_reason_is_kept_with_who_gave_it_and_when(client: httpx.Client, plant: Plant) -> None:
+    doubtful, good = plant.recording(watch()), [plant.recording(healthy()) for _ in range(2)]
+    wanted = {"recording_ids": [*good, doubtful]}
+    for missing in ({}, {"reason": "rewound in May"}, {"by": "A. Fitter"}):
+        assert client.put(BASELINE, json=wanted | missing).status_code == 409
+    reason = {"reason": "rewound in May, surge test passed", "by": "A. Fitter"}
+    answer = client.put(BASELINE, json=wanted | reason)
+    assert answer.status_code == 200
+    assert answer.json() == client.get(BASELINE).json()
+    assert {key: answer.json()[key] for key in reason} == reason
+    assert answer.json()["chosen_time"].startswith("20")
+    assert answer.json()["doubts"] == [
+        {"recording_id": doubtful, "doubt": "its verdict is watch: 1.20% of the turns"}
+    ]
+    client.put(BASELINE, json={"recording_ids": [*good, plant.recording(healthy())]})
+    assert client.get(BASELINE).json()["doubts"] == []
+    (note,) = client.get(NOTES).json()["items"]
+    assert note["text"] == f"baseline of 3 recordings, 1 of them in doubt: {reason['reason']}"
+    assert note["by"] == reason["by"]
+    assert note["time"] == answer.json()["chosen_time"]
+
+
+def test_a_recording_that_is_healthy_only_relative_to_a_baseline_is_in_doubt(
+    client: httpx.Client, plant: Plant
+) -> None:
+    """Or a baseline accepted with a reason would make the next one, without any."""
+    relative = replace(healthy(), reasons=("no shorted turns", Baseline(1j, 0.0, 0j, 3).reason))
+    ids = [plant.recording(relative), *(plant.recording(healthy()) for _ in range(2))]
+    refused = client.put(BASELINE, json={"recording_ids": ids})
+    assert refused.status_code == 409
+    assert [each["location"] for each in refused.json()["errors"]] == [f"body.recording_ids.{ids[0]}"]
+    assert "only relative to the baseline" in refused.json()["errors"][0]["message"]
+
+
+@pytest.mark.parametrize(
+    ("state", "kind", "status"),
+    [
+        (State.FAULT, Kind.SHORTED_TURNS, 409),
+        (State.WATCH, Kind.UNCLEAR, 409),
+        (State.WATCH, Kind.VOLTAGE_CHANNEL, 200),
+        (State.HEALTHY, Kind.NONE, 200),
+    ],
+)
+def test_a_healthy_recording_of_a_motor_in_a_bad_condition_is_in_doubt(
+    client: httpx.Client, plant: Plant, repository: Repository, state: State, kind: Kind, status: int
+) -> None:
+    ids = [plant.recording(healthy(), observation=observation(number)) for number in range(3)]
+    fold(repository, ids[0], state, kind)
+    answer = client.put(BASELINE, json={"recording_ids": ids})
+    assert answer.status_code == status
+    if status == 409:
+        (error,) = answer.json()["errors"]
+        assert error["message"] == f"the motor's condition was {state} ({kind}) at it"
 
 
 @pytest.mark.parametrize("method", ["GET", "PUT", "DELETE"])

@@ -130,6 +130,25 @@ def test_an_older_diagnosis_keeps_its_scatter_under_that_name(
     assert (load.value, load.ci95) == (0.48, None)
 
 
+def test_an_older_baseline_has_its_time_and_no_reason(
+    database_url: str, engine: Engine, repository: Repository, store: RecordingStore
+) -> None:
+    ids = []
+    for number in range(3):
+        stored = store.store({"EVENT.CFF": b"record %d" % number})
+        ids.append(repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS).recording.id)
+    with engine.begin() as connection:
+        command.downgrade(config(connection), "0023")
+        for one in ids:
+            insert = text("INSERT INTO baseline_recordings VALUES ('PUMP-A1', :id, :chosen_ns)")
+            connection.execute(insert, {"id": one, "chosen_ns": NOW_NS})
+    migrate(database_url)
+    baseline = repository.baseline("PUMP-A1")
+    assert {one.id for one in baseline.recordings} == set(ids)
+    assert (baseline.chosen_ns, baseline.reason, baseline.by, baseline.doubts) == (NOW_NS, None, None, ())
+    assert repository.baseline("FAN-A2").chosen_ns is None
+
+
 def test_every_step_leads_back(database_url: str) -> None:
     engine = connect(database_url)
     with engine.begin() as connection:
