@@ -1,16 +1,18 @@
 """Recordings with given observations, added to a service's database as its job runner does."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from service.condition.motor_data import document_of
 from service.condition.worker import fold_due
+from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.job_runner import RUNNER
 from testing.service.observations import HOUR_NS
-from testing.service.plants import NOW_NS, healthy, motor
+from testing.service.plants import NOW_NS, healthy, motor, two_motor_plant
 
 PUMP, FAN = "PUMP-A1", "FAN-A2"
 
@@ -58,6 +60,12 @@ def fold_all(repository: Repository, *edited: Motor) -> None:
     while names := repository.motors_to_fold():
         for name in names:
             fold_due(repository, motors[name])
+
+
+def on_one_bus() -> Plant:
+    """The small plant, with both motors on one bus."""
+    plant = two_motor_plant()
+    return replace(plant, motors=tuple(replace(one, bus="BUS-A") for one in plant.motors))
 
 
 def note_motors(repository: Repository) -> None:

@@ -38,6 +38,8 @@ class IedRow(Base):
 
 
 class MotorRow(Base):
+    """A motor. bus: with whose other motors it is compared."""
+
     __tablename__ = "motors"
 
     name: Mapped[str] = mapped_column(primary_key=True)

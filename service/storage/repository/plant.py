@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from sqlalchemy import select, update
 
-from service.plant import Plant
+from service.plant import Plant, PlantMotor
 from service.storage.engine import one_at_a_time
 from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow
 from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
@@ -46,7 +46,7 @@ class PlantRows(Sessions):
                         ied=motor.relay,
                         in_service=True,
                         schedule=None if motor.schedule is None else motor.schedule.expression,
-                        bus=motor.bus,
+                        bus=_compared_on(plant, motor),
                     )
                 )
             session.flush()
@@ -118,9 +118,18 @@ def _motor(row: MotorRow) -> MotorEntry:
     return record_of(MotorEntry, row)
 
 
+def _compared_on(plant: Plant, motor: PlantMotor) -> str | None:
+    """Return the bus with whose other motors a motor is compared.
+
+    None where they share a voltage transformer: its error looks the same to all of them, as if it were none.
+    """
+    bus = plant.bus_of(motor.name)
+    return None if bus is not None and bus.common_voltage_transformer else motor.bus
+
+
 def _of_changed_buses(before: Mapping[str, str | None], plant: Plant) -> list[str]:
     """Return the motors known before that are, or were, on a bus which a motor joined or left."""
-    now = {**before, **{motor.name: motor.bus for motor in plant.motors}}
+    now = {**before, **{motor.name: _compared_on(plant, motor) for motor in plant.motors}}
     moved = [name for name in now if before.get(name) != now[name]]
     changed = {bus for name in moved for bus in (before.get(name), now[name]) if bus is not None}
     return [name for name, bus in before.items() if changed.intersection((bus, now[name]))]

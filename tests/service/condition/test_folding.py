@@ -20,12 +20,13 @@ from core.machines.parameters import Motor
 from service.condition import worker
 from service.condition.motor_data import document_of
 from service.condition.worker import fold_due
+from service.plant import Bus
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.models import ConditionCheckpointRow, MotorRow
+from service.storage.models import ConditionCheckpointRow
 from service.storage.records import FoldInput, FoldResult
 from service.storage.repository.folding import FoldingRows
-from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors
+from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
 from testing.service.observations import records_of_a_motor
 from testing.service.plants import NOW_NS, SECOND_NS, motor
 
@@ -274,11 +275,7 @@ def fold_until(database_url: str, end) -> None:  # type: ignore[no-untyped-def] 
 def test_motors_of_a_bus_come_to_the_same_in_any_order(
     repository: Repository, recorder: Recorder, engine: Engine
 ) -> None:
-    with Session(engine) as session, session.begin():
-        for name in (PUMP, FAN):
-            row = session.get(MotorRow, name)
-            assert row is not None
-            row.bus = "BUS-A"
+    repository.sync_plant(on_one_bus())
     beside = [
         replace(record, time_ns=record.time_ns + 20 * SECOND_NS) for record in records_of_a_motor(30, seed=2)
     ]
@@ -297,3 +294,16 @@ def test_motors_of_a_bus_come_to_the_same_in_any_order(
         for id_ in ids:
             repository.delete_recording(id_, "again", now_ns=NOW_NS)
     assert found[0] == found[1]
+
+
+def test_motors_behind_one_voltage_transformer_are_not_compared(
+    repository: Repository, recorder: Recorder
+) -> None:
+    plant = on_one_bus()
+    bus = Bus("BUS-A", (PUMP, FAN), common_voltage_transformer=True)
+    repository.sync_plant(replace(plant, buses=(bus,)))
+    recorder.record(RECORDS[0], FAN)
+    recorder.record(RECORDS[0])
+    fold = repository.begin_fold(PUMP, 10)
+    assert fold is not None
+    assert (fold.bus, fold.neighbours) == ((), ())

@@ -14,7 +14,7 @@ from service.plant import Plant
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.errors import UnstorableDiagnosisError
-from service.storage.models import MotorRow, UnobservedRecordingRow
+from service.storage.models import UnobservedRecordingRow
 from service.storage.records import (
     Checkpoint,
     ConditionChange,
@@ -24,7 +24,7 @@ from service.storage.records import (
     FoldResult,
 )
 from service.storage.states import DeletedBy
-from testing.service.following import FAN, PUMP, Recorder
+from testing.service.following import FAN, PUMP, Recorder, on_one_bus
 from testing.service.observations import HOUR_NS, OBSERVATION, observation
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 
@@ -226,11 +226,7 @@ def test_the_slower_of_two_folds_is_not_kept(repository: Repository, recorder: R
 def test_records_of_a_bus_at_about_the_same_time_are_neighbours(
     repository: Repository, recorder: Recorder, engine: Engine
 ) -> None:
-    with Session(engine) as session, session.begin():
-        for motor in (PUMP, FAN):
-            found = session.get(MotorRow, motor)
-            assert found is not None
-            found.bus = "BUS-A"
+    repository.sync_plant(on_one_bus())
     for hour in (0, 1):
         recorder.record(observation(hour))
     fold = began(repository)

@@ -1,0 +1,208 @@
+"""Workers that have nothing to diagnose fold conditions, and observe recordings from before."""
+
+import time
+from collections.abc import Iterator
+from concurrent.futures import Future
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from alembic import command
+from sqlalchemy import Engine
+from sqlalchemy.orm import Session
+
+from core.machines.parameters import Motor
+from core.recordings.comtrade_writer import write
+from service.condition import work
+from service.condition.work import ConditionWork
+from service.condition.worker import ObserveTask
+from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Outcome
+from service.jobs.runner import JobLimits
+from service.jobs.worker_process import follow_service
+from service.recording_store.store import RecordingStore
+from service.storage import Repository, migrate
+from service.storage.migrations import config
+from service.storage.models import UnobservedRecordingRow
+from service.timing.backoff import Backoff
+from testing.machines.motors import REFERENCE
+from testing.machines.phase_circuits import recording as waveforms
+from testing.machines.phase_circuits import running as operating
+from testing.service.following import FAN, PUMP, Recorder, note_motors
+from testing.service.observations import HOUR_NS, records_of_a_motor
+from testing.service.plants import NOW_NS, healthy, motor
+from testing.waiting import wait_until
+
+RECORDS = records_of_a_motor(12)
+LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, backoff=Backoff(0.01, 0.1), lease_s=30.0)
+MOTORS = {name: motor(name) for name in (PUMP, FAN)}
+
+
+def observe_as_told(task: DiagnosisTask) -> Outcome:
+    """A task that stands in for the diagnosis: the file says which of RECORDS it is."""
+    observation = RECORDS[int(task.entry.read_text())]
+    return Diagnosed(healthy(), observation.time_ns, observation)
+
+
+@contextmanager
+def running(
+    repository: Repository, store: RecordingStore, database_url: str, **edited: Motor
+) -> Iterator[tuple[JobRunner, ConditionWork]]:
+    conditions = ConditionWork(repository, store, MOTORS | edited, database_url=database_url)
+    runner = JobRunner(
+        repository,
+        store,
+        MOTORS,
+        observe_as_told,
+        limits=LIMITS,
+        installation="ours",
+        conditions=conditions,
+        prepare_worker=follow_service,
+        poll_period_s=0.05,
+    )
+    runner.start()
+    try:
+        yield runner, conditions
+    finally:
+        runner.stop()
+
+
+def test_every_recording_ends_in_its_motors_condition(
+    repository: Repository, store: RecordingStore, database_url: str
+) -> None:
+    """Diagnosed in workers and folded in workers, in whatever order they end."""
+    note_motors(repository)
+    for at in reversed(range(len(RECORDS))):
+        stored = store.store({"E.CFF": str(at).encode()})
+        repository.add_recording(stored, motor=PUMP, now_ns=time.time_ns())
+    with running(repository, store, database_url) as (runner, conditions):
+        wait_until(
+            lambda: len(repository.condition_trend(PUMP, limit=100).items) == len(RECORDS), within_s=60
+        )
+        wait_until(lambda: not repository.motors_to_fold(), within_s=60)
+        assert runner.problem() is None
+        assert conditions.problem() is None
+    assert repository.condition(PUMP).as_of_ns == RECORDS[-1].time_ns
+    assert repository.condition(FAN).version == 0
+
+
+def test_a_database_of_before_is_observed_from_its_files(
+    repository: Repository, store: RecordingStore, database_url: str, engine: Engine, tmp_path: Path
+) -> None:
+    """One of the recordings cannot be read any more: it tells nothing, and holds up none."""
+    register = Recorder(repository, store)
+    for number in range(3):
+        files = real_files(tmp_path / f"R{number}", number)
+        repository.add_recording(store.store(files), motor=PUMP, now_ns=NOW_NS)
+        register.diagnose(replace(RECORDS[0], time_ns=NOW_NS + number * HOUR_NS))
+    unreadable = register.record(RECORDS[4], FAN)
+    with engine.begin() as connection:
+        command.downgrade(config(connection), "0022")
+    migrate(database_url)
+    note_motors(repository)
+    assert repository.backlog().unobserved_recordings == 4
+    assert repository.condition(PUMP).state == "unknown"
+    with running(repository, store, database_url):
+        wait_until(lambda: repository.backlog().unobserved_recordings == 0, within_s=60)
+        wait_until(lambda: not repository.motors_to_fold(), within_s=60)
+    assert repository.observation(unreadable) is None
+    observed = [point.recording_id for point in repository.condition_trend(PUMP, limit=10).items]
+    assert len(observed) == 3
+    found = repository.observation(observed[0])
+    assert found is not None
+    assert abs(found.observation.positive_voltage_V) == pytest.approx(310.0, rel=0.05)
+
+
+def real_files(path: Path, seed: int) -> dict[str, Path]:
+    """The files of a record of the reference motor."""
+    record = waveforms(operating(REFERENCE, 0.5), noise=0.002, seed=seed)
+    channels = tuple(
+        replace(channel, full_scale=2.0 * float(np.abs(samples).max()))
+        for channel, samples in zip(record.channels, record.samples, strict=True)
+    )
+    entry = write(path, replace(record, channels=channels, start_time_ns=NOW_NS + seed * HOUR_NS))
+    return {one.name: one for one in (entry, entry.with_suffix(".DAT"))}
+
+
+def failed(error: Exception) -> Future[int]:
+    future: Future[int] = Future()
+    future.set_exception(error)
+    return future
+
+
+def test_motors_take_turns_and_each_has_one_task(
+    repository: Repository, store: RecordingStore, database_url: str
+) -> None:
+    recorder = Recorder(repository, store)
+    for name in (PUMP, FAN):
+        recorder.record(RECORDS[0], name)
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    tasks = [conditions.next_task() for _ in range(3)]
+    assert [task and task.motor for task in tasks] == [FAN, PUMP, None]
+    assert conditions.tasks_under_way == 2
+    conditions.give_back()
+    first = conditions.next_task()
+    assert first is not None
+    assert first.motor == FAN
+    assert tasks[0] is not None
+    conditions.ended(tasks[0], failed(RuntimeError("late")))
+    assert conditions.tasks_under_way == 1, "the late end of a task that was given back is no end of the new"
+    conditions.ended(first, failed(BrokenProcessPool("the workers ended")))
+    again = conditions.next_task()
+    assert again is not None
+    assert again.motor == PUMP, "the other motor's turn"
+
+
+def test_a_motor_that_cannot_be_folded_is_told_and_tried_again_later(
+    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    Recorder(repository, store).record(RECORDS[0])
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    task = conditions.next_task()
+    assert task is not None
+    conditions.ended(task, failed(RuntimeError("a bug")))
+    assert conditions.next_task() is None, "not at once"
+    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    for _ in range(3):
+        assert conditions.problem() is None
+        task = conditions.next_task()
+        assert task is not None
+        conditions.ended(task, failed(RuntimeError("a bug")))
+    assert conditions.problem() == f"the condition of {PUMP} cannot be followed: RuntimeError: a bug"
+    task = conditions.next_task()
+    assert task is not None
+    done: Future[int] = Future()
+    done.set_result(1)
+    conditions.ended(task, done)
+    assert conditions.problem() is None
+
+
+def test_a_recording_that_brings_its_worker_down_is_left_out_at_last(
+    repository: Repository,
+    store: RecordingStore,
+    database_url: str,
+    engine: Engine,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
+    recorder = Recorder(repository, store)
+    ids = [recorder.record(None) for _ in range(3)]
+    with Session(engine) as session, session.begin():
+        session.add_all(
+            UnobservedRecordingRow(recording_id=id_, motor=PUMP, recorded_ns=NOW_NS + at)
+            for at, id_ in enumerate(ids)
+        )
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    asked = []
+    for _ in range(3):
+        task = conditions.next_task()
+        assert task is not None
+        assert isinstance(task.argument, ObserveTask)
+        asked.append([one.recording_id for one in task.argument.recordings])
+        conditions.ended(task, failed(RuntimeError("its worker died")))
+    assert asked == [ids, ids[:1], ids[:1]]
+    assert repository.backlog().unobserved_recordings == 2
+    assert conditions.problem() is None
