@@ -5,6 +5,7 @@ import logging
 import signal
 import sys
 import tempfile
+from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
@@ -12,6 +13,7 @@ from typing import Annotated
 import typer
 
 import scl
+from core.units import NANOSECONDS_PER_SECOND
 from ied_sim import warm_up
 from ied_sim.errors import ScenarioError, SimulatorError, TableError
 from ied_sim.profiles.profile import DEFAULT, read_profile, shipped
@@ -64,11 +66,14 @@ def ied_sim(
         bool, typer.Option("--truth", help="Print the motors' true condition as JSON and stop.")
     ] = False,
     at: Annotated[
-        float,
+        list[float] | None,
         typer.Option(
-            metavar="SECONDS", min=0.0, max=1e9, help="With --truth: time since the simulator's start."
+            metavar="SECONDS",
+            min=0.0,
+            max=1e9,
+            help="With --truth: time since the scenario's beginning; given several times, a list is printed.",
         ),
-    ] = 0.0,
+    ] = None,
     _profiles: Annotated[
         bool,
         typer.Option("--profiles", callback=_print_profiles, is_eager=True, help="List profiles and stop."),
@@ -92,8 +97,11 @@ def ied_sim(
         scenarios = _scenarios(document, scenario, profile or DEFAULT)
         clock = REAL_TIME if scenario is None else read_clock(scenario)
         if truth:
-            told = {name: scenarios[name].truth(at) for name in names if document.ied(name)}
-            _say(json.dumps(told))
+            told = [
+                {name: scenarios[name].truth(time_s) for name in names if document.ied(name)}
+                for time_s in at or [0.0]
+            ]
+            _say(json.dumps(told if len(told) > 1 else told[0]))
             return
         _serve(document, names, scenarios, files, clock)
     except (SimulatorError, TableError, scl.SclError, OSError) as error:
@@ -140,6 +148,9 @@ def _serve(
     ):
         for name, address in simulator.addresses.items():
             _say(f"{name} {address.host} {address.port}")
+        if clock != REAL_TIME:
+            began = datetime.fromtimestamp(simulator.epoch_ns / NANOSECONDS_PER_SECOND, UTC)
+            _say(f"began {began.isoformat()}")
         _say("ready")
         signal.sigwait(signals)
 

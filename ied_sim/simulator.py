@@ -76,6 +76,11 @@ class Simulator:
         self._stopping = threading.Event()
         self._updating = threading.Thread(target=self._update_relays, name="relay updates", daemon=True)
 
+    @property
+    def epoch_ns(self) -> int:
+        """UTC of the scenario's beginning [ns]."""
+        return self._clock.epoch_ns
+
     def start(self) -> None:
         """Serve. SimulatorError names the relay whose address and port cannot be had."""
         try:

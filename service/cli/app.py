@@ -69,7 +69,7 @@ def options(
 def demo(
     *,
     once: Annotated[
-        bool, typer.Option("--once", help="Trigger every motor twice, print the diagnoses, stop.")
+        bool, typer.Option("--once", help="Trigger every motor twice, print the diagnoses, stop; no month.")
     ] = False,
     json_file: Annotated[
         Path | None, typer.Option("--json", metavar="FILE", help="Write the results to FILE.")
@@ -82,7 +82,10 @@ def demo(
         typer.Option(help="Start nothing: play on the demo plant whose service answers here."),
     ] = None,
 ) -> None:
-    """Run a simulated plant of two factories and the service that watches it."""
+    """Run a simulated plant of two factories and the service that watches it: a month in five minutes.
+
+    Afterwards the plant's time is the real one, until Ctrl-C.
+    """
     from service.cli.demonstrate import demonstrate
 
     if url is not None and data is not None:
@@ -92,7 +95,7 @@ def demo(
 
 @app.command("demo-status")
 def demo_status(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
-    """Show each motor's verdict beside the truth, where a demo plant runs."""
+    """Show each motor's condition and verdict beside the truth, where a demo plant runs."""
     from service.cli.demo_status import show_demo
 
     show_demo(url, as_json=as_json)

@@ -1,30 +1,29 @@
-"""`mcc demo-status`: the latest verdicts of a demo plant, and whether they are right."""
+"""`mcc demo-status`: conditions and latest verdicts of a demo plant, and whether they are right."""
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-import scl
 from service.cli.output import failing_clearly, one_line, print_document, results
+from service.client.conditions import state_text
 from service.client.rest_client import ServiceClient, ServiceError
 from service.client.verdicts import level, percent, verdict_text
-from service.demo import SCENARIO
 from service.demo.results import truth_text
-from service.demo.status import MotorStatus, ask_status
-from service.demo.truth import TruthError, ask_simulator
+from service.demo.status import MotorStatus, ask_plant
+from service.demo.truth import TruthError
 
 
 def show_demo(url: str, *, as_json: bool) -> None:
     """Print each motor's verdict and truth. Raises CommandError."""
     with failing_clearly(ServiceError, TruthError), ServiceClient(url) as service:
-        motors = ask_status(service, ask_simulator(scl.DEMO_PLANT_SCD, SCENARIO))
+        motors = ask_plant(service)
     right = sum(motor.is_right is True for motor in motors)
     judged = sum(motor.is_right is not None for motor in motors)
     if as_json:
         print_document({"motors": [motor.as_dict() for motor in motors], "right": right, "judged": judged})
         return
     table = Table(box=SIMPLE_HEAD, collapse_padding=True)
-    for heading in ("motor", "truth", "verdict", "level", "seen from", "link"):
+    for heading in ("motor", "truth", "condition", "verdict", "level", "seen from", "link"):
         table.add_column(heading)
     for motor in motors:
         table.add_row(*_row(motor))
@@ -42,6 +41,7 @@ def _row(motor: MotorStatus) -> tuple[Text, ...]:
     return (
         Text(str(health["motor"])),
         Text(truth_text(motor.truth)),
+        state_text(motor.condition),
         Text("-") if verdict is None else verdict_text(str(verdict), health["phase"]),
         Text(level(health["mu_f"], health["mu_f_ci95"])),
         Text("-" if health["detection_limit"] is None else f"{percent(health['detection_limit'])} %"),

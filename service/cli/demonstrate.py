@@ -2,7 +2,7 @@
 
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
@@ -11,9 +11,11 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from scl import SclError
+from service.cli.demo_month import conditions_of, conditions_table, play_month
 from service.cli.output import CommandError, as_json, failing_clearly, failure_document, progress, results
-from service.client.rest_client import ServiceClient, ServiceError
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.demo.interruption import Interruption, interruptible
+from service.demo.month import Month
 from service.demo.plant import (
     DemoPlant,
     NotReadyError,
@@ -21,6 +23,7 @@ from service.demo.plant import (
     running_plant,
     wait_until_ready,
 )
+from service.demo.plays import MONTH_OF_CHANGES, STEADY
 from service.demo.processes import ProgramError
 from service.demo.results import DemoMotor, document, slowest, table
 from service.demo.rounds import STATES, play_round
@@ -34,6 +37,8 @@ REST_S = 60.0
 def demonstrate(*, once: bool, json_file: Path | None, data: Path | None, url: str | None) -> None:
     """Run the demo plant, or play on one that runs; with `once` two rounds of triggers, else until Ctrl-C.
 
+    A plant that is started without `once` lives through a month first.
+
     Raises CommandError, and writes the same to `json_file`, where something did not work.
     """
     try:
@@ -44,7 +49,7 @@ def demonstrate(*, once: bool, json_file: Path | None, data: Path | None, url: s
             if json_file is not None:
                 json_file.write_bytes(b"")  # fail now, not in a minute, where it cannot be written
             started_s = time.monotonic()
-            with _plant(interruption, data, url) as plant, ServiceClient(plant.url) as service:
+            with _plant(interruption, data, url, once=once) as plant, ServiceClient(plant.url) as service:
                 _run(plant, service, started_s, once=once, json_file=json_file)
     except KeyboardInterrupt as interrupt:
         failure = CommandError("interrupted", details={"type": "Interrupted"})
@@ -56,14 +61,18 @@ def demonstrate(*, once: bool, json_file: Path | None, data: Path | None, url: s
 
 
 @contextmanager
-def _plant(interruption: Interruption, data: Path | None, url: str | None) -> Iterator[DemoPlant]:
+def _plant(
+    interruption: Interruption, data: Path | None, url: str | None, *, once: bool
+) -> Iterator[DemoPlant]:
     """Start a plant, or use the one whose service answers at `url`."""
     if url is not None:
         yield plant_elsewhere(url, interruption.pause)
         return
     with _data_directory(data) as directory:
         progress().print(f"starting two factories, six relays and the service (data and logs: {directory})")
-        with running_plant(directory, interruption.pause, _report) as plant:
+        with running_plant(
+            directory, interruption.pause, _report, play=STEADY if once else MONTH_OF_CHANGES
+        ) as plant:
             yield plant
 
 
@@ -79,15 +88,59 @@ def _run(
     console = progress()
     console.print(f"API: {plant.url}/api/v1/motors   end: Ctrl-C")
     try:
-        for number in count(1):
-            for motor in motors:
-                motor.diagnoses.clear()
-            _play(plant, service, motors, 1)
-            _publish(motors, time.monotonic() - started_s, json_file, number)
-            _rest(plant)
-            started_s = time.monotonic()
+        if plant.month is None:
+            _play_rounds(plant, service, motors, started_s, json_file)
+        else:
+            _play_month(plant, plant.month, service, motors, json_file)
     except KeyboardInterrupt:
         console.print("ending")
+
+
+def _play_month(
+    plant: DemoPlant,
+    month: Month,
+    service: ServiceClient,
+    motors: list[DemoMotor],
+    json_file: Path | None,
+) -> None:
+    """Play the month, then rounds that add to it, and print the conditions that they lead to."""
+    started_s = time.monotonic()
+    minutes = month.leaps * month.leap_every_s / 60
+    progress().print(
+        f"{month.days:g} days of the plant pass in {minutes:.3g} minutes; a line tells what is new of a motor"
+    )
+
+    def publish(played: Sequence[DemoMotor], conditions: Mapping[str, Document]) -> None:
+        if json_file is not None:
+            shown = document(played, time.monotonic() - started_s, conditions)
+            json_file.write_text(as_json(shown) + "\n", encoding="utf-8")
+
+    played = play_month(plant, month, service, motors, publish)
+    while True:
+        conditions = conditions_of(service)
+        results().print(conditions_table(played, conditions))
+        publish(played, conditions)
+        _rest(plant)
+        for motor in played:
+            motor.diagnoses.clear()
+        _play(plant, service, played, 1)
+
+
+def _play_rounds(
+    plant: DemoPlant,
+    service: ServiceClient,
+    motors: Sequence[DemoMotor],
+    started_s: float,
+    json_file: Path | None,
+) -> None:
+    """Trigger every motor again and again, and print what is found in each recording."""
+    for number in count(1):
+        for motor in motors:
+            motor.diagnoses.clear()
+        _play(plant, service, motors, 1)
+        _publish(motors, time.monotonic() - started_s, json_file, number)
+        _rest(plant)
+        started_s = time.monotonic()
 
 
 def _motors(plant: DemoPlant, service: ServiceClient) -> list[DemoMotor]:
@@ -96,7 +149,7 @@ def _motors(plant: DemoPlant, service: ServiceClient) -> list[DemoMotor]:
     for relay in wait_until_ready(plant, service):
         _report(f"{relay} does not answer yet; the others go on")
     return [
-        DemoMotor(str(motor["name"]), str(motor["site"]), truths[str(motor["ied"])])
+        DemoMotor(str(motor["name"]), str(motor["site"]), truths[str(motor["ied"])], str(motor["ied"]))
         for motor in service.items("/motors")
     ]
 

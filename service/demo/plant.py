@@ -10,8 +10,10 @@ from pathlib import Path
 
 import scl
 from service.client.rest_client import ServiceClient
-from service.demo import MOTORS, SCENARIO
+from service.demo import SCENARIO
 from service.demo.addresses import LOOPBACK, addressed_scd, free_port
+from service.demo.month import Month, month_of
+from service.demo.plays import STEADY, Play
 from service.demo.processes import Program, ProgramError
 
 START_LIMIT_S = 90.0
@@ -37,6 +39,7 @@ class DemoPlant:
 
     pause: waits some seconds; raises ProgramError when a program of the plant has ended.
     answer_limit_s: how long nothing may listen at the address [s].
+    month: the month that the plant lives through; None where its time is the real one.
     """
 
     scd: Path
@@ -44,6 +47,7 @@ class DemoPlant:
     url: str
     pause: Callable[[float], None]
     answer_limit_s: float = START_LIMIT_S
+    month: Month | None = None
 
 
 @contextmanager
@@ -52,43 +56,52 @@ def running_plant(
     pause: Callable[[float], None],
     report: Callable[[str], None],
     *,
+    play: Play = STEADY,
     choose_port: Callable[[int], int] = free_port,
 ) -> Iterator[DemoPlant]:
     """The demo plant while the block runs; afterwards every process has ended. Its data stays in `data`.
 
     pause: waits some seconds, and may raise to end the block.
     report: takes a line for the person who waits.
+    play: what the demo plays.
     choose_port: returns the port of the service, given the usual one.
 
     Raises SclError, ProgramError, NotReadyError, OSError.
     """
     data.mkdir(parents=True, exist_ok=True)
     with ExitStack() as programs:
-        plant = _start(data, pause, choose_port, programs)
+        plant = _start(data, play, pause, choose_port, programs)
         for line in _other_addresses(plant):
             report(line)
         yield plant
 
 
 def _start(
-    data: Path, pause: Callable[[float], None], choose_port: Callable[[int], int], programs: ExitStack
+    data: Path,
+    play: Play,
+    pause: Callable[[float], None],
+    choose_port: Callable[[int], int],
+    programs: ExitStack,
 ) -> DemoPlant:
     """Start both programs, again on other ports where somebody else has taken the chosen ones."""
     for _ in range(ATTEMPTS - 1):
         try:
-            return _start_once(data, pause, choose_port(SERVICE_PORT), programs)
+            return _start_once(data, play, pause, choose_port(SERVICE_PORT), programs)
         except ProgramError as error:
             if not any(words in str(error) for words in PORT_TAKEN):
                 raise
-    return _start_once(data, pause, choose_port(SERVICE_PORT), programs)
+    return _start_once(data, play, pause, choose_port(SERVICE_PORT), programs)
 
 
-def _start_once(data: Path, pause: Callable[[float], None], port: int, programs: ExitStack) -> DemoPlant:
+def _start_once(
+    data: Path, play: Play, pause: Callable[[float], None], port: int, programs: ExitStack
+) -> DemoPlant:
     scd = addressed_scd(scl.DEMO_PLANT_SCD, data)
     with ExitStack() as starting:
-        simulator = starting.enter_context(Program("ied-sim", _simulator(scd, data), data / "ied-sim.log"))
+        command = _simulator(scd, play.scenario, data)
+        simulator = starting.enter_context(Program("ied-sim", command, data / "ied-sim.log"))
         service = starting.enter_context(
-            Program("mcc serve", _service(), data / "service.log", _environment(scd, data, port))
+            Program("mcc serve", _service(), data / "service.log", _environment(scd, play, data, port))
         )
 
         def pause_and_check(seconds: float) -> None:
@@ -102,8 +115,9 @@ def _start_once(data: Path, pause: Callable[[float], None], port: int, programs:
             pause_and_check(POLL_PERIOD_S)
             if time.monotonic() > deadline_s:
                 raise NotReadyError(f"not listening after {START_LIMIT_S:g} s; logs: {data}")
+        month = month_of(play.scenario, simulator.logged())
         programs.push(starting.pop_all())
-    return DemoPlant(scd, SCENARIO, f"http://{LOOPBACK}:{port}", pause_and_check)
+    return DemoPlant(scd, play.scenario, f"http://{LOOPBACK}:{port}", pause_and_check, month=month)
 
 
 def _other_addresses(plant: DemoPlant) -> Iterator[str]:
@@ -142,8 +156,8 @@ def wait_until_ready(plant: DemoPlant, service: ServiceClient) -> list[str]:
             raise NotReadyError(f"{plant.url}: the service is not ready after {START_LIMIT_S:g} s")
 
 
-def _simulator(scd: Path, data: Path) -> list[str]:
-    command = [sys.executable, "-m", "ied_sim", "--scd", str(scd), "--scenario", str(SCENARIO)]
+def _simulator(scd: Path, scenario: Path, data: Path) -> list[str]:
+    command = [sys.executable, "-m", "ied_sim", "--scd", str(scd), "--scenario", str(scenario)]
     return [*command, "--files", str(data / "relays")]
 
 
@@ -151,13 +165,14 @@ def _service() -> list[str]:
     return [sys.executable, "-m", "service.cli", "serve"]
 
 
-def _environment(scd: Path, data: Path, port: int) -> dict[str, str]:
+def _environment(scd: Path, play: Play, data: Path, port: int) -> dict[str, str]:
     """The settings of the demo's service. Other MCC_ variables of the environment are left out."""
     others = {name: value for name, value in os.environ.items() if not name.startswith("MCC_")}
     return others | {
         "MCC_DATA_DIRECTORY": str(data),
         "MCC_SCD": str(scd),
-        "MCC_MOTORS": str(MOTORS),
+        "MCC_MOTORS": str(play.motors),
         "MCC_BIND_ADDRESS": LOOPBACK,
         "MCC_PORT": str(port),
+        **play.settings,
     }

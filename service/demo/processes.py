@@ -45,9 +45,13 @@ class Program:
     def process_id(self) -> int:
         return self._process.pid
 
+    def logged(self) -> str:
+        """Its log so far."""
+        return self._log.read_text(encoding="utf-8", errors="replace")
+
     def has_logged(self, text: str) -> bool:
         """Whether its log contains the text."""
-        return text in self._log.read_text(encoding="utf-8", errors="replace")
+        return text in self.logged()
 
     def check(self) -> None:
         """Raise ProgramError when the program has ended."""
@@ -77,5 +81,5 @@ class Program:
         self.stop()
 
     def _end_of_log(self) -> str:
-        lines = self._log.read_text(encoding="utf-8", errors="replace").splitlines()
+        lines = self.logged().splitlines()
         return " | ".join(lines[-TAIL_LINES:]) or "nothing"

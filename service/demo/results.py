@@ -1,6 +1,6 @@
 """The demo's diagnoses beside the truth, as a table for people and a document for programs."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rich.box import SIMPLE_HEAD
@@ -35,20 +35,29 @@ class DemoMotor:
     name: str
     site: str
     truth: Truth
+    ied: str = ""
     diagnoses: list[DemoDiagnosis] = field(default_factory=list)
 
     def as_dict(self) -> dict[str, object]:
         return {
             "motor": self.name,
             "site": self.site,
-            "truth": self.truth.model_dump(),
+            "truth": self.truth.as_dict(),
             "diagnoses": [diagnosis.as_dict() for diagnosis in self.diagnoses],
         }
 
 
-def document(motors: Sequence[DemoMotor], seconds: float) -> dict[str, object]:
-    """Return the document that `mcc demo --json FILE` writes."""
-    return {"seconds": round(seconds, 3), "motors": [motor.as_dict() for motor in motors]}
+def document(
+    motors: Sequence[DemoMotor], seconds: float, conditions: Mapping[str, Document] | None = None
+) -> dict[str, object]:
+    """Return the document that `mcc demo --json FILE` writes.
+
+    conditions: by motor, where they are part of it.
+    """
+    shown = [motor.as_dict() for motor in motors]
+    for motor in shown if conditions is not None else ():
+        motor["condition"] = (conditions or {})[str(motor["motor"])]
+    return {"seconds": round(seconds, 3), "motors": shown}
 
 
 def slowest(motors: Sequence[DemoMotor]) -> float | None:
@@ -84,8 +93,14 @@ def table(motors: Sequence[DemoMotor]) -> Table:
 
 def truth_text(truth: Truth) -> str:
     """Return the truth in words: "5 % b, load 0.65"."""
-    condition = "healthy" if truth.phase is None else f"{100 * truth.mu_f:g} % {truth.phase}"
-    return f"{condition}, load {truth.load_level:g}"
+    return f"{condition_text(truth)}, load {truth.load_level:.3g}"
+
+
+def condition_text(truth: Truth) -> str:
+    """Return what is wrong with the motor and its channels in words: "5 % b", "healthy, VB -0.4 %"."""
+    words = ["healthy" if truth.phase is None else f"{100 * truth.mu_f:.3g} % {truth.phase}"]
+    words += [f"{name} {100 * channel.gain:+.2g} %" for name, channel in truth.channels.items()]
+    return ", ".join(words)
 
 
 def _row(diagnosis: DemoDiagnosis) -> tuple[str | Text, ...]:
