@@ -2,6 +2,7 @@
 
 from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.baselines import BaselineRows
+from service.storage.repository.condition_alarms import ConditionAlarmRows
 from service.storage.repository.condition_events import ConditionEventRows
 from service.storage.repository.conditions import ConditionRows
 from service.storage.repository.deletions import DeletionRows
@@ -41,6 +42,7 @@ class Repository(
     MotorVersionRows,
     ObservationRows,
     ConditionEventRows,
+    ConditionAlarmRows,
     ConditionRows,
     FoldingRows,
     StateCounts,

@@ -3,18 +3,38 @@
 import uuid
 from collections.abc import Mapping, Sequence
 
-from sqlalchemy import select
+from sqlalchemy import exists, or_, select
 from sqlalchemy.orm import Session
 
 from core.condition.kinds import State
-from service.storage.models import AlarmRow, MotorRow
+from service.storage.models import AlarmRow, ConditionRow, MotorRow
 from service.storage.records import ConditionEntry
 from service.storage.repository.alarms import clear, forget_cleared
+from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.repository.standing_alarm_counts import count_raised
 from service.storage.states import AlarmKind
 from service.storage.texts import storable
 
 ALARM_OF = {State.WATCH: AlarmKind.CONDITION_WATCH, State.FAULT: AlarmKind.CONDITION_FAULT}
+
+
+class ConditionAlarmRows(Sessions):
+    def settle_alarms(self, *, now_ns: int) -> None:
+        """Make the alarms of all motors say what their conditions say.
+
+        For motors that left the plant or came back, of which nothing else tells their alarms.
+        """
+        stands = exists().where(AlarmRow.motor == ConditionRow.motor, AlarmRow.cleared_ns.is_(None))
+        concerned = (
+            select(ConditionRow)
+            .where(or_(ConditionRow.state.in_(ALARM_OF), stands))
+            .order_by(ConditionRow.motor)
+            .with_for_update(key_share=True)
+        )
+        with self._write() as session:
+            for row in session.scalars(concerned).all():
+                motor = found(session, MotorRow, row.motor, "motor")
+                settle_alarm(session, motor, record_of(ConditionEntry, row), now_ns=now_ns)
 
 
 def settle_alarm(session: Session, motor: MotorRow, condition: ConditionEntry, *, now_ns: int) -> None:

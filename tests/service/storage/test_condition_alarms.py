@@ -82,12 +82,17 @@ def test_the_alarm_of_a_motor_is_none_of_its_relay(repository: Repository, settl
     assert repository.alarms(limit=10, motor="FAN-A2").items == ()
 
 
-def test_a_motor_that_left_the_plant_has_no_alarm(repository: Repository, settle: Settle) -> None:
-    settle(FAULT)
+def test_a_motor_that_left_the_plant_has_no_alarm_until_it_is_back(repository: Repository) -> None:
+    tell(repository, FAULT)
     plant = two_motor_plant()
     repository.sync_plant(replace(plant, motors=plant.motors[1:]))
-    settle(FAULT)
+    repository.settle_alarms(now_ns=NOW_NS + 1)
     assert standing(repository) == ()
+    repository.sync_plant(plant)
+    for _ in range(2):
+        repository.settle_alarms(now_ns=NOW_NS + 2)
+    (alarm,) = standing(repository)
+    assert (alarm.kind, alarm.raised_ns) == (AlarmKind.CONDITION_FAULT, NOW_NS + 2)
 
 
 def test_an_alarm_is_counted_where_it_was_raised_when_the_motor_moved_to_another_relay(
