@@ -7,8 +7,6 @@ import pytest
 
 from core.condition.events import EventKind
 from core.condition.kinds import Kind, State
-from core.condition.events import EventKind
-from core.condition.kinds import Kind, State
 from core.diagnosis.verdict import Verdict
 from service.storage.states import (
     AlarmKind,
@@ -24,9 +22,6 @@ from tests.docs.pages import ROOT
 
 PAGE = (ROOT / "docs" / "reference" / "glossary.md").read_text(encoding="utf-8")
 SHOWN = [
-    State,
-    Kind,
-    EventKind,
     Verdict,
     State,
     Kind,
