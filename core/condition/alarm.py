@@ -6,8 +6,9 @@ from math import sqrt
 from typing import Any, Final
 
 import numpy as np
+from scipy.special import ndtr
 
-from core.condition.evidence import DIRECTION, along
+from core.condition.evidence import along, signature
 from core.condition.hypotheses import CAUSES, Cause, Hypotheses
 from core.condition.kinds import Kind
 from core.condition.levels import level_now, levels_since
@@ -20,6 +21,10 @@ CERTAIN: Final = 0.98
 """Posterior probability at which a cause is named."""
 RUNNING: Final = 3
 """Records in a row that have to agree on it."""
+MACHINE: Final = 0.06
+"""Relative standard deviation of what a level adds to y: the figures of a motor's file are off."""
+TAIL: Final = 0.025
+GRID: Final = 400
 WINDOW: Final = 64
 """Records after the alarm within which a cause is named."""
 
@@ -162,6 +167,8 @@ class TurnsLevel:
     ----------
     value, deviation : float
         Level now and its standard deviation from all causes.
+    interval : tuple of float
+        95 % interval.
     winding : int
         Winding of the positive-sequence frame.
     path_ratio : float
@@ -174,6 +181,7 @@ class TurnsLevel:
 
     value: float
     deviation: float
+    interval: tuple[float, float]
     winding: int
     path_ratio: float
     onset_ns: int
@@ -210,7 +218,7 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     at = winding * len(PATHS) + likeliest
     one, size = bank[int(weighing.best[at, 0])], weighing.best[at, 2]
     drifts = int(weighing.best[at, 1])
-    u = complex(hypotheses[at].u)
+    u, _ = signature(state, hypotheses[at])
     # What the filter has taken up of the change comes off, so that the state is that of before it.
     column = 6 if drifts else 0
     jump = size * np.array([u.real, u.imag])
@@ -219,18 +227,28 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     told: tuple[tuple[int, float], ...] = ()
     table, out = np.zeros((RECENT, 3)), np.zeros(5)
     for p in range(len(PATHS)):
-        signature = complex(hypotheses[winding * len(PATHS) + p].u)
-        first = levels_since(state, recent, reference, signature, one.time_ns, table)
+        u, direction = signature(state, hypotheses[winding * len(PATHS) + p])
+        first = levels_since(state, recent, reference, u, one.time_ns, table)
         taken = int(state.recent) - first
         value, wandering = level_now(table[:taken])
-        along(one, 0, ramp=False, u=signature, out=out)
+        along(one, 0, ramp=False, u=u, out=out)
         a, b, c = out[0], out[1], out[2]
-        information = a - b * b / (c + 1.0 / max((DIRECTION * value) ** 2, 1e-12))
+        information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
         values.append(value)
-        spreads.append(wandering + 1.0 / max(information, 1e-9))
+        scale = MACHINE**2 + state.turn_deviation**2
+        spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
         if p == likeliest:
             times = [int(recent[first + i].time_ns) for i in range(taken)]
             told = tuple(zip(times, table[:taken, 0].tolist(), strict=True))
     mean = float(shares @ values)
     variance = float(shares @ (np.array(spreads) + (np.array(values) - mean) ** 2))
-    return TurnsLevel(mean, sqrt(variance), winding, PATHS[likeliest], int(one.time_ns), told)
+    interval = _interval(shares, np.array(values), np.sqrt(spreads))
+    return TurnsLevel(mean, sqrt(variance), interval, winding, PATHS[likeliest], int(one.time_ns), told)
+
+
+def _interval(shares: Array, means: Array, deviations: Array) -> tuple[float, float]:
+    """Return the 95 % interval of a mixture of normal distributions."""
+    low, high = float(np.min(means - 5.0 * deviations)), float(np.max(means + 5.0 * deviations))
+    grid = np.linspace(low, high, GRID)
+    below = ndtr((grid[:, np.newaxis] - means) / deviations) @ shares
+    return float(np.interp(TAIL, below, grid)), float(np.interp(1.0 - TAIL, below, grid))

@@ -24,12 +24,15 @@ class Level:
         Terminal winding of the fault.
     path_ratio : float
         Resistance of the path over that of the shorted turns.
+    interval : tuple of float or None, optional
+        95 % interval where it is not the normal one, because the path may be one or another.
     """
 
     value: float
     deviation: float
     winding: Winding
     path_ratio: float
+    interval: tuple[float, float] | None = None
 
     @property
     def phase(self) -> Phase:
@@ -39,6 +42,8 @@ class Level:
     @property
     def ci95(self) -> tuple[float, float]:
         """95 % interval, not below zero."""
+        if self.interval is not None:
+            return max(0.0, self.interval[0]), max(0.0, self.interval[1])
         half = NORMAL_95 * self.deviation
         return max(0.0, self.value - half), max(0.0, self.value + half)
 

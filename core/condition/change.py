@@ -62,7 +62,7 @@ def change_of(
         detected_ns=alarm.detected_ns,
         probabilities=by_kind(weighing.probabilities),
         named=alarm.named,
-        level=Level(level.value, level.deviation, winding, level.path_ratio),
+        level=Level(level.value, level.deviation, winding, level.path_ratio, level.interval),
         channel=channel,
         size=size,
     )

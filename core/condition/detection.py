@@ -14,7 +14,7 @@ from math import exp, log
 
 import numpy as np
 
-from core.condition.evidence import along, most_of_pair, of_free, of_size
+from core.condition.evidence import along, most_of_pair, of_free, of_size, signature
 from core.condition.hypotheses import IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.state import START, Candidate, FilterState
 from core.machines.compiled import compiled
@@ -78,13 +78,13 @@ def detect(
     free = np.full(2, IMPEDANCE)
     for i in range(int(state.candidates)):
         one = bank[i]
-        total += one.weight * _of_candidate(one, hypotheses, free, recorder)
+        total += one.weight * _of_candidate(state, one, hypotheses, free, recorder)
     state.statistic = log(max(total, 1.0))
 
 
 @compiled
 def _of_candidate(
-    one: Candidate, hypotheses: list[Hypothesis], free: np.ndarray, recorder: np.ndarray
+    state: FilterState, one: Candidate, hypotheses: list[Hypothesis], free: np.ndarray, recorder: np.ndarray
 ) -> float:
     """Return the mean Bayes factor of one onset, its negligible parts left out."""
     total = 0.0
@@ -102,9 +102,12 @@ def _of_candidate(
                 it = hypotheses[h]
                 if it.column != column:
                     continue
-                along(one, column, drifts == 1, it.u, out)
+                u, direction = signature(state, it)
+                along(one, column, drifts == 1, u, out)
                 spread = it.spread if drifts == 0 else HALF * it.spread
-                evidence, _, _ = of_size(out[0], out[1], out[2], out[3], out[4], spread, it.one_sided)
+                evidence, _, _ = of_size(
+                    out[0], out[1], out[2], out[3], out[4], spread, direction, it.one_sided
+                )
                 weight = _W_TURNS if it.cause == _TURNS else _W_CHANNEL
                 total += HALF * weight * it.share * exp(min(evidence, LARGEST))
     if most_of_pair(one.impedance, 0, one.d, 4) > NEGLIGIBLE:

@@ -19,7 +19,7 @@ from core.condition.observation import Observation
 from core.condition.prior import IMPEDANCE, prior_of
 from core.condition.signatures import terminal_turn
 from core.condition.standing import STANDING_SCORE, Standing, standing_of, without_prior
-from core.condition.start import NOISE_STEPS, in_order, starting_noise
+from core.condition.start import NOISE_STEPS, in_order, noise_of_currents, starting_noise
 from core.condition.state import (
     CANDIDATE,
     CANDIDATES,
@@ -64,6 +64,8 @@ class Direction:
         self._recent: Any = np.zeros(RECENT, RECENT_RECORD).view(np.recarray)
         self._see(motor)
         self._prior = prior_of(motor)
+        rated = negative_impedance(motor.parameters, motor.nameplate.rated_frequency_Hz)
+        self._nominal = rated / self._prior.scale_ohm
         self._restart(keep_impedance=False)
 
     @property
@@ -173,6 +175,7 @@ class Direction:
                 standing=Level(standing.level, standing.deviation, winding, standing.path_ratio),
                 standing_score=standing.score,
                 from_bus=standing.from_bus,
+                accepted=header.accepted,
             ),
             change=change,
             standing_fault=standing.score >= STANDING_SCORE and not header.accepted,
@@ -292,14 +295,21 @@ class Direction:
         return standing_of(motor, asymmetry, own.covariance + common[1], from_bus=True)
 
     def _move_impedance(self, motor: Motor, edited: Motor) -> None:
-        f = motor.nameplate.rated_frequency_Hz
-        shift = negative_impedance(motor.parameters, f) - negative_impedance(edited.parameters, f)
-        shift /= self._prior.scale_ohm
-        state, start = self._state, self._header.start
+        """Keep Z2 and the standing errors as they are known, whatever the motor's file says of Z2."""
+        f, z = motor.nameplate.rated_frequency_Hz, self._prior.scale_ohm
+        before = negative_impedance(motor.parameters, f) / z
+        after = negative_impedance(edited.parameters, f) / z
+        state, start, b = self._state, self._header.start, self._state.balance
         for x in (state.x, state.x0):
-            x[4] += shift.real
-            x[5] += shift.imag
-        start[:] = [record._replace(y=record.y + shift * record.j2) for record in start]
+            found = complex(x[4], x[5]) / before
+            Z2 = before * (1.0 + (1.0 - b) * found) / (1.0 - b * found)
+            other = (Z2 / after - 1.0) / (1.0 + b * (Z2 / after - 1.0))
+            ratio = (1.0 - b * other) / (1.0 - b * found)
+            x[0], x[1] = _turned(x[:2], ratio)
+            x[2], x[3] = _turned(x[2:4], ratio)
+            x[4], x[5] = (after * other).real, (after * other).imag
+        self._nominal = state.nominal = after
+        start[:] = [record._replace(y=record.y + (before - after) * record.j2) for record in start]
 
     def _restart(self, *, keep_impedance: bool) -> None:
         """Let the reference be learnt anew."""
@@ -311,6 +321,8 @@ class Direction:
             P[4:, 4:] = state.P[4:, 4:]
         state.x0[:], state.P0[:] = x, P
         state.current_deviation = prior.current
+        state.nominal = self._nominal
+        state.turn = state.other_turn = 1.0
         restart(state, self._sides)
         header.start.clear()
         header.accepted = False
@@ -321,11 +333,19 @@ class Direction:
         start = self._header.start
         start.append(record)
         records = in_order(start)
-        noise = starting_noise(records)
-        tried = [(self._fold_start(records, noise * step), -k) for k, step in enumerate(NOISE_STEPS)]
-        self._fold_start(records, noise * NOISE_STEPS[-max(tried)[1]])
+        self._state.balance = 0.0
+        self._state.balance = min(noise_of_currents(records) / self._likeliest_start(records), 1.0)
+        self._likeliest_start(records)
         if len(start) == START:
             start.clear()
+
+    def _likeliest_start(self, records: Sequence[Measurement]) -> float:
+        """Fold the first records with the noise that makes them likeliest; return its variance."""
+        noise = starting_noise(records)
+        tried = [(self._fold_start(records, noise * step), -k) for k, step in enumerate(NOISE_STEPS)]
+        s2 = noise * NOISE_STEPS[-max(tried)[1]]
+        self._fold_start(records, s2)
+        return s2
 
     def _fold_start(self, records: Sequence[Measurement], s2: float) -> float:
         state = self._state

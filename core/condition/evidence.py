@@ -4,12 +4,11 @@ from math import erfc, exp, log, sqrt
 
 import numpy as np
 
-from core.condition.state import Candidate
+from core.condition.hypotheses import Hypothesis
+from core.condition.state import Candidate, FilterState
 from core.machines.base import Array
 from core.machines.compiled import compiled
 
-DIRECTION = 0.12
-"""Standard deviation of a signature's direction: g = m (1 + j e), e of this standard deviation."""
 LOG_2PI = 1.8378770664093453
 LOG_2 = 0.6931471805599453
 TINY = 1e-300
@@ -36,7 +35,7 @@ def log_twice_normal(z: float) -> float:
 
 @compiled
 def of_size(
-    a: float, b: float, c: float, l0: float, l1: float, spread: float, one_sided: bool
+    a: float, b: float, c: float, l0: float, l1: float, spread: float, direction: float, one_sided: bool
 ) -> tuple[float, float, float]:
     """Return the evidence for a signature of unknown real size and nearly known direction.
 
@@ -48,6 +47,8 @@ def of_size(
         Information vector.
     spread : float
         s, standard deviation of m before.
+    direction : float
+        Standard deviation of e, the error of the signature's direction: g = m (1 + j e).
     one_sided : bool
         Whether m is positive.
 
@@ -58,7 +59,7 @@ def of_size(
     size, deviation : float
         Mean and standard deviation of m afterwards, as if it had no sign.
     """
-    D0, D1 = spread * spread, (DIRECTION * spread) ** 2
+    D0, D1 = spread * spread, (direction * spread) ** 2
     p, q = a + 1.0 / D0, c + 1.0 / D1
     determinant = p * q - b * b
     size = (q * l0 - b * l1) / determinant
@@ -197,6 +198,29 @@ def _project(block: Array, first: int, d: Array, second: int, u: complex, out: A
     out[2] = p * y * y - 2.0 * q * x * y + r * x * x
     out[3] = x * d0 + y * d1
     out[4] = -y * d0 + x * d1
+
+
+@compiled
+def signature(state: FilterState, it: Hypothesis) -> tuple[complex, float]:
+    """Return what a cause looks like in y with the impedance that has been learnt.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    it : Hypothesis
+        The cause and its place.
+
+    Returns
+    -------
+    u : complex
+        Signature per size.
+    direction : float
+        Standard deviation of its direction [rad].
+    """
+    if not it.impedance:
+        return it.u * state.other_turn, it.direction
+    return it.u * state.turn, sqrt(it.direction**2 + state.turn_deviation**2)
 
 
 @compiled

@@ -1,14 +1,26 @@
 """One record into all that is kept of a motor."""
 
+import numpy as np
+
 from core.condition.change_bank import add_candidate, fold_candidates
 from core.condition.detection import detect, learn_gap
 from core.condition.hypotheses import Hypothesis
-from core.condition.kalman import learn_noise, predict, update
+from core.condition.kalman import (
+    learn_impedance,
+    learn_noise,
+    predict,
+    rebalance,
+    regressor,
+    update,
+)
 from core.condition.measurement import Measurement
-from core.condition.side_channels import begin, fold_side
-from core.condition.state import RECENT, SIDES, Candidate, FilterState, Recent, SideState
+from core.condition.side_channels import begin, fold_side, noise_of_currents
+from core.condition.state import I0, RECENT, SIDES, Candidate, FilterState, Recent, SideState
 from core.machines.base import Array
 from core.machines.compiled import compiled
+
+FIRST_BALANCE = 16.0
+"""Records after which the currents' noise is known; it is looked at again after twice as many."""
 
 
 @compiled
@@ -42,12 +54,15 @@ def fold_record(
     rho = predict(state, record.elapsed_s)
     if not changed:
         add_candidate(state, bank, time_ns)
-    update(state, record.y, record.j1, record.j2)
+    update(state, record.y, record.j1, regressor(state, record.y, record.j2))
     for s in range(SIDES):
         fold_side(sides[s], s, record)
     fold_candidates(state, bank, sides, rho)
     if not changed:
         learn_noise(state)
+        learn_impedance(state)
+        if state.records >= FIRST_BALANCE and np.log2(state.records) % 1.0 == 0.0:
+            rebalance(state, min(noise_of_currents(sides[I0]) / state.s2, 1.0))
     learn_gap(state, record.elapsed_s)
     detect(state, bank, hypotheses, recorder)
     _remember(state, recent, record, time_ns, changed)
@@ -68,7 +83,7 @@ def fold_first(state: FilterState, sides: list[SideState], record: Measurement) 
         The record.
     """
     predict(state, record.elapsed_s)
-    update(state, record.y, record.j1, record.j2)
+    update(state, record.y, record.j1, regressor(state, record.y, record.j2))
     for s in range(SIDES):
         fold_side(sides[s], s, record)
     learn_gap(state, record.elapsed_s)
@@ -92,7 +107,7 @@ def restart(state: FilterState, sides: list[SideState]) -> None:
     state.block = 1.0
     state.statistic = state.surprise = state.log_likelihood = 0.0
     for s in range(SIDES):
-        begin(sides[s])
+        begin(sides[s], s)
 
 
 @compiled
@@ -101,12 +116,13 @@ def _remember(
 ) -> None:
     """Keep the record: of a healthy motor the latest ones, after a change all, by means of ever more."""
     count = int(state.recent)
+    j2 = regressor(state, record.y, record.j2)
     if count > 0 and recent[count - 1].count < state.block:
         last = recent[count - 1]
         gain = 1.0 / (last.count + 1.0)
         last.y += gain * (record.y - last.y)
         last.j1 += gain * (record.j1 - last.j1)
-        last.j2 += gain * (record.j2 - last.j2)
+        last.j2 += gain * (j2 - last.j2)
         last.R += gain * (state.R - last.R)
         last.count += 1.0
         last.time_ns = time_ns
@@ -121,7 +137,7 @@ def _remember(
             count -= 1
     new = recent[count]
     new.time_ns, new.count, new.R = time_ns, 1.0, state.R
-    new.y, new.j1, new.j2 = record.y, record.j1, record.j2
+    new.y, new.j1, new.j2 = record.y, record.j1, j2
     state.recent = count + 1.0
 
 

@@ -34,6 +34,11 @@ CHANNEL: Final = 0.02
 JOINT_DROP: Final = 0.015
 """Standard deviations of their sizes: equivalent level, relative error, and voltage drop at rated current
 over the rated voltage."""
+TURNS_DIRECTION: Final = 0.06
+CHANNEL_DIRECTION: Final = 0.12
+JOINT_DIRECTION: Final = 0.05
+"""Standard deviations of the signatures' directions [rad]. Z2 leaves more of those in proportion to it
+uncertain; a channel errs in phase as well as in ratio, and a joint is a resistance."""
 IMPEDANCE: Final = 0.1
 LOAD: Final = 0.75
 """Efficiency times power factor of a motor at rated load, from which its rated current follows."""
@@ -58,6 +63,10 @@ class Hypothesis(Protocol):
         Signatures in the side channels per size.
     spread : float
         Standard deviation of the size before.
+    direction : float
+        Standard deviation of the signature's direction [rad].
+    impedance : bool
+        Whether the signature is in proportion to Z2.
     one_sided : bool
         Whether the size is positive.
     share : float
@@ -73,6 +82,8 @@ class Hypothesis(Protocol):
     u: complex
     side: ComplexArray
     spread: float
+    direction: float
+    impedance: bool
     one_sided: bool
     share: float
     unit: float
@@ -87,6 +98,8 @@ HYPOTHESIS: Final = np.dtype(
         ("u", "c16"),
         ("side", "c16", (SIDES,)),
         ("spread", "f8"),
+        ("direction", "f8"),
+        ("impedance", "?"),
         ("one_sided", "?"),
         ("share", "f8"),
         ("unit", "f8"),
@@ -121,27 +134,89 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels) -> Hypotheses:
     for x in range(3):
         for p in PATHS:
             u = shorted_turns(motor, x, p)
-            rows.append((Cause.SHORTED_TURNS, x, p, 0, u, none, LEVEL, True, 1.0 / 3.0 / len(PATHS), 1.0))
+            rows.append(
+                (
+                    Cause.SHORTED_TURNS,
+                    x,
+                    p,
+                    0,
+                    u,
+                    none,
+                    LEVEL,
+                    TURNS_DIRECTION,
+                    True,
+                    True,
+                    1.0 / 3.0 / len(PATHS),
+                    1.0,
+                )
+            )
     for x, e in enumerate(voltage_channels(channels)):
         side = [0j] * SIDES
         side[V2] = side[BUS] = e
         if channels is VoltageChannels.PHASE:
             side[V0] = A**-x / 3.0
-        rows.append((Cause.VOLTAGE_CHANNEL, x, 0.0, 0, e * turn, tuple(side), CHANNEL, False, 1.0 / 3.0, 1.0))
+        rows.append(
+            (
+                Cause.VOLTAGE_CHANNEL,
+                x,
+                0.0,
+                0,
+                e * turn,
+                tuple(side),
+                CHANNEL,
+                CHANNEL_DIRECTION,
+                False,
+                False,
+                1.0 / 3.0,
+                1.0,
+            )
+        )
     for x in range(3):
         side = [0j] * SIDES
         side[I0] = A**-x / 3.0
         u = -Z2n / z * A**x / 3.0 * turn
-        rows.append((Cause.CURRENT_CHANNEL, x, 0.0, 1, u, tuple(side), CHANNEL, False, 1.0 / 3.0, 1.0))
+        rows.append(
+            (
+                Cause.CURRENT_CHANNEL,
+                x,
+                0.0,
+                1,
+                u,
+                tuple(side),
+                CHANNEL,
+                CHANNEL_DIRECTION,
+                True,
+                False,
+                1.0 / 3.0,
+                1.0,
+            )
+        )
     rated = rated_current(motor, z)
     delta = motor.nameplate.connection is Connection.DELTA
     for x in range(3):
         # In delta a joint in the line carries the line current, which is not the winding's.
         u = A**x / 3.0
         share = 1.0 / 6.0 if delta else 1.0 / 3.0
-        rows.append((Cause.JOINT, x, 0.0, 1, u, none, JOINT_DROP / rated, True, share, rated))
+        rows.append(
+            (Cause.JOINT, x, 0.0, 1, u, none, JOINT_DROP / rated, JOINT_DIRECTION, False, True, share, rated)
+        )
         if delta:
-            rows.append((Cause.JOINT, 3 + x, 0.0, 1, u * turn, none, JOINT_DROP / rated, True, share, rated))
+            rows.append(
+                (
+                    Cause.JOINT,
+                    3 + x,
+                    0.0,
+                    1,
+                    u * turn,
+                    none,
+                    JOINT_DROP / rated,
+                    JOINT_DIRECTION,
+                    False,
+                    True,
+                    share,
+                    rated,
+                )
+            )
     return np.array(rows, HYPOTHESIS).view(np.recarray)
 
 

@@ -69,6 +69,55 @@ def predict(state: FilterState, elapsed_s: float) -> float:
 
 
 @compiled
+def regressor(state: FilterState, y: complex, j2: complex) -> complex:
+    """Return j2 with the noise of voltages and currents in balance.
+
+    Noise of the currents is in y and in j2. As a regressor j2 would draw r + jx towards -Z2n/z: the more,
+    the less V2 changes. That of the voltages is in y and in v2 = y + Z2n j2/z. With the share b of y's noise
+    that the currents make,
+
+        w = j2 + b y z / Z2n,
+
+    the noises of w and y have nothing in common. The state is then (E, C, r + jx) / (1 + b q), with
+    q = (r + jx) z / Z2n, and so are the signatures.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    y, j2 : complex
+        The record.
+
+    Returns
+    -------
+    complex
+        w.
+    """
+    return j2 + state.balance * y / state.nominal
+
+
+@compiled
+def rebalance(state: FilterState, balance: float) -> None:
+    """Let the regressor be another; E, C and the impedance stay what they are.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    balance : float
+        Share of y's noise that the currents make.
+    """
+    x, b = state.x, state.balance
+    found = complex(x[4], x[5]) / state.nominal
+    q = found / (1.0 - b * found)
+    other = q / (1.0 + balance * q)
+    ratio = (1.0 - balance * other) / (1.0 - b * found)
+    E, C, Z = complex(x[0], x[1]) * ratio, complex(x[2], x[3]) * ratio, other * state.nominal
+    x[0], x[1], x[2], x[3], x[4], x[5] = E.real, E.imag, C.real, C.imag, Z.real, Z.imag
+    state.balance = balance
+
+
+@compiled
 def update(state: FilterState, y: complex, j1: complex, j2: complex) -> None:
     """Take one record in; leave H, K, S_inverse and nu in the state.
 
@@ -123,6 +172,23 @@ def learn_noise(state: FilterState) -> None:
         gain = max(1.0 / (state.records + 8.0), SLOWEST)
         excess = min(state.surprise, LEARNING_CLIP) / LEARNING_MEAN - 1.0
         state.s2 *= 1.0 + gain * state.share * excess
+
+
+@compiled
+def learn_impedance(state: FilterState) -> None:
+    """Compute what the learnt impedance makes of the signatures; see `regressor`.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter, after `update`.
+    """
+    x, P, nominal = state.x, state.P, state.nominal
+    size = np.sqrt(nominal.real**2 + nominal.imag**2)
+    found = complex(x[4], x[5]) / nominal
+    state.turn = 1.0 + (1.0 - state.balance) * found
+    state.other_turn = 1.0 - state.balance * found
+    state.turn_deviation = np.sqrt(0.5 * (P[4, 4] + P[5, 5])) / size
 
 
 @compiled

@@ -8,7 +8,7 @@ from math import exp, log
 
 import numpy as np
 
-from core.condition.evidence import along, log_add, most_of_pair, of_free, of_free_side, of_size
+from core.condition.evidence import along, log_add, most_of_pair, of_free, of_free_side, of_size, signature
 from core.condition.hypotheses import CAUSES, IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.state import BUS, I0, SIDES, V0, V2, Candidate, FilterState
 from core.machines.base import Array
@@ -71,7 +71,7 @@ def name(
             for s in range(SIDES):
                 still[s] = _still(one, s, drifts, temper[s])
             for h in range(places):
-                _weigh_place(one, i, drifts, h, hypotheses[h], temper, still, logs, best)
+                _weigh_place(state, one, i, drifts, h, hypotheses[h], temper, still, logs, best)
         _weigh_free(one, i, recorder, temper, logs, best)
 
 
@@ -108,22 +108,23 @@ def _still(one: Candidate, s: int, drifts: int, power: float) -> float:
 
 @compiled
 def _weigh_place(
-    one: Candidate, i: int, drifts: int, h: int, it: Hypothesis, temper: Array, still: Array,
-    logs: Array, best: Array,
+    state: FilterState, one: Candidate, i: int, drifts: int, h: int, it: Hypothesis, temper: Array,
+    still: Array, logs: Array, best: Array,
 ) -> None:  # fmt: skip
     """Add the evidence of one onset, as a step or a drift, for one place of a cause."""
     out, joint = np.zeros(5), np.zeros(5)
-    along(one, it.column, drifts == 1, it.u, out)
+    u, direction = signature(state, it)
+    along(one, it.column, drifts == 1, u, out)
     for k in range(5):
         out[k] *= temper[SIDES]
         joint[k] = out[k]
     others = 0.0
     for s in range(SIDES):
-        u = it.side[s]
-        square = u.real**2 + u.imag**2
+        shown = it.side[s]
+        square = shown.real**2 + shown.imag**2
         if square > 0.0 and one.side_information[s, drifts] > 0.0:
             information = 2.0 * temper[s] * square * one.side_information[s, drifts]
-            projected = 2.0 * temper[s] * u.conjugate() * one.side_d[s, drifts]
+            projected = 2.0 * temper[s] * shown.conjugate() * one.side_d[s, drifts]
             joint[0] += information
             joint[2] += information
             joint[3] += projected.real
@@ -134,14 +135,14 @@ def _weigh_place(
     for k in range(2):
         spread = SIZES[k] * it.spread * (0.5 if drifts == 1 else 1.0)
         evidence, size, deviation = of_size(
-            joint[0], joint[1], joint[2], joint[3], joint[4], spread, it.one_sided
+            joint[0], joint[1], joint[2], joint[3], joint[4], spread, direction, it.one_sided
         )
         evidence += others
         if it.cause == _VOLTAGE:
             hidden = HIDDEN_DRIFT if drifts == 1 else HIDDEN_STEP
             if one.side_information[BUS, drifts] > 0.0:
                 hidden = HIDDEN_WITH_BUS
-            alone, _, _ = of_size(out[0], out[1], out[2], out[3], out[4], spread, it.one_sided)
+            alone, _, _ = of_size(out[0], out[1], out[2], out[3], out[4], spread, direction, it.one_sided)
             unseen = still[V0] + still[V2] + still[I0] + still[BUS]
             evidence = log_add(log(1.0 - hidden) + evidence, log(hidden) + alone + unseen)
         evidence += prior + log(0.5)

@@ -13,8 +13,10 @@ from core.condition.state import BUS, I0, V0, V2, SideState
 from core.machines.compiled import compiled
 
 FIRST_SPREAD = 0.1
-"""Standard deviation of a level, and of a slope over which nothing is known, before the first record."""
-FIRST_SLOPE = 0.5
+"""Standard deviation of a level before the first record."""
+FIRST_SLOPES = (0.5, 0.02, 0.0, 0.02)
+"""The same of the slopes of V0, I0, v2 and the bus difference: a zero sequence of the supply may be as
+large as V2, but what makes I0 follow I2 is errors of the channels."""
 FIRST_NOISE = 1e-3**2
 """Variance of the noise to start from."""
 FIRST_COUNT = 4.0
@@ -30,16 +32,18 @@ USUAL_CURRENT = 0.15
 
 
 @compiled
-def begin(side: SideState) -> None:
+def begin(side: SideState, kind: int) -> None:
     """Forget a side channel.
 
     Parameters
     ----------
     side : SideState
         The side channel.
+    kind : int
+        V0, I0, V2 or BUS.
     """
     side.x[0] = side.x[1] = 0.0
-    side.P[0, 0], side.P[1, 1] = FIRST_SPREAD**2, FIRST_SLOPE**2
+    side.P[0, 0], side.P[1, 1] = FIRST_SPREAD**2, FIRST_SLOPES[kind] ** 2
     side.P[0, 1] = side.P[1, 0] = 0.0
     side.records, side.S = 0.0, 0.0
     side.square, side.product = 2.0 * FIRST_NOISE, -FIRST_NOISE
@@ -94,6 +98,23 @@ def fold_side(side: SideState, kind: int, record: Measurement) -> None:
     P01 = P[0, 1] - K[0] * b.conjugate()
     P[0, 0], P[1, 1], P[0, 1], P[1, 0] = max(P00, 0.0), max(P11, 0.0), P01, P01.conjugate()
     _learn(side, z - x[1] * w, spread)
+
+
+@compiled
+def noise_of_currents(side: SideState) -> float:
+    """Return the variance that the currents' noise gives to j2, as I0 tells, which has little else.
+
+    Parameters
+    ----------
+    side : SideState
+        The side channel I0/I1.
+
+    Returns
+    -------
+    float
+        Variance, both parts together.
+    """
+    return 0.5 * side.square * USUAL_CURRENT**2
 
 
 @compiled

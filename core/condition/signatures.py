@@ -11,6 +11,8 @@ from core.machines.winding_frame import Winding, terminal_winding
 from core.signals.sequence import PhaseSequence
 
 A: Final = cexp(2j * pi / 3.0)
+WARM: Final = 1.1
+"""Resistance of the winding, between cold and warm, over that of the data sheet."""
 PATHS: Final = (0.0, 0.5, 1.0, 2.0, 4.0)
 """Resistances of the path over that of the shorted turns that are tried."""
 
@@ -33,7 +35,7 @@ def shorted_turns(motor: Motor, winding: int, path_ratio: float) -> complex:
         -Z2n (1 + p) a^x / (3 (R_s (1 + p) + j X_ls)).
     """
     machine, f = motor.parameters, motor.nameplate.rated_frequency_Hz
-    R_s, X_ls = machine.stator_resistance_ohm, 2.0 * pi * f * machine.stator_leakage_H
+    R_s, X_ls = WARM * machine.stator_resistance_ohm, 2.0 * pi * f * machine.stator_leakage_H
     Z2n = negative_impedance(machine, f)
     return complex(-Z2n * (1.0 + path_ratio) * A**winding / (3.0 * complex(R_s * (1.0 + path_ratio), X_ls)))
 

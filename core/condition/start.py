@@ -7,6 +7,7 @@ import numpy as np
 
 from core.condition.measurement import Measurement
 
+FEWEST: Final = 4
 LEAST_NOISE: Final = 3e-4**2
 """Least variance of y's noise to start from: what the records of measured motors repeat to."""
 NOISE_STEPS: Final = tuple(4.0**k for k in range(6))
@@ -29,6 +30,28 @@ def in_order(records: Sequence[Measurement]) -> list[Measurement]:
     y = np.array([record.y for record in records])
     median = complex(np.median(y.real), np.median(y.imag))
     return [records[k] for k in np.argsort(np.abs(y - median), kind="stable")]
+
+
+def noise_of_currents(records: Sequence[Measurement]) -> float:
+    """Return the variance that the currents' noise gives to j2, as I0 tells, which has little else.
+
+    Parameters
+    ----------
+    records : sequence of Measurement
+        The first records.
+
+    Returns
+    -------
+    float
+        Variance, both parts together; 0 of fewer than four records.
+    """
+    if len(records) < FEWEST:
+        return 0.0
+    i0 = np.array([record.i0 for record in records])
+    j1 = np.array([abs(record.j1) for record in records])
+    apart = np.abs(i0 - complex(np.median(i0.real), np.median(i0.imag))) * j1
+    # The median of |x|^2 is ln 2 of its mean where x is normal.
+    return float(np.median(apart**2) / np.log(2.0))
 
 
 def starting_noise(records: Sequence[Measurement]) -> float:

@@ -53,6 +53,14 @@ class FilterState(Protocol):
         Number of candidates, and of the entries of the recent records.
     block : float
         Number of records that an entry of the recent records is the mean of.
+    nominal : complex
+        Z2n / z at rated frequency.
+    balance : float
+        Share of y's noise that the currents make; see `regressor`.
+    turn, other_turn : complex
+        Factors of the signatures that are in proportion to Z2, and of the others.
+    turn_deviation : float
+        Standard deviation of each of its parts.
     statistic, threshold : float
         Logs of the detector's statistic and of its threshold.
     """
@@ -76,6 +84,11 @@ class FilterState(Protocol):
     candidates: float
     recent: float
     block: float
+    nominal: complex
+    balance: float
+    turn: complex
+    other_turn: complex
+    turn_deviation: float
     statistic: float
     threshold: float
 
@@ -101,6 +114,11 @@ FILTER: Final = np.dtype(
         ("candidates", "f8"),
         ("recent", "f8"),
         ("block", "f8"),
+        ("nominal", "c16"),
+        ("balance", "f8"),
+        ("turn", "c16"),
+        ("other_turn", "c16"),
+        ("turn_deviation", "f8"),
         ("statistic", "f8"),
         ("threshold", "f8"),
     ]
