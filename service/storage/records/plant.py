@@ -36,7 +36,7 @@ class IedEntry:
 
 @dataclass(frozen=True, slots=True)
 class MotorEntry:
-    """A motor; `schedule` is a cron expression in UTC."""
+    """A motor; `schedule`, its own or its bus's, is a cron expression in UTC."""
 
     name: str
     description: str

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from sqlalchemy import select, update
 
-from service.plant import Plant, PlantMotor
+from service.plant import Plant, PlantMotor, Schedule
 from service.storage.engine import one_at_a_time
 from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow
 from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
@@ -38,6 +38,7 @@ class PlantRows(Sessions):
             session.flush()
             buses_before = {row.name: row.bus for row in session.scalars(select(MotorRow))}
             for motor in plant.motors:
+                schedule = _schedule_of(motor, plant)
                 session.merge(
                     MotorRow(
                         name=motor.name,
@@ -45,7 +46,7 @@ class PlantRows(Sessions):
                         site=motor.site,
                         ied=motor.relay,
                         in_service=True,
-                        schedule=None if motor.schedule is None else motor.schedule.expression,
+                        schedule=None if schedule is None else schedule.expression,
                         bus=_compared_on(plant, motor),
                     )
                 )
@@ -125,6 +126,12 @@ def _compared_on(plant: Plant, motor: PlantMotor) -> str | None:
     """
     bus = plant.bus_of(motor.name)
     return None if bus is not None and bus.common_voltage_transformer else motor.bus
+
+
+def _schedule_of(motor: PlantMotor, plant: Plant) -> Schedule | None:
+    """Return when a motor is recorded: at times of its own, or with its bus."""
+    bus = plant.bus_of(motor.name)
+    return motor.schedule or (None if bus is None else bus.schedule)
 
 
 def _of_changed_buses(before: Mapping[str, str | None], plant: Plant) -> list[str]:

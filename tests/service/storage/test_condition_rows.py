@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
 from core.condition.observation import VoltageChannels
-from service.plant import Plant
+from service.plant import Bus, Plant
 from service.recording_store.store import RecordingStore
 from service.storage import NotFoundError, Repository
 from service.storage.errors import UnstorableDiagnosisError
@@ -308,6 +308,15 @@ def test_motors_of_a_bus_that_another_joins_are_folded_anew(
         repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
     repository.sync_plant(together)
     assert repository.motors_to_fold() == ()
+    one_transformer = replace(together, buses=(Bus("A", (PUMP, FAN), common_voltage_transformer=True),))
+    repository.sync_plant(one_transformer)
+    assert repository.motors_to_fold() == (FAN, PUMP), "they have nothing to compare any more"
+    for motor in (PUMP, FAN):
+        fold = began(repository, motor)
+        assert fold.neighbours == ()
+        repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
+    repository.sync_plant(one_transformer)
+    assert repository.motors_to_fold() == (), "nothing has changed"
 
 
 def on_buses(plant: Plant, buses: dict[str, str]) -> Plant:

@@ -4,6 +4,7 @@ import pytest
 from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
+from service.plant import Bus, Schedule
 from service.storage import NotFoundError, Repository
 from service.storage.models import AlarmRow, LinkChangeRow
 from service.storage.repository.alarms import MOST_CLEARED
@@ -83,3 +84,14 @@ def test_links_change_state_with_a_reason(repository: Repository) -> None:
     assert repository.relay("A1_SEL710").link_state is LinkState.UNKNOWN
     with pytest.raises(NotFoundError):
         repository.set_link_state("X", LinkState.UP, None, now_ns=NOW_NS)
+
+
+def test_a_motor_without_a_schedule_has_that_of_its_bus(repository: Repository) -> None:
+    plant = two_motor_plant()
+    pump, fan = plant.motors
+    hourly, daily = Schedule.parse("0 * * * *"), Schedule.parse("0 6 * * *")
+    bus = Bus("MCC-A", (pump.name, fan.name), hourly)
+    motors = (replace(pump, bus=bus.name), replace(fan, bus=bus.name, schedule=daily))
+    repository.sync_plant(replace(plant, motors=motors, buses=(bus,)))
+    told = {one.name: one.schedule for one in repository.motors(limit=10).items}
+    assert told == {pump.name: "0 * * * *", fan.name: "0 6 * * *"}
