@@ -3,7 +3,7 @@
 import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
@@ -35,6 +35,7 @@ class Step:
             "time": _time(self.seen),
             "state": str(condition.state),
             "kind": str(condition.kind),
+            "candidates": [str(kind) for kind in condition.candidates],
             "phase": condition.phase,
             "mu_f": condition.mu_f,
             "change": condition.change,
@@ -79,7 +80,8 @@ def follow_records(
         print_document(_document(motor_file, followed, given))
     else:
         skipped = [(_name(one.path), one.refusal) for one in followed.skipped]
-        print_condition(followed.condition, [step.condition for step in followed.steps], skipped)
+        history = [step.as_dict() for step in followed.steps]
+        print_condition(followed.condition.as_dict(), history, skipped)
 
 
 def follow(motor: Motor, seen: Sequence[Seen], events: Sequence[GivenEvent], stale_after_ns: int) -> Followed:
@@ -105,12 +107,18 @@ def follow(motor: Motor, seen: Sequence[Seen], events: Sequence[GivenEvent], sta
         except ValueError as error:
             skipped.append(one.refused(str(error)))
             continue
-        found = condition_of(follower.motor, follower.assessment(), one.observation.time_ns, stale_after_ns)
-        steps.append(Step(one, found))
+        steps.append(Step(one, _brief(follower, one.observation.time_ns)))
     for event in waiting:
         _apply(follower, event)
     condition = condition_of(follower.motor, follower.assessment(), now_ns, stale_after_ns)
     return Followed(condition, tuple(steps), tuple(skipped))
+
+
+def _brief(follower: Follower, now_ns: int) -> Condition:
+    """Return the condition after a record. A forecast, which takes long, is made at the end only."""
+    assessment = follower.assessment()
+    brief = None if assessment is None else replace(assessment, levels=())
+    return condition_of(follower.motor, brief, now_ns)
 
 
 def _apply(follower: Follower, given: GivenEvent) -> None:

@@ -10,7 +10,6 @@ import pytest
 
 from core.condition.condition import condition_of
 from core.condition.follower import Follower
-from core.condition.kinds import Kind, State
 from core.condition.observing import observe
 from core.machines.motor_file import read_motor
 from core.machines.motor_file_writer import write_motor
@@ -215,7 +214,7 @@ def test_people_read_state_and_advice_first(few: Path, capsys: pytest.CaptureFix
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "PUMP: healthy"
     assert lines[1].startswith("Nothing needs to be done")
-    assert lines.index("Why") > 2
+    assert any(line.startswith("why") for line in lines[2:])
     (row,) = [
         line for line in lines if line.strip().startswith("2026-01-05 09:00:00 UTC") and "healthy" in line
     ]
@@ -232,8 +231,8 @@ def test_names_and_reasons_cannot_play_with_the_terminal(
     shown = capsys.readouterr().out
     assert "\x1b" not in shown
     assert "[red]" in shown
-    condition = condition_of(REFERENCE, None, BEGUN_NS)
-    print_condition(condition, [condition], [("\x1b[2Jname", "\x07reason")])
+    unknown = replace(condition_of(REFERENCE, None, BEGUN_NS), motor="\x1b]0;mine\x07")
+    print_condition(unknown.as_dict(), [], [("\x1b[2Jname", "\x07reason")])
     shown = capsys.readouterr().out
     assert not {"\x1b", "\x07"} & set(shown)
-    assert (condition.state, condition.kind) == (State.UNKNOWN, Kind.NONE)
+    assert "unknown" in shown
