@@ -2,8 +2,13 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Final
 
 from core.signals.sequence import PhaseSequence
+from core.units import NANOSECONDS_PER_SECOND
+
+SAME_SUPPLY_WITHIN_NS: Final = 60 * NANOSECONDS_PER_SECOND
+"""Records of a bus that are no further apart than this have the same supply."""
 
 
 class VoltageChannels(StrEnum):

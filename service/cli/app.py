@@ -191,6 +191,14 @@ def follow(
         ),
     ],
     motor: Annotated[Path, typer.Option(metavar="MOTOR.toml", help="The motor.")],
+    neighbour: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="MOTOR.toml=RECORDS",
+            help="Another motor of the same bus, with its recordings: voltage channels are judged against "
+            "each other. May be given repeatedly.",
+        ),
+    ] = None,
     event: Annotated[
         list[str] | None,
         typer.Option(
@@ -222,6 +230,7 @@ def follow(
     follow_records(
         records,
         motor,
+        neighbours=neighbour or [],
         events=event or [],
         events_file=events,
         stale_after_days=stale_after,

@@ -15,6 +15,7 @@ from core.machines.parameters import Motor
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
 from service.cli.condition_view import print_condition
+from service.cli.followed_bus import Bus, Member, bus_of, read_neighbours
 from service.cli.followed_records import Seen, find_records, observe_all
 from service.cli.given_events import GivenEvent, given_events
 from service.cli.output import CommandError, failing_clearly, one_line, print_document, progress
@@ -55,6 +56,7 @@ def follow_records(
     records: Sequence[str],
     motor_file: Path,
     *,
+    neighbours: Sequence[str],
     events: Sequence[str],
     events_file: Path | None,
     stale_after_days: float,
@@ -65,58 +67,64 @@ def follow_records(
 
     A record that cannot be used is named with the reason; it only ages the condition.
 
+    neighbours: MOTOR.toml=RECORDS of other motors of the bus.
+
     Raises CommandError where the motor's file or an event cannot be used, or none of the records.
     """
     with failing_clearly(MotorFileError, OSError):
         motor = read_motor(motor_file)
         given = given_events(events, events_file)
-        paths = find_records(records)
-        with _bar() as advance:
-            seen = observe_all(paths, motor, lenient=lenient, advance=advance)
-    followed = follow(motor, seen, given, round(stale_after_days * NANOSECONDS_PER_DAY))
+
+        def observe(paths: Sequence[Path], of: Motor) -> Sequence[Seen]:
+            with _bar(of.name) as advance:
+                return observe_all(paths, of, lenient=lenient, advance=advance)
+
+        own = Member(motor, observe(find_records(records), motor))
+        bus = bus_of(own, read_neighbours(neighbours, motor, observe))
+    followed = follow(own, bus, given, round(stale_after_days * NANOSECONDS_PER_DAY))
     if not followed.steps:
         raise _none_usable(records, followed.skipped)
     if as_json:
-        print_document(_document(motor_file, followed, given))
+        print_document(_document(motor_file, followed, given, bus))
     else:
         skipped = [(_name(one.path), one.refusal) for one in followed.skipped]
         history = [step.as_dict() for step in followed.steps]
         print_condition(followed.condition.as_dict(), history, skipped)
 
 
-def follow(motor: Motor, seen: Sequence[Seen], events: Sequence[GivenEvent], stale_after_ns: int) -> Followed:
+def follow(own: Member, bus: Bus, events: Sequence[GivenEvent], stale_after_ns: int) -> Followed:
     """Fold records and events in their order of time.
 
     The age of the condition is counted until the latest record, whether that is of use or not: the same
     records give the same answer on any day.
     """
-    follower = Follower(motor)
-    times_ns = [one.time_ns for one in seen if one.time_ns is not None]
+    follower = Follower(own.motor)
+    times_ns = [one.time_ns for one in own.seen if one.time_ns is not None]
     now_ns = max(times_ns, default=0)
     waiting = list(events)
     steps: list[Step] = []
     skipped: list[Seen] = []
-    for one in seen:
+    for one in own.seen:
         if one.observation is None:
             skipped.append(one)
             continue
         while waiting and waiting[0].event.time_ns <= one.observation.time_ns:
             _apply(follower, waiting.pop(0))
         try:
-            follower.fold(one.observation)
+            follower.fold(one.observation, bus.records.neighbours(one.observation.time_ns))
         except ValueError as error:
             skipped.append(one.refused(str(error)))
             continue
-        steps.append(Step(one, _brief(follower, one.observation.time_ns)))
+        steps.append(Step(one, _brief(follower, bus, one.observation.time_ns)))
     for event in waiting:
         _apply(follower, event)
-    condition = condition_of(follower.motor, follower.assessment(), now_ns, stale_after_ns)
+    condition = condition_of(follower.motor, follower.assessment(bus.standings), now_ns, stale_after_ns)
     return Followed(condition, tuple(steps), tuple(skipped))
 
 
-def _brief(follower: Follower, now_ns: int) -> Condition:
+def _brief(follower: Follower, bus: Bus, now_ns: int) -> Condition:
     """Return the condition after a record. A forecast, which takes long, is made at the end only."""
-    assessment = follower.assessment()
+    assessment = follower.assessment(bus.standings)
     brief = None if assessment is None else replace(assessment, levels=())
     return condition_of(follower.motor, brief, now_ns)
 
@@ -125,10 +133,13 @@ def _apply(follower: Follower, given: GivenEvent) -> None:
     follower.apply(given.event, given.motor)
 
 
-def _document(motor_file: Path, followed: Followed, events: Sequence[GivenEvent]) -> dict[str, object]:
+def _document(
+    motor_file: Path, followed: Followed, events: Sequence[GivenEvent], bus: Bus
+) -> dict[str, object]:
     return {
         **followed.condition.as_dict(),
         "motor_file": _name(motor_file),
+        "bus": [one.as_dict() for one in bus.others],
         "events": [one.as_dict() for one in events],
         "history": [step.as_dict() for step in followed.steps],
         "skipped": _skipped(followed.skipped),
@@ -161,10 +172,10 @@ def _time(seen: Seen) -> str | None:
 
 
 @contextmanager
-def _bar() -> Iterator[Callable[[int, int], None]]:
+def _bar(motor: str) -> Iterator[Callable[[int, int], None]]:
     """Show a progress bar on stderr, if that is a terminal."""
     console = progress()
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("reading records", total=None)
+        task = bar.add_task(f"records of {one_line(motor)}", total=None)
         yield lambda done, of: bar.update(task, completed=done, total=of)

@@ -1,15 +1,14 @@
 """Fold what is new of a motor into its condition: its observations and events in their order of time."""
 
-from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 
 import structlog
 
-from core.condition.bus import Neighbour, StandingEstimate, neighbour_of
+from core.condition.bus import Neighbour, StandingEstimate
+from core.condition.bus_records import BusRecords
 from core.condition.condition import Condition, condition_of
 from core.condition.follower import Follower
-from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from service.condition.checkpoints import is_kept
 from service.condition.motor_data import MotorHistory, motor_of
@@ -25,7 +24,6 @@ from service.storage.records import (
     FoldResult,
     RecordObservation,
 )
-from service.storage.repository.fold_marks import NEIGHBOURS_WITHIN_NS
 
 log = structlog.get_logger(__name__)
 
@@ -167,33 +165,13 @@ class _Bus:
         self.standings: Sequence[StandingEstimate] = [
             standing_estimate(one.motor, one.standing) for one in due.bus if one.standing is not None
         ]
-        self._seen = [
-            _Seen(one.observation.time_ns, neighbour_of(motors[one.motor], one.observation))
-            for one in due.neighbours
-            if one.motor in motors and _is_usable(one.observation)
-        ]
-        self._times = [seen.time_ns for seen in self._seen]
+        self._records = BusRecords(
+            (motors[one.motor], one.observation) for one in due.neighbours if one.motor in motors
+        )
 
     def neighbours(self, time_ns: int) -> list[Neighbour]:
-        """Return what each other motor saw within a minute; of several records, the nearest one tells."""
-        first = bisect_left(self._times, time_ns - NEIGHBOURS_WITHIN_NS)
-        beyond = bisect_right(self._times, time_ns + NEIGHBOURS_WITHIN_NS)
-        nearest: dict[str, _Seen] = {}
-        for seen in self._seen[first:beyond]:
-            before = nearest.get(seen.neighbour.motor)
-            if before is None or abs(seen.time_ns - time_ns) < abs(before.time_ns - time_ns):
-                nearest[seen.neighbour.motor] = seen
-        return [nearest[name].neighbour for name in sorted(nearest)]
-
-
-@dataclass(frozen=True, slots=True)
-class _Seen:
-    time_ns: int
-    neighbour: Neighbour
-
-
-def _is_usable(observation: Observation) -> bool:
-    return observation.positive_voltage_V != 0.0
+        """Return what each other motor saw within a minute."""
+        return self._records.neighbours(time_ns)
 
 
 def _first_ns(due: FoldInput) -> int:

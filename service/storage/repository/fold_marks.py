@@ -5,11 +5,8 @@ import uuid
 from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session, aliased
 
-from core.units import NANOSECONDS_PER_SECOND
+from core.condition.observation import SAME_SUPPLY_WITHIN_NS
 from service.storage.models import FoldMarkRow, MotorRow, ObservationRow
-
-NEIGHBOURS_WITHIN_NS = 60 * NANOSECONDS_PER_SECOND
-"""Records of two motors of a bus that are no further apart see the same supply."""
 
 EARLIEST_NS = -(2**63) + 1
 """Before every record: times are integers of 64 bits in the database."""
@@ -27,7 +24,7 @@ def mark_with_bus(session: Session, motor: str, time_ns: int) -> None:
         select(ObservationRow.motor, func.min(ObservationRow.time_ns))
         .where(
             ObservationRow.motor.in_(others_of_bus(motor)),
-            ObservationRow.time_ns.between(time_ns - NEIGHBOURS_WITHIN_NS, time_ns + NEIGHBOURS_WITHIN_NS),
+            ObservationRow.time_ns.between(time_ns - SAME_SUPPLY_WITHIN_NS, time_ns + SAME_SUPPLY_WITHIN_NS),
         )
         .group_by(ObservationRow.motor)
     )

@@ -12,6 +12,7 @@ from sqlalchemy import bindparam, delete, func, insert, or_, select, update
 from sqlalchemy.orm import Session
 
 from core.condition.events import EventKind
+from core.condition.observation import SAME_SUPPLY_WITHIN_NS
 from service.storage.models import (
     Base,
     ConditionChangeRow,
@@ -34,12 +35,7 @@ from service.storage.records import (
     RecordObservation,
 )
 from service.storage.repository.condition_alarms import settle_alarm
-from service.storage.repository.fold_marks import (
-    EARLIEST_NS,
-    NEIGHBOURS_WITHIN_NS,
-    mark,
-    others_of_bus,
-)
+from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus
 from service.storage.repository.observations import record_observation
 from service.storage.repository.sessions import Sessions, found, only, record_of
 
@@ -201,7 +197,7 @@ def _neighbours(
         select(ObservationRow)
         .where(
             ObservationRow.motor.in_(others_of_bus(motor)),
-            ObservationRow.time_ns.between(first_ns - NEIGHBOURS_WITHIN_NS, last_ns + NEIGHBOURS_WITHIN_NS),
+            ObservationRow.time_ns.between(first_ns - SAME_SUPPLY_WITHIN_NS, last_ns + SAME_SUPPLY_WITHIN_NS),
         )
         .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
     )

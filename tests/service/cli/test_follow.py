@@ -19,7 +19,7 @@ from core.units import NANOSECONDS_PER_DAY
 from service.cli import main
 from service.cli.condition_view import print_condition
 from service.cli.followed_records import FEW, find_records, observe_all, observe_record
-from testing.machines.motors import REFERENCE
+from testing.machines.motors import MEDIUM, REFERENCE
 from testing.machines.phase_circuits import Fault
 from testing.machines.record_series import BEGUN_NS, HOUR_NS, write_series
 
@@ -207,6 +207,29 @@ def test_what_is_no_event_is_wrong_use(
     assert main(["follow", str(few), "--motor", str(few / "PUMP.toml"), option, text, "--json"]) == 2
     error = json.loads(capsys.readouterr().out)["error"]
     assert error["type"] == "EventUnusable"
+
+
+def test_other_motors_of_the_bus_take_part(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_motor(tmp_path / "FAN.toml", MEDIUM)
+    write_series(tmp_path, MEDIUM, RECORDS)  # the same seed: the same supply
+    (tmp_path / "BAD.CFG").write_text("nothing of the kind")
+    records = str(plant / "records")
+    document = followed(capsys, plant, records, "--neighbour", f"{tmp_path / 'FAN.toml'}={tmp_path}")
+    assert document["bus"] == [{"motor": "FAN", "records": RECORDS, "skipped": 1}]
+    assert document["reference"]["from_bus"]
+    alone = followed(capsys, plant, records)
+    assert (alone["bus"], alone["reference"]["from_bus"]) == ([], False)
+
+
+@pytest.mark.parametrize("word", ["FAN.toml", "=records", "PUMP.toml="])
+def test_what_is_no_neighbour_is_wrong_use(few: Path, word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    motor = str(few / "PUMP.toml")
+    assert main(["follow", str(few), "--motor", motor, "--neighbour", word, "--json"]) == 2
+    assert json.loads(capsys.readouterr().out)["error"]["type"] == "NeighbourUnusable"
+    assert main(["follow", str(few), "--motor", motor, "--neighbour", f"{motor}={few}"]) == 2
+    assert "other names" in capsys.readouterr().err
 
 
 def test_people_read_state_and_advice_first(few: Path, capsys: pytest.CaptureFixture[str]) -> None:
