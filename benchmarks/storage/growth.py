@@ -11,15 +11,16 @@ import sqlite3
 import tempfile
 from collections import Counter
 from contextlib import closing
+from dataclasses import replace
 from hashlib import sha256
 from pathlib import Path
 
 from benchmarks.storage.forgetting import MOTORS, plant
 from benchmarks.storage.forgetting import fill as fill_measurements
-from core.diagnosis.stator import diagnose
-from core.diagnosis.verdict import Diagnosis
+from core.condition.observing import Examined, examine
 from core.machines.motor_file import read_motor
 from core.recordings import read
+from service.condition.worker import fold_due
 from service.configuration.settings import sqlite_url
 from service.plant import AveragingStep
 from service.recording_store.store import StoredFile, StoredRecording
@@ -39,7 +40,15 @@ A_DAY_S = 86_400
 SAMPLE_PERIOD_S, SAMPLE_DAYS, MINUTE_DAYS = 10, 1, 31
 """The defaults of the settings metering_period_s, metering_sample_days and metering_minute_days."""
 
-OF_A_RECORD = ("recordings", "recording_files", "remote_records", "recording_requests", "jobs", "diagnoses")
+OF_A_RECORD = (
+    "recordings",
+    "recording_files",
+    "remote_records",
+    "recording_requests",
+    "jobs",
+    "diagnoses",
+    "observations",
+)
 
 
 def stored(number: int, directory: Path) -> StoredRecording:
@@ -51,9 +60,10 @@ def stored(number: int, directory: Path) -> StoredRecording:
     return StoredRecording(sha256(str(number).encode()).hexdigest(), directory, files)
 
 
-def write_records(repository: Repository, directory: Path, diagnosis: Diagnosis) -> None:
-    """Request, pull and diagnose RECORDS records; delete some of as many others."""
+def write_records(repository: Repository, directory: Path, examined: Examined) -> None:
+    """Request, pull, diagnose and fold RECORDS records; delete some of as many others."""
     register_runner(repository)
+    assert examined.observation is not None
     motors = plant().motors
     for number in range(RECORDS + DELETED):
         motor = motors[number % MOTORS]
@@ -70,9 +80,20 @@ def write_records(repository: Repository, directory: Path, diagnosis: Diagnosis)
         )
         claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
         assert claimed is not None
-        repository.finish_job(claimed.job.id, diagnosis, recorded_ns=now_ns, now_ns=now_ns, runner=RUNNER)
+        repository.finish_job(
+            claimed.job.id,
+            examined.diagnosis,
+            recorded_ns=now_ns,
+            now_ns=now_ns,
+            runner=RUNNER,
+            observation=replace(examined.observation, time_ns=now_ns),
+        )
         if number >= RECORDS:
             repository.delete_recording(added.recording.id, "a recording of another motor", now_ns=now_ns)
+    of = {motor.name: motor.motor for motor in motors}
+    while waiting := repository.motors_to_fold():
+        for name in waiting:
+            fold_due(repository, of[name])
 
 
 def row_bytes(file: Path) -> dict[str, float]:
@@ -87,7 +108,7 @@ def row_bytes(file: Path) -> dict[str, float]:
     return {name: sizes[name] / rows[name] for name in tables}
 
 
-def measured_rows(diagnosis: Diagnosis) -> dict[str, float]:
+def measured_rows(examined: Examined) -> dict[str, float]:
     with tempfile.TemporaryDirectory(prefix="growth-", dir=memory_folder()) as name:
         directory = Path(name)
         url = sqlite_url(directory)
@@ -95,7 +116,7 @@ def measured_rows(diagnosis: Diagnosis) -> dict[str, float]:
         engine = connect(url)
         repository = Repository(engine)
         repository.sync_plant(plant())
-        write_records(repository, directory, diagnosis)
+        write_records(repository, directory, examined)
         fill_measurements(engine, MEASUREMENTS)
         with engine.connect() as connection:
             connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)")
@@ -113,7 +134,7 @@ def main() -> None:
         [file.stat().st_size for file in files] if options.record_bytes is None else [options.record_bytes]
     )
     on_disk = sum(-(-size // BLOCK_BYTES) for size in sizes) * BLOCK_BYTES + BLOCK_BYTES
-    found = measured_rows(diagnose(read(files[0]), read_motor(EXAMPLES / "motor.toml")))
+    found = measured_rows(examine(read(files[0]), read_motor(EXAMPLES / "motor.toml")))
     print("| table | bytes a row |\n|---|---|")
     for name, size in found.items():
         print(f"| `{name}` | {size:,.0f} |")
