@@ -75,7 +75,7 @@ def list_notes(
     )
 
 
-@router.post("/notes", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 413) | _MADE)
+@router.post("/notes", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 409, 413) | _MADE)
 def add_note(context: Context, request: Request, response: Response, name: Name, wanted: NoteRequest) -> Note:
     """Keep what a person tells of a motor; its condition follows within seconds."""
     note = _add(context, name, wanted.kind, wanted.text, wanted.by, wanted.time)
@@ -89,7 +89,7 @@ def get_note(context: Context, name: Name, note_id: UUID) -> Note:
     return Note.model_validate(context.repository.event(name, str(note_id)))
 
 
-@router.post("/reference", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 413) | _MADE)
+@router.post("/reference", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 409, 413) | _MADE)
 def restart_reference(
     context: Context, request: Request, response: Response, name: Name, wanted: RestartRequest
 ) -> Note:

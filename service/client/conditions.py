@@ -56,8 +56,11 @@ def condition_lines(condition: Document) -> list[tuple[str, Text]]:
         lines.append(("fault level", Text(level(condition["mu_f"], condition["mu_f_ci95"]))))
     if condition["since"] is not None:
         lines.append(("since", Text(to_the_second(condition["since"]))))
-        lines.append(("change", Text(level(condition["change"], condition["change_ci95"]))))
+    if condition["change_ci95"] is not None:
+        lines.append(("change of the level", Text(level(condition["change"], condition["change_ci95"]))))
         lines.append(("growth", Text(_growth(condition))))
+    elif condition["size"] is not None:
+        lines.append(("size of the change", Text(f"{percent(condition['size'])} %")))
     lines.extend(("why", Text(reason)) for reason in _texts(condition["reasons"]))
     lines.append(("reference", Text(_reference(condition["reference"]))))
     when = condition["as_of"]

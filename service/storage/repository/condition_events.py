@@ -6,7 +6,7 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
-from service.storage.errors import NotFoundError
+from service.storage.errors import NotFoundError, OutOfServiceError
 from service.storage.models import ConditionEventRow, MotorRow
 from service.storage.records import ConditionEvent, Cursor, Page
 from service.storage.repository.fold_marks import mark
@@ -16,9 +16,13 @@ from service.storage.texts import storable
 
 class ConditionEventRows(Sessions):
     def add_event(self, motor: str, event: Event, *, by: str, now_ns: int) -> ConditionEvent:
-        """Keep what somebody tells of a motor, and have its condition follow. Raises NotFoundError."""
+        """Keep what somebody tells of a motor, and have its condition follow.
+
+        Raises NotFoundError, OutOfServiceError.
+        """
         with self._write() as session:
-            found(session, MotorRow, motor, "motor", lock=True)
+            if not found(session, MotorRow, motor, "motor", lock=True).in_service:
+                raise OutOfServiceError("motor", motor)
             return record_of(ConditionEvent, keep_event(session, motor, event, by, now_ns))
 
     def event(self, motor: str, event_id: str) -> ConditionEvent:

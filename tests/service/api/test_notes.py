@@ -1,7 +1,12 @@
 """What is refused as a note of a motor."""
 
+from dataclasses import replace
+
 import httpx
 import pytest
+
+from service.storage import Repository
+from testing.service.plants import two_motor_plant
 
 MOTOR = "/api/v1/motors/PUMP-A1"
 NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
@@ -70,6 +75,17 @@ def test_web_pages_of_other_sites_tell_nothing(client: httpx.Client, path: str) 
     ):
         assert client.post(f"{MOTOR}/{path}", json=wanted, headers=headers).status_code == status
     assert client.get(f"{MOTOR}/notes").json()["items"] == []
+
+
+def test_nothing_is_told_of_a_motor_that_left_the_plant(client: httpx.Client, repository: Repository) -> None:
+    plant = two_motor_plant()
+    repository.sync_plant(replace(plant, motors=plant.motors[1:]))
+    for path, wanted in (("notes", NOTE), ("reference", {"reason": "tested", "by": "A. Miller"})):
+        refused = client.post(f"{MOTOR}/{path}", json=wanted)
+        assert refused.status_code == 409
+        assert "not in the plant's files any more" in refused.json()["detail"]
+    assert client.get(f"{MOTOR}/notes").json()["items"] == []
+    assert client.get(f"{MOTOR}/condition").status_code == 200, "what is known of it stays"
 
 
 def test_notes_are_neither_changed_nor_deleted(client: httpx.Client) -> None:

@@ -11,6 +11,7 @@ import pytest
 from rich.console import Console
 
 from core.condition.condition import Condition
+from core.condition.kinds import Kind
 from core.time_stamps import rfc3339
 from service.api import ApiContext, create_app
 from service.cli.app import main
@@ -103,7 +104,7 @@ def test_health_says_what_to_do_then_why_then_what_the_latest_recording_says(
         "what to do Check the winding of phase b.",
         "fault level 1.21 % [0.90..2.25]",
         "since 2025-10-06 08:53:20 UTC",
-        "change 1.20 % [0.90..1.50]",
+        "change of the level 1.20 % [0.90..1.50]",
         "growth 0.04 % a day; 2.00 % in about 20 days, in eight of ten cases 12 to 41",
         "why shorted turns in phase b: 1.20 %",
         "reference learnt from 64 records; a step of 0.45 % would be seen within ten records",
@@ -120,6 +121,17 @@ def test_a_motor_without_a_record_has_no_figures(mcc: Mcc) -> None:
     assert "condition unknown what to do Have the motor recorded while it runs" in shown
     assert "reference none yet as of no record yet" in shown
     assert "%" not in shown
+
+
+def test_a_change_of_a_channel_has_a_size_and_no_growth(mcc: Mcc, repository: Repository) -> None:
+    named = replace(
+        DRIFTING, kind=Kind.VOLTAGE_CHANNEL, candidates=(), change=0.0, change_ci95=None, size=-0.0125
+    )
+    tell(repository, named)
+    shown = unframed(mcc("condition", "PUMP-A1"))
+    assert "condition watch: voltage channel c" in shown
+    assert "size of the change -1.25 %" in shown
+    assert "growth" not in shown
 
 
 def test_a_reference_that_is_not_complete_says_so(mcc: Mcc, repository: Repository) -> None:
