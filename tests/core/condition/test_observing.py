@@ -177,3 +177,12 @@ def test_the_recorder_is_another_where_a_transformer_is_exchanged(tmp_path: Path
     assert plain.recorder == "MCC-1/A1, IA, IB, IC, VA, VB, VC"
     assert again.recorder == "MCC-1/A1, IA 20:1, IB 20:1, IC 20:1, VA, VB, VC"
     assert plain.time_ns == record.start_time_ns + 200_000_000
+
+
+def test_a_record_counts_even_where_no_fit_comes_near_it() -> None:
+    record = recording(running(REFERENCE, 0.9), noise=0.002)
+    machine = REFERENCE.parameters
+    other = replace(machine, stator_resistance_ohm=8.0 * machine.stator_resistance_ohm)
+    examined = examine(record, replace(REFERENCE, parameters=other))
+    assert [one.name for one in examined.diagnosis.quality if not one.passed] == ["identifiability"]
+    assert examined.observation is not None
