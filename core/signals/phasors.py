@@ -217,11 +217,13 @@ def _refine(
     for _ in range(_MAX_ITERATIONS):
         basis = _rotating_vectors(frequency_hz * angle, orders)
         gram = _inner_products(2 * pi * frequency_hz / sample_rate_hz, n, orders)
-        amplitudes = _coefficients(basis, gram, space_vector)
-        residual = space_vector - _combine(amplitudes, basis)
+        amplitudes = np.linalg.solve(gram, _products(basis, space_vector))
         slope = 1j * angle * _combine(orders * amplitudes, basis)
-        gradient = slope - _combine(_coefficients(basis, gram, slope), basis)
-        step_hz = float(np.vdot(gradient, residual).real / np.vdot(gradient, gradient).real)
+        # What the fit leaves has no part along the basis, nor has the gradient: products alone are needed.
+        along = _products(basis, slope)
+        left = np.vdot(slope, space_vector) - np.vdot(along, amplitudes)
+        steepness = np.vdot(slope, slope) - np.vdot(along, np.linalg.solve(gram, along))
+        step_hz = float(left.real / steepness.real)
         frequency_hz += step_hz
         if not search_hz[0] <= frequency_hz <= search_hz[1]:
             break
@@ -248,12 +250,9 @@ def _check_dominant(
 
 # einsum, not @: BLAS hands products of this size to its threads, and where the cores are busy the wait
 # for them (milliseconds a product) is a hundred times the work.
-def _coefficients(
-    basis: NDArray[np.complex128], gram: NDArray[np.float64], x: NDArray[np.complex128]
-) -> NDArray[np.complex128]:
-    """Least-squares coefficients of x (n) in the basis (orders, n)."""
-    products = np.einsum("kn,n->k", basis, x.conj()).conj()
-    return np.asarray(np.linalg.solve(gram, products), dtype=np.complex128)
+def _products(basis: NDArray[np.complex128], x: NDArray[np.complex128]) -> NDArray[np.complex128]:
+    """Inner products of the basis (orders, n) with x (n)."""
+    return np.asarray(np.einsum("kn,n->k", basis, x.conj()).conj())
 
 
 def _combine(weights: NDArray[np.complex128], basis: NDArray[np.complex128]) -> NDArray[np.complex128]:
@@ -273,12 +272,12 @@ def _orders_below_nyquist(frequency_hz: float, sample_rate_hz: float) -> NDArray
 def _rotating_vectors(theta: NDArray[np.float64], orders: NDArray[np.int64]) -> NDArray[np.complex128]:
     """exp(j k theta) of each order k, shape (orders, n)."""
     once = np.exp(1j * theta)
-    powers = np.empty((int(orders.max()) + 1, theta.size), dtype=np.complex128)
-    powers[0] = 1.0
-    for k in range(1, len(powers)):
-        np.multiply(powers[k - 1], once, out=powers[k])
-    vectors = powers[np.abs(orders)]
-    np.conj(vectors, out=vectors, where=orders[:, np.newaxis] < 0)
+    vectors = np.empty((orders.size, theta.size), dtype=np.complex128)
+    power = np.ones_like(once)
+    for order in range(int(orders.max()) + 1):
+        for row in np.flatnonzero(np.abs(orders) == order):
+            vectors[row] = power.conj() if orders[row] < 0 else power
+        power *= once
     return vectors
 
 
