@@ -70,6 +70,8 @@ def _plant(
         return
     with _data_directory(data) as directory:
         progress().print(f"starting two factories, six relays and the service (data and logs: {directory})")
+        if not once and any(directory.glob("*.sqlite")):
+            _report("the folder has records of an earlier demo: those of this month come to lie among them")
         with running_plant(
             directory, interruption.pause, _report, play=STEADY if once else MONTH_OF_CHANGES
         ) as plant:
