@@ -6,10 +6,14 @@ from typing import Final, Literal
 
 from core.condition.kinds import Kind
 from core.machines.winding_frame import Winding
+from core.units import NANOSECONDS_PER_DAY
 
 Phase = Literal["a", "b", "c"]
 PHASES: Final[tuple[Phase, Phase, Phase]] = ("a", "b", "c")
 NORMAL_95: Final = 1.96
+
+STALE_AFTER_NS: Final = 7 * NANOSECONDS_PER_DAY
+"""A condition whose latest record is older than this is stale, unless the caller knows better."""
 
 
 @dataclass(frozen=True, slots=True)

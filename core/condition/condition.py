@@ -6,19 +6,24 @@ from math import exp, hypot
 from typing import Any, Final, cast
 
 from core.condition.advice import advice
-from core.condition.assessment import NORMAL_95, PHASES, Assessment, Change, Level, Phase, Reference
+from core.condition.assessment import (
+    NORMAL_95,
+    PHASES,
+    STALE_AFTER_NS,
+    Assessment,
+    Change,
+    Level,
+    Phase,
+    Reference,
+)
 from core.condition.forecast import Forecast, forecast, limit_ahead
 from core.condition.kinds import Kind, State
 from core.condition.reasons import FEW, STANDING_SCORE, reasons_of
 from core.machines.parameters import Motor
 from core.machines.winding_frame import Winding
 from core.time_stamps import nanoseconds, rfc3339
-from core.units import NANOSECONDS_PER_DAY
 
 Interval = tuple[float, float]
-
-STALE_AFTER_NS: Final = 7 * NANOSECONDS_PER_DAY
-"""A condition whose latest record is older than this is stale, unless the caller knows better."""
 
 MOST_CANDIDATES: Final = 3
 TURNS_OR_JOINT: Final = frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION))

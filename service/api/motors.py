@@ -64,7 +64,7 @@ def get_health(context: Context, name: Name) -> Health:
 def get_trend(
     context: Context,
     name: Name,
-    quantity: Quantity | ConditionQuantity = "mu_f",
+    quantity: Literal[Quantity, ConditionQuantity] = "mu_f",
     from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
     to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
     limit: Limit = DEFAULT_LIMIT,

@@ -2,7 +2,7 @@
 
 from functools import lru_cache
 
-from core.condition.condition import STALE_AFTER_NS
+from core.condition.assessment import STALE_AFTER_NS
 from core.units import NANOSECONDS_PER_DAY
 from service.plant import Schedule
 

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.condition.assessment import Assessment, Change, Level, Reference
-from core.condition.condition import STALE_AFTER_NS, Condition, condition_of
+from core.condition.assessment import STALE_AFTER_NS, Assessment, Change, Level, Reference
+from core.condition.condition import Condition, condition_of
 from core.condition.kinds import Kind, State
 from core.machines.winding_frame import Winding
 from core.units import NANOSECONDS_PER_DAY

@@ -19,7 +19,7 @@ from testing.service.small_record import CFG, DAT
 NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
 BASELINE = "/api/v1/motors/PUMP-A1/baseline"
 DIAGNOSES = f"/api/v1/recordings/{NO_SUCH_ID}/diagnoses"
-IDS = ("recording_id", "diagnosis_id", "report_id")
+IDS = ("recording_id", "diagnosis_id", "report_id", "note_id")
 BEGINNING = b'--b\r\nContent-Disposition: form-data; name="files"; filename="E.CFF"\r\n\r\n'
 METHODS = ("get", "put", "post", "patch", "delete")
 
