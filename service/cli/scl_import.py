@@ -47,6 +47,7 @@ def describe(document: Scl) -> dict[str, object]:
                 "site_description": feeder.site_description,
                 "bay": feeder.bay,
                 "relay": feeder.ied,
+                "bus": feeder.bus,
             }
             for feeder in document.feeders()
         ],
@@ -114,11 +115,13 @@ def _motors(document: Scl) -> RenderableType:
     if not document.feeders():
         return Text('no motors: no ConductingEquipment type="MOT" with an LNode of its relay')
     table = Table(title="Motors", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
-    for heading in ("site", "bay", "motor", "description", "relay"):
+    feeders = document.feeders()
+    knows_buses = any(feeder.bus for feeder in feeders)
+    for heading in ("site", "bay", "motor", "description", "relay", *(["bus"] if knows_buses else [])):
         table.add_column(heading)
-    for feeder in document.feeders():
+    for feeder in feeders:
         words = (feeder.site, feeder.bay, feeder.motor, feeder.motor_description, feeder.ied)
-        table.add_row(*(Text(word or "") for word in words))
+        table.add_row(*(Text(word or "") for word in (*words, *([feeder.bus] if knows_buses else []))))
     return table
 
 

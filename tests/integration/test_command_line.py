@@ -15,6 +15,7 @@ from core.recordings.cev_writer import EventSummary, write_cev
 from mms import Client
 from service.cli import main
 from service.demo import MOTORS
+from testing.service.busbar import BUSBAR, scd_with_a_busbar
 from testing.service.processes import simulated_plant
 from testing.waiting import eventually
 
@@ -171,6 +172,19 @@ def test_an_scd_is_described(capsys: pytest.CaptureFixture[str]) -> None:
     assert "CON/RBGGIO1.SPCSO01" in shown
     assert "A1_SEL710CON" not in shown, "the relay's name stands in its own column"
     assert relay["trigger"] == "A1_SEL710CON/RBGGIO1.SPCSO01"
+
+
+def test_an_scd_with_topology_tells_the_motors_buses(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = str(scd_with_a_busbar(tmp_path))
+    assert main(["import-scl", file, "--json"]) == 0
+    motors = json.loads(capsys.readouterr().out)["motors"]
+    assert [motor["bus"] for motor in motors] == [BUSBAR, BUSBAR, None, None, None, None]
+    assert main(["import-scl", file]) == 0
+    assert " bus" in capsys.readouterr().out
+    assert main(["import-scl", str(scl.DEMO_PLANT_SCD)]) == 0
+    assert " bus" not in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

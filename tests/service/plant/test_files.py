@@ -6,6 +6,7 @@ import scl
 from core.machines.sensors import SensorClass
 from service.configuration.settings import Settings, SettingsError
 from service.plant import Bus, Overrides, PlantError, Schedule, read_plant
+from testing.service.busbar import BUSBAR, scd_with_a_busbar
 
 DEMO_MOTORS = Path(__file__).parents[3] / "service" / "demo" / "motors.toml"
 
@@ -202,33 +203,6 @@ def test_the_motors_file_says_which_motors_share_a_bus(motors: Path) -> None:
     assert plant.bus_of("FAN-A2") is plant.buses[0]
     assert plant.motor("MILL-A3").bus is None
     assert plant.bus_of("MILL-A3") is None
-
-
-BUSBAR = "FACTORY_A/LV/W1/BB"
-
-
-def scd_with_a_busbar(folder: Path) -> Path:
-    """The demo plant's SCD with a busbar of which the first two motors are fed through a breaker."""
-    text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
-    busbar = f'<Bay name="W1"><ConnectivityNode name="BB" pathName="{BUSBAR}"/></Bay>'
-    for bay in ("A1", "A2"):
-        node = f"FACTORY_A/LV/{bay}/N1"
-        start = text.index(f'<Bay name="{bay}"')
-        end = text.index("</Bay>", start)
-        breaker = "".join(
-            f'<Terminal connectivityNode="{one}" cNodeName="{one.rpartition("/")[2]}"/>'
-            for one in (BUSBAR, node)
-        )
-        inner = text[start:end].replace(
-            "</ConductingEquipment>",
-            f'<Terminal connectivityNode="{node}" cNodeName="N1"/></ConductingEquipment>'
-            f'<ConductingEquipment name="Q0" type="CBR">{breaker}</ConductingEquipment>',
-        )
-        text = f'{text[:start]}{inner}<ConnectivityNode name="N1" pathName="{node}"/>{text[end:]}'
-    text = text.replace('<Bay name="A1"', f'{busbar}<Bay name="A1"')
-    path = folder / "plant.scd"
-    path.write_text(text, encoding="utf-8")
-    return path
 
 
 def test_the_scd_says_which_motors_share_a_bus_and_the_motors_file_wins(motors: Path, tmp_path: Path) -> None:
