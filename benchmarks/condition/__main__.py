@@ -1,6 +1,6 @@
 """Measure how motors are judged over time and write docs/evidence/condition.md.
 
-python -m benchmarks.condition [SUBJECT]... [--quick] [--data FOLDER] [--page FILE] [--processes N]
+python -m benchmarks.condition [SUBJECT]... [--quick] [--share S] [--data FOLDER] [--page FILE]
 
 Every subject writes its own section with the command that repeats it; sections of subjects that are not
 measured stay. With --quick the sections are printed, and written only where a page is given. All random
@@ -12,7 +12,7 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 from pathlib import Path
 from time import perf_counter
@@ -79,8 +79,8 @@ class Effort:
 
 
 FULL = Effort(
-    healthy_motors=100, healthy_records=2_400, steps=300, disturbed=300, growing=200, buses=100,
-    cost_motors=20, cost_records=2_000, long_records=87_660, file_motors=6, file_records=(BEFORE, AFTER),
+    healthy_motors=100, healthy_records=2_400, steps=200, disturbed=200, growing=120, buses=100,
+    cost_motors=20, cost_records=2_000, long_records=87_660, file_motors=3, file_records=(BEFORE, AFTER),
     whole_mill=True,
 )  # fmt: skip
 QUICK = Effort(
@@ -88,6 +88,12 @@ QUICK = Effort(
     cost_motors=2, cost_records=300, long_records=2_000, file_motors=1, file_records=(20, 20),
     whole_mill=False,
 )  # fmt: skip
+
+
+def scaled(effort: Effort, share: float) -> Effort:
+    """The same with a share of the motors and buses."""
+    names = ("healthy_motors", "steps", "disturbed", "growing", "buses", "cost_motors", "file_motors")
+    return replace(effort, **{name: max(1, round(share * getattr(effort, name))) for name in names})
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +196,7 @@ def main() -> None:
     )
     parser.add_argument("--data", type=Path, help="folder that holds mill_vi_8khz, the measured recordings")
     parser.add_argument("--quick", action="store_true", help="few motors: for a first look; printed")
+    parser.add_argument("--share", type=float, default=1.0, help="share of the motors, 0 to 1")
     parser.add_argument("--page", type=Path, help=f"the page to write ({PAGE.name}; with --quick none)")
     parser.add_argument("--processes", type=int, default=2)
     chosen = parser.parse_args()
@@ -203,6 +210,8 @@ def main() -> None:
     effort = QUICK if chosen.quick else FULL
     page = chosen.page or (None if chosen.quick else PAGE)
     options = " --quick" if chosen.quick else ""
+    if chosen.share != 1.0:
+        effort, options = scaled(effort, chosen.share), f"{options} --share {chosen.share:g}"
     with ProcessPoolExecutor(chosen.processes, mp_context=get_context("spawn")) as pool:
         for name in chosen.subjects or order:
             begun = perf_counter()

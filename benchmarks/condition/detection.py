@@ -12,6 +12,7 @@ from benchmarks.condition.operation import draw_operation
 from benchmarks.condition.population import SimulatedMotor, draw_motor
 from benchmarks.condition.records import HARSH_NOISE, REAL_NOISE, measure
 from benchmarks.reporting import mark, rate_text, spread, table
+from core.condition.kinds import State
 
 LEVELS = (0.003, 0.005, 0.0075, 0.01, 0.02)
 PATHS = (0.0, 1.0, 3.0)
@@ -52,8 +53,12 @@ def follow_step(task: Task) -> Result:
     winding = int(random.integers(3))
     course = with_fault(healthy(records), winding, task.level * shape(records, first), task.path_ratio)
     observations = measure(random, simulated, operation, course, task.noise).observations()
-    said = follow(simulated.motor, observations, judged_around(first, records))
-    found = outcome(list(said), first)
+    said = []
+    for one in follow(simulated.motor, observations, judged_around(first, records)):
+        said.append(one)
+        if one.record >= first and one.condition.state is State.FAULT:
+            break
+    found = outcome(said, first)
     return Result(found, found.phase == true_phase(simulated, winding))
 
 
