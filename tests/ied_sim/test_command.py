@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
@@ -89,6 +90,16 @@ def test_serves_only_the_relays_asked_for_and_keeps_their_files(plant: Path, tmp
         process.terminate()
         assert process.wait(20) == 0
     assert (tmp_path / "files" / "B1_SEL710" / "EVENTS").is_dir()
+
+
+def test_says_when_a_scenario_of_the_past_began(plant: Path) -> None:
+    month = ("--scenario", DEMO_SCENARIO.with_name("month.toml"))
+    with serving("--scd", plant, "--ied", "B1_SEL710", *month) as (process, lines):
+        assert [line.split()[0] for line in lines] == ["B1_SEL710", "began", "ready"]
+        began = datetime.fromisoformat(lines[1].split()[1])
+        assert datetime.now(UTC) - began == pytest.approx(timedelta(days=30), abs=timedelta(minutes=5))
+        process.terminate()
+        assert process.wait(20) == 0
 
 
 def test_tells_the_truth(plant: Path) -> None:
