@@ -82,8 +82,18 @@ def examine(
 
     Parameters
     ----------
-    recording, motor, method, model, baseline, currents_only
-        As in `core.diagnosis.stator.diagnose`.
+    recording : Recording
+        The recording.
+    motor : Motor
+        Nameplate, parameters, channel names, limits and sensors of the motor.
+    method : str, optional
+        Global search, one of `core.diagnosis.methods.Method`.
+    model : str, optional
+        Fault model, one of `core.diagnosis.methods.Model`.
+    baseline : Baseline or None, optional
+        The motor's standing asymmetry, for the diagnosis.
+    currents_only : bool, default False
+        Use no voltages, recorded or not; there is no observation then.
 
     Returns
     -------
