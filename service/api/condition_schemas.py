@@ -127,11 +127,18 @@ class RestartRequest(RequestDocument):
     time: TimeParameter | None = None
 
 
+class Withdrawal(RequestDocument):
+    """Why a note was wrong."""
+
+    reason: Reason
+    by: Person
+
+
 class Note(Document):
     """What somebody told of a motor, or what its files tell.
 
     It happened at `time`; `by` told it at `made_time`. The condition follows from all
-    but those of kind `note`.
+    but those of kind `note` and those that were withdrawn.
     """
 
     id: str
@@ -141,3 +148,6 @@ class Note(Document):
     by: str
     time: Time = Field(validation_alias="time_ns")
     made_time: Time = Field(validation_alias="made_ns")
+    withdrawn_time: Time | None = Field(validation_alias="withdrawn_ns")
+    withdrawn_by: str | None
+    withdrawn_reason: str | None

@@ -17,6 +17,7 @@ from service.api.condition_schemas import (
     Note,
     NoteRequest,
     RestartRequest,
+    Withdrawal,
 )
 from service.api.context import ApiContext, Context
 from service.api.document import Name
@@ -87,6 +88,16 @@ def add_note(context: Context, request: Request, response: Response, name: Name,
 def get_note(context: Context, name: Name, note_id: UUID) -> Note:
     """Return one note."""
     return Note.model_validate(context.repository.event(name, str(note_id)))
+
+
+@router.post("/notes/{note_id}/withdrawal", responses=problems(400, 404, 409, 413))
+def withdraw_note(context: Context, name: Name, note_id: UUID, wanted: Withdrawal) -> Note:
+    """Let a note that was wrong count no more; the condition follows as if nobody had told it."""
+    note = context.repository.withdraw_event(
+        name, str(note_id), by=wanted.by, reason=wanted.reason, now_ns=time.time_ns()
+    )
+    context.on_new_job()
+    return Note.model_validate(note)
 
 
 @router.post("/reference", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 409, 413) | _MADE)

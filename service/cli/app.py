@@ -364,6 +364,22 @@ def notes(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) ->
     list_notes(url, motor, as_json=as_json)
 
 
+@app.command("withdraw-note")
+def withdraw_note(
+    motor: MotorName,
+    note_id: Annotated[str, typer.Argument(metavar="ID", help="The note's id, as mcc notes shows it.")],
+    reason: Annotated[str, typer.Option(metavar="TEXT", help="Why the note was wrong; it is kept.")],
+    url: Url = DEFAULT_URL,
+    by: By = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Let a note that was wrong count no more: the condition follows as if nobody had told it."""
+    from service.cli.conditions import withdraw_note
+
+    withdraw_note(url, motor, note_id, reason, by=by, as_json=as_json)
+
+
 @app.command("restart-reference")
 def restart_reference(
     motor: MotorName,

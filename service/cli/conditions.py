@@ -1,4 +1,4 @@
-"""`mcc condition`, `note`, `notes`, `restart-reference`: a motor over time, and what people tell of it."""
+"""`mcc condition`, `note`, `notes`, `withdraw-note`, `restart-reference`: a motor over time, and its notes."""
 
 import getpass
 from itertools import islice
@@ -56,12 +56,17 @@ def list_notes(url: str, motor: str, *, as_json: bool) -> None:
     table = Table(box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("time", "kind", "by", "text"):
         table.add_column(heading)
+    table.add_column("id", no_wrap=True)
     for note in notes:
+        text = one_line(str(note["text"]))
+        if note["withdrawn_time"] is not None:
+            text = one_line(f"{text} (withdrawn by {note['withdrawn_by']}: {note['withdrawn_reason']})")
         table.add_row(
             to_the_second(note["time"]),
             Text(str(note["kind"])),
             Text(one_line(str(note["by"]))),
-            Text(one_line(str(note["text"]))),
+            Text(text),
+            str(note["id"]),
         )
     results().print(table)
 
@@ -75,6 +80,18 @@ def restart_reference(
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         kept = service.restart_reference(motor, restart if time is None else {**restart, "time": time})
     _print_kept(kept, as_json=as_json)
+
+
+def withdraw_note(url: str, motor: str, note_id: str, reason: str, *, by: str | None, as_json: bool) -> None:
+    """Let a note that was wrong count no more. Raises CommandError."""
+    _require_words(reason, "--reason")
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        note = service.withdraw_note(motor, note_id, {"reason": reason, "by": by or _login()})
+    if as_json:
+        print_document(note)
+        return
+    words = f"{note['motor']}: {note['kind']} of {to_the_second(note['time'])} is withdrawn"
+    results().print(Text(one_line(words)), soft_wrap=True)
 
 
 def _notes(service: ServiceClient, motor: str) -> "islice[Document]":

@@ -101,6 +101,11 @@ class ServiceClient:
         path = f"{API}/motors/{segment(motor)}/notes"
         return _document(self._request("POST", path, {}, document=note))
 
+    def withdraw_note(self, motor: str, note_id: str, withdrawal: Document) -> Document:
+        """Let a note count no more, and return it. Raises ServiceError."""
+        path = f"{API}/motors/{segment(motor)}/notes/{segment(note_id)}/withdrawal"
+        return _document(self._request("POST", path, {}, document=withdrawal))
+
     def restart_reference(self, motor: str, restart: Document) -> Document:
         """Have a motor's reference learnt anew, and return the note that is kept. Raises ServiceError."""
         path = f"{API}/motors/{segment(motor)}/reference"

@@ -103,7 +103,10 @@ class ConditionChangeRow(Figures, Base):
 
 
 class ConditionEventRow(Base):
-    """What somebody told of a motor, or what its files tell (core.condition.events)."""
+    """What somebody told of a motor, or what its files tell (core.condition.events).
+
+    withdrawn_...: it was wrong, and counts no more; null while it counts.
+    """
 
     __tablename__ = "condition_events"
 
@@ -114,6 +117,9 @@ class ConditionEventRow(Base):
     reason: Mapped[str]
     by: Mapped[str]
     made_ns: Mapped[int]
+    withdrawn_ns: Mapped[int | None]
+    withdrawn_by: Mapped[str | None]
+    withdrawn_reason: Mapped[str | None]
 
     __table_args__ = (Index("ix_condition_events_motor_time_ns_id", "motor", "time_ns", "id"),)
 

@@ -84,7 +84,10 @@ class ConditionChange(ConditionFigures):
 
 @dataclass(frozen=True, slots=True)
 class ConditionEvent:
-    """An event of a motor, by whom and when it was told. `by` is a person, or what noticed it."""
+    """An event of a motor, by whom and when it was told. `by` is a person, or what noticed it.
+
+    withdrawn_...: None while it counts.
+    """
 
     id: str
     motor: str
@@ -93,6 +96,9 @@ class ConditionEvent:
     reason: str
     by: str
     made_ns: int
+    withdrawn_ns: int | None = None
+    withdrawn_by: str | None = None
+    withdrawn_reason: str | None = None
 
     @property
     def event(self) -> Event:

@@ -6,10 +6,11 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
-from service.storage.errors import NotFoundError, OutOfServiceError
+from service.storage.errors import NotFoundError, OutOfServiceError, StateConflictError
 from service.storage.models import ConditionEventRow, MotorRow
 from service.storage.records import ConditionEvent, Cursor, Page
 from service.storage.repository.fold_marks import mark
+from service.storage.repository.motor_versions import MOTORS_FILE
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 from service.storage.texts import storable
 
@@ -25,14 +26,29 @@ class ConditionEventRows(Sessions):
                 raise OutOfServiceError("motor", motor)
             return record_of(ConditionEvent, keep_event(session, motor, event, by, now_ns))
 
+    def withdraw_event(
+        self, motor: str, event_id: str, *, by: str, reason: str, now_ns: int
+    ) -> ConditionEvent:
+        """Let an event that was wrong count no more, as if nobody had told it; it is kept with the reason.
+
+        Raises NotFoundError, StateConflictError (it was withdrawn before, or is what the motors file tells).
+        """
+        with self._write() as session:
+            found(session, MotorRow, motor, "motor", lock=True)
+            row = _event(session, motor, event_id)
+            if row.withdrawn_ns is not None or row.by == MOTORS_FILE:
+                present = "withdrawn" if row.withdrawn_ns is not None else "what the motors file tells"
+                raise StateConflictError("note", event_id, present=present, wanted="withdrawn")
+            row.withdrawn_ns, row.withdrawn_by, row.withdrawn_reason = now_ns, storable(by), storable(reason)
+            if row.kind is not EventKind.NOTE:
+                mark(session, motor, row.time_ns)
+            return record_of(ConditionEvent, row)
+
     def event(self, motor: str, event_id: str) -> ConditionEvent:
         """Return one event of a motor. Raises NotFoundError."""
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            row = session.get(ConditionEventRow, event_id)
-            if row is None or row.motor != motor:
-                raise NotFoundError(f"note of motor {motor}", event_id)
-            return record_of(ConditionEvent, row)
+            return record_of(ConditionEvent, _event(session, motor, event_id))
 
     def events(self, motor: str, *, limit: int, after: Cursor | None = None) -> Page[ConditionEvent]:
         """Return a page of a motor's events, latest first. Raises NotFoundError."""
@@ -58,4 +74,11 @@ def keep_event(session: Session, motor: str, event: Event, by: str, now_ns: int)
     session.flush()
     if event.kind is not EventKind.NOTE:
         mark(session, motor, event.time_ns)
+    return row
+
+
+def _event(session: Session, motor: str, event_id: str) -> ConditionEventRow:
+    row = session.get(ConditionEventRow, event_id)
+    if row is None or row.motor != motor:
+        raise NotFoundError(f"note of motor {motor}", event_id)
     return row

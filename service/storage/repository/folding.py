@@ -174,11 +174,12 @@ def _observations(
 
 
 def _events(session: Session, motor: str, done_ns: int, next_ns: int | None) -> tuple[ConditionEvent, ...]:
-    """Return the next events of a motor, in their order; a note resets nothing and is left out."""
+    """Return the next events of a motor, in their order, without notes and what was withdrawn."""
     query = select(ConditionEventRow).where(
         ConditionEventRow.motor == motor,
         ConditionEventRow.time_ns > done_ns,
         ConditionEventRow.kind != EventKind.NOTE,
+        ConditionEventRow.withdrawn_ns.is_(None),
     )
     if next_ns is not None:
         query = query.where(ConditionEventRow.time_ns < next_ns)

@@ -11,11 +11,14 @@ import httpx
 import pytest
 
 from core.condition.condition import Condition
+from core.condition.events import Event, EventKind
 from core.condition.observation import Observation
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.storage.records import FoldResult
+from service.storage.repository.motor_versions import MOTORS_FILE
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
 from testing.service.observations import HOUR_NS, observation
@@ -255,6 +258,43 @@ def test_a_remark_is_for_people_only(client: httpx.Client, repository: Repositor
     assert rfc3339(before_ns) <= note["time"] == note["made_time"] <= rfc3339(time.time_ns())
     assert repository.motors_to_fold() == ()
     assert client.get(f"{MOTOR}/condition/history").json()["items"] == []
+
+
+def test_a_note_that_was_wrong_is_withdrawn_and_counts_no_more(
+    client: httpx.Client, repository: Repository
+) -> None:
+    where = client.post(f"{MOTOR}/notes", json={**NOTE, "kind": "rewound"}).headers["location"]
+    kept = client.post(f"{MOTOR}/notes", json=NOTE).json()
+    fold = repository.begin_fold("PUMP-A1", 10)
+    assert fold is not None
+    assert repository.finish_fold(fold, FoldResult([], [], [], (), None), now_ns=NOW_NS)
+    withdrawal = {"reason": "it was FAN-A2", "by": "B. Moore"}
+    note = client.post(f"{where}/withdrawal", json=withdrawal).json()
+    assert (note["kind"], note["withdrawn_reason"], note["withdrawn_by"]) == (
+        "rewound",
+        "it was FAN-A2",
+        "B. Moore",
+    )
+    assert note["made_time"] <= note["withdrawn_time"] <= rfc3339(time.time_ns())
+    assert client.get(where).json() == note
+    assert kept["withdrawn_time"] is None
+    fold = repository.begin_fold("PUMP-A1", 10)
+    assert fold is not None
+    assert [event.id for event in fold.events] == [kept["id"]]
+    again = client.post(f"{where}/withdrawal", json=withdrawal)
+    assert (again.status_code, "is withdrawn" in again.json()["detail"]) == (409, True)
+    assert client.post(f"{where}/withdrawal", json={"by": "B. Moore"}).status_code == 422
+    of_another = where.replace("PUMP-A1", "FAN-A2")
+    assert client.post(f"{of_another}/withdrawal", json=withdrawal).status_code == 404
+
+
+def test_what_the_motors_file_tells_is_not_withdrawn(client: httpx.Client, repository: Repository) -> None:
+    event = Event(NOW_NS, EventKind.PARAMETERS_EDITED, "stator_resistance_ohm")
+    kept = repository.add_event("PUMP-A1", event, by=MOTORS_FILE, now_ns=NOW_NS)
+    withdrawal = {"reason": "it is as before", "by": "B. Moore"}
+    refused = client.post(f"{MOTOR}/notes/{kept.id}/withdrawal", json=withdrawal)
+    assert refused.status_code == 409
+    assert "is what the motors file tells" in refused.json()["detail"]
 
 
 def test_a_reference_is_restarted_with_a_reason(client: httpx.Client, repository: Repository) -> None:

@@ -172,7 +172,11 @@ def test_notes_are_taken_and_shown(mcc: Mcc, repository: Repository) -> None:
     restarted = mcc("restart-reference", "PUMP-A1", "--reason", "surge test passed", "--by", "Ann")
     assert restarted.startswith("PUMP-A1: reference-restarted of 20")
     rows = [" ".join(line.split()) for line in mcc("notes", "PUMP-A1").splitlines()]
-    assert "2025-10-09 08:00:00 UTC rewound Ann new winding by Miller" in rows
+    (rewound,) = [row for row in rows if "rewound" in row]
+    assert rewound.startswith("2025-10-09 08:00:00 UTC rewound Ann new winding by Miller ")
+    withdrawn = mcc("withdraw-note", "PUMP-A1", rewound.split()[-1], "--reason", "not yet", "--by", "Bob")
+    assert withdrawn == "PUMP-A1: rewound of 2025-10-09 08:00:00 UTC is withdrawn\n"
+    assert "new winding by Miller (withdrawn by Bob: not yet)" in " ".join(mcc("notes", "PUMP-A1").split())
     notes = json.loads(mcc("notes", "PUMP-A1", "--json"))["notes"]
     assert [note["kind"] for note in notes] == ["reference-restarted", "note", "rewound"]
     assert notes[-1]["time"] == rfc3339(NOW_NS - 3200 * 10**9)
@@ -188,6 +192,7 @@ def test_notes_are_taken_and_shown(mcc: Mcc, repository: Repository) -> None:
         (("note", "PUMP-A1", "hums", "--kind", "exploded"), 2, "exploded"),
         (("restart-reference", "PUMP-A1"), 2, "--reason"),
         (("restart-reference", "PUMP-A1", "--reason", " "), 1, "--reason: expected a few words, found none"),
+        (("withdraw-note", "PUMP-A1", "1", "--reason", "wrong"), 1, "note_id"),
         (("condition", "NOPE"), 1, "there is no motor 'NOPE'"),
         (("notes", "NOPE"), 1, "there is no motor 'NOPE'"),
     ],
