@@ -1,4 +1,4 @@
-"""`mcc condition`, `note`, `notes`, `withdraw-note`, `restart-reference`: a motor over time, and its notes."""
+"""`mcc condition`, `note`, `notes`, `withdraw-note`, `restart-reference`: a motor over time and its notes."""
 
 import getpass
 from itertools import islice
