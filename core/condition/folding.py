@@ -11,11 +11,12 @@ from core.condition.kalman import (
     predict,
     rebalance,
     regressor,
+    smooth,
     update,
 )
 from core.condition.measurement import Measurement
 from core.condition.side_channels import begin, fold_side, noise_of_currents
-from core.condition.state import I0, RECENT, SIDES, Candidate, FilterState, Recent, SideState
+from core.condition.state import I0, RECENT, SIDES, V2, Candidate, FilterState, Recent, SideState
 from core.machines.base import Array
 from core.machines.compiled import compiled
 
@@ -54,7 +55,8 @@ def fold_record(
     rho = predict(state, record.elapsed_s)
     if not changed:
         add_candidate(state, bank, time_ns)
-    update(state, record.y, record.j1, regressor(state, record.y, record.j2))
+    smooth(state, regressor(state, record.y, record.j2), sides[V2].q)
+    update(state, record.y, record.j1, state.w)
     for s in range(SIDES):
         fold_side(sides[s], s, record)
     fold_candidates(state, bank, sides, rho)
@@ -83,7 +85,8 @@ def fold_first(state: FilterState, sides: list[SideState], record: Measurement) 
         The record.
     """
     predict(state, record.elapsed_s)
-    update(state, record.y, record.j1, regressor(state, record.y, record.j2))
+    state.w = regressor(state, record.y, record.j2)
+    update(state, record.y, record.j1, state.w)
     for s in range(SIDES):
         fold_side(sides[s], s, record)
     learn_gap(state, record.elapsed_s)
@@ -116,7 +119,7 @@ def _remember(
 ) -> None:
     """Keep the record: of a healthy motor the latest ones, after a change all, by means of ever more."""
     count = int(state.recent)
-    j2 = regressor(state, record.y, record.j2)
+    j2 = state.w
     if count > 0 and recent[count - 1].count < state.block:
         last = recent[count - 1]
         gain = 1.0 / (last.count + 1.0)

@@ -36,6 +36,7 @@ LEAST_SHARE = 0.3
 SLOWEST = 0.01
 """Least gain of the learnt noise: it remembers a hundred records."""
 BISECTIONS = 50
+TINY = 1e-30
 
 
 @compiled
@@ -94,6 +95,30 @@ def regressor(state: FilterState, y: complex, j2: complex) -> complex:
         w.
     """
     return j2 + state.balance * y / state.nominal
+
+
+@compiled
+def smooth(state: FilterState, w: complex, wander: float) -> None:
+    """Take the noise off the regressor, lest it passes for a supply that changes and teaches the impedance.
+
+    V2 wanders or jumps. Of a small difference to the record before, the share is taken that a wandering level
+    with such noise has in it; of a large one nearly all.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter; `state.w` is that of the record before, and then that of this one.
+    w : complex
+        Regressor of the record.
+    wander : float
+        Variance by which V2/V1 changes from record to record.
+    """
+    noise = state.balance * (1.0 - state.balance) * state.s2
+    apart = w - state.w
+    ratio = wander / max(noise, TINY)
+    share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 / ratio))
+    share = max(share, 1.0 - 2.0 * noise / max(apart.real**2 + apart.imag**2, TINY))
+    state.w += share * apart
 
 
 @compiled

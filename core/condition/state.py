@@ -57,6 +57,8 @@ class FilterState(Protocol):
         Z2n / z at rated frequency.
     balance : float
         Share of y's noise that the currents make; see `regressor`.
+    w : complex
+        Regressor of the latest record.
     turn, other_turn : complex
         Factors of the signatures that are in proportion to Z2, and of the others.
     turn_deviation : float
@@ -86,6 +88,7 @@ class FilterState(Protocol):
     block: float
     nominal: complex
     balance: float
+    w: complex
     turn: complex
     other_turn: complex
     turn_deviation: float
@@ -116,6 +119,7 @@ FILTER: Final = np.dtype(
         ("block", "f8"),
         ("nominal", "c16"),
         ("balance", "f8"),
+        ("w", "c16"),
         ("turn", "c16"),
         ("other_turn", "c16"),
         ("turn_deviation", "f8"),
