@@ -46,8 +46,8 @@ class StandingEstimate:
         channels differ from the bus's mean.
     covariance : ndarray, shape (2, 2)
         Covariance of its estimation, and of what a sound winding adds.
-    channel_variance : float
-        Prior variance of each part of the error of its own voltage channels.
+    channels : ndarray, shape (2, 2)
+        Covariance of what its voltage channels add to E at the terminals, before the first record.
     others : int
         Number of motors it has been compared with; 0 where its channels are not judged.
     """
@@ -56,7 +56,7 @@ class StandingEstimate:
     sequence: PhaseSequence
     asymmetry: Array
     covariance: Array
-    channel_variance: float
+    channels: Array
     others: int
 
 
@@ -101,7 +101,7 @@ def common_asymmetry(own: StandingEstimate, others: Sequence[StandingEstimate]) 
     )
     if not taken or not own.others:
         return None
-    prior = np.eye(2) * own.channel_variance / (len(taken) + 1)
+    prior = own.channels / (len(taken) + 1)
     weights = [np.linalg.inv(o.covariance) for o in taken]
     trust = np.ones(len(taken))
     mean, covariance = np.zeros(2), prior

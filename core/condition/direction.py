@@ -9,6 +9,7 @@ from core.condition.alarm import Alarm, Weighing, confirm, turns_level, weigh
 from core.condition.assessment import Assessment, Level, Reference
 from core.condition.bus import Neighbour, StandingEstimate, common_asymmetry
 from core.condition.change import change_of
+from core.condition.detectability import detectable
 from core.condition.events import Event, EventKind
 from core.condition.folding import fold_first, fold_record, restart
 from core.condition.header import Header
@@ -62,10 +63,10 @@ class Direction:
         self._bank: Any = np.zeros(CANDIDATES, CANDIDATE).view(np.recarray)
         self._sides: Any = np.zeros(SIDES, SIDE).view(np.recarray)
         self._recent: Any = np.zeros(RECENT, RECENT_RECORD).view(np.recarray)
-        self._see(motor)
-        self._prior = prior_of(motor)
         rated = negative_impedance(motor.parameters, motor.nameplate.rated_frequency_Hz)
-        self._nominal = rated / self._prior.scale_ohm
+        self._header.scale_ohm = abs(rated)
+        self._nominal = rated / abs(rated)
+        self._see(motor)
         self._restart(keep_impedance=False)
 
     @property
@@ -92,13 +93,15 @@ class Direction:
         """
         header, state = self._header, self._state
         elapsed_s = max(observation.time_ns - header.as_of_ns, 0) * NANOSECONDS if header.recorder else 0.0
-        record = measure(observation, motor, self._prior.scale_ohm, elapsed_s)
+        record = measure(observation, motor, self._header.scale_ohm, elapsed_s)
         moved, _ = header.bus.fold(record.v2, self._sequence, neighbours)
         if moved is not None:
             record = record._replace(bus=moved, has_bus=True)
-        if header.recorder and header.measured_by(observation):
-            self._restart(keep_impedance=True)
-        header.recorder, header.voltage_channels = observation.recorder, observation.voltage_channels
+        if header.measured_by(observation):
+            known = bool(header.recorder)
+            header.recorder, header.voltage_channels = observation.recorder, observation.voltage_channels
+            self._see(motor)
+            self._restart(keep_impedance=known)
         header.as_of_ns = observation.time_ns
         if state.records < START:
             if not header.start:
@@ -171,7 +174,7 @@ class Direction:
                 records=records,
                 complete=records > START,
                 since_ns=header.since_ns,
-                detectable=None,
+                detectable=self._detectable(records),
                 standing=Level(standing.level, standing.deviation, winding, standing.path_ratio),
                 standing_score=standing.score,
                 from_bus=standing.from_bus,
@@ -200,15 +203,15 @@ class Direction:
         """
         state, prior = self._state, self._prior_of_E()
         estimate, covariance = without_prior(state.x[:2], state.P[:2, :2], prior)
-        own = np.eye(2) * self._prior.own_voltage**2
+        turn = 1.0 / terminal_turn(motor)
         difference, others = self._header.bus.mean()
-        asymmetry = _turned(estimate, 1.0 / terminal_turn(motor))
+        asymmetry = _turned(estimate, turn)
         return StandingEstimate(
             motor=motor.name,
             sequence=self._sequence,
             asymmetry=asymmetry - np.array([difference.real, difference.imag]),
-            covariance=covariance - prior + own,
-            channel_variance=self._prior.voltage**2 - self._prior.own_voltage**2,
+            covariance=_rotated(covariance - prior + self._prior.own, turn),
+            channels=_rotated(self._prior.channels, turn),
             others=others,
         )
 
@@ -223,8 +226,7 @@ class Direction:
             Numbers.
         """
         arrays = (self._filter, self._sides, self._bank, self._recent)
-        words = self._header.as_dict() | {"scale_ohm": self._prior.scale_ohm}
-        return words, b"".join(array.tobytes() for array in arrays)
+        return self._header.as_dict(), b"".join(array.tobytes() for array in arrays)
 
     @classmethod
     def unpacked(
@@ -262,16 +264,19 @@ class Direction:
             array[:] = np.frombuffer(body, array.dtype, count=array.size, offset=start)
             start += array.nbytes
         direction._header = Header.from_dict(words)
+        direction._nominal = complex(direction._state.nominal)
+        direction._see(motor)
         return direction
 
     def _see(self, motor: Motor) -> Hypotheses:
         """Return what changes of the motor look like."""
         seen = (motor, self._header.voltage_channels)
         if getattr(self, "_seen", None) != seen:
-            prior = prior_of(motor)
             self._seen = seen
-            self._hypotheses = hypotheses_of(*seen)
-            self._recorder = np.sqrt(2.0) * np.array([prior.voltage] * 2 + [prior.current] * 2)
+            self._prior = prior_of(*seen)
+            self._hypotheses = hypotheses_of(*seen, self._header.scale_ohm)
+            voltage = float(np.sqrt(np.trace(self._prior.voltage)))
+            self._recorder = np.array([voltage] * 2 + [np.sqrt(2.0) * self._prior.current] * 2)
         return self._hypotheses
 
     def _weighing(self) -> Weighing:
@@ -292,11 +297,17 @@ class Direction:
                 motor, *without_prior(state.x[:2], state.P[:2, :2], self._prior_of_E()), from_bus=False
             )
         asymmetry = _turned(own.asymmetry - common[0], terminal_turn(motor))
-        return standing_of(motor, asymmetry, own.covariance + common[1], from_bus=True)
+        covariance = _rotated(own.covariance + common[1], terminal_turn(motor))
+        return standing_of(motor, asymmetry, covariance, from_bus=True)
+
+    def _detectable(self, records: int) -> float | None:
+        if records <= START or self._header.alarm is not None:
+            return None
+        return detectable(self._state, self._hypotheses)
 
     def _move_impedance(self, motor: Motor, edited: Motor) -> None:
         """Keep Z2 and the standing errors as they are known, whatever the motor's file says of Z2."""
-        f, z = motor.nameplate.rated_frequency_Hz, self._prior.scale_ohm
+        f, z = motor.nameplate.rated_frequency_Hz, self._header.scale_ohm
         before = negative_impedance(motor.parameters, f) / z
         after = negative_impedance(edited.parameters, f) / z
         state, start, b = self._state, self._header.start, self._state.balance
@@ -314,8 +325,9 @@ class Direction:
     def _restart(self, *, keep_impedance: bool) -> None:
         """Let the reference be learnt anew."""
         state, prior, header = self._state, self._prior, self._header
-        errors = np.array([prior.voltage] * 2 + [prior.current] * 2 + [IMPEDANCE] * 2 + [TEMPERATURE]) ** 2
-        x, P = np.zeros(7), np.diag(errors)
+        errors = np.array([0.0] * 2 + [prior.current] * 2 + [IMPEDANCE] * 2 + [TEMPERATURE])
+        x, P = np.zeros(7), np.diag(errors**2)
+        P[:2, :2] = prior.voltage
         if keep_impedance:
             x[4:] = state.x[4:]
             P[4:, 4:] = state.P[4:, 4:]
@@ -359,7 +371,13 @@ class Direction:
 
     def _prior_of_E(self) -> Array:
         wandered = WANDER_EC**2 * self._state.records
-        return np.eye(2) * (self._prior.voltage**2 + wandered)
+        return self._prior.voltage + wandered * np.eye(2)
+
+
+def _rotated(covariance: Array, factor: complex) -> Array:
+    """Return the covariance of a complex number that is multiplied by a factor."""
+    turn = np.array([[factor.real, -factor.imag], [factor.imag, factor.real]])
+    return np.asarray(turn @ covariance @ turn.T)
 
 
 def _turned(vector: Array, factor: complex) -> Array:

@@ -24,6 +24,8 @@ class Header:
         Which voltages it measured.
     as_of_ns, since_ns : int
         Time of the latest record, and of the first since the reference began, UTC [ns].
+    scale_ohm : float
+        z = |Z2n| at rated frequency as the motor's file said first [ohm]; edited figures do not move it.
     accepted : bool
         Whether a person has declared the standing asymmetry healthy.
     alarm : Alarm or None
@@ -40,6 +42,7 @@ class Header:
     voltage_channels: VoltageChannels = VoltageChannels.PHASE
     as_of_ns: int = 0
     since_ns: int = 0
+    scale_ohm: float = 0.0
     accepted: bool = False
     alarm: Alarm | None = None
     standing: Standing | None = None
@@ -75,6 +78,7 @@ class Header:
             "voltage_channels": str(self.voltage_channels),
             "as_of_ns": self.as_of_ns,
             "since_ns": self.since_ns,
+            "scale_ohm": self.scale_ohm,
             "accepted": self.accepted,
             "alarm": None if self.alarm is None else asdict(self.alarm),
             "standing": None if self.standing is None else asdict(self.standing),
@@ -107,6 +111,7 @@ class Header:
             voltage_channels=VoltageChannels(words["voltage_channels"]),
             as_of_ns=words["as_of_ns"],
             since_ns=words["since_ns"],
+            scale_ohm=words["scale_ohm"],
             accepted=words["accepted"],
             alarm=alarm,
             standing=None if words["standing"] is None else Standing(**words["standing"]),

@@ -9,7 +9,6 @@ import numpy as np
 
 from core.condition.measurement import negative_impedance
 from core.condition.observation import VoltageChannels
-from core.condition.prior import prior_of
 from core.condition.signatures import PATHS, A, shorted_turns, terminal_turn, voltage_channels
 from core.condition.state import BUS, I0, SIDES, V0, V2, ComplexArray
 from core.machines.parameters import Connection, Motor
@@ -111,7 +110,7 @@ Hypotheses = Any
 
 
 @lru_cache(maxsize=1024)
-def hypotheses_of(motor: Motor, channels: VoltageChannels) -> Hypotheses:
+def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> Hypotheses:
     """Return all places of all causes, as the filter of a motor sees them.
 
     Parameters
@@ -120,14 +119,15 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels) -> Hypotheses:
         The motor.
     channels : VoltageChannels
         Which voltages are measured.
+    scale_ohm : float
+        z [ohm].
 
     Returns
     -------
     array of Hypothesis
         Shorted turns by winding and path, voltage channels, current channels, joints.
     """
-    turn, prior = terminal_turn(motor), prior_of(motor)
-    z = prior.scale_ohm
+    turn, z = terminal_turn(motor), scale_ohm
     Z2n = negative_impedance(motor.parameters, motor.nameplate.rated_frequency_Hz)
     rows: list[tuple[object, ...]] = []
     none = (0j,) * SIDES
