@@ -120,11 +120,10 @@ def confirm(alarm: Alarm, weighing: Weighing) -> None:
     weighing : Weighing
         Weights after the latest record.
     """
-    alarm.records += 1
     sure = _certain(weighing.probabilities)
     alarm.running = alarm.running + 1 if sure == alarm.pending else 1
     alarm.pending = sure
-    if sure and alarm.running >= RUNNING and alarm.records <= WINDOW:
+    if sure and alarm.running >= RUNNING:
         alarm.named = sure
 
 

@@ -5,7 +5,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from core.condition.alarm import Alarm, Weighing, confirm, turns_level, weigh
+from core.condition.alarm import WINDOW, Alarm, Weighing, confirm, turns_level, weigh
 from core.condition.assessment import Assessment, Level, Reference
 from core.condition.bus import Neighbour, StandingEstimate, common_asymmetry
 from core.condition.change import change_of
@@ -202,7 +202,7 @@ class Direction:
             Asymmetry at the terminals.
         """
         state, prior = self._state, self._prior_of_E()
-        estimate, covariance = without_prior(state.x[:2], state.P[:2, :2], prior)
+        estimate, covariance = without_prior(state.x, state.P, prior)
         turn = 1.0 / terminal_turn(motor)
         difference, others = self._header.bus.mean()
         asymmetry = _turned(estimate, turn)
@@ -283,19 +283,19 @@ class Direction:
         return weigh(self._state, self._bank, self._hypotheses, self._recorder)
 
     def _follow_up(self, alarm: Alarm) -> None:
-        confirm(alarm, self._weighing())
+        alarm.records += 1
+        if alarm.records <= WINDOW:
+            confirm(alarm, self._weighing())
         if self._state.statistic < CLEARED:
             self._header.alarm = self._header.standing = None
             self._state.candidates = 0.0
 
     def _standing(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Standing:
-        own = self.standing_estimate(motor)
-        common = common_asymmetry(own, bus)
-        if common is None:
+        own = self.standing_estimate(motor) if bus else None
+        common = common_asymmetry(own, bus) if own else None
+        if own is None or common is None:
             state = self._state
-            return standing_of(
-                motor, *without_prior(state.x[:2], state.P[:2, :2], self._prior_of_E()), from_bus=False
-            )
+            return standing_of(motor, *without_prior(state.x, state.P, self._prior_of_E()), from_bus=False)
         asymmetry = _turned(own.asymmetry - common[0], terminal_turn(motor))
         covariance = _rotated(own.covariance + common[1], terminal_turn(motor))
         return standing_of(motor, asymmetry, covariance, from_bus=True)

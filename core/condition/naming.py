@@ -25,6 +25,8 @@ SIDE_JUMP = 0.0065
 HIDDEN_STEP, HIDDEN_DRIFT, HIDDEN_WITH_BUS = 0.005, 0.2, 1e-4
 """Probability that a change of a voltage channel is not seen in V0 and v2."""
 NOTHING = -1e300
+NEGLIGIBLE = 30.0
+"""Onsets with so much less evidence in y than the best are left out."""
 SIZES = (1.0, 4.0)
 """Multiples of a cause's usual size that are tried."""
 
@@ -63,9 +65,11 @@ def name(
     best[:] = 0.0
     best[:, 4] = NOTHING
     temper = np.ones(SIDES + 1)
-    _temper(state, bank, temper)
+    most = _temper(state, bank, temper)
     for i in range(int(state.candidates)):
         one = bank[i]
+        if _most_of_y(one) < most - NEGLIGIBLE / temper[SIDES]:
+            continue
         for drifts in range(2):
             still = np.zeros(SIDES)
             for s in range(SIDES):
@@ -76,18 +80,12 @@ def name(
 
 
 @compiled
-def _temper(state: FilterState, bank: list[Candidate], temper: Array) -> None:
-    """Find the powers to which the likelihoods are taken: those of the side channels, then that of y."""
+def _temper(state: FilterState, bank: list[Candidate], temper: Array) -> float:
+    """Find the powers to which the likelihoods are taken, of side channels and y; return y's most evidence."""
     most = np.zeros(SIDES + 1)
     for i in range(int(state.candidates)):
         one = bank[i]
-        most[SIDES] = max(
-            most[SIDES],
-            most_of_pair(one.step, 0, one.d, 0),
-            most_of_pair(one.step, 2, one.d, 2),
-            most_of_pair(one.ramp_voltage, 0, one.d, 6),
-            most_of_pair(one.ramp_current, 0, one.d, 8),
-        )
+        most[SIDES] = max(most[SIDES], _most_of_y(one))
         for s in range(SIDES):
             for c in range(2):
                 if one.side_information[s, c] > 0.0:
@@ -96,6 +94,19 @@ def _temper(state: FilterState, bank: list[Candidate], temper: Array) -> None:
     for s in range(SIDES):
         temper[s] = min(1.0, SIDE_COUNTS / max(most[s], SIDE_COUNTS))
     temper[SIDES] = min(1.0, Y_COUNTS / max(most[SIDES], Y_COUNTS))
+    return most[SIDES]
+
+
+@compiled
+def _most_of_y(one: Candidate) -> float:
+    """Return the most evidence that any cause can have from one onset in y."""
+    return max(
+        most_of_pair(one.step, 0, one.d, 0),
+        most_of_pair(one.step, 2, one.d, 2),
+        most_of_pair(one.ramp_voltage, 0, one.d, 6),
+        most_of_pair(one.ramp_current, 0, one.d, 8),
+        most_of_pair(one.impedance, 0, one.d, 4),
+    )
 
 
 @compiled

@@ -9,6 +9,7 @@ import numpy as np
 
 from core.condition.signatures import PATHS, shorted_turns
 from core.machines.base import Array
+from core.machines.compiled import compiled
 from core.machines.parameters import Motor
 
 STANDING_SCORE: Final = 3.7
@@ -60,29 +61,25 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
     Standing
         The likeliest shorted turns.
     """
-    weight = np.linalg.inv(covariance)
-    directions = _directions(motor)
-    along = directions @ (weight @ asymmetry)
-    information = np.einsum("ni,ij,nj->n", directions, weight, directions)
-    score = along / np.sqrt(information)
-    best = int(np.argmax(score))
+    best, level, deviation, score = _likeliest(asymmetry, covariance, _directions(motor))
     return Standing(
-        level=float(along[best] / information[best]),
-        deviation=1.0 / sqrt(float(information[best])),
+        level=level,
+        deviation=deviation,
         winding=best // len(PATHS),
         path_ratio=PATHS[best % len(PATHS)],
-        score=float(score[best]),
+        score=score,
         from_bus=from_bus,
     )
 
 
+@compiled
 def without_prior(estimate: Array, covariance: Array, prior: Array) -> tuple[Array, Array]:
     """Take the prior out of an estimate.
 
     Parameters
     ----------
-    estimate, covariance : ndarray, shapes (2,), (2, 2)
-        What the filter says.
+    estimate, covariance : ndarray, shapes (n,), (n, n)
+        What the filter says; E comes first.
     prior : ndarray, shape (2, 2)
         Covariance that it started from, about zero.
 
@@ -92,9 +89,41 @@ def without_prior(estimate: Array, covariance: Array, prior: Array) -> tuple[Arr
         What the records alone say: Lam0^-1 d0 and Lam0^-1 with Lam0 = P0^-1 - P0^-1 P P0^-1, which is the
         covariance of what a sound motor shows, the prior's spread included.
     """
-    inverse = np.linalg.inv(prior)
-    spread = np.linalg.inv(inverse - inverse @ covariance @ inverse)
-    return np.asarray(spread @ (inverse @ estimate)), np.asarray(spread)
+    # Lam0^-1 = P0 (P0 - P)^-1 P0
+    gained = _inverse(prior - covariance[:2, :2])
+    spread, found = np.zeros((2, 2)), np.zeros(2)
+    for i in range(2):
+        for j in range(2):
+            for k in range(2):
+                found[i] += prior[i, j] * gained[j, k] * estimate[k]
+                for m in range(2):
+                    spread[i, m] += prior[i, j] * gained[j, k] * prior[k, m]
+    return found, spread
+
+
+@compiled
+def _inverse(matrix: Array) -> Array:
+    a, b, c, d = matrix[0, 0], matrix[0, 1], matrix[1, 0], matrix[1, 1]
+    determinant = a * d - b * c
+    out = np.empty((2, 2))
+    out[0, 0], out[0, 1] = d / determinant, -b / determinant
+    out[1, 0], out[1, 1] = -c / determinant, a / determinant
+    return out
+
+
+@compiled
+def _likeliest(asymmetry: Array, covariance: Array, directions: Array) -> tuple[int, float, float, float]:
+    """Return the direction that explains an asymmetry best, with size, deviation and score."""
+    W = _inverse(covariance)
+    best, size, deviation, score = 0, 0.0, 0.0, -1e300
+    for n in range(directions.shape[0]):
+        x, y = directions[n]
+        u0, u1 = x * W[0, 0] + y * W[1, 0], x * W[0, 1] + y * W[1, 1]
+        along, information = u0 * asymmetry[0] + u1 * asymmetry[1], u0 * x + u1 * y
+        if along / sqrt(information) > score:
+            best, score = n, along / sqrt(information)
+            size, deviation = along / information, 1.0 / sqrt(information)
+    return best, size, deviation, score
 
 
 @lru_cache(maxsize=256)

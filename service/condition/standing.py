@@ -15,7 +15,7 @@ def standing_document(estimate: StandingEstimate) -> dict[str, Any]:
         "sequence": str(estimate.sequence),
         "asymmetry": estimate.asymmetry.tolist(),
         "covariance": estimate.covariance.tolist(),
-        "channel_variance": float(estimate.channel_variance),
+        "channels": estimate.channels.tolist(),
         "others": int(estimate.others),
     }
 
@@ -27,6 +27,6 @@ def standing_estimate(motor: str, document: Mapping[str, Any]) -> StandingEstima
         sequence=PhaseSequence(document["sequence"]),
         asymmetry=np.array(document["asymmetry"]),
         covariance=np.array(document["covariance"]),
-        channel_variance=document["channel_variance"],
+        channels=np.array(document["channels"]),
         others=document["others"],
     )
