@@ -81,7 +81,7 @@ def name(
 
 @compiled
 def _temper(state: FilterState, bank: list[Candidate], temper: Array) -> float:
-    """Find the powers to which the likelihoods are taken, of side channels and y; return y's most evidence."""
+    """Find the powers of the likelihoods of side channels and of y; return the most evidence of y."""
     most = np.zeros(SIDES + 1)
     for i in range(int(state.candidates)):
         one = bank[i]
@@ -94,7 +94,8 @@ def _temper(state: FilterState, bank: list[Candidate], temper: Array) -> float:
     for s in range(SIDES):
         temper[s] = min(1.0, SIDE_COUNTS / max(most[s], SIDE_COUNTS))
     temper[SIDES] = min(1.0, Y_COUNTS / max(most[SIDES], Y_COUNTS))
-    return most[SIDES]
+    highest: float = most[SIDES]
+    return highest
 
 
 @compiled
