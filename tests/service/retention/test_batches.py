@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from statistics import quantiles
 from threading import Event, Thread
 
 import pytest
@@ -84,7 +85,11 @@ def test_a_batch_looks_at_no_row_that_it_leaves(engine: Engine, repository: Repo
 def test_no_renewal_waits_for_long(
     database_url: str, engine: Engine, repository: Repository, tmp_path: Path
 ) -> None:
-    """The shortest lease is one second, and a gateway ends itself after four fifths of it."""
+    """A gateway with the shortest lease, one second, renews it each 0.1 s, and ends itself 0.8 s later.
+
+    So 0.7 s are left for a renewal. A disk that others keep busy may take some of it for one write, but not
+    for one in ten: those wait for a batch or two, of 50 ms.
+    """
     repository.sync_plant(plant())
     fill(engine, 300_000)
     housekeeping = Housekeeping(Settings(data_directory=tmp_path, metering_sample_days=1), repository)
@@ -95,7 +100,8 @@ def test_no_renewal_waits_for_long(
     assert repository.measurements("MOTOR-000", 60, limit=1).items != ()
     assert len(waits.each_s) > 10
     assert waits.refused == 0
-    assert max(waits.each_s) < 0.5, waits.text()
+    assert max(waits.each_s) < 0.7, waits.text()
+    assert quantiles(waits.each_s, n=10)[-1] < 0.2, waits.text()
 
 
 def test_a_batch_takes_about_the_time_it_may() -> None:
