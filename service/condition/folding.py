@@ -1,7 +1,8 @@
 """Fold what is new of a motor into its condition: its observations and events in their order of time."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import asdict, replace
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
 
 import structlog
 
@@ -18,7 +19,6 @@ from service.storage.records import (
     ConditionChange,
     ConditionEntry,
     ConditionEvent,
-    ConditionFigures,
     ConditionPoint,
     FoldInput,
     FoldResult,
@@ -26,6 +26,12 @@ from service.storage.records import (
 )
 
 log = structlog.get_logger(__name__)
+
+Said = dict[str, Any]
+"""The fields of ConditionFigures."""
+
+TOLD_APART = ("state", "kind", "phase")
+"""Where one of these is another than before, the history has it."""
 
 
 class UnreadableCheckpointError(ValueError):
@@ -49,7 +55,10 @@ class _Folding:
         self._bus = _Bus(due, motor)
         self._records = 0 if due.checkpoint is None else due.checkpoint.records
         self._follower = self._begun()
-        self._said: ConditionFigures | None = due.latest_change
+        before = due.latest_change
+        self._said: Said | None = (
+            None if before is None else {name: getattr(before, name) for name in TOLD_APART}
+        )
         self._points: list[ConditionPoint] = []
         self._changes: list[ConditionChange] = []
         self._checkpoints: list[Checkpoint] = []
@@ -102,41 +111,32 @@ class _Folding:
         except ValueError as error:
             log.warning("record left out of the condition", recording=one.recording_id, error=str(error))
             return
-        figures = self._figures(observation.time_ns)
+        said = self._say(observation.time_ns)
         self._points.append(
-            ConditionPoint(recording_id=one.recording_id, time_ns=observation.time_ns, **asdict(figures))
+            ConditionPoint(recording_id=one.recording_id, time_ns=observation.time_ns, **said)
         )
-        if _differ(self._said, figures):
-            self._note(figures, observation.time_ns, recording_id=one.recording_id)
+        if self._said is None or any(self._said[name] != said[name] for name in TOLD_APART):
+            self._note(said, observation.time_ns, recording_id=one.recording_id)
 
     def _apply(self, event: ConditionEvent) -> None:
         self._follower.apply(event.event, self._history.edited_at(event.time_ns))
-        self._note(self._figures(event.time_ns), event.time_ns, event_id=event.id)
+        self._note(self._say(event.time_ns), event.time_ns, event_id=event.id)
 
     def _note(
-        self,
-        figures: ConditionFigures,
-        time_ns: int,
-        *,
-        recording_id: str | None = None,
-        event_id: str | None = None,
+        self, said: Said, time_ns: int, *, recording_id: str | None = None, event_id: str | None = None
     ) -> None:
-        self._said = figures
+        self._said = said
         self._changes.append(
             ConditionChange(
-                motor=self._due.motor,
-                time_ns=time_ns,
-                recording_id=recording_id,
-                event_id=event_id,
-                **asdict(figures),
+                motor=self._due.motor, time_ns=time_ns, recording_id=recording_id, event_id=event_id, **said
             )
         )
 
-    def _figures(self, now_ns: int) -> ConditionFigures:
+    def _say(self, now_ns: int) -> Said:
         """Return what is said now. A forecast, which takes long, is made at the end only."""
         assessment = self._follower.assessment(self._bus.standings)
         brief = None if assessment is None else replace(assessment, levels=())
-        return _figures_of(condition_of(self._motor, brief, now_ns))
+        return _said(condition_of(self._motor, brief, now_ns))
 
     def _entry(self) -> ConditionEntry:
         """Return the motor's condition, as it was said of it with its latest record."""
@@ -149,7 +149,7 @@ class _Folding:
             since_ns=condition.since_ns,
             as_of_ns=condition.as_of_ns,
             document=condition.as_dict(),
-            **asdict(_figures_of(condition)),
+            **_said(condition),
         )
 
 
@@ -176,32 +176,26 @@ class _Bus:
 
 def _first_ns(due: FoldInput) -> int:
     """Return the time of what is folded first."""
-    times: Iterator[int] = iter(
-        sorted(
-            [
-                *(one.observation.time_ns for one in due.observations[:1]),
-                *(event.time_ns for event in due.events[:1]),
-            ]
-        )
+    return min(
+        (
+            *(one.observation.time_ns for one in due.observations[:1]),
+            *(event.time_ns for event in due.events[:1]),
+        ),
+        default=0,
     )
-    return next(times, 0)
 
 
-def _figures_of(condition: Condition) -> ConditionFigures:
+def _said(condition: Condition) -> Said:
     low, high = condition.mu_f_ci95 or (None, None)
     change_low, change_high = condition.change_ci95 or (None, None)
-    return ConditionFigures(
-        state=condition.state,
-        kind=condition.kind,
-        phase=condition.phase,
-        mu_f=condition.mu_f,
-        mu_f_ci95_low=low,
-        mu_f_ci95_high=high,
-        change=condition.change,
-        change_ci95_low=change_low,
-        change_ci95_high=change_high,
-    )
-
-
-def _differ(before: ConditionFigures | None, now: ConditionFigures) -> bool:
-    return before is None or (before.state, before.kind, before.phase) != (now.state, now.kind, now.phase)
+    return {
+        "state": condition.state,
+        "kind": condition.kind,
+        "phase": condition.phase,
+        "mu_f": condition.mu_f,
+        "mu_f_ci95_low": low,
+        "mu_f_ci95_high": high,
+        "change": condition.change,
+        "change_ci95_low": change_low,
+        "change_ci95_high": change_high,
+    }

@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass, field
+from random import choice
 
 import structlog
 from structlog.typing import FilteringBoundLogger
@@ -40,10 +41,9 @@ class ConditionTask:
 
 @dataclass(slots=True)
 class _Trouble:
-    """Failures in a row of a motor's tasks, the latest error, and when the next one may begin."""
+    """Failures in a row of a motor's tasks, and when the next one may begin."""
 
     failures: int = 0
-    error: str = ""
     until_s: float = 0.0
 
 
@@ -56,7 +56,8 @@ class _Progress:
 class ConditionWork:
     """Says which motor is folded next, or which recordings are observed. For use by one thread.
 
-    One task a motor at a time. Several services may share a database: what two of them do twice is kept
+    One task a motor at a time. A motor whose task fails is tried again after a pause; meanwhile its condition
+    ages. Several services may share a database: what two of them do twice is kept
     once.
     """
 
@@ -77,7 +78,8 @@ class ConditionWork:
         self._most_observing = most_observing
         self._under_way: dict[str, ConditionTask] = {}
         self._trouble: dict[str, _Trouble] = {}
-        self._latest: str = ""
+        # Services that share a database begin with different motors, and seldom fold the same one.
+        self._latest = choice(sorted(motors)) if motors else ""  # noqa: S311 - nothing to keep secret
         self._all_observed = False
         self._progress = _Progress()
 
@@ -115,13 +117,6 @@ class ConditionWork:
         """Take all tasks back as if they had not been given: the workers are gone, or there are none."""
         self._under_way.clear()
 
-    def problem(self) -> str | None:
-        """Return which motor cannot be followed, and why; None while all is well."""
-        for motor, trouble in self._trouble.items():
-            if trouble.failures >= MOST_FAILURES:
-                return f"the condition of {motor} cannot be followed: {trouble.error}"
-        return None
-
     def _next_fold(self) -> ConditionTask | None:
         """Return the next motor to fold. They take turns: none waits until another has no more to do."""
         due = [motor for motor in self._repository.motors_to_fold() if self._is_free(motor)]
@@ -157,9 +152,8 @@ class ConditionWork:
     def _failed(self, task: ConditionTask, error: BaseException) -> None:
         trouble = self._trouble.setdefault(task.motor, _Trouble())
         trouble.failures += 1
-        trouble.error = f"{type(error).__name__}: {error}"
         trouble.until_s = time.monotonic() + FAILURES.pause_s(trouble.failures)
-        log.error("work on a condition failed", motor=task.motor, error=trouble.error, exc_info=error)
+        log.error("work on a condition failed, trying again", motor=task.motor, exc_info=error)
         if isinstance(task.argument, ObserveTask) and trouble.failures >= MOST_FAILURES:
             (recording, *_) = task.argument.recordings
             log.error("recording is left out of the condition", recording=recording.recording_id)

@@ -6,7 +6,7 @@ same motor at the same time, the first to end is kept, for the other began from 
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
 
 from sqlalchemy import bindparam, delete, func, insert, or_, select, update
 from sqlalchemy.orm import Session
@@ -29,6 +29,7 @@ from service.storage.records import (
     Checkpoint,
     ConditionChange,
     ConditionEvent,
+    ConditionFigures,
     FoldInput,
     FoldResult,
     MotorVersion,
@@ -251,8 +252,7 @@ def _write_points(session: Session, result: FoldResult) -> None:
     """Write what is said from each record on; one that was deleted meanwhile is left out."""
     if not result.points:
         return
-    points = [asdict(point) for point in result.points]
-    names = set(points[0]) - {"recording_id", "time_ns"}
+    names = [field.name for field in fields(ConditionFigures)]
     statement = (
         update(_OBSERVATIONS)
         .where(_OBSERVATIONS.c.recording_id == bindparam("of_recording"))
@@ -261,8 +261,8 @@ def _write_points(session: Session, result: FoldResult) -> None:
     session.connection().execute(
         statement,
         [
-            {"of_recording": point["recording_id"], **{name: point[name] for name in names}}
-            for point in points
+            {"of_recording": point.recording_id, **{name: getattr(point, name) for name in names}}
+            for point in result.points
         ],
     )
 

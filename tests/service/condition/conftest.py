@@ -1,4 +1,7 @@
-"""Every test of the conditions runs on both databases, unless it says that it is about one of them."""
+"""Every test of the conditions runs on both databases; on PostgreSQL in make test-all.
+
+What differs between the two, their statements and transactions, tests/service/storage has in every run.
+"""
 
 import pytest
 
@@ -8,7 +11,7 @@ from tests.service.fixtures import engine, repository, store
 __all__ = ["engine", "repository", "sqlite_database_url", "store"]
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
+@pytest.fixture(params=["sqlite", pytest.param("postgresql", marks=pytest.mark.campaign)])
 def database_url(request: pytest.FixtureRequest) -> str:
     url = request.getfixturevalue("sqlite_database_url" if request.param == "sqlite" else "postgresql_url")
     assert isinstance(url, str)

@@ -30,7 +30,7 @@ from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors
 from testing.service.observations import records_of_a_motor
 from testing.service.plants import NOW_NS, SECOND_NS, motor
 
-RECORDS = records_of_a_motor(40, fault_from=25)
+RECORDS = records_of_a_motor(30, fault_from=18)
 
 
 @pytest.fixture
@@ -63,7 +63,7 @@ def test_records_in_any_order_of_arrival_give_the_condition_of_all_at_once(
 ) -> None:
     order = list(RECORDS)
     random.Random(7).shuffle(order)
-    for some in (order[:1], order[1:4], order[4:20], order[20:39], order[39:]):
+    for some in (order[:1], order[1:4], order[4:15], order[15:29], order[29:]):
         recorder.record_all(some)
         fold_all(repository)
     require_same(repository, followed(RECORDS))
@@ -81,16 +81,16 @@ def test_records_in_any_order_of_arrival_give_the_condition_of_all_at_once(
 def test_a_recording_that_is_deleted_or_diagnosed_again_counts_no_more_as_it_was(
     repository: Repository, recorder: Recorder
 ) -> None:
-    ids = recorder.record_all(RECORDS[:30])
+    ids = recorder.record_all(RECORDS[:25])
     fold_all(repository)
     repository.delete_recording(ids[12], "of another motor", now_ns=NOW_NS)
     fold_all(repository)
-    require_same(repository, followed([*RECORDS[:12], *RECORDS[13:30]]))
+    require_same(repository, followed([*RECORDS[:12], *RECORDS[13:25]]))
     other = replace(RECORDS[3], negative_voltage_V=1.5 + 0.5j)
     recorder.diagnose_again(ids[3], other)
-    recorder.diagnose_again(ids[29], None)
+    recorder.diagnose_again(ids[24], None)
     fold_all(repository)
-    require_same(repository, followed([*RECORDS[:3], other, *RECORDS[4:12], *RECORDS[13:29]]))
+    require_same(repository, followed([*RECORDS[:3], other, *RECORDS[4:12], *RECORDS[13:24]]))
 
 
 def test_without_records_nothing_is_known(repository: Repository, recorder: Recorder) -> None:
@@ -111,12 +111,12 @@ def test_an_event_counts_from_its_time_and_is_in_the_history(
 ) -> None:
     recorder.record_all(RECORDS)
     fold_all(repository)
-    event = Event(RECORDS[26].time_ns, EventKind.REWOUND, "winding of phase b replaced")
+    event = Event(RECORDS[22].time_ns, EventKind.REWOUND, "winding of phase b replaced")
     kept = repository.add_event(PUMP, event, by="ann", now_ns=NOW_NS)
     fold_all(repository)
-    follower = followed(RECORDS[:26])
+    follower = followed(RECORDS[:22])
     follower.apply(event)
-    for record in RECORDS[26:]:
+    for record in RECORDS[22:]:
         follower.fold(record)
     require_same(repository, follower)
     history = repository.condition_history(PUMP, limit=100).items
@@ -267,7 +267,7 @@ def test_two_services_fold_the_same_motors(
 def fold_until(database_url: str, end) -> None:  # type: ignore[no-untyped-def]  # multiprocessing's own event
     engine = connect(database_url)
     repository = Repository(engine)
-    while not end.is_set() or repository.motors_to_fold():
+    while not end.wait(0.01) or repository.motors_to_fold():
         fold_due(repository, motor(PUMP))
     engine.dispose()
 
@@ -277,16 +277,16 @@ def test_motors_of_a_bus_come_to_the_same_in_any_order(
 ) -> None:
     repository.sync_plant(on_one_bus())
     beside = [
-        replace(record, time_ns=record.time_ns + 20 * SECOND_NS) for record in records_of_a_motor(30, seed=2)
+        replace(record, time_ns=record.time_ns + 20 * SECOND_NS) for record in records_of_a_motor(14, seed=2)
     ]
-    come = [(PUMP, record) for record in RECORDS[:30]] + [(FAN, record) for record in beside]
+    come = [(PUMP, record) for record in RECORDS[:14]] + [(FAN, record) for record in beside]
     found = []
     for seed in (1, 2):
         random.Random(seed).shuffle(come)
         ids = []
         for at, (name, record) in enumerate(come):
             ids.append(recorder.record(record, name))
-            if at % 20 == 0:
+            if at % 10 == 0:
                 fold_all(repository)
         fold_all(repository)
         documents = {name: json.dumps(repository.condition(name).document) for name in (PUMP, FAN)}
