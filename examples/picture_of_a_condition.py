@@ -51,7 +51,7 @@ def main() -> None:
     phase = f", phase {condition['phase']}" if condition["phase"] else ""
     axes.set_title(f"{condition['motor']}: {condition['state']}, {kind}{phase}", loc="left")
     axes.set(xlabel="days from the latest record", ylabel="shorted turns, % of the phase")
-    axes.legend(loc="upper left", title="dashed: limit; bar: 80 % forecast")
+    axes.legend(loc="lower right", title="dashed: limit; bar: 80 % forecast")
     figure.savefig(sys.argv[2], dpi=110)
 
 

@@ -7,7 +7,6 @@ from typing import Any, Final, cast
 
 from core.condition.advice import advice
 from core.condition.assessment import (
-    NORMAL_95,
     PHASES,
     STALE_AFTER_NS,
     Assessment,
@@ -341,7 +340,8 @@ def _total(assessment: Assessment, level: Level | None) -> tuple[float, Interval
     if level is not None:
         value += max(0.0, level.value)
         low += level.ci95[0] if _is_shorted_turns(assessment.change) else 0.0
-        high = standing.value + level.value + NORMAL_95 * hypot(standing.deviation, level.deviation)
+        above = hypot(standing.ci95[1] - standing.value, level.ci95[1] - level.value)
+        high = standing.value + level.value + above
     return value, (min(low, value), max(high, value))
 
 
@@ -350,7 +350,7 @@ def _forecast(assessment: Assessment, level: Level | None, mu_f: float, limit: f
     if level is None:
         return Forecast(limit)
     standing = mu_f - max(0.0, level.value)
-    return forecast(assessment.levels, limit, today=level.value, deviation=level.deviation, standing=standing)
+    return forecast(assessment.levels, limit, today=level, standing=standing)
 
 
 def _is_shorted_turns(change: Change | None) -> bool:

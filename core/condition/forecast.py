@@ -18,6 +18,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from core.condition.assessment import NORMAL_95, Level
 from core.condition.trends import filtered, moved, onset
 from core.units import NANOSECONDS_PER_DAY
 
@@ -44,15 +45,27 @@ FEW: Final = 8.0
 MEDIAN_OF_SQUARES: Final = 0.4549
 """Median of the square of a standard normal variable."""
 
-MOST_SCALE: Final = 3.0
-"""Paths change a level by no more than that."""
+SCALE_STEPS: Final = np.linspace(-2.0, 2.0, 7)
+SCALE_WEIGHTS: Final = np.exp(-(SCALE_STEPS**2) / 2.0) / np.sum(np.exp(-(SCALE_STEPS**2) / 2.0))
+"""Standard deviations by which today's level is another, and the probability of each."""
+
+SCALE_SPREAD: Final = 1.3
+"""Its interval is taken as so much wider: where the path is another, all levels err in one direction."""
+
+GROWTH_DOUBT: Final = 0.25
+"""Relative standard deviation of the growth ahead beside that seen: no fault is a line, and what the
+reference took in at the beginning makes a growth look steeper."""
+
+LEAST_SCALE: Final = 0.05
+NEGLIGIBLE: Final = 1e-4
+"""Trends of less probability are left out."""
 
 LEAST_VARIANCE: Final = 1e-14
 
 LONGEST_DAYS: Final = 3650.0
 """A limit that is not reached in ten years for sure is no trend."""
 
-STEPS: Final = 160
+STEPS: Final = 120
 """Number of times at which the mixture is computed."""
 
 _LAMBDA, _Q = (grid.ravel() for grid in np.meshgrid(RATES, DENSITIES, indexing="ij"))
@@ -111,8 +124,7 @@ def forecast(
     levels: Sequence[tuple[int, float]],
     limit: float,
     *,
-    today: float | None = None,
-    deviation: float = 0.0,
+    today: Level | None = None,
     standing: float = 0.0,
 ) -> Forecast:
     """Tell when a level that changes reaches a limit.
@@ -123,11 +135,10 @@ def forecast(
         Time [ns] and change of the level at each record, oldest first.
     limit : float
         The limit, a fraction of the phase turns.
-    today : float or None, optional
-        Change of the level today from all that is known, to which the levels are scaled: single ones are
-        those of the likeliest path. None where they are taken as they are.
-    deviation : float, optional
-        Its standard deviation from all causes.
+    today : Level or None, optional
+        Change of the level today from all that is known, with its interval. The levels are scaled to it:
+        single ones are those of the likeliest path, and another path would scale them all. None where they
+        are taken as they are.
     standing : float, optional
         Level before the change, which adds to it.
 
@@ -141,7 +152,7 @@ def forecast(
     if times_ns.size < FEWEST or times_ns[-1] <= times_ns[0]:
         return Forecast(limit)
     days = (times_ns - times_ns[-1]) / NANOSECONDS_PER_DAY
-    spacing_days = -days[0] / (days.size - 1)
+    spacing_days = float(-days[0] / (days.size - 1))
     t = days / spacing_days
     m = np.array([level for _, level in levels])
     scatter = _variance(t, m)
@@ -149,20 +160,30 @@ def forecast(
     state, covariance, ln_likelihood = filtered(t[first:], m[first:], scatter, _LAMBDA, _Q)
     weight = np.exp(ln_likelihood + _LN_PRIOR - np.max(ln_likelihood + _LN_PRIOR))
     weight /= weight.sum()
-    horizon = LONGEST_DAYS / spacing_days
+    scales = _scales(float(weight @ state[:, 0]), today)
+    likely = weight > NEGLIGIBLE
     # Steps grow with the time itself, from a hundredth of a record on.
-    ahead = np.concatenate(([0.0], np.geomspace(0.01, max(horizon, 0.02), STEPS - 1)))
-    mean, variance = moved(ahead, state, covariance, _LAMBDA, _Q)
-    scale = _scale(float(weight @ state[:, 0]), today)
-    mean, variance = standing + scale * mean, scale * scale * variance
-    common = max(0.0, deviation**2 - float(weight @ variance[:, 0]))
-    reached = weight @ _normal((mean - limit) / np.sqrt(variance + common))
-    reached = np.maximum.accumulate(reached)
+    horizon = max(LONGEST_DAYS / spacing_days, 0.02)
+    ahead = np.concatenate(([0.0], np.geomspace(0.01, horizon, STEPS - 1)))
+    mean, variance = moved(ahead, state[likely], covariance[likely], _LAMBDA[likely], _Q[likely])
+    variance += (GROWTH_DOUBT * (mean - mean[:, :1])) ** 2
+    # A level that is s times as large reaches the limit when this one reaches what is left over s.
+    left = ((limit - standing) / scales)[:, np.newaxis, np.newaxis]
+    reached = SCALE_WEIGHTS @ (weight[likely] @ _normal((mean - left) / np.sqrt(variance)))
     return Forecast(
         limit,
-        days=_quantiles(reached, ahead * spacing_days),
-        growth_per_day=scale * float(weight @ state[:, 1]) / spacing_days,
+        days=_quantiles(np.maximum.accumulate(reached), ahead * spacing_days),
+        growth_per_day=float(scales[SCALE_STEPS.size // 2]) * float(weight @ state[:, 1]) / spacing_days,
     )
+
+
+def _scales(level: float, today: Level | None) -> Array:
+    """Return by which factors the levels may have to be taken, from the interval of today's."""
+    if today is None or level <= 0.0 or today.value <= 0.0:
+        return np.ones(SCALE_STEPS.size)
+    low, high = today.ci95
+    spread = np.where(SCALE_STEPS < 0.0, today.value - low, high - today.value) * SCALE_SPREAD / NORMAL_95
+    return np.maximum((today.value + SCALE_STEPS * spread) / level, LEAST_SCALE)
 
 
 def _variance(t: Array, m: Array) -> float:
@@ -174,12 +195,6 @@ def _variance(t: Array, m: Array) -> float:
     beside = m[1:-1] - (1.0 - share) * m[:-2] - share * m[2:]
     squares = beside**2 / (1.0 + share**2 + (1.0 - share) ** 2)
     return max(float(np.median(squares)) / MEDIAN_OF_SQUARES * (1.0 + FEW / t.size), LEAST_VARIANCE)
-
-
-def _scale(level: float, today: float | None) -> float:
-    if today is None or level <= 0.0:
-        return 1.0
-    return min(max(today / level, 1.0 / MOST_SCALE), MOST_SCALE)
 
 
 def _quantiles(reached: Array, days: Array) -> tuple[float, float, float] | None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from core.condition.assessment import Level
 from core.condition.forecast import Forecast, forecast, limit_ahead
 from core.units import NANOSECONDS_PER_DAY
 
@@ -116,13 +117,16 @@ def test_what_stands_brings_the_limit_nearer_and_doubt_widens() -> None:
         (k * NANOSECONDS_PER_DAY // 24, 1e-5 * k + NOISE * float(rng.standard_normal())) for k in range(200)
     ]
     alone, beside = forecast(levels, LIMIT).days, forecast(levels, LIMIT, standing=0.002).days
-    doubtful = forecast(levels, LIMIT, deviation=0.0005).days
+    sure = forecast(levels, LIMIT, today=Level(1e-5 * 199, 1e-6, 0, 0.0)).days
+    doubtful = forecast(levels, LIMIT, today=Level(1e-5 * 199, 3e-4, 0, 0.0)).days
     assert alone is not None
     assert beside is not None
+    assert sure is not None
     assert doubtful is not None
     assert beside[1] == pytest.approx(alone[1] - 200.0 / PER_DAY, abs=1.5)
+    assert sure == pytest.approx(alone, rel=0.1)
     assert doubtful[0] < alone[0] < alone[2] < doubtful[2]
-    smaller = forecast(levels, LIMIT, today=0.5 * 1e-5 * 199)
+    smaller = forecast(levels, LIMIT, today=Level(0.5e-5 * 199, 1e-6, 0, 0.0))
     assert smaller.days is not None
     assert smaller.days[1] == pytest.approx((LIMIT / 0.5e-5 - 199.0) / PER_DAY, rel=0.1)
     assert smaller.growth_per_day == pytest.approx(0.5e-5 * PER_DAY, rel=0.1)
@@ -149,7 +153,7 @@ def test_above_its_limit_a_level_is_told_when_it_doubles() -> None:
 def test_a_step_at_the_onset_is_not_taken_for_growth() -> None:
     rng = np.random.default_rng(6)
     growth = 2e-5 * np.maximum(np.arange(60.0) - 3.0, 0.0)
-    levels = np.where(np.arange(60) < 3, 0.0, 0.003 + growth) + 1e-4 * rng.standard_normal(60)
+    levels = np.where(np.arange(60) < 3, 0.0, 0.003 + growth) + 5e-5 * rng.standard_normal(60)
     told_of = forecast([(k * NANOSECONDS_PER_DAY // 24, float(m)) for k, m in enumerate(levels)], LIMIT)
     assert told_of.growth_per_day == pytest.approx(24.0 * 2e-5, rel=0.2)
     assert told_of.days is not None
