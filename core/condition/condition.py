@@ -17,7 +17,8 @@ from core.condition.assessment import (
 )
 from core.condition.forecast import Forecast, forecast, limit_ahead
 from core.condition.kinds import Kind, State
-from core.condition.reasons import FEW, STANDING_SCORE, reasons_of
+from core.condition.reasons import FEW, reasons_of
+from core.condition.standing import STANDING_SCORE
 from core.machines.parameters import Motor
 from core.machines.winding_frame import Winding
 from core.time_stamps import nanoseconds, rfc3339

@@ -6,10 +6,8 @@ from typing import Final
 from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
 from core.condition.forecast import Forecast
 from core.condition.kinds import Kind
+from core.condition.standing import STANDING_SCORE
 from core.time_stamps import SECONDS_END, rfc3339
-
-STANDING_SCORE: Final = 3.7
-"""A standing asymmetry of so many standard deviations is no matter of sensors within their class."""
 
 FEW: Final = 0.02
 """A kind with less probability than this is no candidate."""
