@@ -17,7 +17,7 @@ import numpy as np
 from core.condition.kalman import STATES
 from core.condition.state import CANDIDATES, SIDES, Candidate, FilterState, SideState
 from core.machines.base import Array
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 COLUMNS = 10
 RAMP_LENGTH = 32.0

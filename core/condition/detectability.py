@@ -7,7 +7,7 @@ import numpy as np
 from core.condition.evidence import signature
 from core.condition.hypotheses import Cause, Hypothesis
 from core.condition.state import FilterState
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 WITHIN = 10.0
 """Records within which a step is to be seen."""

@@ -17,7 +17,7 @@ import numpy as np
 from core.condition.evidence import along, most_of_pair, of_free, of_size, signature
 from core.condition.hypotheses import IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.state import START, Candidate, FilterState
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 MOTOR_YEARS = 1_000.0
 """Mean run length to a false alarm."""

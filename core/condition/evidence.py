@@ -7,7 +7,7 @@ import numpy as np
 from core.condition.hypotheses import Hypothesis
 from core.condition.state import Candidate, FilterState
 from core.machines.base import Array
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 LOG_2PI = 1.8378770664093453
 LOG_2 = 0.6931471805599453

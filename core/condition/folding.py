@@ -18,7 +18,7 @@ from core.condition.measurement import Measurement
 from core.condition.side_channels import begin, fold_side, noise_of_currents
 from core.condition.state import I0, RECENT, SIDES, V2, Candidate, FilterState, Recent, SideState
 from core.machines.base import Array
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 FIRST_BALANCE = 16.0
 """Records after which the currents' noise is known; it is looked at again after twice as many."""

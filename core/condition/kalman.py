@@ -13,7 +13,7 @@ import numpy as np
 
 from core.condition.state import FilterState
 from core.machines.base import Array
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 STATES = 7
 WANDER_EC = 1e-5

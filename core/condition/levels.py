@@ -7,7 +7,7 @@ import numpy as np
 from core.condition.kalman import TEMPERATURE
 from core.condition.state import FilterState, Recent
 from core.machines.base import Array
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 WANDERS = (0.0, 1e-10, 1e-9, 1e-8, 1e-7)
 """Variances by which a level may wander from record to record that are tried."""

@@ -12,7 +12,7 @@ from core.condition.evidence import along, log_add, most_of_pair, of_free, of_fr
 from core.condition.hypotheses import CAUSES, IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.state import BUS, I0, SIDES, V0, V2, Candidate, FilterState
 from core.machines.base import Array
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 Y_COUNTS = 150.0
 """Evidence that y counts at most: no model is exact enough to be more certain than that."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from core.condition.measurement import Measurement
 from core.condition.state import BUS, I0, V0, V2, SideState
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 FIRST_SPREAD = 0.1
 """Standard deviation of a level before the first record."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.condition.signatures import PATHS, shorted_turns
 from core.machines.base import Array
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 from core.machines.parameters import Motor
 
 STANDING_SCORE: Final = 3.7

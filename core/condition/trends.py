@@ -5,7 +5,7 @@ from math import exp, log, pi
 import numpy as np
 from numpy.typing import NDArray
 
-from core.machines.compiled import compiled
+from core.machines.compiled import compiled_as_written as compiled
 
 Array = NDArray[np.float64]
 

@@ -39,3 +39,23 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
         Callable[P, R],
         numba.njit(cache=True, nogil=True, fastmath=FAST_MATH, error_model="numpy")(function),
     )
+
+
+def compiled_as_written(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile a function to machine code that computes in the order in which it is written.
+
+    Sums that the compiler may reorder come out differently, in the last bit, according to whether the
+    function was compiled in this process or loaded from the cache. This is for results that are compared
+    bit by bit.
+
+    Parameters
+    ----------
+    function : callable
+        The function, in the part of Python that numba knows.
+
+    Returns
+    -------
+    callable
+        The compiled function.
+    """
+    return cast(Callable[P, R], numba.njit(cache=True, nogil=True, error_model="numpy")(function))
