@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -110,7 +110,7 @@ def follow_disturbance(task: Task) -> Outcome:
     records = first + AFTER
     operation = draw_operation(random, records)
     if task.disturbance is Disturbance.QUIET_SUPPLY:
-        operation = replace(operation, unbalance=np.full(records, operation.unbalance[0]))
+        operation = operation.on_constant_supply()
     course = disturbed(task.disturbance, random, simulated, records, first)
     observations = measure(random, simulated, operation, course, task.noise).observations()
     return outcome(list(follow(simulated.motor, observations, judged_around(first, records))), first)

@@ -58,6 +58,10 @@ class Operation:
         volts = rated_V * self.relative_voltage
         return np.asarray(volts[:, np.newaxis] * (FORWARD + np.outer(self.unbalance, BACKWARD)))
 
+    def on_constant_supply(self) -> "Operation":
+        """The same motor on a supply whose V2/V1 stays: nothing tells its impedance but its file."""
+        return replace(self, unbalance=np.full(len(self), self.unbalance[0]))
+
     def on_supply(self, other: "Operation") -> "Operation":
         """The same motor on another's supply: both are recorded at the same times."""
         return replace(
