@@ -2,17 +2,17 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import sqrt
+from math import log, sqrt
 from typing import Any, Final
 
 import numpy as np
 from scipy.special import ndtr
 
-from core.condition.evidence import along, signature
-from core.condition.hypotheses import CAUSES, Cause, Hypotheses
+from core.condition.evidence import along, of_size, signature, suppose
+from core.condition.hypotheses import CAUSES, LEVEL, Cause, Hypotheses
 from core.condition.kinds import Kind
 from core.condition.levels import level_now, levels_since
-from core.condition.naming import name, probabilities
+from core.condition.naming import SIZES, name, probabilities
 from core.condition.signatures import PATHS
 from core.condition.state import RECENT
 from core.machines.base import Array
@@ -212,11 +212,10 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     logs = weighing.logs[:count].reshape(3, len(PATHS))
     winding = int(np.argmax(np.logaddexp.reduce(logs, axis=1)))
     likeliest = int(np.argmax(logs[winding]))
-    shares = np.exp(logs[winding] - np.max(logs[winding]))
-    shares /= shares.sum()
     at = winding * len(PATHS) + likeliest
     one, size = bank[int(weighing.best[at, 0])], weighing.best[at, 2]
     drifts = int(weighing.best[at, 1])
+    suppose(state, one)
     u, _ = signature(state, hypotheses[at])
     # What the filter has taken up of the change comes off, so that the state is that of before it.
     column = 6 if drifts else 0
@@ -224,13 +223,15 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     reference = np.array(state.x) - np.array(one.f)[:, column : column + 2] @ jump
     values, spreads = [], []
     told: tuple[tuple[int, float], ...] = ()
-    table, out = np.zeros((RECENT, 3)), np.zeros(5)
+    table, out, evidence = np.zeros((RECENT, 3)), np.zeros(5), np.zeros(len(PATHS))
     for p in range(len(PATHS)):
         u, direction = signature(state, hypotheses[winding * len(PATHS) + p])
         first = levels_since(state, recent, reference, u, one.time_ns, table)
         taken = int(state.recent) - first
         value, wandering = level_now(table[:taken])
-        along(one, 0, ramp=False, u=u, out=out)
+        along(one, 0, bool(drifts), u, out)
+        evidence[p] = _evidence(out, direction, float(hypotheses[winding * len(PATHS) + p].share), drifts)
+        along(one, 0, False, u, out)  # noqa: FBT003
         a, b, c = out[0], out[1], out[2]
         information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
         values.append(value)
@@ -239,10 +240,20 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
         if p == likeliest:
             times = [int(recent[first + i].time_ns) for i in range(taken)]
             told = tuple(zip(times, table[:taken, 0].tolist(), strict=True))
+    shares = np.exp(evidence - np.max(evidence))
+    shares /= shares.sum()
     mean = float(shares @ values)
     variance = float(shares @ (np.array(spreads) + (np.array(values) - mean) ** 2))
     interval = _interval(shares, np.array(values), np.sqrt(spreads))
     return TurnsLevel(mean, sqrt(variance), interval, winding, PATHS[likeliest], int(one.time_ns), told)
+
+
+def _evidence(out: Array, direction: float, share: float, drifts: int) -> float:
+    """Return the log of the posterior weight of a path: how well its direction fits decides."""
+    a, b, c, l0, l1 = out
+    usual = LEVEL * (0.5 if drifts else 1.0)
+    found = [of_size(a, b, c, l0, l1, k * usual, direction, one_sided=True)[0] for k in SIZES]
+    return float(np.logaddexp.reduce(found)) + log(share)
 
 
 def _interval(shares: Array, means: Array, deviations: Array) -> tuple[float, float]:

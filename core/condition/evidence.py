@@ -201,6 +201,37 @@ def _project(block: Array, first: int, d: Array, second: int, u: complex, out: A
 
 
 @compiled
+def suppose(state: FilterState, one: Candidate) -> None:
+    """Take the impedance as it is learnt if y has jumped with a candidate's onset; see `regressor`.
+
+    The filter that knows nothing of the jump lets the impedance take up some of it.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter; its factors of signatures are set.
+    one : Candidate
+        The candidate.
+    """
+    x, P, f, L, d = state.x, state.P, one.f, one.step, one.d
+    determinant = L[0, 0] * L[1, 1] - L[0, 1] * L[0, 1]
+    r, i = x[4], x[5]
+    variance = 0.5 * (P[4, 4] + P[5, 5])
+    if determinant > 1e-12 * L[0, 0] * L[1, 1]:
+        A, B, C = L[1, 1] / determinant, -L[0, 1] / determinant, L[0, 0] / determinant
+        g, h = A * d[0] + B * d[1], B * d[0] + C * d[1]
+        r -= f[4, 0] * g + f[4, 1] * h
+        i -= f[5, 0] * g + f[5, 1] * h
+        for k in range(4, 6):
+            variance += 0.5 * (A * f[k, 0] ** 2 + 2.0 * B * f[k, 0] * f[k, 1] + C * f[k, 1] ** 2)
+    nominal = state.nominal
+    found = complex(r, i) / nominal
+    state.turn = 1.0 + (1.0 - state.balance) * found
+    state.other_turn = 1.0 - state.balance * found
+    state.turn_deviation = sqrt(variance / (nominal.real**2 + nominal.imag**2))
+
+
+@compiled
 def signature(state: FilterState, it: Hypothesis) -> tuple[complex, float]:
     """Return what a cause looks like in y with the impedance that has been learnt.
 

@@ -6,7 +6,6 @@ from core.condition.change_bank import add_candidate, fold_candidates
 from core.condition.detection import detect, learn_gap
 from core.condition.hypotheses import Hypothesis
 from core.condition.kalman import (
-    learn_impedance,
     learn_noise,
     predict,
     rebalance,
@@ -62,7 +61,6 @@ def fold_record(
     fold_candidates(state, bank, sides, rho)
     if not changed:
         learn_noise(state)
-        learn_impedance(state)
         if state.records >= FIRST_BALANCE and np.log2(state.records) % 1.0 == 0.0:
             rebalance(state, min(noise_of_currents(sides[I0]) / state.s2, 1.0))
     learn_gap(state, record.elapsed_s)

@@ -2,14 +2,21 @@
 
 from enum import IntEnum
 from functools import lru_cache
-from math import sqrt
+from math import hypot, sqrt
 from typing import Any, Final, Protocol
 
 import numpy as np
 
 from core.condition.measurement import negative_impedance
 from core.condition.observation import VoltageChannels
-from core.condition.signatures import PATHS, A, shorted_turns, terminal_turn, voltage_channels
+from core.condition.signatures import (
+    PATHS,
+    A,
+    shorted_turns,
+    terminal_turn,
+    turns_angle_slope,
+    voltage_channels,
+)
 from core.condition.state import BUS, I0, SIDES, V0, V2, ComplexArray
 from core.machines.parameters import Connection, Motor
 
@@ -26,6 +33,8 @@ class Cause(IntEnum):
 
 
 CAUSES: Final = len(Cause)
+PATH_SHARES: Final = (0.5, 0.2, 0.15, 0.1, 0.05)
+"""Weights of the paths before. Where records cannot tell the path, the level shall rather be too high."""
 WEIGHTS: Final = (1.0, 1.0, 1.0, 1.0, 0.01, 0.01)
 """Weights of the causes before."""
 LEVEL: Final = 0.01
@@ -33,11 +42,13 @@ CHANNEL: Final = 0.02
 JOINT_DROP: Final = 0.015
 """Standard deviations of their sizes: equivalent level, relative error, and voltage drop at rated current
 over the rated voltage."""
-TURNS_DIRECTION: Final = 0.06
+TURNS_DIRECTION: Final = 0.02
+STATOR: Final = 0.08
 CHANNEL_DIRECTION: Final = 0.12
 JOINT_DIRECTION: Final = 0.05
 """Standard deviations of the signatures' directions [rad]. Z2 leaves more of those in proportion to it
-uncertain; a channel errs in phase as well as in ratio, and a joint is a resistance."""
+uncertain, and R_s over X_ls, of relative standard deviation STATOR, more of that of shorted turns. A channel
+errs in phase as well as in ratio; a joint is a resistance."""
 IMPEDANCE: Final = 0.1
 LOAD: Final = 0.75
 """Efficiency times power factor of a motor at rated load, from which its rated current follows."""
@@ -132,8 +143,9 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
     rows: list[tuple[object, ...]] = []
     none = (0j,) * SIDES
     for x in range(3):
-        for p in PATHS:
+        for p, share in zip(PATHS, PATH_SHARES, strict=True):
             u = shorted_turns(motor, x, p)
+            direction = hypot(TURNS_DIRECTION, STATOR * turns_angle_slope(motor, p))
             rows.append(
                 (
                     Cause.SHORTED_TURNS,
@@ -143,10 +155,10 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
                     u,
                     none,
                     LEVEL,
-                    TURNS_DIRECTION,
+                    direction,
                     True,
                     True,
-                    1.0 / 3.0 / len(PATHS),
+                    share / 3.0,
                     1.0,
                 )
             )

@@ -200,23 +200,6 @@ def learn_noise(state: FilterState) -> None:
 
 
 @compiled
-def learn_impedance(state: FilterState) -> None:
-    """Compute what the learnt impedance makes of the signatures; see `regressor`.
-
-    Parameters
-    ----------
-    state : FilterState
-        The filter, after `update`.
-    """
-    x, P, nominal = state.x, state.P, state.nominal
-    size = np.sqrt(nominal.real**2 + nominal.imag**2)
-    found = complex(x[4], x[5]) / nominal
-    state.turn = 1.0 + (1.0 - state.balance) * found
-    state.other_turn = 1.0 - state.balance * found
-    state.turn_deviation = np.sqrt(0.5 * (P[4, 4] + P[5, 5])) / size
-
-
-@compiled
 def _rows(j1: complex, j2: complex, H: Array) -> None:
     """Fill H, whose rows are the real and the imaginary part of y."""
     H[0, 0], H[0, 1], H[1, 0], H[1, 1] = 1.0, 0.0, 0.0, 1.0

@@ -8,7 +8,16 @@ from math import exp, log
 
 import numpy as np
 
-from core.condition.evidence import along, log_add, most_of_pair, of_free, of_free_side, of_size, signature
+from core.condition.evidence import (
+    along,
+    log_add,
+    most_of_pair,
+    of_free,
+    of_free_side,
+    of_size,
+    signature,
+    suppose,
+)
 from core.condition.hypotheses import CAUSES, IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.state import BUS, I0, SIDES, V0, V2, Candidate, FilterState
 from core.machines.base import Array
@@ -70,6 +79,7 @@ def name(
         one = bank[i]
         if _most_of_y(one) < most - NEGLIGIBLE / temper[SIDES]:
             continue
+        suppose(state, one)
         for drifts in range(2):
             still = np.zeros(SIDES)
             for s in range(SIDES):

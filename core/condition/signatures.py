@@ -40,6 +40,27 @@ def shorted_turns(motor: Motor, winding: int, path_ratio: float) -> complex:
     return complex(-Z2n * (1.0 + path_ratio) * A**winding / (3.0 * complex(R_s * (1.0 + path_ratio), X_ls)))
 
 
+def turns_angle_slope(motor: Motor, path_ratio: float) -> float:
+    """Return how fast the direction of shorted turns changes with R_s / X_ls.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+    path_ratio : float
+        p, resistance of the path over that of the shorted turns.
+
+    Returns
+    -------
+    float
+        sin phi cos phi, phi the angle of R_s (1 + p) + j X_ls [rad per relative change].
+    """
+    machine, f = motor.parameters, motor.nameplate.rated_frequency_Hz
+    R = WARM * machine.stator_resistance_ohm * (1.0 + path_ratio)
+    X = 2.0 * pi * f * machine.stator_leakage_H
+    return R * X / (R * R + X * X)
+
+
 def terminal_turn(motor: Motor) -> complex:
     """Return the factor from V2/V1 of the terminals to that of the windings.
 
