@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 from scipy.special import ndtr
 
-from core.condition.evidence import along, of_size, signature, suppose
+from core.condition.evidence import along, learnt_without, of_size, signature
 from core.condition.hypotheses import CAUSES, LEVEL, Cause, Hypotheses
 from core.condition.kinds import Kind
 from core.condition.levels import level_now, levels_since
@@ -25,7 +25,7 @@ MACHINE: Final = 0.06
 """Relative standard deviation of what a level adds to y: the figures of a motor's file are off."""
 TAIL: Final = 0.025
 GRID: Final = 400
-WINDOW: Final = 64
+WINDOW: Final = 256
 """Records after the alarm within which a cause is named."""
 
 KINDS: Final[Mapping[Cause, Kind]] = {
@@ -215,8 +215,8 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     at = winding * len(PATHS) + likeliest
     one, size = bank[int(weighing.best[at, 0])], weighing.best[at, 2]
     drifts = int(weighing.best[at, 1])
-    suppose(state, one)
-    u, _ = signature(state, hypotheses[at])
+    known = learnt_without(state, one)
+    u, _ = signature(known, hypotheses[at])
     # What the filter has taken up of the change comes off, so that the state is that of before it.
     column = 6 if drifts else 0
     jump = size * np.array([u.real, u.imag])
@@ -225,7 +225,7 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     told: tuple[tuple[int, float], ...] = ()
     table, out, evidence = np.zeros((RECENT, 3)), np.zeros(5), np.zeros(len(PATHS))
     for p in range(len(PATHS)):
-        u, direction = signature(state, hypotheses[winding * len(PATHS) + p])
+        u, direction = signature(known, hypotheses[winding * len(PATHS) + p])
         first = levels_since(state, recent, reference, u, one.time_ns, table)
         taken = int(state.recent) - first
         value, wandering = level_now(table[:taken])
@@ -235,7 +235,7 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
         a, b, c = out[0], out[1], out[2]
         information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
         values.append(value)
-        scale = MACHINE**2 + state.turn_deviation**2
+        scale = MACHINE**2 + known[2] ** 2
         spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
         if p == likeliest:
             times = [int(recent[first + i].time_ns) for i in range(taken)]

@@ -4,7 +4,7 @@ from math import sqrt
 
 import numpy as np
 
-from core.condition.evidence import signature
+from core.condition.evidence import learnt, signature
 from core.condition.hypotheses import Cause, Hypothesis
 from core.condition.state import FilterState
 from core.machines.compiled import compiled_as_written as compiled
@@ -44,11 +44,11 @@ def detectable(state: FilterState, hypotheses: list[Hypothesis]) -> float:
         S[r, r] += state.R / WITHIN
     determinant = S[0, 0] * S[1, 1] - S[0, 1] * S[1, 0]
     needed = sqrt(2.0 * (state.threshold + OCCAM)) + NINE_OF_TEN
-    most = 0.0
+    most, known = 0.0, learnt(state)
     for h in range(len(hypotheses)):
         it = hypotheses[h]
         if it.cause == _TURNS:
-            u, _ = signature(state, it)
+            u, _ = signature(known, it)
             x, y = u.real, u.imag
             information = (x * x * S[1, 1] - 2.0 * x * y * S[0, 1] + y * y * S[0, 0]) / determinant
             most = max(most, needed / sqrt(information))

@@ -14,7 +14,7 @@ from math import exp, log
 
 import numpy as np
 
-from core.condition.evidence import along, most_of_pair, of_free, of_size, signature, suppose
+from core.condition.evidence import along, learnt_without, most_of_pair, of_free, of_size, signature
 from core.condition.hypotheses import IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.state import START, Candidate, FilterState
 from core.machines.compiled import compiled_as_written as compiled
@@ -94,7 +94,7 @@ def _of_candidate(
     most[1, 0] = most_of_pair(one.step, 2, one.d, 2)
     most[1, 1] = most_of_pair(one.ramp_current, 0, one.d, 8)
     out = np.zeros(5)
-    suppose(state, one)
+    known = learnt_without(state, one)
     for drifts in range(2):
         for column in range(2):
             if most[column, drifts] < NEGLIGIBLE:
@@ -103,7 +103,7 @@ def _of_candidate(
                 it = hypotheses[h]
                 if it.column != column:
                     continue
-                u, direction = signature(state, it)
+                u, direction = signature(known, it)
                 along(one, column, drifts == 1, u, out)
                 spread = it.spread if drifts == 0 else HALF * it.spread
                 evidence, _, _ = of_size(

@@ -334,7 +334,6 @@ class Direction:
         state.x0[:], state.P0[:] = x, P
         state.current_deviation = prior.current
         state.nominal = self._nominal
-        state.turn = state.other_turn = 1.0
         restart(state, self._sides)
         header.start.clear()
         header.accepted = False

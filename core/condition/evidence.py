@@ -200,18 +200,43 @@ def _project(block: Array, first: int, d: Array, second: int, u: complex, out: A
     out[4] = -y * d0 + x * d1
 
 
-@compiled
-def suppose(state: FilterState, one: Candidate) -> None:
-    """Take the impedance as it is learnt if y has jumped with a candidate's onset; see `regressor`.
+Learnt = tuple[complex, complex, float]
+"""Factors of the signatures in proportion to Z2 and of the others, and deviation of Z2's direction [rad]."""
 
-    The filter that knows nothing of the jump lets the impedance take up some of it.
+
+@compiled
+def learnt(state: FilterState) -> Learnt:
+    """Return what the learnt impedance makes of the signatures; see `regressor`.
 
     Parameters
     ----------
     state : FilterState
-        The filter; its factors of signatures are set.
+        The filter.
+
+    Returns
+    -------
+    Learnt
+        Factors.
+    """
+    variance = 0.5 * (state.P[4, 4] + state.P[5, 5])
+    return _factors(state, state.x[4], state.x[5], variance)
+
+
+@compiled
+def learnt_without(state: FilterState, one: Candidate) -> Learnt:
+    """Return the same if y has jumped: a filter that knows nothing of it lets the impedance take up some.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
     one : Candidate
-        The candidate.
+        Where the jump began.
+
+    Returns
+    -------
+    Learnt
+        Factors.
     """
     x, P, f, L, d = state.x, state.P, one.f, one.step, one.d
     determinant = L[0, 0] * L[1, 1] - L[0, 1] * L[0, 1]
@@ -224,21 +249,25 @@ def suppose(state: FilterState, one: Candidate) -> None:
         i -= f[5, 0] * g + f[5, 1] * h
         for k in range(4, 6):
             variance += 0.5 * (A * f[k, 0] ** 2 + 2.0 * B * f[k, 0] * f[k, 1] + C * f[k, 1] ** 2)
-    nominal = state.nominal
-    found = complex(r, i) / nominal
-    state.turn = 1.0 + (1.0 - state.balance) * found
-    state.other_turn = 1.0 - state.balance * found
-    state.turn_deviation = sqrt(variance / (nominal.real**2 + nominal.imag**2))
+    return _factors(state, r, i, variance)
 
 
 @compiled
-def signature(state: FilterState, it: Hypothesis) -> tuple[complex, float]:
+def _factors(state: FilterState, r: float, i: float, variance: float) -> Learnt:
+    nominal = state.nominal
+    found = complex(r, i) / nominal
+    deviation = sqrt(variance / (nominal.real**2 + nominal.imag**2))
+    return 1.0 + (1.0 - state.balance) * found, 1.0 - state.balance * found, deviation
+
+
+@compiled
+def signature(known: Learnt, it: Hypothesis) -> tuple[complex, float]:
     """Return what a cause looks like in y with the impedance that has been learnt.
 
     Parameters
     ----------
-    state : FilterState
-        The filter.
+    known : Learnt
+        Factors of the signatures.
     it : Hypothesis
         The cause and its place.
 
@@ -250,8 +279,8 @@ def signature(state: FilterState, it: Hypothesis) -> tuple[complex, float]:
         Standard deviation of its direction [rad].
     """
     if not it.impedance:
-        return it.u * state.other_turn, it.direction
-    return it.u * state.turn, sqrt(it.direction**2 + state.turn_deviation**2)
+        return it.u * known[1], it.direction
+    return it.u * known[0], sqrt(it.direction**2 + known[2] ** 2)
 
 
 @compiled

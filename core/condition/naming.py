@@ -9,14 +9,15 @@ from math import exp, log
 import numpy as np
 
 from core.condition.evidence import (
+    Learnt,
     along,
+    learnt_without,
     log_add,
     most_of_pair,
     of_free,
     of_free_side,
     of_size,
     signature,
-    suppose,
 )
 from core.condition.hypotheses import CAUSES, IMPEDANCE, WEIGHTS, Cause, Hypothesis
 from core.condition.state import BUS, I0, SIDES, V0, V2, Candidate, FilterState
@@ -31,8 +32,9 @@ COINCIDENCES = (0.005, 0.001, 0.02, 0.0005)
 """Probability that V0, I0, v2 or the bus difference jumps by chance at the same time."""
 SIDE_JUMP = 0.0065
 """Standard deviation of such a jump (complex magnitude)."""
-HIDDEN_STEP, HIDDEN_DRIFT, HIDDEN_WITH_BUS = 0.005, 0.2, 1e-4
-"""Probability that a change of a voltage channel is not seen in V0 and v2."""
+HIDDEN_STEP, HIDDEN_DRIFT, HIDDEN_WITH_V0, HIDDEN_WITH_BUS = 0.005, 0.2, 0.02, 1e-4
+"""Probability that a change of a voltage channel is not seen in V0 and v2: a step, a drift of which only v2
+could tell, a drift where V0 is measured, and any where the bus could tell."""
 NOTHING = -1e300
 NEGLIGIBLE = 30.0
 """Onsets with so much less evidence in y than the best are left out."""
@@ -79,13 +81,13 @@ def name(
         one = bank[i]
         if _most_of_y(one) < most - NEGLIGIBLE / temper[SIDES]:
             continue
-        suppose(state, one)
+        known = learnt_without(state, one)
         for drifts in range(2):
             still = np.zeros(SIDES)
             for s in range(SIDES):
                 still[s] = _still(one, s, drifts, temper[s])
             for h in range(places):
-                _weigh_place(state, one, i, drifts, h, hypotheses[h], temper, still, logs, best)
+                _weigh_place(known, one, i, drifts, h, hypotheses[h], temper, still, logs, best)
         _weigh_free(one, i, recorder, temper, logs, best)
 
 
@@ -130,12 +132,12 @@ def _still(one: Candidate, s: int, drifts: int, power: float) -> float:
 
 @compiled
 def _weigh_place(
-    state: FilterState, one: Candidate, i: int, drifts: int, h: int, it: Hypothesis, temper: Array,
+    known: Learnt, one: Candidate, i: int, drifts: int, h: int, it: Hypothesis, temper: Array,
     still: Array, logs: Array, best: Array,
 ) -> None:  # fmt: skip
     """Add the evidence of one onset, as a step or a drift, for one place of a cause."""
     out, joint = np.zeros(5), np.zeros(5)
-    u, direction = signature(state, it)
+    u, direction = signature(known, it)
     along(one, it.column, drifts == 1, u, out)
     for k in range(5):
         out[k] *= temper[SIDES]
@@ -162,6 +164,8 @@ def _weigh_place(
         evidence += others
         if it.cause == _VOLTAGE:
             hidden = HIDDEN_DRIFT if drifts == 1 else HIDDEN_STEP
+            if drifts == 1 and one.side_information[V0, drifts] > 0.0:
+                hidden = HIDDEN_WITH_V0
             if one.side_information[BUS, drifts] > 0.0:
                 hidden = HIDDEN_WITH_BUS
             alone, _, _ = of_size(out[0], out[1], out[2], out[3], out[4], spread, direction, it.one_sided)

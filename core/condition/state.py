@@ -59,10 +59,6 @@ class FilterState(Protocol):
         Share of y's noise that the currents make; see `regressor`.
     w : complex
         Regressor of the latest record.
-    turn, other_turn : complex
-        Factors of the signatures that are in proportion to Z2, and of the others.
-    turn_deviation : float
-        Standard deviation of each of its parts.
     statistic, threshold : float
         Logs of the detector's statistic and of its threshold.
     """
@@ -89,9 +85,6 @@ class FilterState(Protocol):
     nominal: complex
     balance: float
     w: complex
-    turn: complex
-    other_turn: complex
-    turn_deviation: float
     statistic: float
     threshold: float
 
@@ -120,9 +113,6 @@ FILTER: Final = np.dtype(
         ("nominal", "c16"),
         ("balance", "f8"),
         ("w", "c16"),
-        ("turn", "c16"),
-        ("other_turn", "c16"),
-        ("turn_deviation", "f8"),
         ("statistic", "f8"),
         ("threshold", "f8"),
     ]
