@@ -44,10 +44,16 @@ class BusDifferences:
         Differences by the other motor's name.
     moved : complex
         Latest movement.
+    mean_moved : complex
+        Mean movement over the records of the reference.
+    records : int
+        Number of those records.
     """
 
     pairs: dict[str, Pair] = field(default_factory=dict)
     moved: complex = 0j
+    mean_moved: complex = 0j
+    records: int = 0
 
     def fold(
         self, ratio: complex, sequence: PhaseSequence, neighbours: Sequence[Neighbour]
@@ -86,6 +92,9 @@ class BusDifferences:
             self.moved = self._consensus(moves)
         for name, difference in joining:
             self._settle(name, difference - self.moved)
+        # As slowly as the filter learns E: both belong to the same records.
+        self.records += 1
+        self.mean_moved += (self.moved - self.mean_moved) / self.records
         return self.moved, max(len(moves), 1)
 
     def mean(self) -> tuple[complex, int]:
@@ -93,7 +102,11 @@ class BusDifferences:
         settled = [pair.mean for pair in self.pairs.values() if pair.records >= SETTLED]
         if not settled:
             return 0j, 0
-        return (self.moved + _mean(settled)) * len(settled) / (len(settled) + 1.0), len(settled)
+        return (self.mean_moved + _mean(settled)) * len(settled) / (len(settled) + 1.0), len(settled)
+
+    def restart(self) -> None:
+        """Let the movement be averaged anew: the motor's own channels are others."""
+        self.records = 0
 
     def _settle(self, name: str, difference: complex) -> None:
         pair = self.pairs.get(name)

@@ -19,7 +19,7 @@ from core.condition.measurement import Measurement, measure, negative_impedance
 from core.condition.observation import Observation
 from core.condition.prior import IMPEDANCE, prior_of
 from core.condition.signatures import terminal_turn
-from core.condition.standing import STANDING_SCORE, Standing, standing_of, without_prior
+from core.condition.standing import STANDING_SCORE, Standing, StandingErrors, standing_of, without_prior
 from core.condition.start import NOISE_STEPS, in_order, noise_of_currents, starting_noise
 from core.condition.state import (
     CANDIDATE,
@@ -116,7 +116,7 @@ class Direction:
         )  # fmt: skip
         if alarm is None and state.statistic >= state.threshold:
             alarm = header.alarm = Alarm(observation.time_ns)
-            header.standing = self._standing(motor, ())
+            header.standing = self._errors()
         if alarm is not None:
             self._follow_up(alarm)
 
@@ -154,7 +154,7 @@ class Direction:
             What is seen.
         """
         state, header = self._state, self._header
-        standing = header.standing or self._standing(motor, bus)
+        standing = self._standing(motor, bus)
         records, alarm = int(state.records), header.alarm
         connection = motor.nameplate.connection
         winding = terminal_winding(standing.winding, self._sequence, connection)
@@ -201,18 +201,17 @@ class Direction:
         StandingEstimate
             Asymmetry at the terminals.
         """
-        state, prior = self._state, self._prior_of_E()
-        estimate, covariance = without_prior(state.x, state.P, prior)
+        errors = self._header.standing or self._errors()
         turn = 1.0 / terminal_turn(motor)
-        difference, others = self._header.bus.mean()
-        asymmetry = _turned(estimate, turn)
+        difference = np.array([errors.difference_real, errors.difference_imaginary])
+        noise = _symmetric(errors.spread) - _symmetric(errors.prior)
         return StandingEstimate(
             motor=motor.name,
             sequence=self._sequence,
-            asymmetry=asymmetry - np.array([difference.real, difference.imag]),
-            covariance=_rotated(covariance - prior + self._prior.own, turn),
+            asymmetry=_turned(np.array([errors.real, errors.imaginary]), turn) - difference,
+            covariance=_rotated(noise + self._prior.own, turn),
             channels=_rotated(self._prior.channels, turn),
-            others=others,
+            others=errors.others,
         )
 
     def packed(self) -> tuple[dict[str, Any], bytes]:
@@ -290,12 +289,22 @@ class Direction:
             self._header.alarm = self._header.standing = None
             self._state.candidates = 0.0
 
+    def _errors(self) -> StandingErrors:
+        state, prior = self._state, self._prior_of_E()
+        E, spread = without_prior(state.x, state.P, prior)
+        difference, others = self._header.bus.mean()
+        return StandingErrors(
+            float(E[0]), float(E[1]), _elements(spread), _elements(prior),
+            difference.real, difference.imag, others,
+        )  # fmt: skip
+
     def _standing(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Standing:
         own = self.standing_estimate(motor) if bus else None
         common = common_asymmetry(own, bus) if own else None
         if own is None or common is None:
-            state = self._state
-            return standing_of(motor, *without_prior(state.x, state.P, self._prior_of_E()), from_bus=False)
+            errors = self._header.standing or self._errors()
+            asymmetry = np.array([errors.real, errors.imaginary])
+            return standing_of(motor, asymmetry, _symmetric(errors.spread), from_bus=False)
         asymmetry = _turned(own.asymmetry - common[0], terminal_turn(motor))
         covariance = _rotated(own.covariance + common[1], terminal_turn(motor))
         return standing_of(motor, asymmetry, covariance, from_bus=True)
@@ -338,6 +347,7 @@ class Direction:
         header.start.clear()
         header.accepted = False
         header.alarm = header.standing = None
+        header.bus.restart()
 
     def _begin(self, record: Measurement) -> None:
         """Fold the first records in their order of ordinariness, with the noise that makes them likeliest."""
@@ -377,6 +387,14 @@ def _rotated(covariance: Array, factor: complex) -> Array:
     """Return the covariance of a complex number that is multiplied by a factor."""
     turn = np.array([[factor.real, -factor.imag], [factor.imag, factor.real]])
     return np.asarray(turn @ covariance @ turn.T)
+
+
+def _elements(matrix: Array) -> list[float]:
+    return [float(matrix[0, 0]), float(matrix[0, 1]), float(matrix[1, 1])]
+
+
+def _symmetric(elements: Sequence[float]) -> Array:
+    return np.array([[elements[0], elements[1]], [elements[1], elements[2]]])
 
 
 def _turned(vector: Array, factor: complex) -> Array:

@@ -9,7 +9,7 @@ from core.condition.differences import BusDifferences, Pair
 from core.condition.kinds import Kind
 from core.condition.measurement import Measurement
 from core.condition.observation import Observation, VoltageChannels
-from core.condition.standing import Standing
+from core.condition.standing import StandingErrors
 
 
 @dataclass(slots=True)
@@ -30,8 +30,8 @@ class Header:
         Whether a person has declared the standing asymmetry healthy.
     alarm : Alarm or None
         The change that is seen.
-    standing : Standing or None
-        The standing asymmetry as it was when the change was detected.
+    standing : StandingErrors or None
+        The standing errors as they were when the change was detected.
     bus : BusDifferences
         Differences from the bus's other motors.
     start : list of Measurement
@@ -45,7 +45,7 @@ class Header:
     scale_ohm: float = 0.0
     accepted: bool = False
     alarm: Alarm | None = None
-    standing: Standing | None = None
+    standing: StandingErrors | None = None
     bus: BusDifferences = field(default_factory=BusDifferences)
     start: list[Measurement] = field(default_factory=list)
 
@@ -83,6 +83,7 @@ class Header:
             "alarm": None if self.alarm is None else asdict(self.alarm),
             "standing": None if self.standing is None else asdict(self.standing),
             "moved": [self.bus.moved.real, self.bus.moved.imag],
+            "mean_moved": [self.bus.mean_moved.real, self.bus.mean_moved.imag, self.bus.records],
             "pairs": {n: [p.mean.real, p.mean.imag, p.records] for n, p in self.bus.pairs.items()},
             "start": [_as_list(record) for record in self.start],
         }
@@ -114,10 +115,12 @@ class Header:
             scale_ohm=words["scale_ohm"],
             accepted=words["accepted"],
             alarm=alarm,
-            standing=None if words["standing"] is None else Standing(**words["standing"]),
+            standing=None if words["standing"] is None else StandingErrors(**words["standing"]),
             bus=BusDifferences(
                 {n: Pair(complex(re, im), count) for n, (re, im, count) in words["pairs"].items()},
                 complex(*words["moved"]),
+                complex(*words["mean_moved"][:2]),
+                words["mean_moved"][2],
             ),
             start=[_from_list(values) for values in words["start"]],
         )

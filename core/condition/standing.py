@@ -17,6 +17,33 @@ STANDING_SCORE: Final = 3.7
 
 
 @dataclass(frozen=True, slots=True)
+class StandingErrors:
+    """E as the records alone tell it, and how the voltages differ from the bus's.
+
+    Parameters
+    ----------
+    real, imaginary : float
+        E.
+    spread : list of float
+        Covariance of what a sound motor shows: its elements 00, 01, 11.
+    prior : list of float
+        The part of it that is there before any record.
+    difference_real, difference_imaginary : float
+        By how much V2/V1 of the terminals exceeds the mean of the bus.
+    others : int
+        Number of other motors in it.
+    """
+
+    real: float
+    imaginary: float
+    spread: list[float]
+    prior: list[float]
+    difference_real: float
+    difference_imaginary: float
+    others: int
+
+
+@dataclass(frozen=True, slots=True)
 class Standing:
     """Shorted turns that would explain the standing asymmetry best.
 
