@@ -21,6 +21,9 @@ CERTAIN: Final = 0.98
 """Posterior probability at which a cause is named."""
 RUNNING: Final = 3
 """Records in a row that have to agree on it."""
+SPACED: Final = 8
+SETTLED: Final = 64
+"""Records after the alarm from which a channel's error that has been named is lived with."""
 MACHINE: Final = 0.06
 """Relative standard deviation of what a level adds to y: the figures of a motor's file are off."""
 TAIL: Final = 0.025
@@ -63,6 +66,16 @@ class Alarm:
     named: Names = ()
     pending: Names = ()
     running: int = 0
+
+    @property
+    def is_to_be_weighed(self) -> bool:
+        """Whether the latest record takes part in naming: every one at first, every eighth later."""
+        return self.records <= SETTLED or (self.records <= WINDOW and self.records % SPACED == 0)
+
+    @property
+    def is_of_channels(self) -> bool:
+        """Whether it has been named, and as nothing that is the motor's own defect."""
+        return bool(self.named) and not {Kind.SHORTED_TURNS, Kind.CONNECTION} & set(self.named)
 
 
 @dataclass(slots=True)
@@ -156,6 +169,44 @@ def _certain(p: Array) -> Names:
     if p[Cause.VOLTAGE_CHANNEL] + p[Cause.CURRENT_CHANNEL] + p[Cause.RECORDER] >= CERTAIN:
         return (Kind.VOLTAGE_CHANNEL, Kind.CURRENT_CHANNEL)
     return ()
+
+
+def taken_up(weighing: Weighing, bank: Any, hypotheses: Hypotheses) -> tuple[Array, Array]:
+    """Return what the filter's state has taken up of the likeliest change of a channel or a recorder.
+
+    Parameters
+    ----------
+    weighing : Weighing
+        Weights after the latest record.
+    bank : array of Candidate
+        Candidates.
+    hypotheses : array of Hypothesis
+        All places of all causes.
+
+    Returns
+    -------
+    state : ndarray, shape (7,)
+        f g, of a jump of any direction g.
+    covariance : ndarray, shape (7, 7)
+        Its covariance, f Lambda^-1 f'.
+    """
+    of_channels = np.isin(hypotheses["cause"], (Cause.VOLTAGE_CHANNEL, Cause.CURRENT_CHANNEL))
+    logs = np.append(np.where(of_channels, weighing.logs[:-2], -np.inf), weighing.logs[-1])
+    at = int(np.argmax(logs))
+    another = at == len(hypotheses)
+    row = weighing.best[at + 1 if another else at]
+    one, drifts = bank[int(row[0])], bool(row[1])
+    if another or not drifts:
+        first = 0 if another else 2 * int(hypotheses[at].column)
+        last = 4 if another else first + 2
+        information, columns = one.step[first:last, first:last], slice(first, last)
+    else:
+        current = int(hypotheses[at].column) == 1
+        information = one.ramp_current if current else one.ramp_voltage
+        columns = slice(8, 10) if current else slice(6, 8)
+    spread = np.linalg.pinv(information)
+    f = one.f[:, columns]
+    return np.asarray(f @ spread @ one.d[columns]), np.asarray(f @ spread @ f.T)
 
 
 @dataclass(frozen=True, slots=True)

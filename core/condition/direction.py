@@ -5,16 +5,18 @@ from typing import Any, cast
 
 import numpy as np
 
-from core.condition.alarm import WINDOW, Alarm, Weighing, confirm, turns_level, weigh
-from core.condition.assessment import Assessment, Level, Reference
+from core.condition.alarm import SETTLED, Alarm, Weighing, confirm, taken_up, turns_level, weigh
+from core.condition.assessment import Assessment, Change, Level, Reference
 from core.condition.bus import Neighbour, StandingEstimate, common_asymmetry
 from core.condition.change import change_of
+from core.condition.complex_parts import elements, rotated, symmetric, turned
 from core.condition.detectability import detectable
 from core.condition.events import Event, EventKind
 from core.condition.folding import fold_first, fold_record, restart
 from core.condition.header import Header
 from core.condition.hypotheses import Hypotheses, hypotheses_of
 from core.condition.kalman import TEMPERATURE, WANDER_EC
+from core.condition.kinds import Kind
 from core.condition.measurement import Measurement, measure, negative_impedance
 from core.condition.observation import Observation
 from core.condition.prior import IMPEDANCE, prior_of
@@ -116,9 +118,9 @@ class Direction:
         )  # fmt: skip
         if alarm is None and state.statistic >= state.threshold:
             alarm = header.alarm = Alarm(observation.time_ns)
-            header.standing = self._errors()
+            header.standing = header.standing or self._errors()
         if alarm is not None:
-            self._follow_up(alarm)
+            self._follow_up(alarm, motor)
 
     def apply(self, event: Event, motor: Motor, edited: Motor) -> None:
         """Let something be known that happened between two records.
@@ -158,16 +160,7 @@ class Direction:
         records, alarm = int(state.records), header.alarm
         connection = motor.nameplate.connection
         winding = terminal_winding(standing.winding, self._sequence, connection)
-        change = None
-        levels: tuple[tuple[int, float], ...] = ()
-        if alarm is not None:
-            weighing = self._weighing()
-            level = turns_level(state, self._bank, self._recent, self._hypotheses, weighing)
-            change = change_of(
-                alarm, weighing, level, self._hypotheses, self._bank, connection, self._sequence,
-                header.voltage_channels,
-            )  # fmt: skip
-            levels = level.levels
+        change, levels = (header.kept, ()) if alarm is None else self._change(alarm, motor)
         return Assessment(
             as_of_ns=header.as_of_ns,
             reference=Reference(
@@ -204,13 +197,13 @@ class Direction:
         errors = self._header.standing or self._errors()
         turn = 1.0 / terminal_turn(motor)
         difference = np.array([errors.difference_real, errors.difference_imaginary])
-        noise = _symmetric(errors.spread) - _symmetric(errors.prior)
+        noise = symmetric(errors.spread) - symmetric(errors.prior)
         return StandingEstimate(
             motor=motor.name,
             sequence=self._sequence,
-            asymmetry=_turned(np.array([errors.real, errors.imaginary]), turn) - difference,
-            covariance=_rotated(noise + self._prior.own, turn),
-            channels=_rotated(self._prior.channels, turn),
+            asymmetry=turned(np.array([errors.real, errors.imaginary]), turn) - difference,
+            covariance=rotated(noise + self._prior.own, turn),
+            channels=rotated(self._prior.channels, turn),
             others=errors.others,
         )
 
@@ -281,20 +274,43 @@ class Direction:
     def _weighing(self) -> Weighing:
         return weigh(self._state, self._bank, self._hypotheses, self._recorder)
 
-    def _follow_up(self, alarm: Alarm) -> None:
+    def _follow_up(self, alarm: Alarm, motor: Motor) -> None:
         alarm.records += 1
-        if alarm.records <= WINDOW:
+        if alarm.is_to_be_weighed:
             confirm(alarm, self._weighing())
         if self._state.statistic < CLEARED:
-            self._header.alarm = self._header.standing = None
+            self._header.alarm = None
+            self._header.standing = None if self._header.kept is None else self._header.standing
             self._state.candidates = 0.0
+        elif alarm.is_of_channels and alarm.records >= SETTLED:
+            self._live_with(alarm, motor)
+
+    def _live_with(self, alarm: Alarm, motor: Motor) -> None:
+        """Learn a reference with the change, so that another one is seen; the change stays told."""
+        header = self._header
+        kept, standing = self._change(alarm, motor)[0], header.standing
+        # The impedance has taken up some of the change.
+        taken, spread = taken_up(self._weighing(), self._bank, self._hypotheses)
+        self._state.x[4:] -= taken[4:]
+        self._state.P[4:, 4:] += spread[4:, 4:]
+        self._restart(keep_impedance=Kind.PARAMETERS not in alarm.named)
+        header.kept, header.standing = kept, standing
+
+    def _change(self, alarm: Alarm, motor: Motor) -> tuple[Change, tuple[tuple[int, float], ...]]:
+        weighing = self._weighing()
+        level = turns_level(self._state, self._bank, self._recent, self._hypotheses, weighing)
+        change = change_of(
+            alarm, weighing, level, self._hypotheses, self._bank, motor.nameplate.connection, self._sequence,
+            self._header.voltage_channels,
+        )  # fmt: skip
+        return change, level.levels
 
     def _errors(self) -> StandingErrors:
         state, prior = self._state, self._prior_of_E()
         E, spread = without_prior(state.x, state.P, prior)
         difference, others = self._header.bus.mean()
         return StandingErrors(
-            float(E[0]), float(E[1]), _elements(spread), _elements(prior),
+            float(E[0]), float(E[1]), elements(spread), elements(prior),
             difference.real, difference.imag, others,
         )  # fmt: skip
 
@@ -304,9 +320,9 @@ class Direction:
         if own is None or common is None:
             errors = self._header.standing or self._errors()
             asymmetry = np.array([errors.real, errors.imaginary])
-            return standing_of(motor, asymmetry, _symmetric(errors.spread), from_bus=False)
-        asymmetry = _turned(own.asymmetry - common[0], terminal_turn(motor))
-        covariance = _rotated(own.covariance + common[1], terminal_turn(motor))
+            return standing_of(motor, asymmetry, symmetric(errors.spread), from_bus=False)
+        asymmetry = turned(own.asymmetry - common[0], terminal_turn(motor))
+        covariance = rotated(own.covariance + common[1], terminal_turn(motor))
         return standing_of(motor, asymmetry, covariance, from_bus=True)
 
     def _detectable(self, records: int) -> float | None:
@@ -325,8 +341,8 @@ class Direction:
             Z2 = before * (1.0 + (1.0 - b) * found) / (1.0 - b * found)
             other = (Z2 / after - 1.0) / (1.0 + b * (Z2 / after - 1.0))
             ratio = (1.0 - b * other) / (1.0 - b * found)
-            x[0], x[1] = _turned(x[:2], ratio)
-            x[2], x[3] = _turned(x[2:4], ratio)
+            x[0], x[1] = turned(x[:2], ratio)
+            x[2], x[3] = turned(x[2:4], ratio)
             x[4], x[5] = (after * other).real, (after * other).imag
         self._nominal = state.nominal = after
         start[:] = [record._replace(y=record.y + (before - after) * record.j2) for record in start]
@@ -346,7 +362,7 @@ class Direction:
         restart(state, self._sides)
         header.start.clear()
         header.accepted = False
-        header.alarm = header.standing = None
+        header.alarm = header.standing = header.kept = None
         header.bus.restart()
 
     def _begin(self, record: Measurement) -> None:
@@ -381,23 +397,3 @@ class Direction:
     def _prior_of_E(self) -> Array:
         wandered = WANDER_EC**2 * self._state.records
         return self._prior.voltage + wandered * np.eye(2)
-
-
-def _rotated(covariance: Array, factor: complex) -> Array:
-    """Return the covariance of a complex number that is multiplied by a factor."""
-    turn = np.array([[factor.real, -factor.imag], [factor.imag, factor.real]])
-    return np.asarray(turn @ covariance @ turn.T)
-
-
-def _elements(matrix: Array) -> list[float]:
-    return [float(matrix[0, 0]), float(matrix[0, 1]), float(matrix[1, 1])]
-
-
-def _symmetric(elements: Sequence[float]) -> Array:
-    return np.array([[elements[0], elements[1]], [elements[1], elements[2]]])
-
-
-def _turned(vector: Array, factor: complex) -> Array:
-    """Multiply a complex number given by its parts."""
-    value = complex(vector[0], vector[1]) * factor
-    return np.array([value.real, value.imag])

@@ -5,6 +5,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from core.condition.alarm import Alarm
+from core.condition.assessment import Change, Level
 from core.condition.differences import BusDifferences, Pair
 from core.condition.kinds import Kind
 from core.condition.measurement import Measurement
@@ -30,6 +31,8 @@ class Header:
         Whether a person has declared the standing asymmetry healthy.
     alarm : Alarm or None
         The change that is seen.
+    kept : Change or None
+        An earlier change of the channels or the impedance, with which the reference has been learnt.
     standing : StandingErrors or None
         The standing errors as they were when the change was detected.
     bus : BusDifferences
@@ -45,6 +48,7 @@ class Header:
     scale_ohm: float = 0.0
     accepted: bool = False
     alarm: Alarm | None = None
+    kept: Change | None = None
     standing: StandingErrors | None = None
     bus: BusDifferences = field(default_factory=BusDifferences)
     start: list[Measurement] = field(default_factory=list)
@@ -81,6 +85,7 @@ class Header:
             "scale_ohm": self.scale_ohm,
             "accepted": self.accepted,
             "alarm": None if self.alarm is None else asdict(self.alarm),
+            "kept": None if self.kept is None else asdict(self.kept),
             "standing": None if self.standing is None else asdict(self.standing),
             "moved": [self.bus.moved.real, self.bus.moved.imag],
             "mean_moved": [self.bus.mean_moved.real, self.bus.mean_moved.imag, self.bus.records],
@@ -115,6 +120,7 @@ class Header:
             scale_ohm=words["scale_ohm"],
             accepted=words["accepted"],
             alarm=alarm,
+            kept=None if words["kept"] is None else _change(words["kept"]),
             standing=None if words["standing"] is None else StandingErrors(**words["standing"]),
             bus=BusDifferences(
                 {n: Pair(complex(re, im), count) for n, (re, im, count) in words["pairs"].items()},
@@ -124,6 +130,21 @@ class Header:
             ),
             start=[_from_list(values) for values in words["start"]],
         )
+
+
+def _change(words: Mapping[str, Any]) -> Change:
+    level = dict(words["level"])
+    if level["interval"] is not None:
+        level["interval"] = (level["interval"][0], level["interval"][1])
+    return Change(
+        since_ns=words["since_ns"],
+        detected_ns=words["detected_ns"],
+        probabilities={Kind(kind): share for kind, share in words["probabilities"].items()},
+        named=tuple(Kind(kind) for kind in words["named"]),
+        level=Level(**level),
+        channel=words["channel"],
+        size=words["size"],
+    )
 
 
 def _as_list(record: Measurement) -> list[float | bool]:

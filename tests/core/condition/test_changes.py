@@ -143,3 +143,24 @@ def saw(follower: Follower) -> bool:
     assessment = follower.assessment()
     assert assessment is not None
     return assessment.change is not None
+
+
+def test_a_fault_beside_a_channel_that_was_named_is_seen_too() -> None:
+    plant = Plant()
+    follower = follow(motor_of(), plant.records(BEFORE))
+    plant.voltage[2] *= 1.015
+    for record in plant.records(90):
+        follower.fold(record)
+    follower = Follower.restore(motor_of(), follower.save())
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    assert assessment.change.named == (Kind.VOLTAGE_CHANNEL,)
+    assert not assessment.standing_fault
+    plant.level = 0.015
+    for record in plant.records(12):
+        follower.fold(record)
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    assert Kind.SHORTED_TURNS in assessment.change.named
