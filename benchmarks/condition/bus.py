@@ -45,6 +45,15 @@ class Case(StrEnum):
     STANDING = "faulty from the first record on"
 
 
+class Transformers(StrEnum):
+    """Whose transformers the relays of a bus measure its voltages by."""
+
+    OWN = "own"
+    COMMON = "common, stated"
+    UNSTATED = "common, not stated"
+    """The motors file says nothing of it, so that the motors are compared as if each had its own."""
+
+
 DISTURBANCES = {
     Case.VOLTAGE_STEP: Disturbance.VOLTAGE_STEP,
     Case.VOLTAGE_DRIFT: Disturbance.VOLTAGE_DRIFT,
@@ -55,11 +64,11 @@ DISTURBANCES = {
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """One bus, by its number; common_transformer: all relays measure the voltages of one transformer."""
+    """One bus, by its number."""
 
     case: Case
     number: int
-    common_transformer: bool = False
+    transformers: Transformers = Transformers.OWN
     level: float = 0.0
     sensors: SensorClass | None = None
     motors: int = MOTORS
@@ -80,7 +89,7 @@ def follow_bus(task: Task) -> Result:
     site = draw_site(random)
     motors = [draw_motor(random, site=site, sensors=task.sensors) for _ in range(task.motors)]
     motors = [replace(one, motor=replace(one.motor, name=f"motor {k}")) for k, one in enumerate(motors)]
-    if task.common_transformer:
+    if task.transformers is not Transformers.OWN:
         # One transformer: the same errors for all, and it measures phases or lines for all.
         motors = [
             replace(
@@ -99,7 +108,9 @@ def follow_bus(task: Task) -> Result:
         measure(random, one, _at_the_bus(random, supply, records), course, REAL_NOISE).observations()
         for one, course in zip(motors, courses, strict=True)
     ]
-    said, others_called = _follow_together(motors, every, judged_around(first, records))
+    said, others_called = _follow_together(
+        motors, every, judged_around(first, records), compared=task.transformers is not Transformers.COMMON
+    )
     found = outcome(said, first)
     place = "abc"[motors[0].terminal(winding)]
     return Result(found, found.phase == place, others_called)
@@ -120,7 +131,7 @@ def _courses(
         courses[0] = with_fault(courses[0], winding, level, float(random.choice([0.0, 1.0, 3.0])))
     else:
         courses[0] = disturbed(DISTURBANCES[task.case], random, motors[0], records, BEFORE)
-        if task.common_transformer:
+        if task.transformers is not Transformers.OWN:
             seen = courses[0].voltage_ratio
             courses = [courses[0], *(replace(one, voltage_ratio=seen) for one in courses[1:])]
     return courses
@@ -134,40 +145,51 @@ def _at_the_bus(random: np.random.Generator, supply: Operation, records: int) ->
 
 
 def _follow_together(
-    motors: Sequence[SimulatedMotor], every: Sequence[Sequence[Observation]], judged: Container[int]
+    motors: Sequence[SimulatedMotor],
+    every: Sequence[Sequence[Observation]],
+    judged: Container[int],
+    *,
+    compared: bool,
 ) -> tuple[list[Said], int]:
-    """What is said of the first motor after each record; how many others were a fault at their last."""
+    """What is said of the first motor after each record; how many others were a fault at their last.
+
+    compared: with each other, as the service does it unless it is told of a common transformer.
+    """
     followers = [Follower(one.motor) for one in motors]
     said = []
     for number, records in enumerate(zip(*every, strict=True)):
         seen = [neighbour_of(one.motor, record) for one, record in zip(motors, records, strict=True)]
         for k, (follower, record) in enumerate(zip(followers, records, strict=True)):
-            follower.fold(record, [*seen[:k], *seen[k + 1 :]])
+            follower.fold(record, [*seen[:k], *seen[k + 1 :]] if compared else [])
         if number in judged:
-            said.append(_said(followers, motors, 0, number))
-    others = [_said(followers, motors, k, number) for k in range(1, len(motors))]
+            said.append(_said(followers, motors, 0, number, compared))
+    others = [_said(followers, motors, k, number, compared) for k in range(1, len(motors))]
     return said, sum(one.condition.state is State.FAULT for one in others)
 
 
-def _said(followers: Sequence[Follower], motors: Sequence[SimulatedMotor], k: int, record: int) -> Said:
-    estimates = [one.standing_estimate() for j, one in enumerate(followers) if j != k]
-    return said_of(followers[k], motors[k].motor, record, [one for one in estimates if one is not None])
+def _said(
+    followers: Sequence[Follower], motors: Sequence[SimulatedMotor], k: int, record: int, compared: bool
+) -> Said:
+    others = [one for j, one in enumerate(followers) if j != k] if compared else []
+    estimates = [one.standing_estimate() for one in others]
+    known = [one for one in estimates if one is not None]
+    return said_of(followers[k], motors[k].motor, record, known)
 
 
 def bus(buses: int, pool: Executor) -> Iterator[str]:
     """Tables of what comes to a bus, and of motors that are faulty from the first record on."""
     rows = []
     called = total = others = 0
-    for common in (False, True):
+    for transformers in (Transformers.OWN, Transformers.COMMON):
         for case in (*DISTURBANCES, Case.SUPPLY):
-            tasks = [Task(case, number, common) for number in range(buses)]
-            found = list(spread(follow_bus, tasks, f"{case.value}{', common' if common else ''}", pool))
+            tasks = [Task(case, number, transformers) for number in range(buses)]
+            found = list(spread(follow_bus, tasks, f"{case.value}, {transformers.value}", pool))
             faults = sum(one.outcome.called_fault is not None for one in found)
             called, total = called + faults, total + len(found)
             others += sum(one.others_called for one in found)
             rows.append(
                 [
-                    "common" if common else "own", case.value, rate_text(faults, len(found)),
+                    transformers.value, case.value, rate_text(faults, len(found)),
                     *outcome_row([one.outcome for one in found]),
                     f"{sum(one.others_called for one in found)}",
                 ]
@@ -186,8 +208,8 @@ def bus(buses: int, pool: Executor) -> Iterator[str]:
 
 def _growth(buses: int, pool: Executor) -> Iterator[str]:
     rows = []
-    for common in (False, True):
-        tasks = [Task(Case.GROWTH, number, common) for number in range(buses)]
+    for transformers in (Transformers.OWN, Transformers.COMMON):
+        tasks = [Task(Case.GROWTH, number, transformers) for number in range(buses)]
         found = list(spread(follow_bus, tasks, "growth", pool))
         called = [one for one in found if one.outcome.called_fault is not None]
         delays = np.array([one.outcome.called_fault for one in called], dtype=np.float64)
@@ -198,7 +220,7 @@ def _growth(buses: int, pool: Executor) -> Iterator[str]:
         )
         rows.append(
             [
-                "common" if common else "own", rate_text(len(called), len(found)),
+                transformers.value, rate_text(len(called), len(found)),
                 f"{quantile_text(delays)}, {quantile_text(delays, 0.9)}",
                 f"{sum(one.right for one in called)} of {len(called)}",
                 ", ".join(f"{name} {count}" for name, count in named.most_common()) or "-",
@@ -214,7 +236,8 @@ def _growth(buses: int, pool: Executor) -> Iterator[str]:
 def _standing(buses: int, pool: Executor) -> Iterator[str]:
     kinds = (
         ("five motors, own transformers", Task(Case.STANDING, 0)),
-        ("five motors, common transformer", Task(Case.STANDING, 0, common_transformer=True)),
+        ("five motors, a common one, stated", Task(Case.STANDING, 0, Transformers.COMMON)),
+        ("five motors, a common one, not stated", Task(Case.STANDING, 0, Transformers.UNSTATED)),
         ("five motors, own transformers, 1 % and 50 us", Task(Case.STANDING, 0, sensors=COARSE)),
         ("alone, 1 % and 50 us", Task(Case.STANDING, 0, sensors=COARSE, motors=1)),
     )
