@@ -26,7 +26,7 @@ $(STAMP): $(BIN)/python pyproject.toml constraints.txt
 	touch $@
 
 # Cached machine code is checked against a function's own file only, not against those it calls: compile afresh.
-$(WARM): $(STAMP) $(wildcard core/machines/*.py core/condition/*.py ied_sim/motor/*.py)
+$(WARM): $(STAMP) $(wildcard core/machines/*.py core/condition/*/*.py ied_sim/motor/*.py)
 	@echo "compiling the machine models: half a minute"
 	find core ied_sim -name '*.nb[ci]' -delete
 	$(BIN)/python -c 'import core.warm_up, ied_sim; core.warm_up.warm_up(); ied_sim.warm_up()'

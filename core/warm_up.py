@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from core.condition.follower import Follower
-from core.condition.forecast import forecast
+from core.condition.following.follower import Follower
+from core.condition.forecast.forecast import forecast
 from core.condition.observation import Observation, VoltageChannels
 from core.machines.candidates import Candidates
 from core.machines.parameters import MachineParameters, Motor, Nameplate

@@ -15,8 +15,8 @@ from benchmarks.condition.operation import Operation, draw_operation
 from benchmarks.condition.population import SimulatedMotor, draw_motor, draw_site
 from benchmarks.condition.records import REAL_NOISE, measure
 from benchmarks.reporting import mark, rate_text, spread, table
-from core.condition.bus import neighbour_of
-from core.condition.follower import Follower
+from core.condition.bus.neighbours import neighbour_of
+from core.condition.following.follower import Follower
 from core.condition.kinds import State
 from core.condition.observation import Observation
 from core.machines.sensors import SensorClass

@@ -12,8 +12,8 @@ from benchmarks.condition.operation import draw_operation
 from benchmarks.condition.population import draw_motor
 from benchmarks.condition.records import REAL_NOISE, measure
 from benchmarks.reporting import mark, spread, table
-from core.condition.condition import condition_of
-from core.condition.follower import Follower
+from core.condition.following.follower import Follower
+from core.condition.verdict.condition import condition_of
 
 PLANT_MOTORS, PLANT_RECORDS = 500, 87_660
 MOST_MICROSECONDS, MOST_KILOBYTES = 100.0, 50.0

@@ -16,7 +16,7 @@ from benchmarks.condition.operation import FIRST_NS, HOUR_NS, draw_operation
 from benchmarks.condition.population import draw_channels
 from benchmarks.reporting import spread, table
 from core.condition.kinds import State
-from core.condition.observing import observe
+from core.condition.measuring.observing import observe
 from core.machines.parameters import Motor
 from core.machines.sensors import SensorClass
 from core.recordings import Quantity, Recording, comtrade_writer, read

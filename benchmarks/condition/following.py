@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.condition.circuit import Array
-from core.condition.bus import StandingEstimate
-from core.condition.condition import Condition, condition_of
-from core.condition.follower import Follower
+from core.condition.bus.neighbours import StandingEstimate
+from core.condition.following.follower import Follower
 from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
+from core.condition.verdict.condition import Condition, condition_of
 from core.machines.parameters import Motor
 
 CLOSELY = 30

@@ -25,8 +25,8 @@ from benchmarks.condition.following import Said, follow, outcome
 from benchmarks.condition.operation import FIRST_NS, HOUR_NS
 from benchmarks.reporting import mark, spread, table
 from core.condition.kinds import Kind, State
+from core.condition.measuring.observing import observe
 from core.condition.observation import Observation
-from core.condition.observing import observe
 from core.recordings import Recording
 
 CHANNELS = CURRENTS + VOLTAGES

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from core.condition.advice import advice
 from core.condition.kinds import Kind, State
+from core.condition.verdict.advice import advice
 from service.api.condition_schemas import Condition, ConditionReference
 from service.storage.records import ConditionEntry
 

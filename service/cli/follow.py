@@ -8,8 +8,8 @@ from pathlib import Path
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-from core.condition.condition import Condition, condition_of
-from core.condition.follower import Follower
+from core.condition.following.follower import Follower
+from core.condition.verdict.condition import Condition, condition_of
 from core.machines.motor_file import MotorFileError, read_motor
 from core.machines.parameters import Motor
 from core.time_stamps import rfc3339

@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.condition.bus import StandingEstimate
-from core.condition.bus_records import BusRecords
-from core.condition.follower import Follower
+from core.condition.bus.bus_records import BusRecords
+from core.condition.bus.neighbours import StandingEstimate
+from core.condition.following.follower import Follower
 from core.machines.motor_file import read_motor
 from core.machines.parameters import Motor
 from service.cli.followed_records import Seen, find_records

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from core.condition.measuring.observing import observation_of
 from core.condition.observation import Observation
-from core.condition.observing import observation_of
 from core.diagnosis.acceptance import accept
 from core.machines.parameters import Motor
 from core.recordings import RecordingError, read

@@ -6,10 +6,10 @@ from typing import Any
 
 import structlog
 
-from core.condition.bus import Neighbour, StandingEstimate
-from core.condition.bus_records import BusRecords
-from core.condition.condition import Condition, condition_of
-from core.condition.follower import Follower
+from core.condition.bus.bus_records import BusRecords
+from core.condition.bus.neighbours import Neighbour, StandingEstimate
+from core.condition.following.follower import Follower
+from core.condition.verdict.condition import Condition, condition_of
 from core.machines.parameters import Motor
 from service.condition.checkpoints import is_kept
 from service.condition.motor_data import MotorHistory, motor_of

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from core.condition.bus import StandingEstimate
+from core.condition.bus.neighbours import StandingEstimate
 from core.signals.sequence import PhaseSequence
 
 

@@ -92,7 +92,7 @@ def observe_recordings(task: ObserveTask) -> int:
 
 def _observed(task: ObserveTask) -> Iterator[tuple[str, Observation | None]]:
     """Yield what each recording tells, for about a round."""
-    from core.condition.observing import observe
+    from core.condition.measuring.observing import observe
 
     end_s = monotonic() + ROUND_S
     for one in task.recordings:

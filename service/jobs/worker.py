@@ -34,7 +34,7 @@ def prepare_worker() -> None:
 
 def diagnose_recording(task: DiagnosisTask) -> Outcome:
     """Read and diagnose one recording; what would fail again is an outcome, not an error."""
-    from core.condition.observing import examine
+    from core.condition.measuring.observing import examine
 
     try:
         recording = read(task.entry, most_values=MOST_VALUES)

@@ -3,10 +3,10 @@
 from dataclasses import fields, replace
 
 from core.condition.assessment import Level, Reference
-from core.condition.condition import Condition
 from core.condition.events import Event, EventKind
-from core.condition.forecast import Forecast
+from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind, State
+from core.condition.verdict.condition import Condition
 from core.units import NANOSECONDS_PER_DAY
 from service.storage import Repository
 from service.storage.records import (

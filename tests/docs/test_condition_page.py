@@ -5,9 +5,9 @@ from collections.abc import Iterable
 import pytest
 
 from core.condition.assessment import Assessment, Level, Reference
-from core.condition.condition import condition_of
 from core.condition.events import EventKind
 from core.condition.kinds import Kind, State
+from core.condition.verdict.condition import condition_of
 from testing.machines.motors import REFERENCE
 from tests.docs.pages import ROOT
 

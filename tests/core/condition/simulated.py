@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.condition.follower import Follower
+from core.condition.filter.state import ComplexArray
+from core.condition.following.follower import Follower
 from core.condition.observation import Observation, VoltageChannels
-from core.condition.state import ComplexArray
 from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
 from core.machines.sensors import SensorClass
 from core.machines.winding_frame import to_winding_frame

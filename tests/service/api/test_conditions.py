@@ -10,9 +10,9 @@ from typing import Any
 import httpx
 import pytest
 
-from core.condition.condition import Condition
 from core.condition.events import Event, EventKind
 from core.condition.observation import Observation
+from core.condition.verdict.condition import Condition
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
 from service.recording_store.store import RecordingStore

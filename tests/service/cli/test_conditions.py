@@ -10,8 +10,8 @@ import httpx
 import pytest
 from rich.console import Console
 
-from core.condition.condition import Condition
 from core.condition.kinds import Kind
+from core.condition.verdict.condition import Condition
 from core.time_stamps import rfc3339
 from service.api import ApiContext, create_app
 from service.cli.app import main

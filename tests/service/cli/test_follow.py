@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from core.condition.condition import condition_of
-from core.condition.follower import Follower
-from core.condition.observing import observe
+from core.condition.following.follower import Follower
+from core.condition.measuring.observing import observe
+from core.condition.verdict.condition import condition_of
 from core.machines.motor_file import read_motor
 from core.machines.motor_file_writer import write_motor
 from core.recordings import comtrade, read

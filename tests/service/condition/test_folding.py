@@ -12,10 +12,10 @@ import pytest
 from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
-from core.condition.condition import condition_of
 from core.condition.events import Event, EventKind
-from core.condition.follower import Follower
+from core.condition.following.follower import Follower
 from core.condition.observation import Observation
+from core.condition.verdict.condition import condition_of
 from core.machines.parameters import Motor
 from service.condition import worker
 from service.condition.motor_data import document_of

@@ -7,8 +7,8 @@ import pytest
 from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
-from core.condition.condition import Condition
 from core.condition.kinds import Kind
+from core.condition.verdict.condition import Condition
 from service.storage import Repository
 from service.storage.models import MotorRow
 from service.storage.records import Alarm

@@ -1,0 +1,1 @@
+"""Motors of one bus, which share their supply, compared with each other."""

@@ -1,0 +1,1 @@
+"""What has changed: signatures of the kinds, detector, naming and level."""

@@ -1,0 +1,95 @@
+"""A change as people are told of it: at the terminals, in its own measure."""
+
+from typing import Any
+
+import numpy as np
+
+from core.condition.assessment import Change, Level
+from core.condition.changes.alarm import KINDS, Alarm, TurnsLevel, Weighing, by_kind
+from core.condition.changes.hypotheses import CAUSES, Cause, Hypotheses
+from core.condition.kinds import Kind
+from core.condition.measuring.signatures import channel_of
+from core.condition.observation import VoltageChannels
+from core.machines.parameters import Connection
+from core.machines.winding_frame import Winding, terminal_winding
+from core.signals.sequence import PhaseSequence
+
+
+def change_of(
+    alarm: Alarm, weighing: Weighing, level: TurnsLevel, hypotheses: Hypotheses, bank: Any,
+    connection: Connection, sequence: PhaseSequence, channels: VoltageChannels,
+) -> Change:  # fmt: skip
+    """Tell of a change.
+
+    Parameters
+    ----------
+    alarm : Alarm
+        The alarm.
+    weighing : Weighing
+        Weights after the latest record.
+    level : TurnsLevel
+        Change of the fault level, should it be shorted turns.
+    hypotheses : array of Hypothesis
+        All places of all causes.
+    bank : array of Candidate
+        Candidates.
+    connection : Connection
+        Star or delta.
+    sequence : PhaseSequence
+        Order of the supply's phases at the terminals.
+    channels : VoltageChannels
+        Which voltages are measured.
+
+    Returns
+    -------
+    Change
+        The change at the terminals.
+    """
+    cause = _likeliest(alarm, weighing)
+    since_ns, size = level.onset_ns, level.value
+    channel: Winding | None = None
+    if cause is not Cause.SHORTED_TURNS:
+        at = _place(cause, weighing, hypotheses)
+        since_ns = int(bank[int(weighing.best[at, 0])].time_ns)
+        size = 0.0
+        if at < len(hypotheses):
+            one = hypotheses[at]
+            size = float(weighing.best[at, 2] * one.unit)
+            channel = _channel(cause, int(one.place), connection, sequence, channels)
+    winding = terminal_winding(level.winding, sequence, connection)
+    return Change(
+        since_ns=since_ns,
+        detected_ns=alarm.detected_ns,
+        probabilities=by_kind(weighing.probabilities),
+        named=alarm.named,
+        level=Level(level.value, level.deviation, winding, level.path_ratio, level.interval),
+        channel=channel,
+        size=size,
+    )
+
+
+def _likeliest(alarm: Alarm, weighing: Weighing) -> Cause:
+    """Return the likeliest cause of those that have been named, or of all."""
+    order = np.argsort(-weighing.probabilities, kind="stable")
+    for index in order:
+        cause = Cause(int(index))
+        if not alarm.named or KINDS.get(cause, Kind.VOLTAGE_CHANNEL) in alarm.named:
+            return cause
+    return Cause(int(order[0]))
+
+
+def _place(cause: Cause, weighing: Weighing, hypotheses: Hypotheses) -> int:
+    """Return the likeliest place of a cause."""
+    if cause >= Cause.IMPEDANCE:
+        return len(hypotheses) + int(cause) - (CAUSES - 2)
+    return int(np.argmax(np.where(hypotheses["cause"] == cause, weighing.logs[: len(hypotheses)], -np.inf)))
+
+
+def _channel(
+    cause: Cause, place: int, connection: Connection, sequence: PhaseSequence, channels: VoltageChannels
+) -> Winding | None:
+    if cause is Cause.VOLTAGE_CHANNEL:
+        return channel_of(place, channels, sequence)
+    if cause is Cause.CURRENT_CHANNEL or place >= 3:
+        return terminal_winding(place % 3, sequence, Connection.STAR)
+    return terminal_winding(place, sequence, connection)

@@ -1,0 +1,135 @@
+"""Whether anything has changed: the detector of Shiryaev and Roberts, summed over all that may have changed.
+
+    R = sum over onsets of half the mean evidence for shorted turns and half that for any cause
+
+Without a change R less the number of records is a martingale, so that E[R] is at most that number and the
+mean run length to a false alarm at least the threshold: e^h records, h = ln(records in 1,000 motor-years).
+
+References
+----------
+M. Pollak, "Optimal detection of a change in distribution", Annals of Statistics 13 (1985), 206-227.
+"""
+
+from math import exp, log
+
+import numpy as np
+
+from core.condition.changes.evidence import along, learnt_without, most_of_pair, of_free, of_size, signature
+from core.condition.changes.hypotheses import IMPEDANCE, WEIGHTS, Cause, Hypothesis
+from core.condition.filter.state import START, Candidate, FilterState
+from core.machines.compiled import compiled_as_written as compiled
+
+MOTOR_YEARS = 1_000.0
+"""Mean run length to a false alarm."""
+YEAR_S = 365.25 * 86400.0
+SHORTEST_GAP_S, LONGEST_GAP_S = 60.0, 86400.0
+"""Gaps between records, beyond which the run length counts as at them."""
+GAP_MEMORY = 256.0
+NEGLIGIBLE = 3.0
+"""Evidence that is left out of the sum: it is too small to matter, and R only gets smaller."""
+LARGEST = 500.0
+"""Evidence beyond which more makes no difference."""
+HALF = 0.5
+
+_TOTAL_WEIGHT = sum(WEIGHTS)
+_W_TURNS = HALF + HALF * WEIGHTS[Cause.SHORTED_TURNS] / _TOTAL_WEIGHT
+_W_CHANNEL = HALF * WEIGHTS[Cause.VOLTAGE_CHANNEL] / _TOTAL_WEIGHT
+_W_RARE = HALF * WEIGHTS[Cause.RECORDER] / _TOTAL_WEIGHT
+_TURNS = int(Cause.SHORTED_TURNS)
+
+
+@compiled
+def learn_gap(state: FilterState, elapsed_s: float) -> None:
+    """Learn the mean time between records, from which the threshold follows.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    elapsed_s : float
+        Time since the record before [s].
+    """
+    bounded = min(max(elapsed_s, SHORTEST_GAP_S), LONGEST_GAP_S)
+    if state.gap_s == 0.0:
+        state.gap_s = bounded
+    gain = max(1.0 / (state.records + 1.0), 1.0 / GAP_MEMORY)
+    state.gap_s += gain * (bounded - state.gap_s)
+    state.threshold = log(MOTOR_YEARS * YEAR_S / state.gap_s)
+
+
+@compiled
+def detect(
+    state: FilterState, bank: list[Candidate], hypotheses: list[Hypothesis], recorder: np.ndarray
+) -> None:
+    """Compute the detector's statistic after a record.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    bank : array of Candidate
+        Candidates.
+    hypotheses : array of Hypothesis
+        All places of all causes.
+    recorder : ndarray, shape (4,)
+        Standard deviations of the jumps that another recorder makes.
+    """
+    total = 0.0
+    free = np.full(2, IMPEDANCE)
+    for i in range(int(state.candidates)):
+        one = bank[i]
+        total += one.weight * _of_candidate(state, one, hypotheses, free, recorder)
+    state.statistic = log(max(total, 1.0))
+
+
+@compiled
+def _of_candidate(
+    state: FilterState, one: Candidate, hypotheses: list[Hypothesis], free: np.ndarray, recorder: np.ndarray
+) -> float:
+    """Return the mean Bayes factor of one onset, its negligible parts left out."""
+    total = 0.0
+    most = np.zeros((2, 2))
+    most[0, 0] = most_of_pair(one.step, 0, one.d, 0)
+    most[0, 1] = most_of_pair(one.ramp_voltage, 0, one.d, 6)
+    most[1, 0] = most_of_pair(one.step, 2, one.d, 2)
+    most[1, 1] = most_of_pair(one.ramp_current, 0, one.d, 8)
+    out = np.zeros(5)
+    known = learnt_without(state, one)
+    for drifts in range(2):
+        for column in range(2):
+            if most[column, drifts] < NEGLIGIBLE:
+                continue
+            for h in range(len(hypotheses)):
+                it = hypotheses[h]
+                if it.column != column:
+                    continue
+                u, direction = signature(known, it)
+                along(one, column, drifts == 1, u, out)
+                spread = it.spread if drifts == 0 else HALF * it.spread
+                evidence, _, _ = of_size(
+                    out[0], out[1], out[2], out[3], out[4], spread, direction, it.one_sided
+                )
+                weight = _W_TURNS if it.cause == _TURNS else _W_CHANNEL
+                total += HALF * weight * it.share * exp(min(evidence, LARGEST))
+    if most_of_pair(one.impedance, 0, one.d, 4) > NEGLIGIBLE:
+        total += _W_RARE * exp(min(of_free(one.impedance, one.d[4:6], free), LARGEST))
+    if max(most[0, 0], most[1, 0]) > NEGLIGIBLE:
+        total += _W_RARE * exp(min(of_free(one.step, one.d[0:4], recorder), LARGEST))
+    return total
+
+
+@compiled
+def exceeds(state: FilterState) -> bool:
+    """Return whether the detector raises an alarm.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+
+    Returns
+    -------
+    bool
+        Whether its statistic has crossed the threshold.
+    """
+    return state.records > START and state.statistic >= state.threshold

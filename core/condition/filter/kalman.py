@@ -1,0 +1,256 @@
+"""Kalman filter of a motor's standing errors.
+
+    y_k = E + C j1_k + (r + t_k + j x) j2_k + n_k
+
+The state is x = (E_re, E_im, C_re, C_im, r, x, t). E is what the voltage channels and the winding leave, C
+the current channels and joints, r + j x the error of the negative-sequence impedance, and t what the
+winding's temperature adds to its resistance, a first-order autoregression in time.
+"""
+
+from math import exp
+
+import numpy as np
+
+from core.condition.filter.state import FilterState
+from core.machines.base import Array
+from core.machines.compiled import compiled_as_written as compiled
+
+STATES = 7
+WANDER_EC = 1e-5
+"""Standard deviation by which each part of E and C wanders from record to record."""
+WANDER_Z = 1e-4
+"""The same of r and x."""
+TEMPERATURE = 0.08
+"""Standard deviation of Z2's change with the winding's temperature over |Z2|."""
+TIME_CONSTANT_S = 3.0 * 3600.0
+"""How long a winding keeps its temperature [s]."""
+C_NOISE = 0.14
+"""Share of C that temperature makes uncertain, for it acts through Z2."""
+Z_NOISE = 0.003
+"""Share of j2 that speed and frequency leave uncertain."""
+OUTLIER = 12.25
+"""Largest squared innovation over its variance: a record counts 6 nats at most."""
+LEARNING_CLIP, LEARNING_MEAN = 6.0, 1.85
+LEAST_SHARE = 0.3
+"""Share of the noise in the innovation above which the innovation teaches the noise."""
+SLOWEST = 0.01
+"""Least gain of the learnt noise: it remembers a hundred records."""
+BISECTIONS = 50
+TINY = 1e-30
+
+
+@compiled
+def predict(state: FilterState, elapsed_s: float) -> float:
+    """Let time pass from one record to the next.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    elapsed_s : float
+        Time since the record before [s].
+
+    Returns
+    -------
+    float
+        rho, the factor of the temperature.
+    """
+    x, P = state.x, state.P
+    rho = exp(-elapsed_s / TIME_CONSTANT_S)
+    x[6] *= rho
+    for i in range(6):
+        P[i, 6] *= rho
+        P[6, i] *= rho
+    P[6, 6] = rho * rho * P[6, 6] + (1.0 - rho * rho) * TEMPERATURE * TEMPERATURE
+    for i in range(4):
+        P[i, i] += WANDER_EC * WANDER_EC
+    for i in range(4, 6):
+        P[i, i] += WANDER_Z * WANDER_Z
+    return rho
+
+
+@compiled
+def regressor(state: FilterState, y: complex, j2: complex) -> complex:
+    """Return j2 with the noise of voltages and currents in balance.
+
+    Noise of the currents is in y and in j2. As a regressor j2 would draw r + jx towards -Z2n/z: the more,
+    the less V2 changes. That of the voltages is in y and in v2 = y + Z2n j2/z. With the share b of y's noise
+    that the currents make,
+
+        w = j2 + b y z / Z2n,
+
+    the noises of w and y have nothing in common. The state is then (E, C, r + jx) / (1 + b q), with
+    q = (r + jx) z / Z2n, and so are the signatures.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    y, j2 : complex
+        The record.
+
+    Returns
+    -------
+    complex
+        w.
+    """
+    return j2 + state.balance * y / state.nominal
+
+
+@compiled
+def smooth(state: FilterState, w: complex, wander: float) -> None:
+    """Take the noise off the regressor, lest it passes for a supply that changes and teaches the impedance.
+
+    V2 wanders or jumps. Of a small difference to the record before, the share is taken that a wandering level
+    with such noise has in it; of a large one nearly all.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter; `state.w` is that of the record before, and then that of this one.
+    w : complex
+        Regressor of the record.
+    wander : float
+        Variance by which V2/V1 changes from record to record.
+    """
+    noise = state.balance * (1.0 - state.balance) * state.s2
+    apart = w - state.w
+    ratio = wander / max(noise, TINY)
+    share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 / ratio))
+    share = max(share, 1.0 - 2.0 * noise / max(apart.real**2 + apart.imag**2, TINY))
+    state.w += share * apart
+
+
+@compiled
+def rebalance(state: FilterState, balance: float) -> None:
+    """Let the regressor be another; E, C and the impedance stay what they are.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    balance : float
+        Share of y's noise that the currents make.
+    """
+    x, b = state.x, state.balance
+    found = complex(x[4], x[5]) / state.nominal
+    q = found / (1.0 - b * found)
+    other = q / (1.0 + balance * q)
+    ratio = (1.0 - balance * other) / (1.0 - b * found)
+    E, C, Z = complex(x[0], x[1]) * ratio, complex(x[2], x[3]) * ratio, other * state.nominal
+    x[0], x[1], x[2], x[3], x[4], x[5] = E.real, E.imag, C.real, C.imag, Z.real, Z.imag
+    state.balance = balance
+
+
+@compiled
+def update(state: FilterState, y: complex, j1: complex, j2: complex) -> None:
+    """Take one record in; leave H, K, S_inverse and nu in the state.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter, after `predict`.
+    y, j1, j2 : complex
+        The record.
+    """
+    x, H, K, Si, nu = state.x, state.H, state.K, state.S_inverse, state.nu
+    _rows(j1, j2, H)
+    PH = np.zeros((STATES, 2))
+    _times_transposed(state.P, H, PH)
+    a = b = c = 0.0
+    nu[0], nu[1] = y.real, y.imag
+    for j in range(STATES):
+        a += H[0, j] * PH[j, 0]
+        b += H[0, j] * PH[j, 1]
+        c += H[1, j] * PH[j, 1]
+        nu[0] -= H[0, j] * x[j]
+        nu[1] -= H[1, j] * x[j]
+    nominal = 0.5 * (
+        state.s2
+        + (C_NOISE * state.current_deviation) ** 2 * (j1.real**2 + j1.imag**2)
+        + Z_NOISE**2 * (j2.real**2 + j2.imag**2)
+    )
+    state.surprise = _chi_square(nominal, a, b, c, nu[0], nu[1])
+    state.share = 2.0 * nominal / (a + c + 2.0 * nominal)
+    R = _bounded_noise(nominal, a, b, c, nu[0], nu[1])
+    determinant = (a + R) * (c + R) - b * b
+    Si[0, 0], Si[1, 1] = (c + R) / determinant, (a + R) / determinant
+    Si[0, 1] = Si[1, 0] = -b / determinant
+    state.log_likelihood = -0.5 * (_chi_square(R, a, b, c, nu[0], nu[1]) + np.log(determinant))
+    for i in range(STATES):
+        K[i, 0] = PH[i, 0] * Si[0, 0] + PH[i, 1] * Si[1, 0]
+        K[i, 1] = PH[i, 0] * Si[0, 1] + PH[i, 1] * Si[1, 1]
+        x[i] += K[i, 0] * nu[0] + K[i, 1] * nu[1]
+    _reduce(state.P, PH, H, K, R)
+
+
+@compiled
+def learn_noise(state: FilterState) -> None:
+    """Let the innovation of the latest record teach the variance of the noise.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter, after `update`.
+    """
+    if state.share > LEAST_SHARE:
+        gain = max(1.0 / (state.records + 8.0), SLOWEST)
+        excess = min(state.surprise, LEARNING_CLIP) / LEARNING_MEAN - 1.0
+        state.s2 *= 1.0 + gain * state.share * excess
+
+
+@compiled
+def _rows(j1: complex, j2: complex, H: Array) -> None:
+    """Fill H, whose rows are the real and the imaginary part of y."""
+    H[0, 0], H[0, 1], H[1, 0], H[1, 1] = 1.0, 0.0, 0.0, 1.0
+    H[0, 2], H[0, 3], H[1, 2], H[1, 3] = j1.real, -j1.imag, j1.imag, j1.real
+    H[0, 4], H[0, 5], H[1, 4], H[1, 5] = j2.real, -j2.imag, j2.imag, j2.real
+    H[0, 6], H[1, 6] = j2.real, j2.imag
+
+
+@compiled
+def _times_transposed(P: Array, H: Array, out: Array) -> None:
+    """Compute P H'."""
+    for i in range(STATES):
+        for r in range(2):
+            total = 0.0
+            for j in range(STATES):
+                total += P[i, j] * H[r, j]
+            out[i, r] = total
+
+
+@compiled
+def _reduce(P: Array, PH: Array, H: Array, K: Array, R: float) -> None:
+    """Joseph's form, (I - K H) P (I - K H)' + K R K': P stays symmetric and positive for ever."""
+    A, AH = np.zeros((STATES, STATES)), np.zeros((STATES, 2))
+    for i in range(STATES):
+        for j in range(STATES):
+            A[i, j] = P[i, j] - K[i, 0] * PH[j, 0] - K[i, 1] * PH[j, 1]
+    _times_transposed(A, H, AH)
+    for i in range(STATES):
+        for j in range(i, STATES):
+            value = A[i, j] - AH[i, 0] * K[j, 0] - AH[i, 1] * K[j, 1]
+            value += R * (K[i, 0] * K[j, 0] + K[i, 1] * K[j, 1])
+            P[i, j] = P[j, i] = value
+
+
+@compiled
+def _bounded_noise(R: float, a: float, b: float, c: float, nu0: float, nu1: float) -> float:
+    """Return R, or as much more as makes the record no outlier; H P H' = [[a, b], [b, c]]."""
+    if _chi_square(R, a, b, c, nu0, nu1) <= OUTLIER:
+        return R
+    low, high = R, R + (nu0 * nu0 + nu1 * nu1) / OUTLIER
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if _chi_square(middle, a, b, c, nu0, nu1) > OUTLIER:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+@compiled
+def _chi_square(R: float, a: float, b: float, c: float, nu0: float, nu1: float) -> float:
+    """Return nu' S^-1 nu with S = [[a + R, b], [b, c + R]]."""
+    p, q = a + R, c + R
+    return (nu0 * nu0 * q - 2.0 * nu0 * nu1 * b + nu1 * nu1 * p) / (p * q - b * b)

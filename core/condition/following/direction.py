@@ -1,0 +1,405 @@
+"""A motor's records in one direction of rotation: its standing errors, and what changes."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, cast
+
+import numpy as np
+
+from core.condition.assessment import Assessment, Change, Level, Reference
+from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
+from core.condition.changes.alarm import SETTLED, Alarm, Weighing, confirm, taken_up, turns_level, weigh
+from core.condition.changes.change import change_of
+from core.condition.changes.detectability import detectable
+from core.condition.changes.hypotheses import Hypotheses, hypotheses_of
+from core.condition.complex_parts import elements, rotated, symmetric, turned
+from core.condition.events import Event, EventKind
+from core.condition.filter.kalman import TEMPERATURE, WANDER_EC
+from core.condition.filter.prior import IMPEDANCE, prior_of
+from core.condition.filter.state import (
+    CANDIDATE,
+    CANDIDATES,
+    FILTER,
+    RECENT,
+    RECENT_RECORD,
+    SIDE,
+    SIDES,
+    START,
+    FilterState,
+)
+from core.condition.following.folding import fold_first, fold_record, restart
+from core.condition.following.header import Header
+from core.condition.following.standing import (
+    STANDING_SCORE,
+    Standing,
+    StandingErrors,
+    standing_of,
+    without_prior,
+)
+from core.condition.following.start import NOISE_STEPS, in_order, noise_of_currents, starting_noise
+from core.condition.kinds import Kind
+from core.condition.measuring.measurement import Measurement, measure, negative_impedance
+from core.condition.measuring.signatures import terminal_turn
+from core.condition.observation import Observation
+from core.machines.base import Array
+from core.machines.parameters import Motor
+from core.machines.winding_frame import terminal_winding
+from core.signals.sequence import PhaseSequence
+
+UNCONFIRMED = 30.0
+"""Chi-square of 2 above which a record has to be confirmed by another: one in three million."""
+CLEARED = 3.0
+"""Log of the detector's statistic below which a change has gone again."""
+NANOSECONDS = 1e-9
+
+
+class Direction:
+    """A motor's records in one direction of rotation.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+    sequence : PhaseSequence
+        Order of the supply's phases at the terminals.
+    """
+
+    def __init__(self, motor: Motor, sequence: PhaseSequence) -> None:
+        self._sequence = sequence
+        self._header = Header()
+        self._filter = np.zeros(1, FILTER).view(np.recarray)
+        self._state = cast(FilterState, self._filter[0])
+        self._bank: Any = np.zeros(CANDIDATES, CANDIDATE).view(np.recarray)
+        self._sides: Any = np.zeros(SIDES, SIDE).view(np.recarray)
+        self._recent: Any = np.zeros(RECENT, RECENT_RECORD).view(np.recarray)
+        rated = negative_impedance(motor.parameters, motor.nameplate.rated_frequency_Hz)
+        self._header.scale_ohm = abs(rated)
+        self._nominal = rated / abs(rated)
+        self._see(motor)
+        self._restart(keep_impedance=False)
+
+    @property
+    def as_of_ns(self) -> int:
+        """Time of the latest record, UTC [ns]."""
+        return self._header.as_of_ns
+
+    def fold(self, motor: Motor, observation: Observation, neighbours: Sequence[Neighbour]) -> None:
+        """Take one record in.
+
+        Parameters
+        ----------
+        motor : Motor
+            The motor as it is.
+        observation : Observation
+            The record.
+        neighbours : sequence of Neighbour
+            What other motors of the bus saw.
+
+        Raises
+        ------
+        ValueError
+            If a number is missing or infinite, or the motor was not running.
+        """
+        header, state = self._header, self._state
+        elapsed_s = max(observation.time_ns - header.as_of_ns, 0) * NANOSECONDS if header.recorder else 0.0
+        record = measure(observation, motor, self._header.scale_ohm, elapsed_s)
+        moved, _ = header.bus.fold(record.v2, self._sequence, neighbours)
+        if moved is not None:
+            record = record._replace(bus=moved, has_bus=True)
+        if header.measured_by(observation):
+            known = bool(header.recorder)
+            header.recorder, header.voltage_channels = observation.recorder, observation.voltage_channels
+            self._see(motor)
+            self._restart(keep_impedance=known)
+        header.as_of_ns = observation.time_ns
+        if state.records < START:
+            if not header.start:
+                header.since_ns = observation.time_ns
+            self._begin(record)
+            return
+        alarm = header.alarm
+        hypotheses = self._see(motor)
+        fold_record(
+            state, self._bank, self._sides, self._recent, hypotheses, self._recorder,
+            record, observation.time_ns, alarm is not None,
+        )  # fmt: skip
+        if alarm is None and state.statistic >= state.threshold:
+            alarm = header.alarm = Alarm(observation.time_ns)
+            header.standing = header.standing or self._errors()
+        if alarm is not None:
+            self._follow_up(alarm, motor)
+
+    def apply(self, event: Event, motor: Motor, edited: Motor) -> None:
+        """Let something be known that happened between two records.
+
+        Parameters
+        ----------
+        event : Event
+            What happened.
+        motor, edited : Motor
+            The motor before and after it.
+        """
+        if event.kind is EventKind.PARAMETERS_EDITED:
+            self._move_impedance(motor, edited)
+        elif event.kind in (EventKind.RECORDER_CHANGED, EventKind.MAINTENANCE):
+            self._restart(keep_impedance=True)
+        elif event.kind is EventKind.REFERENCE_RESTARTED:
+            self._restart(keep_impedance=True)
+            self._header.accepted = True
+
+    def assessment(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Assessment:
+        """Return what the records so far tell.
+
+        Parameters
+        ----------
+        motor : Motor
+            The motor as it is.
+        bus : sequence of StandingEstimate
+            Standing asymmetries of the other motors of the bus.
+
+        Returns
+        -------
+        Assessment
+            What is seen.
+        """
+        state, header = self._state, self._header
+        standing = self._standing(motor, bus)
+        records, alarm = int(state.records), header.alarm
+        connection = motor.nameplate.connection
+        winding = terminal_winding(standing.winding, self._sequence, connection)
+        change, levels = (header.kept, ()) if alarm is None else self._change(alarm, motor)
+        return Assessment(
+            as_of_ns=header.as_of_ns,
+            reference=Reference(
+                records=records,
+                complete=records > START,
+                since_ns=header.since_ns,
+                detectable=self._detectable(records),
+                standing=Level(standing.level, standing.deviation, winding, standing.path_ratio),
+                standing_score=standing.score,
+                from_bus=standing.from_bus,
+                accepted=header.accepted,
+            ),
+            change=change,
+            standing_fault=standing.score >= STANDING_SCORE and not header.accepted,
+            statistic=float(state.statistic),
+            threshold=float(state.threshold),
+            levels=levels,
+            unconfirmed=records > START and bool(state.surprise > UNCONFIRMED),
+        )
+
+    def standing_estimate(self, motor: Motor) -> StandingEstimate:
+        """Return the standing asymmetry for the comparison on a bus.
+
+        Parameters
+        ----------
+        motor : Motor
+            The motor as it is.
+
+        Returns
+        -------
+        StandingEstimate
+            Asymmetry at the terminals.
+        """
+        errors = self._header.standing or self._errors()
+        turn = 1.0 / terminal_turn(motor)
+        difference = np.array([errors.difference_real, errors.difference_imaginary])
+        noise = symmetric(errors.spread) - symmetric(errors.prior)
+        return StandingEstimate(
+            motor=motor.name,
+            sequence=self._sequence,
+            asymmetry=turned(np.array([errors.real, errors.imaginary]), turn) - difference,
+            covariance=rotated(noise + self._prior.own, turn),
+            channels=rotated(self._prior.channels, turn),
+            others=errors.others,
+        )
+
+    def packed(self) -> tuple[dict[str, Any], bytes]:
+        """Return the state as a header of text and numbers as they lie in memory.
+
+        Returns
+        -------
+        header : dict of str to object
+            Words and whole numbers.
+        body : bytes
+            Numbers.
+        """
+        arrays = (self._filter, self._sides, self._bank, self._recent)
+        return self._header.as_dict(), b"".join(array.tobytes() for array in arrays)
+
+    @classmethod
+    def unpacked(
+        cls, motor: Motor, sequence: PhaseSequence, words: Mapping[str, Any], body: bytes
+    ) -> "Direction":
+        """Return the state that was packed.
+
+        Parameters
+        ----------
+        motor : Motor
+            The motor.
+        sequence : PhaseSequence
+            Order of the supply's phases at the terminals.
+        words : mapping
+            Header of `packed`.
+        body : bytes
+            Body of `packed`.
+
+        Returns
+        -------
+        Direction
+            The same state.
+
+        Raises
+        ------
+        ValueError
+            If the body is of another length.
+        """
+        direction = cls(motor, sequence)
+        arrays = (direction._filter, direction._sides, direction._bank, direction._recent)
+        if len(body) != sum(array.nbytes for array in arrays):
+            raise ValueError("the saved state has another layout: fold the records again")
+        start = 0
+        for array in arrays:
+            array[:] = np.frombuffer(body, array.dtype, count=array.size, offset=start)
+            start += array.nbytes
+        direction._header = Header.from_dict(words)
+        direction._nominal = complex(direction._state.nominal)
+        direction._see(motor)
+        return direction
+
+    def _see(self, motor: Motor) -> Hypotheses:
+        """Return what changes of the motor look like."""
+        seen = (motor, self._header.voltage_channels)
+        if getattr(self, "_seen", None) != seen:
+            self._seen = seen
+            self._prior = prior_of(*seen)
+            self._hypotheses = hypotheses_of(*seen, self._header.scale_ohm)
+            voltage = float(np.sqrt(np.trace(self._prior.voltage)))
+            self._recorder = np.array([voltage] * 2 + [np.sqrt(2.0) * self._prior.current] * 2)
+        return self._hypotheses
+
+    def _weighing(self) -> Weighing:
+        return weigh(self._state, self._bank, self._hypotheses, self._recorder)
+
+    def _follow_up(self, alarm: Alarm, motor: Motor) -> None:
+        alarm.records += 1
+        if alarm.is_to_be_weighed:
+            confirm(alarm, self._weighing())
+        if self._state.statistic < CLEARED:
+            self._header.alarm = None
+            self._header.standing = None if self._header.kept is None else self._header.standing
+            self._state.candidates = 0.0
+        elif alarm.is_of_channels and alarm.records >= SETTLED:
+            self._live_with(alarm, motor)
+
+    def _live_with(self, alarm: Alarm, motor: Motor) -> None:
+        """Learn a reference with the change, so that another one is seen; the change stays told."""
+        header = self._header
+        kept, standing = self._change(alarm, motor)[0], header.standing
+        # The impedance has taken up some of the change.
+        taken, spread = taken_up(self._weighing(), self._bank, self._hypotheses)
+        self._state.x[4:] -= taken[4:]
+        self._state.P[4:, 4:] += spread[4:, 4:]
+        self._restart(keep_impedance=Kind.PARAMETERS not in alarm.named)
+        header.kept, header.standing = kept, standing
+
+    def _change(self, alarm: Alarm, motor: Motor) -> tuple[Change, tuple[tuple[int, float], ...]]:
+        weighing = self._weighing()
+        level = turns_level(self._state, self._bank, self._recent, self._hypotheses, weighing)
+        change = change_of(
+            alarm, weighing, level, self._hypotheses, self._bank, motor.nameplate.connection, self._sequence,
+            self._header.voltage_channels,
+        )  # fmt: skip
+        return change, level.levels
+
+    def _errors(self) -> StandingErrors:
+        state, prior = self._state, self._prior_of_E()
+        E, spread = without_prior(state.x, state.P, prior)
+        difference, others = self._header.bus.mean()
+        return StandingErrors(
+            float(E[0]), float(E[1]), elements(spread), elements(prior),
+            difference.real, difference.imag, others,
+        )  # fmt: skip
+
+    def _standing(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Standing:
+        own = self.standing_estimate(motor) if bus else None
+        common = common_asymmetry(own, bus) if own else None
+        if own is None or common is None:
+            errors = self._header.standing or self._errors()
+            asymmetry = np.array([errors.real, errors.imaginary])
+            return standing_of(motor, asymmetry, symmetric(errors.spread), from_bus=False)
+        asymmetry = turned(own.asymmetry - common[0], terminal_turn(motor))
+        covariance = rotated(own.covariance + common[1], terminal_turn(motor))
+        return standing_of(motor, asymmetry, covariance, from_bus=True)
+
+    def _detectable(self, records: int) -> float | None:
+        if records <= START or self._header.alarm is not None:
+            return None
+        return detectable(self._state, self._hypotheses)
+
+    def _move_impedance(self, motor: Motor, edited: Motor) -> None:
+        """Keep Z2 and the standing errors as they are known, whatever the motor's file says of Z2."""
+        f, z = motor.nameplate.rated_frequency_Hz, self._header.scale_ohm
+        before = negative_impedance(motor.parameters, f) / z
+        after = negative_impedance(edited.parameters, f) / z
+        state, start, b = self._state, self._header.start, self._state.balance
+        for x in (state.x, state.x0):
+            found = complex(x[4], x[5]) / before
+            Z2 = before * (1.0 + (1.0 - b) * found) / (1.0 - b * found)
+            other = (Z2 / after - 1.0) / (1.0 + b * (Z2 / after - 1.0))
+            ratio = (1.0 - b * other) / (1.0 - b * found)
+            x[0], x[1] = turned(x[:2], ratio)
+            x[2], x[3] = turned(x[2:4], ratio)
+            x[4], x[5] = (after * other).real, (after * other).imag
+        self._nominal = state.nominal = after
+        start[:] = [record._replace(y=record.y + (before - after) * record.j2) for record in start]
+
+    def _restart(self, *, keep_impedance: bool) -> None:
+        """Let the reference be learnt anew."""
+        state, prior, header = self._state, self._prior, self._header
+        errors = np.array([0.0] * 2 + [prior.current] * 2 + [IMPEDANCE] * 2 + [TEMPERATURE])
+        x, P = np.zeros(7), np.diag(errors**2)
+        P[:2, :2] = prior.voltage
+        if keep_impedance:
+            x[4:] = state.x[4:]
+            P[4:, 4:] = state.P[4:, 4:]
+        state.x0[:], state.P0[:] = x, P
+        state.current_deviation = prior.current
+        state.nominal = self._nominal
+        restart(state, self._sides)
+        header.start.clear()
+        header.accepted = False
+        header.alarm = header.standing = header.kept = None
+        header.bus.restart()
+
+    def _begin(self, record: Measurement) -> None:
+        """Fold the first records in their order of ordinariness, with the noise that makes them likeliest."""
+        start = self._header.start
+        start.append(record)
+        records = in_order(start)
+        self._state.balance = 0.0
+        self._state.balance = min(noise_of_currents(records) / self._likeliest_start(records), 1.0)
+        self._likeliest_start(records)
+        if len(start) == START:
+            start.clear()
+
+    def _likeliest_start(self, records: Sequence[Measurement]) -> float:
+        """Fold the first records with the noise that makes them likeliest; return its variance."""
+        noise = starting_noise(records)
+        tried = [(self._fold_start(records, noise * step), -k) for k, step in enumerate(NOISE_STEPS)]
+        s2 = noise * NOISE_STEPS[-max(tried)[1]]
+        self._fold_start(records, s2)
+        return s2
+
+    def _fold_start(self, records: Sequence[Measurement], s2: float) -> float:
+        state = self._state
+        restart(state, self._sides)
+        state.s2 = s2
+        total = 0.0
+        for record in records:
+            fold_first(state, self._sides, record)
+            total += state.log_likelihood
+        return total
+
+    def _prior_of_E(self) -> Array:
+        wandered = WANDER_EC**2 * self._state.records
+        return self._prior.voltage + wandered * np.eye(2)

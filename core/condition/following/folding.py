@@ -1,0 +1,155 @@
+"""One record into all that is kept of a motor."""
+
+import numpy as np
+
+from core.condition.changes.detection import detect, learn_gap
+from core.condition.changes.hypotheses import Hypothesis
+from core.condition.filter.change_bank import add_candidate, fold_candidates
+from core.condition.filter.kalman import (
+    learn_noise,
+    predict,
+    rebalance,
+    regressor,
+    smooth,
+    update,
+)
+from core.condition.filter.side_channels import begin, fold_side, noise_of_currents
+from core.condition.filter.state import I0, RECENT, SIDES, V2, Candidate, FilterState, Recent, SideState
+from core.condition.measuring.measurement import Measurement
+from core.machines.base import Array
+from core.machines.compiled import compiled_as_written as compiled
+
+FIRST_BALANCE = 16.0
+"""Records after which the currents' noise is known; it is looked at again after twice as many."""
+
+
+@compiled
+def fold_record(
+    state: FilterState, bank: list[Candidate], sides: list[SideState], recent: list[Recent],
+    hypotheses: list[Hypothesis], recorder: Array, record: Measurement, time_ns: int, changed: bool,
+) -> None:  # fmt: skip
+    """Take one record in and look for a change.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    bank : array of Candidate
+        Candidates.
+    sides : array of SideState
+        Side channels.
+    recent : array of Recent
+        Latest records.
+    hypotheses : array of Hypothesis
+        All places of all causes.
+    recorder : ndarray, shape (4,)
+        Standard deviations of the jumps that another recorder makes.
+    record : Measurement
+        The record.
+    time_ns : int
+        Its time, UTC [ns].
+    changed : bool
+        Whether a change has been detected: its onsets are kept then, and the noise is no longer learnt.
+    """
+    rho = predict(state, record.elapsed_s)
+    if not changed:
+        add_candidate(state, bank, time_ns)
+    smooth(state, regressor(state, record.y, record.j2), sides[V2].q)
+    update(state, record.y, record.j1, state.w)
+    for s in range(SIDES):
+        fold_side(sides[s], s, record)
+    fold_candidates(state, bank, sides, rho)
+    if not changed:
+        learn_noise(state)
+        if state.records >= FIRST_BALANCE and np.log2(state.records) % 1.0 == 0.0:
+            rebalance(state, min(noise_of_currents(sides[I0]) / state.s2, 1.0))
+    learn_gap(state, record.elapsed_s)
+    detect(state, bank, hypotheses, recorder)
+    _remember(state, recent, record, time_ns, changed)
+    state.records += 1.0
+
+
+@compiled
+def fold_first(state: FilterState, sides: list[SideState], record: Measurement) -> None:
+    """Take one of the first records in, which nothing can be compared with.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    sides : array of SideState
+        Side channels.
+    record : Measurement
+        The record.
+    """
+    predict(state, record.elapsed_s)
+    state.w = regressor(state, record.y, record.j2)
+    update(state, record.y, record.j1, state.w)
+    for s in range(SIDES):
+        fold_side(sides[s], s, record)
+    learn_gap(state, record.elapsed_s)
+    state.records += 1.0
+
+
+@compiled
+def restart(state: FilterState, sides: list[SideState]) -> None:
+    """Begin a reference: forget all but what the filter starts from.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter; x0 and P0 are set.
+    sides : array of SideState
+        Side channels.
+    """
+    state.x[:] = state.x0
+    state.P[:] = state.P0
+    state.records = state.gap_s = state.candidates = state.recent = 0.0
+    state.block = 1.0
+    state.statistic = state.surprise = state.log_likelihood = 0.0
+    for s in range(SIDES):
+        begin(sides[s], s)
+
+
+@compiled
+def _remember(
+    state: FilterState, recent: list[Recent], record: Measurement, time_ns: int, changed: bool
+) -> None:
+    """Keep the record: of a healthy motor the latest ones, after a change all, by means of ever more."""
+    count = int(state.recent)
+    j2 = state.w
+    if count > 0 and recent[count - 1].count < state.block:
+        last = recent[count - 1]
+        gain = 1.0 / (last.count + 1.0)
+        last.y += gain * (record.y - last.y)
+        last.j1 += gain * (record.j1 - last.j1)
+        last.j2 += gain * (j2 - last.j2)
+        last.R += gain * (state.R - last.R)
+        last.count += 1.0
+        last.time_ns = time_ns
+        return
+    if count == RECENT:
+        if changed:
+            count = _halve(recent)
+            state.block *= 2.0
+        else:
+            for i in range(count - 1):
+                recent[i] = recent[i + 1]
+            count -= 1
+    new = recent[count]
+    new.time_ns, new.count, new.R = time_ns, 1.0, state.R
+    new.y, new.j1, new.j2 = record.y, record.j1, j2
+    state.recent = count + 1.0
+
+
+@compiled
+def _halve(recent: list[Recent]) -> int:
+    """Join neighbouring entries two by two."""
+    for i in range(RECENT // 2):
+        a, b, out = recent[2 * i], recent[2 * i + 1], recent[i]
+        total = a.count + b.count
+        share = b.count / total
+        y, j1, j2 = a.y + share * (b.y - a.y), a.j1 + share * (b.j1 - a.j1), a.j2 + share * (b.j2 - a.j2)
+        R, time_ns = a.R + share * (b.R - a.R), b.time_ns
+        out.y, out.j1, out.j2, out.R, out.count, out.time_ns = y, j1, j2, R, total, time_ns
+    return RECENT // 2

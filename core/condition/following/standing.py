@@ -1,0 +1,160 @@
+"""Whether a motor's standing asymmetry is more than its sensors and a sound winding leave."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import sqrt
+from typing import Final
+
+import numpy as np
+
+from core.condition.measuring.signatures import PATHS, shorted_turns
+from core.machines.base import Array
+from core.machines.compiled import compiled_as_written as compiled
+from core.machines.parameters import Motor
+
+STANDING_SCORE: Final = 3.7
+"""Standard deviations beyond which a standing asymmetry is no sound motor's: one motor in a thousand."""
+
+
+@dataclass(frozen=True, slots=True)
+class StandingErrors:
+    """E as the records alone tell it, and how the voltages differ from the bus's.
+
+    Parameters
+    ----------
+    real, imaginary : float
+        E.
+    spread : list of float
+        Covariance of what a sound motor shows: its elements 00, 01, 11.
+    prior : list of float
+        The part of it that is there before any record.
+    difference_real, difference_imaginary : float
+        By how much V2/V1 of the terminals exceeds the mean of the bus.
+    others : int
+        Number of other motors in it.
+    """
+
+    real: float
+    imaginary: float
+    spread: list[float]
+    prior: list[float]
+    difference_real: float
+    difference_imaginary: float
+    others: int
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """Shorted turns that would explain the standing asymmetry best.
+
+    Parameters
+    ----------
+    level, deviation : float
+        Level and its standard deviation from all causes, a fraction of the phase turns.
+    winding : int
+        Winding of the winding frame.
+    path_ratio : float
+        Resistance of the path over that of the shorted turns.
+    score : float
+        Standard deviations by which it lies above what a sound motor with such sensors shows.
+    from_bus : bool
+        Whether other motors of the bus took part in judging it.
+    """
+
+    level: float
+    deviation: float
+    winding: int
+    path_ratio: float
+    score: float
+    from_bus: bool
+
+
+def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: bool) -> Standing:
+    """Judge a standing asymmetry.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+    asymmetry : ndarray, shape (2,)
+        Real and imaginary part of the asymmetry, estimated without a prior.
+    covariance : ndarray, shape (2, 2)
+        Covariance of what it would be in a sound motor, its estimation error included.
+    from_bus : bool
+        Whether other motors of the bus took part in it.
+
+    Returns
+    -------
+    Standing
+        The likeliest shorted turns.
+    """
+    best, level, deviation, score = _likeliest(asymmetry, covariance, _directions(motor))
+    return Standing(
+        level=level,
+        deviation=deviation,
+        winding=best // len(PATHS),
+        path_ratio=PATHS[best % len(PATHS)],
+        score=score,
+        from_bus=from_bus,
+    )
+
+
+@compiled
+def without_prior(estimate: Array, covariance: Array, prior: Array) -> tuple[Array, Array]:
+    """Take the prior out of an estimate.
+
+    Parameters
+    ----------
+    estimate, covariance : ndarray, shapes (n,), (n, n)
+        What the filter says; E comes first.
+    prior : ndarray, shape (2, 2)
+        Covariance that it started from, about zero.
+
+    Returns
+    -------
+    estimate, covariance : ndarray, shapes (2,), (2, 2)
+        What the records alone say: Lam0^-1 d0 and Lam0^-1 with Lam0 = P0^-1 - P0^-1 P P0^-1, which is the
+        covariance of what a sound motor shows, the prior's spread included.
+    """
+    # Lam0^-1 = P0 (P0 - P)^-1 P0
+    gained = _inverse(prior - covariance[:2, :2])
+    spread, found = np.zeros((2, 2)), np.zeros(2)
+    for i in range(2):
+        for j in range(2):
+            for k in range(2):
+                found[i] += prior[i, j] * gained[j, k] * estimate[k]
+                for m in range(2):
+                    spread[i, m] += prior[i, j] * gained[j, k] * prior[k, m]
+    return found, spread
+
+
+@compiled
+def _inverse(matrix: Array) -> Array:
+    a, b, c, d = matrix[0, 0], matrix[0, 1], matrix[1, 0], matrix[1, 1]
+    determinant = a * d - b * c
+    out = np.empty((2, 2))
+    out[0, 0], out[0, 1] = d / determinant, -b / determinant
+    out[1, 0], out[1, 1] = -c / determinant, a / determinant
+    return out
+
+
+@compiled
+def _likeliest(asymmetry: Array, covariance: Array, directions: Array) -> tuple[int, float, float, float]:
+    """Return the direction that explains an asymmetry best, with size, deviation and score."""
+    W = _inverse(covariance)
+    best, size, deviation, score = 0, 0.0, 0.0, -1e300
+    for n in range(directions.shape[0]):
+        x, y = directions[n]
+        u0, u1 = x * W[0, 0] + y * W[1, 0], x * W[0, 1] + y * W[1, 1]
+        along, information = u0 * asymmetry[0] + u1 * asymmetry[1], u0 * x + u1 * y
+        if along / sqrt(information) > score:
+            best, score = n, along / sqrt(information)
+            size, deviation = along / information, 1.0 / sqrt(information)
+    return best, size, deviation, score
+
+
+@lru_cache(maxsize=256)
+def _directions(motor: Motor) -> Array:
+    """Return what shorted turns add to E, shape (windings x paths, 2)."""
+    found = [shorted_turns(motor, winding, p) for winding in range(3) for p in PATHS]
+    return np.array([[u.real, u.imag] for u in found])

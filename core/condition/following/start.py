@@ -1,0 +1,70 @@
+"""The first records of a reference: put in order, so that an outlier among them fakes no change."""
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+
+from core.condition.measuring.measurement import Measurement
+
+FEWEST: Final = 4
+LEAST_NOISE: Final = 3e-4**2
+"""Least variance of y's noise to start from: what the records of measured motors repeat to."""
+NOISE_STEPS: Final = tuple(4.0**k for k in range(6))
+"""Multiples of the records' own scatter that the first records are tried with."""
+
+
+def in_order(records: Sequence[Measurement]) -> list[Measurement]:
+    """Sort the first records by how far they lie from their median.
+
+    Parameters
+    ----------
+    records : sequence of Measurement
+        The first records, in the order of time.
+
+    Returns
+    -------
+    list of Measurement
+        The same records, the most ordinary first.
+    """
+    y = np.array([record.y for record in records])
+    median = complex(np.median(y.real), np.median(y.imag))
+    return [records[k] for k in np.argsort(np.abs(y - median), kind="stable")]
+
+
+def noise_of_currents(records: Sequence[Measurement]) -> float:
+    """Return the variance that the currents' noise gives to j2, as I0 tells, which has little else.
+
+    Parameters
+    ----------
+    records : sequence of Measurement
+        The first records.
+
+    Returns
+    -------
+    float
+        Variance, both parts together; 0 of fewer than four records.
+    """
+    if len(records) < FEWEST:
+        return 0.0
+    i0 = np.array([record.i0 for record in records])
+    j1 = np.array([abs(record.j1) for record in records])
+    apart = np.abs(i0 - complex(np.median(i0.real), np.median(i0.imag))) * j1
+    # The median of |x|^2 is ln 2 of its mean where x is normal.
+    return float(np.median(apart**2) / np.log(2.0))
+
+
+def starting_noise(records: Sequence[Measurement]) -> float:
+    """Return the variance of y's noise that the records' own scatter tells.
+
+    Parameters
+    ----------
+    records : sequence of Measurement
+        The first records.
+
+    Returns
+    -------
+    float
+        Variance, both parts together.
+    """
+    return max(float(np.mean([record.scatter for record in records])), LEAST_NOISE)

@@ -1,0 +1,1 @@
+"""How fast a level grows, and when it reaches a limit."""

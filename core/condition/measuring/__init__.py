@@ -1,0 +1,1 @@
+"""What one record tells of the motor, as the filter measures it."""

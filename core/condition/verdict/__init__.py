@@ -1,0 +1,1 @@
+"""The condition as people read it: state, reasons and advice."""

@@ -1,0 +1,427 @@
+"""The condition of a motor: what a plant acts on, and the document in which it is told and kept."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from math import exp, hypot
+from typing import Any, Final, cast
+
+from core.condition.assessment import (
+    PHASES,
+    STALE_AFTER_NS,
+    Assessment,
+    Change,
+    Level,
+    Phase,
+    Reference,
+)
+from core.condition.following.standing import STANDING_SCORE
+from core.condition.forecast.forecast import Forecast, forecast, limit_ahead
+from core.condition.kinds import Kind, State
+from core.condition.verdict.advice import advice
+from core.condition.verdict.reasons import FEW, reasons_of
+from core.machines.parameters import Motor
+from core.machines.winding_frame import Winding
+from core.time_stamps import nanoseconds, rfc3339
+
+Interval = tuple[float, float]
+
+MOST_CANDIDATES: Final = 3
+TURNS_OR_JOINT: Final = frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION))
+STANDING_FAULTS: Final = 0.01
+"""Share of motors that have shorted turns from the first record on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """The condition of a motor over time.
+
+    Parameters
+    ----------
+    motor : str
+        Name of the motor.
+    state : State
+        State of the motor.
+    kind : Kind
+        What has changed, or stands out from the first record on.
+    candidates : tuple of Kind
+        What an unclear kind may be, likeliest first; empty otherwise.
+    phase : {"a", "b", "c"} or None
+        Phase of the fault, the channel or the joint, at the terminals.
+    mu_f : float or None
+        Fault level in all, a fraction of the phase turns; None before the first record.
+    mu_f_ci95 : tuple of float or None
+        Its 95 % interval from all causes: noise, sensors, parameters.
+    change : float or None
+        Change of the fault level since the reference; None before the reference is complete. Where the kind
+        is unclear, it is the change if it is shorted turns.
+    change_ci95 : tuple of float or None
+        Its 95 % interval; None where no change of the level is seen.
+    size : float or None
+        Size of the change in its own measure: relative error of a channel, voltage drop of a joint over
+        rated voltage, level of shorted turns; None where no change is seen.
+    since_ns : int or None
+        Time of the first record that shows the change, UTC [ns].
+    forecast : Forecast
+        Growth of the level and time until a limit.
+    reference : Reference or None
+        What the change is counted from; None before the first record.
+    as_of_ns : int or None
+        Time of the latest valid record, UTC [ns].
+    stale : bool
+        Whether that record is too old.
+    advice : str
+        What to do, in words.
+    reasons : tuple of str
+        Why, in words.
+    """
+
+    motor: str
+    state: State
+    kind: Kind
+    candidates: tuple[Kind, ...]
+    phase: Phase | None
+    mu_f: float | None
+    mu_f_ci95: Interval | None
+    change: float | None
+    change_ci95: Interval | None
+    size: float | None
+    since_ns: int | None
+    forecast: Forecast
+    reference: Reference | None
+    as_of_ns: int | None
+    stale: bool
+    advice: str
+    reasons: tuple[str, ...]
+
+    def seen_at(self, now_ns: int, stale_after_ns: int = STALE_AFTER_NS) -> "Condition":
+        """Return the same condition as it is seen at another time: only `stale` may differ.
+
+        Parameters
+        ----------
+        now_ns : int
+            Time at which it is looked at, UTC [ns].
+        stale_after_ns : int, optional
+            Longest age of the latest record [ns].
+
+        Returns
+        -------
+        Condition
+            The condition.
+        """
+        return replace(self, stale=_is_stale(self.as_of_ns, now_ns, stale_after_ns))
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the document that `mcc follow --json` prints, without its history; its keys are a contract.
+
+        Returns
+        -------
+        dict of str to object
+            The document.
+        """
+        return {
+            "motor": self.motor,
+            "state": str(self.state),
+            "kind": str(self.kind),
+            "candidates": [str(kind) for kind in self.candidates],
+            "phase": self.phase,
+            "mu_f": self.mu_f,
+            "mu_f_ci95": _listed(self.mu_f_ci95),
+            "change": self.change,
+            "change_ci95": _listed(self.change_ci95),
+            "size": self.size,
+            "since": _time(self.since_ns),
+            "growth_per_day": self.forecast.growth_per_day,
+            "forecast": {"limit": self.forecast.limit, "days": _listed(self.forecast.days)},
+            "reference": _reference_document(self.reference),
+            "as_of": _time(self.as_of_ns),
+            "stale": self.stale,
+            "advice": self.advice,
+            "reasons": list(self.reasons),
+        }
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> "Condition":
+        """Return the condition that a document tells.
+
+        Parameters
+        ----------
+        document : mapping
+            What `as_dict` returned; further keys are left out.
+
+        Returns
+        -------
+        Condition
+            The condition.
+
+        Raises
+        ------
+        KeyError, TypeError, ValueError
+            If it is no such document.
+        """
+        forecast, reference = document["forecast"], document["reference"]
+        days = forecast["days"]
+        return cls(
+            motor=document["motor"],
+            state=State(document["state"]),
+            kind=Kind(document["kind"]),
+            candidates=tuple(Kind(kind) for kind in document["candidates"]),
+            phase=document["phase"],
+            mu_f=document["mu_f"],
+            mu_f_ci95=_interval(document["mu_f_ci95"]),
+            change=document["change"],
+            change_ci95=_interval(document["change_ci95"]),
+            size=document["size"],
+            since_ns=_time_ns(document["since"]),
+            forecast=Forecast(
+                limit=forecast["limit"],
+                days=None if days is None else (days[0], days[1], days[2]),
+                growth_per_day=document["growth_per_day"],
+            ),
+            reference=_reference(reference),
+            as_of_ns=_time_ns(document["as_of"]),
+            stale=document["stale"],
+            advice=document["advice"],
+            reasons=tuple(document["reasons"]),
+        )
+
+
+def condition_of(
+    motor: Motor, assessment: Assessment | None, now_ns: int, stale_after_ns: int = STALE_AFTER_NS
+) -> Condition:
+    """Judge a motor from what its records tell.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor, with its limits.
+    assessment : Assessment or None
+        What the records tell; None before the first valid one.
+    now_ns : int
+        Time at which the condition is looked at, UTC [ns].
+    stale_after_ns : int, optional
+        Longest age of the latest record [ns].
+
+    Returns
+    -------
+    Condition
+        The condition.
+    """
+    if assessment is None:
+        return _unknown(motor)
+    limit = motor.limits.fault_level
+    change, reference = assessment.change, assessment.reference
+    state = _state(assessment, limit)
+    kind, candidates = _kind(assessment)
+    phase = _phase(assessment)
+    level = None if change is None or not _may_be_shorted_turns(change) else change.level
+    mu_f, mu_f_ci95 = _total(assessment, level)
+    ahead = _forecast(assessment, level, mu_f, limit)
+    return Condition(
+        motor=motor.name,
+        state=state,
+        kind=kind,
+        candidates=candidates,
+        phase=phase,
+        mu_f=mu_f,
+        mu_f_ci95=mu_f_ci95,
+        change=_change(reference, level),
+        change_ci95=None if level is None else level.ci95,
+        size=None if change is None else change.size,
+        since_ns=_since(assessment),
+        forecast=ahead,
+        reference=reference,
+        as_of_ns=assessment.as_of_ns,
+        stale=_is_stale(assessment.as_of_ns, now_ns, stale_after_ns),
+        advice=advice(state, kind, phase=phase, candidates=candidates),
+        reasons=reasons_of(assessment, limit, ahead),
+    )
+
+
+def _unknown(motor: Motor) -> Condition:
+    return Condition(
+        motor=motor.name,
+        state=State.UNKNOWN,
+        kind=Kind.NONE,
+        candidates=(),
+        phase=None,
+        mu_f=None,
+        mu_f_ci95=None,
+        change=None,
+        change_ci95=None,
+        size=None,
+        since_ns=None,
+        forecast=Forecast(motor.limits.fault_level),
+        reference=None,
+        as_of_ns=None,
+        stale=True,
+        advice=advice(State.UNKNOWN, Kind.NONE),
+        reasons=("there is no valid record yet",),
+    )
+
+
+def _state(assessment: Assessment, limit: float) -> State:
+    change = assessment.change
+    above = change is not None and change.level.ci95[0] > limit
+    if assessment.standing_fault or (above and _is_shorted_turns(change)):
+        return State.FAULT
+    if change is not None or assessment.unconfirmed or _stands_out(assessment.reference):
+        return State.WATCH
+    return State.HEALTHY
+
+
+def _stands_out(reference: Reference) -> bool:
+    return reference.standing_score >= STANDING_SCORE and not reference.accepted
+
+
+def _kind(assessment: Assessment) -> tuple[Kind, tuple[Kind, ...]]:
+    """Return the kind, and the candidates of an unclear one. What makes the state a fault goes first."""
+    change = assessment.change
+    if assessment.standing_fault:
+        return Kind.SHORTED_TURNS, ()
+    if change is not None and len(change.named) == 1:
+        return change.named[0], ()
+    if change is not None:
+        return Kind.UNCLEAR, change.named or _likeliest(change)
+    if _stands_out(assessment.reference):
+        return Kind.UNCLEAR, (Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL)
+    return (Kind.UNCLEAR if assessment.unconfirmed else Kind.NONE), ()
+
+
+def _likeliest(change: Change) -> tuple[Kind, ...]:
+    possible = [kind for kind, probability in change.probabilities.items() if probability >= FEW]
+    possible.sort(key=lambda kind: -change.probabilities[kind])
+    return tuple(possible[:MOST_CANDIDATES])
+
+
+def _phase(assessment: Assessment) -> Phase | None:
+    """Return the phase of what is named; nothing has a phase while all is open."""
+    change = assessment.change
+    if assessment.standing_fault:
+        return assessment.reference.standing.phase
+    if change is None or not change.named:
+        return None
+    if Kind.SHORTED_TURNS in change.named:
+        return change.level.phase
+    return None if change.channel is None else PHASES[change.channel]
+
+
+def _may_be_shorted_turns(change: Change) -> bool:
+    if change.named:
+        return Kind.SHORTED_TURNS in change.named
+    return change.probabilities.get(Kind.SHORTED_TURNS, 0.0) >= FEW
+
+
+def _since(assessment: Assessment) -> int | None:
+    if assessment.change is not None:
+        return assessment.change.since_ns
+    reference = assessment.reference
+    return reference.since_ns if assessment.standing_fault or _stands_out(reference) else None
+
+
+def _change(reference: Reference, level: Level | None) -> float | None:
+    if level is not None:
+        return max(0.0, level.value)
+    return 0.0 if reference.complete else None
+
+
+def _total(assessment: Assessment, level: Level | None) -> tuple[float, Interval]:
+    """Return the level in all, and its interval.
+
+    Most of what stands is errors of sensors: it counts with its probability to be shorted turns, and the
+    interval holds it whole. Neither part is below zero, because shorted turns do not heal.
+    """
+    standing = assessment.reference.standing
+    if assessment.reference.accepted or (level is not None and level.winding != standing.winding):
+        # Turns of another winding do not add to the level of this one.
+        standing = replace(standing, value=0.0)
+    share = 1.0 if assessment.standing_fault else _probability_of_standing_fault(assessment.reference)
+    value = share * max(0.0, standing.value)
+    low = standing.ci95[0] if assessment.standing_fault else 0.0
+    high = standing.ci95[1]
+    if level is not None:
+        value += max(0.0, level.value)
+        low += level.ci95[0] if _is_shorted_turns(assessment.change) else 0.0
+        above = hypot(standing.ci95[1] - standing.value, level.ci95[1] - level.value)
+        high = standing.value + level.value + above
+    return value, (min(low, value), max(high, value))
+
+
+def _forecast(assessment: Assessment, level: Level | None, mu_f: float, limit: float) -> Forecast:
+    limit = limit_ahead(mu_f, limit)
+    if level is None:
+        return Forecast(limit)
+    standing = mu_f - max(0.0, level.value)
+    return forecast(assessment.levels, limit, today=level, standing=standing)
+
+
+def _is_shorted_turns(change: Change | None) -> bool:
+    """Tell whether the change is named as shorted turns, or as these or a joint."""
+    return (
+        change is not None
+        and Kind.SHORTED_TURNS in change.named
+        and frozenset(change.named) <= TURNS_OR_JOINT
+    )
+
+
+def _probability_of_standing_fault(reference: Reference) -> float:
+    """Return how likely the standing asymmetry is shorted turns, from its score and how rare those are."""
+    return 1.0 / (1.0 + (1.0 - STANDING_FAULTS) / STANDING_FAULTS * exp(-(reference.standing_score**2) / 2.0))
+
+
+def _is_stale(as_of_ns: int | None, now_ns: int, stale_after_ns: int) -> bool:
+    return as_of_ns is None or now_ns - as_of_ns > stale_after_ns
+
+
+def _time(time_ns: int | None) -> str | None:
+    return None if time_ns is None else rfc3339(time_ns)
+
+
+def _time_ns(text: str | None) -> int | None:
+    return None if text is None else nanoseconds(text)
+
+
+def _listed(figures: tuple[float, ...] | None) -> list[float] | None:
+    return None if figures is None else list(figures)
+
+
+def _interval(figures: list[float] | None) -> Interval | None:
+    return None if figures is None else (figures[0], figures[1])
+
+
+def _reference_document(reference: Reference | None) -> dict[str, object]:
+    if reference is None:
+        return {"records": 0, "complete": False, "standing": None}
+    standing = reference.standing
+    return {
+        "records": reference.records,
+        "complete": reference.complete,
+        "standing": standing.value,
+        "standing_deviation": standing.deviation,
+        "standing_phase": standing.phase,
+        "standing_path_ratio": standing.path_ratio,
+        "standing_score": reference.standing_score,
+        "detectable": reference.detectable,
+        "since": _time(reference.since_ns),
+        "from_bus": reference.from_bus,
+        "accepted": reference.accepted,
+    }
+
+
+def _reference(document: Mapping[str, Any]) -> Reference | None:
+    if document["standing"] is None:
+        return None
+    return Reference(
+        records=document["records"],
+        complete=document["complete"],
+        since_ns=_time_ns(document["since"]),
+        detectable=document["detectable"],
+        standing=Level(
+            value=document["standing"],
+            deviation=document["standing_deviation"],
+            winding=cast(Winding, PHASES.index(document["standing_phase"])),
+            path_ratio=document["standing_path_ratio"],
+        ),
+        standing_score=document["standing_score"],
+        from_bus=document["from_bus"],
+        accepted=document["accepted"],
+    )

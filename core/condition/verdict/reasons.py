@@ -1,0 +1,139 @@
+"""Why a motor is judged as it is, in words."""
+
+from collections.abc import Iterator
+from typing import Final
+
+from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
+from core.condition.following.standing import STANDING_SCORE
+from core.condition.forecast.forecast import Forecast
+from core.condition.kinds import Kind
+from core.time_stamps import SECONDS_END, rfc3339
+
+FEW: Final = 0.02
+"""A kind with less probability than this is no candidate."""
+
+HOURS_PER_DAY: Final = 24
+
+WORDS: Final = {
+    Kind.NONE: "nothing",
+    Kind.SHORTED_TURNS: "shorted turns",
+    Kind.VOLTAGE_CHANNEL: "a voltage channel",
+    Kind.CURRENT_CHANNEL: "a current channel",
+    Kind.CONNECTION: "a joint",
+    Kind.SUPPLY: "the supply",
+    Kind.PARAMETERS: "the motor's impedance",
+    Kind.ROTOR: "the rotor",
+    Kind.UNCLEAR: "something else",
+}
+"""Each kind as a part of a sentence."""
+
+
+def reasons_of(assessment: Assessment, limit: float, forecast: Forecast) -> tuple[str, ...]:
+    """Return the reasons of a condition.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        What the records tell.
+    limit : float
+        Limit of the motor, a fraction of the phase turns.
+    forecast : Forecast
+        Growth of the level.
+
+    Returns
+    -------
+    tuple of str
+        The reasons, the most important first.
+    """
+    found = [*_of_change(assessment.change, limit)] if assessment.change is not None else []
+    found += _of_forecast(forecast)
+    found += _of_standing(assessment)
+    found += _of_reference(assessment.reference)
+    if assessment.unconfirmed and assessment.change is None:
+        found.insert(0, "the latest record differs from all before: another has to confirm it")
+    return tuple(found)
+
+
+def _of_change(change: Change, limit: float) -> Iterator[str]:
+    since = _seconds(change.since_ns)
+    level = change.level
+    if not change.named:
+        likely = sorted(change.probabilities.items(), key=lambda one: -one[1])
+        yield f"something has changed since {since}; it may be " + ", ".join(
+            f"{WORDS[kind]} ({probability:.0%})" for kind, probability in likely if probability >= FEW
+        )
+    elif len(change.named) > 1:
+        either = " or ".join(WORDS[kind] for kind in change.named)
+        yield f"{either} since {since}: the records cannot tell which"
+    elif change.named == (Kind.SHORTED_TURNS,):
+        yield f"shorted turns in phase {level.phase} since {since}: {_interval(level)} more"
+    else:
+        where = "" if change.channel is None else f" of phase {PHASES[change.channel]}"
+        yield (
+            f"{WORDS[change.named[0]]}{where} has changed by {change.size:.2%} since {since}; "
+            f"probability {change.probabilities.get(change.named[0], 0.0):.1%}"
+        )
+    if len(change.named) != 1 and change.probabilities.get(Kind.SHORTED_TURNS, 0.0) >= FEW:
+        yield f"if it is shorted turns, they are in phase {level.phase}: {_interval(level)}"
+    if Kind.SHORTED_TURNS in change.named:
+        above = level.ci95[0] > limit
+        yield f"the interval {'lies above' if above else 'reaches below'} the motor's limit of {limit:.2%}"
+
+
+def _of_forecast(forecast: Forecast) -> Iterator[str]:
+    growth = forecast.growth_per_day
+    if growth is None:
+        return
+    if forecast.days is None:
+        yield f"the level shows no trend towards {forecast.limit:.2%}"
+    else:
+        low, mid, high = (_days(days) for days in forecast.days)
+        yield (
+            f"the level grows by {growth:.3%} a day; it reaches {forecast.limit:.2%} in about {mid}, between "
+            f"{low} and {high} with 80 %"
+        )
+
+
+def _of_standing(assessment: Assessment) -> Iterator[str]:
+    reference = assessment.reference
+    standing = reference.standing
+    beyond = (
+        f"the asymmetry that stands from the first record on lies {reference.standing_score:.1f} standard "
+        "deviations from what sensors of this class leave"
+    )
+    if assessment.standing_fault:
+        yield f"{beyond}: shorted turns in phase {standing.phase}, {_interval(standing)}"
+    elif reference.accepted:
+        yield "a person has declared the asymmetry that stands from the first record on healthy"
+    elif reference.standing_score >= STANDING_SCORE:
+        yield f"{beyond}; shorted turns would be in phase {standing.phase}: {_interval(standing)}"
+    else:
+        yield (
+            "the asymmetry that stands from the first record on is one of sensors of this class; it can hide "
+            f"shorted turns up to {standing.ci95[1]:.2%}"
+        )
+
+
+def _of_reference(reference: Reference) -> Iterator[str]:
+    if not reference.complete:
+        yield f"the reference is still being learnt ({reference.records} records): no change can be seen yet"
+    elif reference.detectable is not None:
+        yield (
+            f"the reference holds {reference.records} records; a step of {reference.detectable:.2%} of the "
+            "turns would be seen within ten records in nine of ten cases"
+        )
+
+
+def _interval(level: Level) -> str:
+    low, high = level.ci95
+    return f"{max(0.0, level.value):.2%} (95 % interval {low:.2%} to {high:.2%})"
+
+
+def _days(days: float) -> str:
+    if days * HOURS_PER_DAY < 1.0:
+        return "an hour"
+    return f"{days * HOURS_PER_DAY:.0f} hours" if days < 2.0 else f"{days:.0f} days"
+
+
+def _seconds(time_ns: int) -> str:
+    return f"{rfc3339(time_ns)[:SECONDS_END]}Z"

@@ -1,0 +1,166 @@
+"""What changes is seen and named, whatever the connection, the sequence and the phase."""
+
+import numpy as np
+import pytest
+
+from core.condition.assessment import Change
+from core.condition.following.follower import Follower
+from core.condition.kinds import Kind
+from core.machines.parameters import Connection
+from core.machines.winding_frame import terminal_winding
+from core.signals.sequence import PhaseSequence
+from tests.core.condition.simulated import Plant, follow, motor_of
+
+BEFORE, AFTER = 60, 12
+FRAMES = [(c, s) for c in Connection for s in PhaseSequence]
+
+
+def changed(plant: Plant, before: int = BEFORE, after: int = AFTER, **what: object) -> Change:
+    """The change that is seen after some healthy records and some with it."""
+    follower = follow(motor_of(plant.connection), plant.records(before))
+    healthy = follower.assessment()
+    assert healthy is not None
+    assert healthy.change is None
+    for name, value in what.items():
+        setattr(plant, name, value)
+    for record in plant.records(after):
+        follower.fold(record)
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    return assessment.change
+
+
+@pytest.mark.parametrize(("connection", "sequence"), FRAMES)
+@pytest.mark.parametrize("winding", [0, 1, 2])
+def test_shorted_turns_are_named_with_their_phase_and_level(
+    connection: Connection, sequence: PhaseSequence, winding: int
+) -> None:
+    change = changed(Plant(connection, sequence), level=0.01, winding=winding)
+    assert Kind.SHORTED_TURNS in change.named
+    assert change.level.winding == terminal_winding(winding, sequence, connection)
+    low, high = change.level.ci95
+    assert low < 0.01 < high
+    assert low > 0.005
+
+
+@pytest.mark.parametrize(("connection", "sequence"), FRAMES)
+def test_a_voltage_channel_is_named_at_its_terminal(connection: Connection, sequence: PhaseSequence) -> None:
+    plant = Plant(connection, sequence)
+    voltage = [plant.voltage[0], plant.voltage[1] * 1.015, plant.voltage[2]]
+    change = changed(plant, voltage=voltage)
+    assert change.named == (Kind.VOLTAGE_CHANNEL,)
+    assert change.channel == 1
+    assert change.size == pytest.approx(0.015, abs=0.003)
+
+
+@pytest.mark.parametrize(("connection", "sequence"), FRAMES)
+def test_a_current_channel_is_named_at_its_terminal(connection: Connection, sequence: PhaseSequence) -> None:
+    plant = Plant(connection, sequence)
+    current = [plant.current[0], plant.current[1], plant.current[2] * 0.95]
+    change = changed(plant, current=current)
+    assert change.named == (Kind.CURRENT_CHANNEL,)
+    assert change.channel == 2
+    assert change.size == pytest.approx(-0.05, abs=0.01)
+
+
+def test_a_joint_is_named_or_told_beside_shorted_turns() -> None:
+    change = changed(Plant(load=(0.2, 1.0)), joint_ohm=2.0, joint=1, after=20)
+    assert Kind.CONNECTION in change.named
+    assert change.channel == 1
+
+
+def test_a_slow_growth_is_shorted_turns_and_not_a_late_step() -> None:
+    plant = Plant()
+    follower = follow(motor_of(), plant.records(BEFORE))
+    for k in range(100):
+        plant.level = 1e-4 * k
+        follower.fold(plant.record())
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    assert Kind.SHORTED_TURNS in assessment.change.named
+    assert assessment.change.level.value == pytest.approx(0.01, abs=0.002)
+    times = [time for time, _ in assessment.levels]
+    assert times == sorted(times)
+    assert assessment.levels[-1][1] > assessment.levels[0][1] + 0.004
+
+
+def test_a_supply_that_jumps_changes_nothing() -> None:
+    plant = Plant()
+    follower = follow(motor_of(), plant.records(BEFORE))
+    plant.unbalance = -0.03 + 0.02j
+    for record in plant.records(30):
+        follower.fold(record)
+    assert not saw(follower)
+
+
+def test_without_zero_voltage_a_channel_is_never_certain_to_be_shorted_turns_alone() -> None:
+    plant = Plant(with_zero_voltage=False, supply_swing=0.02)
+    voltage = [plant.voltage[0], plant.voltage[1], plant.voltage[2] * 1.02]
+    change = changed(plant, voltage=voltage)
+    assert change.probabilities[Kind.VOLTAGE_CHANNEL] > 0.02
+
+
+@pytest.mark.parametrize("first", [0, 3])
+def test_an_outlier_among_the_first_records_fakes_no_change(first: int) -> None:
+    plant = Plant()
+    records = plant.records(first)
+    plant.noise = 2e-2
+    records += plant.records(1)
+    plant.noise = 2e-4
+    follower = follow(motor_of(), records + plant.records(60))
+    assert not saw(follower)
+
+
+def test_noise_ten_times_that_of_a_single_record_raises_no_alarm() -> None:
+    plant = Plant(noise=2e-3)
+    follower = Follower(motor_of())
+    for record in plant.records(300):
+        follower.fold(record)
+        assert not saw(follower)
+
+
+def test_many_healthy_motors_stay_so() -> None:
+    for seed in range(6):
+        random = np.random.default_rng(seed)
+        plant = Plant(
+            list(Connection)[seed % 2],
+            list(PhaseSequence)[seed // 2 % 2],
+            seed=seed,
+            voltage=[1.0 + complex(*random.uniform(-0.006, 0.006, 2)) for _ in range(3)],
+            current=[1.0 + complex(*random.uniform(-0.006, 0.006, 2)) for _ in range(3)],
+            load=(0.2, 1.0),
+        )
+        follower = follow(motor_of(plant.connection), plant.records(300))
+        assert not saw(follower)
+        assessment = follower.assessment()
+        assert assessment is not None
+        assert not assessment.standing_fault
+
+
+def saw(follower: Follower) -> bool:
+    assessment = follower.assessment()
+    assert assessment is not None
+    return assessment.change is not None
+
+
+def test_a_fault_beside_a_channel_that_was_named_is_seen_too() -> None:
+    plant = Plant()
+    follower = follow(motor_of(), plant.records(BEFORE))
+    plant.voltage[2] *= 1.015
+    for record in plant.records(90):
+        follower.fold(record)
+    follower = Follower.restore(motor_of(), follower.save())
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    assert assessment.change.named == (Kind.VOLTAGE_CHANNEL,)
+    assert not assessment.standing_fault
+    plant.level = 0.015
+    for record in plant.records(12):
+        follower.fold(record)
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    assert Kind.SHORTED_TURNS in assessment.change.named

@@ -1,0 +1,211 @@
+"""What must not matter to a follower: how records arrive, scale, sequence and the names of the phases."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.condition.assessment import Assessment
+from core.condition.events import Event, EventKind
+from core.condition.following.follower import Follower
+from core.condition.observation import Observation
+from core.machines.parameters import Connection
+from core.signals.sequence import PhaseSequence
+from tests.core.condition.simulated import HOUR_NS, Plant, follow, motor_of
+
+MOST_BYTES = 50_000
+
+
+def with_a_fault(plant: Plant, count: int = 40) -> list[Observation]:
+    records = plant.records(count)
+    plant.level = 0.01
+    return records + plant.records(12)
+
+
+def assessed(follower: Follower) -> Assessment:
+    assessment = follower.assessment()
+    assert assessment is not None
+    return assessment
+
+
+@settings(deadline=None, max_examples=15)
+@given(cuts=st.lists(st.integers(0, 52), max_size=4))
+def test_saving_and_restoring_in_between_changes_no_bit(cuts: list[int]) -> None:
+    motor, records = motor_of(), with_a_fault(Plant())
+    follower = Follower(motor)
+    for k, record in enumerate(records):
+        if k in cuts:
+            state = follower.save()
+            assert len(state) < MOST_BYTES
+            follower = Follower.restore(motor, state)
+        follower.fold(record)
+    whole = follow(motor, records)
+    assert follower.save() == whole.save()
+    assert follower.assessment() == whole.assessment()
+
+
+def test_assessing_changes_nothing() -> None:
+    motor, records = motor_of(), with_a_fault(Plant())
+    follower = Follower(motor)
+    for record in records:
+        follower.fold(record)
+        follower.assessment()
+    assert follower.save() == follow(motor, records).save()
+
+
+@settings(deadline=None, max_examples=8)
+@given(exponent=st.integers(-6, 6))
+def test_the_scale_of_voltages_and_currents_does_not_matter(exponent: int) -> None:
+    usual = assessed(follow(motor_of(), with_a_fault(Plant())))
+    scaled = assessed(follow(motor_of(), with_a_fault(Plant(scale=10.0**exponent))))
+    assert usual.change is not None
+    assert scaled.change is not None
+    assert scaled.statistic == pytest.approx(usual.statistic, rel=1e-6)
+    assert scaled.change.level.value == pytest.approx(usual.change.level.value, rel=1e-6)
+    assert scaled.change.named == usual.change.named
+
+
+@settings(deadline=None, max_examples=8)
+@given(angle=st.floats(0.0, 6.28))
+def test_the_angle_at_which_a_record_begins_does_not_matter(angle: float) -> None:
+    turn = complex(np.exp(1j * angle))
+    records = with_a_fault(Plant())
+    turned = [
+        replace(
+            o,
+            positive_voltage_V=o.positive_voltage_V * turn,
+            negative_voltage_V=o.negative_voltage_V * turn,
+            zero_voltage_V=None if o.zero_voltage_V is None else o.zero_voltage_V * turn,
+            positive_current_A=o.positive_current_A * turn,
+            negative_current_A=o.negative_current_A * turn,
+            zero_current_A=o.zero_current_A * turn,
+        )
+        for o in records
+    ]
+    usual, other = assessed(follow(motor_of(), records)), assessed(follow(motor_of(), turned))
+    assert other.statistic == pytest.approx(usual.statistic, rel=1e-6)
+
+
+@pytest.mark.parametrize("connection", Connection)
+def test_a_mirrored_sequence_gives_the_same_with_phases_b_and_c_exchanged(connection: Connection) -> None:
+    motor, usual_plant = motor_of(connection), Plant(connection, noise=1e-5)
+    mirrored = Plant(connection, PhaseSequence.ACB, noise=1e-5)
+    mirrored.voltage = [usual_plant.voltage[k] for k in (0, 2, 1)]
+    mirrored.current = [usual_plant.current[k] for k in (0, 2, 1)]
+    usual = assessed(follow(motor, with_a_fault(usual_plant)))
+    other = assessed(follow(motor, with_a_fault(mirrored)))
+    assert usual.change is not None
+    assert other.change is not None
+    assert other.change.level.value == pytest.approx(usual.change.level.value, rel=0.05)
+    expected = {0: 2 if connection is Connection.DELTA else 0}
+    assert other.change.level.winding == expected[usual.change.level.winding]
+
+
+def test_a_motor_that_reverses_has_a_reference_for_each_direction() -> None:
+    motor = motor_of()
+    forwards, backwards = Plant(), Plant(sequence=PhaseSequence.ACB, seed=5)
+    follower = Follower(motor)
+    for k in range(120):
+        plant = forwards if k % 7 < 4 else backwards
+        plant.time_ns = k * HOUR_NS
+        follower.fold(plant.record())
+        assert assessed(follower).change is None
+    forwards.level = 0.01
+    for k in range(120, 140):
+        plant = forwards if k % 7 < 4 else backwards
+        plant.time_ns = k * HOUR_NS
+        follower.fold(plant.record())
+    # The fault is seen forwards, and stays seen in records backwards.
+    assert assessed(follower).change is not None
+    assert Follower.restore(motor, follower.save()).save() == follower.save()
+
+
+def test_edited_parameters_raise_no_alarm() -> None:
+    motor, plant = motor_of(), Plant()
+    follower = follow(motor, plant.records(60))
+    edited = replace(motor, parameters=replace(motor.parameters, stator_leakage_H=0.036))
+    follower.apply(Event(plant.time_ns, EventKind.PARAMETERS_EDITED), edited)
+    follower = Follower.restore(edited, follower.save())
+    for record in plant.records(60):
+        follower.fold(record)
+    assert assessed(follower).change is None
+    assert assessed(follower).reference.records == 120
+
+
+@pytest.mark.parametrize(
+    "kind", [EventKind.RECORDER_CHANGED, EventKind.MAINTENANCE, EventKind.REFERENCE_RESTARTED]
+)
+def test_an_event_closes_a_change_and_the_reference_is_learnt_anew(kind: EventKind) -> None:
+    plant = Plant()
+    follower = follow(motor_of(), plant.records(40))
+    plant.voltage[1] *= 1.02
+    for record in plant.records(10):
+        follower.fold(record)
+    assert assessed(follower).change is not None
+    follower.apply(Event(plant.time_ns, kind, "seen to"))
+    for record in plant.records(30):
+        follower.fold(record)
+    assessment = assessed(follower)
+    assert assessment.change is None
+    assert assessment.reference.records == 30
+    assert assessment.reference.accepted == (kind is EventKind.REFERENCE_RESTARTED)
+
+
+def test_another_recorder_begins_a_reference_without_being_told() -> None:
+    plant = Plant()
+    follower = follow(motor_of(), plant.records(40))
+    plant.voltage[1] *= 1.01
+    for record in plant.records(20):
+        follower.fold(replace(record, recorder="another relay"))
+    assert assessed(follower).change is None
+    assert assessed(follower).reference.records == 20
+
+
+def test_a_note_resets_nothing() -> None:
+    plant = Plant()
+    follower = follow(motor_of(), plant.records(20))
+    before = follower.save()
+    follower.apply(Event(plant.time_ns, EventKind.NOTE, "greased"))
+    assert follower.save() == before
+
+
+def test_a_rewound_motor_begins_at_nothing() -> None:
+    follower = follow(motor_of(), Plant().records(20))
+    follower.apply(Event(0, EventKind.REWOUND))
+    assert follower.assessment() is None
+
+
+def test_a_motor_that_stands_still_is_refused() -> None:
+    record = Plant().record()
+    follower = Follower(motor_of())
+    with pytest.raises(ValueError, match="positive_voltage_V"):
+        follower.fold(replace(record, positive_voltage_V=0j))
+    with pytest.raises(ValueError, match="positive_current_A"):
+        follower.fold(replace(record, positive_current_A=0j))
+    assert follower.assessment() is None
+
+
+def test_what_would_be_seen_is_seen() -> None:
+    plant = Plant(path=0.0)
+    follower = follow(motor_of(), plant.records(60))
+    detectable = assessed(follower).reference.detectable
+    assert detectable is not None
+    assert detectable < 0.005
+    plant.level = 1.2 * detectable
+    for record in plant.records(10):
+        follower.fold(record)
+    assert assessed(follower).change is not None
+
+
+def test_ten_years_of_records_leave_the_covariance_sound() -> None:
+    plant = Plant()
+    records = plant.records(50)
+    follower = Follower(motor_of())
+    for k in range(4000):
+        follower.fold(replace(records[k % 50], time_ns=k * HOUR_NS))
+    state = Follower.restore(motor_of(), follower.save()).save()
+    assert state == follower.save()
+    standing = assessed(follower).reference.standing
+    assert 0.0 < standing.deviation < 0.02

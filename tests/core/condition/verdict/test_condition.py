@@ -1,0 +1,250 @@
+"""A motor's condition from what its records tell: states, kinds, levels and the document."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from core.condition.assessment import STALE_AFTER_NS, Assessment, Change, Level, Reference
+from core.condition.kinds import Kind, State
+from core.condition.verdict.condition import Condition, condition_of
+from core.machines.winding_frame import Winding
+from core.units import NANOSECONDS_PER_DAY
+from testing.machines.motors import REFERENCE as MOTOR
+
+AS_OF_NS = 1_800_000_000_000_000_000
+SINCE_NS = AS_OF_NS - 3 * NANOSECONDS_PER_DAY
+
+KEYS = {
+    *("motor", "state", "kind", "phase", "mu_f", "mu_f_ci95", "change", "change_ci95", "since"),
+    *("growth_per_day", "forecast", "reference", "as_of", "stale", "advice", "reasons"),
+}
+"""The contract; further keys may stand beside them."""
+
+
+def level(value: float, deviation: float = 0.0005, winding: Winding = 1) -> Level:
+    return Level(value, deviation, winding, path_ratio=0.5)
+
+
+def reference(
+    *, records: int = 60, standing: Level | None = None, score: float = 0.8, complete: bool = True
+) -> Reference:
+    return Reference(
+        records=records,
+        complete=complete,
+        since_ns=AS_OF_NS - 30 * NANOSECONDS_PER_DAY,
+        detectable=0.004 if complete else None,
+        standing=level(0.004, 0.005, winding=2) if standing is None else standing,
+        standing_score=score,
+        from_bus=False,
+    )
+
+
+def change(
+    *named: Kind, size: Level | None = None, probabilities: Mapping[Kind, float] | None = None
+) -> Change:
+    return Change(
+        since_ns=SINCE_NS,
+        detected_ns=SINCE_NS + NANOSECONDS_PER_DAY,
+        probabilities=probabilities or {kind: 1.0 / len(named) for kind in named},
+        named=named,
+        level=level(0.01) if size is None else size,
+        channel=0,
+        size=0.02,
+    )
+
+
+def assessment(seen: Change | None = None, **further: object) -> Assessment:
+    found = Assessment(
+        as_of_ns=AS_OF_NS,
+        reference=reference(),
+        change=seen,
+        standing_fault=False,
+        statistic=3.0,
+        threshold=16.0,
+    )
+    return replace(found, **further)  # type: ignore[arg-type]  # fields by name
+
+
+def judged(found: Assessment | None) -> Condition:
+    return condition_of(MOTOR, found, AS_OF_NS)
+
+
+def test_no_valid_record_is_unknown_and_stale() -> None:
+    condition = judged(None)
+    assert (condition.state, condition.kind, condition.stale) == (State.UNKNOWN, Kind.NONE, True)
+    assert condition.as_dict()["reference"] == {"records": 0, "complete": False, "standing": None}
+
+
+def test_no_change_is_healthy_from_the_first_record_on() -> None:
+    early = judged(assessment(reference=reference(records=1, complete=False)))
+    assert (early.state, early.kind, early.change) == (State.HEALTHY, Kind.NONE, None)
+    late = judged(assessment())
+    assert (late.state, late.phase, late.change, late.since_ns) == (State.HEALTHY, None, 0.0, None)
+
+
+def test_what_sensors_leave_is_in_the_interval_and_not_in_the_level() -> None:
+    healthy = judged(assessment())
+    assert healthy.mu_f == pytest.approx(0.0, abs=1e-4)
+    assert healthy.mu_f_ci95 == pytest.approx((0.0, 0.004 + 1.96 * 0.005), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("named", "size", "state", "kind", "phase"),
+    [
+        ((Kind.SHORTED_TURNS,), level(0.0065), State.FAULT, Kind.SHORTED_TURNS, "b"),
+        ((Kind.SHORTED_TURNS,), level(0.0055), State.WATCH, Kind.SHORTED_TURNS, "b"),
+        ((Kind.SHORTED_TURNS, Kind.CONNECTION), level(0.0065), State.FAULT, Kind.UNCLEAR, "b"),
+        ((Kind.CONNECTION, Kind.SHORTED_TURNS), level(0.0055), State.WATCH, Kind.UNCLEAR, "b"),
+        ((Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL), level(0.02), State.WATCH, Kind.UNCLEAR, "b"),
+        ((Kind.VOLTAGE_CHANNEL,), level(0.02), State.WATCH, Kind.VOLTAGE_CHANNEL, "a"),
+        ((Kind.CURRENT_CHANNEL,), level(0.02), State.WATCH, Kind.CURRENT_CHANNEL, "a"),
+        ((Kind.CONNECTION,), level(0.02), State.WATCH, Kind.CONNECTION, "a"),
+    ],
+)
+def test_only_shorted_turns_above_the_limit_are_a_fault(
+    named: tuple[Kind, ...], size: Level, state: State, kind: Kind, phase: str
+) -> None:
+    condition = judged(assessment(change(*named, size=size)))
+    assert (condition.state, condition.kind, condition.phase) == (state, kind, phase)
+    assert condition.since_ns == SINCE_NS
+    assert condition.candidates == (named if len(named) > 1 else ())
+
+
+def test_an_open_change_is_watched_with_its_candidates() -> None:
+    probabilities = {Kind.SUPPLY: 0.005, Kind.CONNECTION: 0.295, Kind.SHORTED_TURNS: 0.7}
+    condition = judged(assessment(change(probabilities=probabilities)))
+    assert (condition.state, condition.kind, condition.phase) == (State.WATCH, Kind.UNCLEAR, None)
+    assert condition.candidates == (Kind.SHORTED_TURNS, Kind.CONNECTION)
+    assert condition.change == 0.01
+    assert condition.mu_f_ci95 is not None
+    assert condition.mu_f_ci95[0] == 0.0  # it may be a joint
+
+
+def test_a_change_that_is_no_shorted_turns_leaves_the_level() -> None:
+    condition = judged(assessment(change(Kind.VOLTAGE_CHANNEL)))
+    healthy = judged(assessment())
+    assert (condition.mu_f, condition.mu_f_ci95) == (healthy.mu_f, healthy.mu_f_ci95)
+    assert (condition.change, condition.change_ci95, condition.size) == (0.0, None, 0.02)
+
+
+def test_a_surprise_is_watched_until_it_is_confirmed() -> None:
+    condition = judged(assessment(unconfirmed=True))
+    assert (condition.state, condition.kind, condition.candidates) == (State.WATCH, Kind.UNCLEAR, ())
+    assert "confirm" in condition.reasons[0]
+
+
+def test_a_standing_fault_is_one_from_the_first_record_on() -> None:
+    standing = reference(standing=level(0.03, 0.005, winding=2), score=6.0)
+    condition = judged(assessment(reference=standing, standing_fault=True))
+    assert (condition.state, condition.kind, condition.phase) == (State.FAULT, Kind.SHORTED_TURNS, "c")
+    assert condition.since_ns == standing.since_ns
+    assert condition.mu_f == pytest.approx(0.03)
+    assert condition.mu_f_ci95 == pytest.approx((0.03 - 0.0098, 0.03 + 0.0098))
+
+
+def test_a_standing_asymmetry_that_is_not_sure_is_watched() -> None:
+    standing = reference(standing=level(0.012, 0.004), score=3.8)
+    condition = judged(assessment(reference=standing))
+    assert (condition.state, condition.kind) == (State.WATCH, Kind.UNCLEAR)
+    assert condition.candidates == (Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL)
+
+
+def test_a_standing_asymmetry_that_a_person_declared_healthy_is_left() -> None:
+    accepted = replace(reference(standing=level(0.012, 0.004), score=3.8), accepted=True)
+    condition = judged(assessment(reference=accepted))
+    assert (condition.state, condition.mu_f) == (State.HEALTHY, 0.0)
+
+
+def test_a_standing_fault_that_grows_adds_up_where_it_is_one_winding() -> None:
+    standing = reference(standing=level(0.03, 0.004, winding=1), score=7.0)
+    grown = judged(
+        assessment(
+            change(Kind.SHORTED_TURNS, size=level(0.01, 0.003)), reference=standing, standing_fault=True
+        )
+    )
+    assert grown.mu_f == pytest.approx(0.04)
+    assert grown.mu_f_ci95 is not None
+    assert grown.mu_f_ci95[1] == pytest.approx(0.04 + 1.96 * 0.005)
+    elsewhere = judged(assessment(change(Kind.SHORTED_TURNS), reference=reference(score=7.0)))
+    assert elsewhere.mu_f == pytest.approx(0.01)
+
+
+def test_time_ages_a_condition_and_nothing_else() -> None:
+    condition = judged(assessment())
+    assert not condition.seen_at(AS_OF_NS + STALE_AFTER_NS).stale
+    late = condition.seen_at(AS_OF_NS + STALE_AFTER_NS + 1)
+    assert late == replace(condition, stale=True)
+    assert late == condition_of(MOTOR, assessment(), AS_OF_NS + STALE_AFTER_NS + 1)
+
+
+def test_a_level_that_grows_has_a_forecast() -> None:
+    grows = tuple((AS_OF_NS - (99 - k) * NANOSECONDS_PER_DAY // 24, 3e-5 * k) for k in range(100))
+    named = change(Kind.SHORTED_TURNS, size=level(0.003, 0.0002))
+    condition = judged(assessment(named, levels=grows))
+    assert condition.forecast.limit == MOTOR.limits.fault_level
+    assert condition.forecast.days is not None
+    assert condition.forecast.days[1] == pytest.approx(0.002 / 3e-5 / 24, rel=0.2)
+    assert condition.forecast.growth_per_day == pytest.approx(24 * 3e-5, rel=0.05)
+    assert any("grows by" in reason for reason in condition.reasons)
+    above = judged(assessment(change(Kind.SHORTED_TURNS, size=level(0.012)), levels=grows))
+    assert above.forecast.limit == 0.02
+
+
+KINDS = st.sampled_from([kind for kind in Kind if kind is not Kind.NONE])
+LEVELS = st.builds(
+    Level, st.floats(-0.01, 0.3), st.floats(1e-6, 0.05), st.sampled_from([0, 1, 2]), st.floats(0, 4)
+)
+CHANGES = st.builds(
+    Change,
+    since_ns=st.integers(AS_OF_NS - 10**17, AS_OF_NS),
+    detected_ns=st.just(AS_OF_NS),
+    probabilities=st.dictionaries(KINDS, st.floats(0.0, 1.0)),
+    named=st.lists(KINDS, max_size=2, unique=True).map(tuple),
+    level=LEVELS,
+    channel=st.none() | st.sampled_from([0, 1, 2]),
+    size=st.floats(-0.1, 0.1),
+)
+REFERENCES = st.builds(
+    Reference,
+    records=st.integers(1, 10**6),
+    complete=st.booleans(),
+    since_ns=st.none() | st.integers(0, AS_OF_NS),
+    detectable=st.none() | st.floats(0, 0.1),
+    standing=LEVELS,
+    standing_score=st.floats(0, 50),
+    from_bus=st.booleans(),
+    accepted=st.booleans(),
+)
+ASSESSMENTS = st.builds(
+    Assessment,
+    as_of_ns=st.just(AS_OF_NS),
+    reference=REFERENCES,
+    change=st.none() | CHANGES,
+    standing_fault=st.booleans(),
+    statistic=st.floats(0, 100),
+    threshold=st.just(16.0),
+    unconfirmed=st.booleans(),
+)
+
+
+@given(st.none() | ASSESSMENTS)
+def test_the_document_tells_the_whole_condition(found: Assessment | None) -> None:
+    condition = judged(found)
+    document = condition.as_dict()
+    assert set(document) >= KEYS
+    assert Condition.from_dict(json.loads(json.dumps(document, allow_nan=False))) == condition
+
+
+@given(ASSESSMENTS)
+def test_what_is_told_agrees_with_itself(found: Assessment) -> None:
+    condition = judged(found)
+    assert condition.mu_f is not None
+    assert condition.mu_f_ci95 is not None
+    assert 0.0 <= condition.mu_f_ci95[0] <= condition.mu_f <= condition.mu_f_ci95[1]
+    assert (condition.state is State.HEALTHY) == (condition.kind is Kind.NONE)
+    assert condition.state is not State.FAULT or condition.phase is not None
+    assert condition.reasons
