@@ -16,6 +16,9 @@ DEFAULT_SENSORS = SensorClass()
 FAULT_LEVELS = (0.0, 0.2)
 """To the upper end of the search. A higher limit would never be reached and would switch the alarm off."""
 
+ROUNDING = 1e-6
+"""A value may lie so far beyond its ends, relatively: files have seven digits of it."""
+
 MOST_SHOWN = 60
 """Of a value that is refused, so many characters are shown."""
 
@@ -271,7 +274,7 @@ class _Table:
         expected = expected or f"{low:g} to {high:g} {unit}"
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:
             raise self._error(key, f"a number above zero, {expected}", value)
-        if not low <= value <= high:
+        if not low * (1.0 - ROUNDING) <= value <= high * (1.0 + ROUNDING):
             raise self._error(key, expected, value)
         return float(value)
 

@@ -7,10 +7,11 @@ SHARED = (
     "core.machines.motor_file",
     "core.machines.parameters",
     "core.machines.plausibility",
+    "core.machines.sensors",
     "core.recordings",
     "core.units",
 )
-"""What simulator and diagnosis have in common: what a nameplate says and may say, a file format, units."""
+"""What simulator and diagnosis have in common: what a motor's file says and may say, a file format, units."""
 
 
 def test_the_simulator_loads_nothing_of_the_diagnosis() -> None:

@@ -78,6 +78,11 @@ class Direction:
         self._restart(keep_impedance=False)
 
     @property
+    def records(self) -> int:
+        """Number of records that the reference rests on; none right after an event that ends it."""
+        return int(self._state.records)
+
+    @property
     def as_of_ns(self) -> int:
         """Time of the latest record, UTC [ns]."""
         return self._header.as_of_ns

@@ -100,14 +100,15 @@ class Follower:
         Returns
         -------
         Assessment or None
-            None before the first record.
+            None before the first record, and before the first one after an event that ends the reference.
         """
-        if self._latest is None:
+        if self._latest is None or not self._directions[self._latest].records:
             return None
         latest = self._directions[self._latest].assessment(self._motor, bus)
         # A fault seen while the motor turned the other way stays one.
         for sequence, direction in self._directions.items():
-            if sequence is not self._latest and not (latest.change or latest.standing_fault):
+            seen = bool(latest.change or latest.standing_fault)
+            if sequence is not self._latest and direction.records and not seen:
                 other = direction.assessment(self._motor, bus)
                 if other.change or other.standing_fault:
                     return other.seen_at(latest.as_of_ns)
@@ -119,9 +120,9 @@ class Follower:
         Returns
         -------
         StandingEstimate or None
-            None before the first record.
+            None before the first record, and before the first one after an event that ends the reference.
         """
-        if self._latest is None:
+        if self._latest is None or not self._directions[self._latest].records:
             return None
         return self._directions[self._latest].standing_estimate(self._motor)
 

@@ -255,7 +255,7 @@ def _unknown(motor: Motor) -> Condition:
         as_of_ns=None,
         stale=True,
         advice=advice(State.UNKNOWN, Kind.NONE),
-        reasons=("there is no valid record yet",),
+        reasons=("there is no valid record yet, or none since the reference was ended by an event",),
     )
 
 

@@ -106,12 +106,13 @@ def test_without_records_nothing_is_known(repository: Repository, recorder: Reco
     assert [change.state for change in repository.condition_history(PUMP, limit=10).items] == ["unknown"]
 
 
+@pytest.mark.parametrize("kind", [EventKind.REWOUND, EventKind.MAINTENANCE])
 def test_an_event_counts_from_its_time_and_is_in_the_history(
-    repository: Repository, recorder: Recorder
+    repository: Repository, recorder: Recorder, kind: EventKind
 ) -> None:
     recorder.record_all(RECORDS)
     fold_all(repository)
-    event = Event(RECORDS[22].time_ns, EventKind.REWOUND, "winding of phase b replaced")
+    event = Event(RECORDS[22].time_ns, kind, "winding of phase b replaced")
     kept = repository.add_event(PUMP, event, by="ann", now_ns=NOW_NS)
     fold_all(repository)
     follower = followed(RECORDS[:22])

@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.condition.events import Event, EventKind
 from core.condition.following.follower import Follower
+from core.condition.kinds import State
 from core.condition.observation import Observation, VoltageChannels
+from core.condition.verdict.condition import condition_of
 from core.machines.parameters import MachineParameters, Motor, Nameplate
 from core.signals.sequence import PhaseSequence
 
@@ -68,3 +71,20 @@ def test_a_record_that_comes_late_is_refused() -> None:
     follower = follow(records)
     with pytest.raises(ValueError, match="fold from there"):
         follower.fold(records[3])
+
+
+@pytest.mark.parametrize("kind", EventKind)
+@pytest.mark.parametrize("count", [3, 12])
+def test_an_event_after_the_latest_record_leaves_a_condition_that_can_be_told(
+    kind: EventKind, count: int
+) -> None:
+    records = healthy_records(count + 1)
+    follower = follow(records[:count])
+    follower.apply(Event(count * HOUR_NS, kind, "worked at"))
+    ends = kind not in (EventKind.NOTE, EventKind.PARAMETERS_EDITED)
+    told = condition_of(MOTOR, follower.assessment(), count * HOUR_NS)
+    assert told.state is (State.UNKNOWN if ends else State.HEALTHY)
+    assert (follower.standing_estimate() is None) is ends
+    follower = Follower.restore(MOTOR, follower.save())
+    follower.fold(records[count])
+    assert condition_of(MOTOR, follower.assessment(), count * HOUR_NS).state is State.HEALTHY
