@@ -186,7 +186,7 @@ def taken_up(weighing: Weighing, bank: Any, hypotheses: Hypotheses) -> tuple[Arr
     Returns
     -------
     state : ndarray, shape (7,)
-        f g, of a jump of any direction g.
+        What the state has taken up, f g, of a jump of any direction g.
     covariance : ndarray, shape (7, 7)
         Its covariance, f Lambda^-1 f'.
     """
