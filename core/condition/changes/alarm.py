@@ -266,7 +266,7 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     at = winding * len(PATHS) + likeliest
     one, size = bank[int(weighing.best[at, 0])], weighing.best[at, 2]
     drifts = int(weighing.best[at, 1])
-    known = learnt_without(state, one)
+    known = learnt_without(state, one, bool(drifts))
     u, _ = signature(known, hypotheses[at])
     # What the filter has taken up of the change comes off, so that the state is that of before it.
     column = 6 if drifts else 0

@@ -94,8 +94,8 @@ def _of_candidate(
     most[1, 0] = most_of_pair(one.step, 2, one.d, 2)
     most[1, 1] = most_of_pair(one.ramp_current, 0, one.d, 8)
     out = np.zeros(5)
-    known = learnt_without(state, one)
     for drifts in range(2):
+        known = learnt_without(state, one, drifts == 1)
         for column in range(2):
             if most[column, drifts] < NEGLIGIBLE:
                 continue

@@ -223,32 +223,40 @@ def learnt(state: FilterState) -> Learnt:
 
 
 @compiled
-def learnt_without(state: FilterState, one: Candidate) -> Learnt:
-    """Return the same if y has jumped: a filter that knows nothing of it lets the impedance take up some.
+def learnt_without(state: FilterState, one: Candidate, ramp: bool) -> Learnt:
+    """Return the same if y has jumped or drifts: the filter, which knows nothing of it, let Z2 take up some.
 
     Parameters
     ----------
     state : FilterState
         The filter.
     one : Candidate
-        Where the jump began.
+        Where the change began.
+    ramp : bool
+        Whether y drifts.
 
     Returns
     -------
     Learnt
         Factors.
     """
-    x, P, f, L, d = state.x, state.P, one.f, one.step, one.d
-    determinant = L[0, 0] * L[1, 1] - L[0, 1] * L[0, 1]
+    x, P, f, d = state.x, state.P, one.f, one.d
+    if ramp:
+        c = 6
+        p, q, s = one.ramp_voltage[0, 0], one.ramp_voltage[0, 1], one.ramp_voltage[1, 1]
+    else:
+        c = 0
+        p, q, s = one.step[0, 0], one.step[0, 1], one.step[1, 1]
+    determinant = p * s - q * q
     r, i = x[4], x[5]
     variance = 0.5 * (P[4, 4] + P[5, 5])
-    if determinant > 1e-12 * L[0, 0] * L[1, 1]:
-        A, B, C = L[1, 1] / determinant, -L[0, 1] / determinant, L[0, 0] / determinant
-        g, h = A * d[0] + B * d[1], B * d[0] + C * d[1]
-        r -= f[4, 0] * g + f[4, 1] * h
-        i -= f[5, 0] * g + f[5, 1] * h
+    if determinant > 1e-12 * p * s:
+        A, B, C = s / determinant, -q / determinant, p / determinant
+        g, h = A * d[c] + B * d[c + 1], B * d[c] + C * d[c + 1]
+        r -= f[4, c] * g + f[4, c + 1] * h
+        i -= f[5, c] * g + f[5, c + 1] * h
         for k in range(4, 6):
-            variance += 0.5 * (A * f[k, 0] ** 2 + 2.0 * B * f[k, 0] * f[k, 1] + C * f[k, 1] ** 2)
+            variance += 0.5 * (A * f[k, c] ** 2 + 2.0 * B * f[k, c] * f[k, c + 1] + C * f[k, c + 1] ** 2)
     return _factors(state, r, i, variance)
 
 

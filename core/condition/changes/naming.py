@@ -81,8 +81,8 @@ def name(
         one = bank[i]
         if _most_of_y(one) < most - NEGLIGIBLE / temper[SIDES]:
             continue
-        known = learnt_without(state, one)
         for drifts in range(2):
+            known = learnt_without(state, one, drifts == 1)
             still = np.zeros(SIDES)
             for s in range(SIDES):
                 still[s] = _still(one, s, drifts, temper[s])

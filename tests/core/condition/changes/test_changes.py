@@ -86,6 +86,21 @@ def test_a_slow_growth_is_shorted_turns_and_not_a_late_step() -> None:
     assert assessment.levels[-1][1] > assessment.levels[0][1] + 0.004
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_the_level_of_a_growth_that_has_stopped_stays(seed: int) -> None:
+    plant = Plant(seed=seed)
+    follower = follow(motor_of(), plant.records(BEFORE))
+    for k in range(100):
+        plant.level = 0.01 * min(k / 40, 1.0)
+        follower.fold(plant.record())
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    low, high = assessment.change.level.ci95
+    assert low < 0.01 < high
+    assert high < 0.015
+
+
 def test_a_supply_that_jumps_changes_nothing() -> None:
     plant = Plant()
     follower = follow(motor_of(), plant.records(BEFORE))
