@@ -12,7 +12,7 @@ from benchmarks.condition.courses import Course, healthy, shape, with_fault, wit
 from benchmarks.condition.disturbances import Disturbance, disturbed, outcome_row
 from benchmarks.condition.following import Outcome, Said, judged_around, outcome, quantile_text, said_of
 from benchmarks.condition.operation import Operation, draw_operation
-from benchmarks.condition.population import SimulatedMotor, draw_motor, draw_site
+from benchmarks.condition.population import SENSOR_CLASSES, SimulatedMotor, draw_motor, draw_site
 from benchmarks.condition.records import REAL_NOISE, measure
 from benchmarks.reporting import mark, rate_text, spread, table
 from core.condition.bus.neighbours import neighbour_of
@@ -87,7 +87,11 @@ def follow_bus(task: Task) -> Result:
     """Simulate a bus and follow its motors together."""
     random = np.random.default_rng([task.number, 4, list(Case).index(task.case)])
     site = draw_site(random)
-    motors = [draw_motor(random, site=site, sensors=task.sensors) for _ in range(task.motors)]
+    sensors = task.sensors
+    if sensors is None and task.transformers is not Transformers.OWN:
+        # What is common is of one class, and all files state it.
+        sensors = SENSOR_CLASSES[int(random.integers(len(SENSOR_CLASSES)))]
+    motors = [draw_motor(random, site=site, sensors=sensors) for _ in range(task.motors)]
     motors = [replace(one, motor=replace(one.motor, name=f"motor {k}")) for k, one in enumerate(motors)]
     if task.transformers is not Transformers.OWN:
         # One transformer: the same errors for all, and it measures phases or lines for all.
