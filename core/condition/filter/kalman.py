@@ -18,7 +18,7 @@ from core.machines.compiled import compiled_as_written as compiled
 STATES = 7
 WANDER_EC = 1e-5
 """Standard deviation by which each part of E and C wanders from record to record."""
-WANDER_Z = 1e-4
+WANDER_Z = 1e-3
 """The same of r and x."""
 TEMPERATURE = 0.08
 """Standard deviation of Z2's change with the winding's temperature over |Z2|."""
@@ -36,6 +36,8 @@ LEAST_SHARE = 0.3
 SLOWEST = 0.01
 """Least gain of the learnt noise: it remembers a hundred records."""
 BISECTIONS = 50
+NOISE_OF_W = 0.25
+"""Variance of the regressor's noise over y's: that of balanced noises, the most there can be."""
 TINY = 1e-30
 
 
@@ -113,7 +115,7 @@ def smooth(state: FilterState, w: complex, wander: float) -> None:
     wander : float
         Variance by which V2/V1 changes from record to record.
     """
-    noise = state.balance * (1.0 - state.balance) * state.s2
+    noise = NOISE_OF_W * state.s2
     apart = w - state.w
     ratio = wander / max(noise, TINY)
     share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 / ratio))

@@ -101,20 +101,26 @@ def fold_side(side: SideState, kind: int, record: Measurement) -> None:
 
 
 @compiled
-def noise_of_currents(side: SideState) -> float:
-    """Return the variance that the currents' noise gives to j2, as I0 tells, which has little else.
+def noise_share_of_currents(V0_side: SideState, I0_side: SideState, s2: float) -> float:
+    """Return the share of y's noise that the currents make.
+
+    I0 has little but the currents' noise, as large in j2, and V0 that of the voltages beside what wanders.
 
     Parameters
     ----------
-    side : SideState
-        The side channel I0/I1.
+    V0_side, I0_side : SideState
+        The side channels V0/V1 and I0/I1.
+    s2 : float
+        Variance of y's noise, which tells that of the voltages where V0 is not measured.
 
     Returns
     -------
     float
-        Variance, both parts together.
+        Share, 0 to 1.
     """
-    return 0.5 * side.square * USUAL_CURRENT**2
+    currents = 0.5 * I0_side.square * USUAL_CURRENT**2
+    voltages = V0_side.r if V0_side.S > 0.0 else max(s2 - currents, 0.0)
+    return currents / (currents + voltages)
 
 
 @compiled

@@ -13,8 +13,8 @@ from core.condition.filter.kalman import (
     smooth,
     update,
 )
-from core.condition.filter.side_channels import begin, fold_side, noise_of_currents
-from core.condition.filter.state import I0, RECENT, SIDES, V2, Candidate, FilterState, Recent, SideState
+from core.condition.filter.side_channels import begin, fold_side, noise_share_of_currents
+from core.condition.filter.state import I0, RECENT, SIDES, V0, V2, Candidate, FilterState, Recent, SideState
 from core.condition.measuring.measurement import Measurement
 from core.machines.base import Array
 from core.machines.compiled import compiled_as_written as compiled
@@ -62,7 +62,7 @@ def fold_record(
     if not changed:
         learn_noise(state)
         if state.records >= FIRST_BALANCE and np.log2(state.records) % 1.0 == 0.0:
-            rebalance(state, min(noise_of_currents(sides[I0]) / state.s2, 1.0))
+            rebalance(state, noise_share_of_currents(sides[V0], sides[I0], state.s2))
     learn_gap(state, record.elapsed_s)
     detect(state, bank, hypotheses, recorder)
     _remember(state, recent, record, time_ns, changed)
