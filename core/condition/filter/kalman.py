@@ -35,9 +35,13 @@ LEAST_SHARE = 0.3
 """Share of the noise in the innovation above which the innovation teaches the noise."""
 SLOWEST = 0.01
 """Least gain of the learnt noise: it remembers a hundred records."""
+W_APART, W_CLIP = 16.0, 9.0
+W_FIRST = 8.0
+W_JUMP = 6.0
+W_SLOWEST = 1.0 / 128.0
 BISECTIONS = 50
-NOISE_OF_W = 0.25
-"""Variance of the regressor's noise over y's: that of balanced noises, the most there can be."""
+NOISE_OF_W = 0.5
+"""Largest variance of the regressor's noise over y's; that of balanced noises is a quarter."""
 TINY = 1e-30
 
 
@@ -100,11 +104,12 @@ def regressor(state: FilterState, y: complex, j2: complex) -> complex:
 
 
 @compiled
-def smooth(state: FilterState, w: complex, wander: float) -> None:
+def smooth(state: FilterState, w: complex, earlier: complex) -> None:
     """Take the noise off the regressor, lest it passes for a supply that changes and teaches the impedance.
 
     V2 wanders or jumps. Of a small difference to the record before, the share is taken that a wandering level
-    with such noise has in it; of a large one nearly all.
+    with such noise has in it; of a large one nearly all. By how much it wanders is seen over 16 records, in
+    which noise counts no more than over one.
 
     Parameters
     ----------
@@ -112,15 +117,27 @@ def smooth(state: FilterState, w: complex, wander: float) -> None:
         The filter; `state.w` is that of the record before, and then that of this one.
     w : complex
         Regressor of the record.
-    wander : float
-        Variance by which V2/V1 changes from record to record.
+    earlier : complex
+        `state.w` of 16 records before.
     """
-    noise = NOISE_OF_W * state.s2
-    apart = w - state.w
-    ratio = wander / max(noise, TINY)
+    gain = max(1.0 / (state.records + 1.0 - W_FIRST), W_SLOWEST)
+    state.w_near += gain * (_clipped(w - state.w_raw, state.w_near) - state.w_near)
+    state.w_far += gain * (_clipped(w - earlier, state.w_near) - state.w_far)
+    state.w_raw = w
+    noise = min(NOISE_OF_W * state.s2, 0.5 * state.w_near)
+    wander = max(state.w_far - state.w_near, 0.0) / (W_APART - 1.0)
+    ratio = max(wander / max(noise, TINY), TINY)
     share = 2.0 / (1.0 + np.sqrt(1.0 + 4.0 / ratio))
-    share = max(share, 1.0 - 2.0 * noise / max(apart.real**2 + apart.imag**2, TINY))
+    apart = w - state.w
+    share = max(share, 1.0 - W_JUMP * noise / max(apart.real**2 + apart.imag**2, TINY))
     state.w += share * apart
+
+
+@compiled
+def _clipped(difference: complex, usual: float) -> float:
+    """Return the square of a difference, of an unusual one not more than nine times the usual square."""
+    square = difference.real**2 + difference.imag**2
+    return min(square, W_CLIP * usual) if usual > 0.0 else square
 
 
 @compiled

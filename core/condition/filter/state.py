@@ -57,8 +57,10 @@ class FilterState(Protocol):
         Z2n / z at rated frequency.
     balance : float
         Share of y's noise that the currents make; see `regressor`.
-    w : complex
-        Regressor of the latest record.
+    w, w_raw : complex
+        Regressor of the latest record, without its noise and with it.
+    w_near, w_far : float
+        Mean squares by which it differs from the record before, and from that 16 records before.
     statistic, threshold : float
         Logs of the detector's statistic and of its threshold.
     """
@@ -85,6 +87,9 @@ class FilterState(Protocol):
     nominal: complex
     balance: float
     w: complex
+    w_raw: complex
+    w_near: float
+    w_far: float
     statistic: float
     threshold: float
 
@@ -113,6 +118,9 @@ FILTER: Final = np.dtype(
         ("nominal", "c16"),
         ("balance", "f8"),
         ("w", "c16"),
+        ("w_raw", "c16"),
+        ("w_near", "f8"),
+        ("w_far", "f8"),
         ("statistic", "f8"),
         ("threshold", "f8"),
     ]

@@ -14,11 +14,12 @@ from core.condition.filter.kalman import (
     update,
 )
 from core.condition.filter.side_channels import begin, fold_side, noise_share_of_currents
-from core.condition.filter.state import I0, RECENT, SIDES, V0, V2, Candidate, FilterState, Recent, SideState
+from core.condition.filter.state import I0, RECENT, SIDES, V0, Candidate, FilterState, Recent, SideState
 from core.condition.measuring.measurement import Measurement
 from core.machines.base import Array
 from core.machines.compiled import compiled_as_written as compiled
 
+APART = 16
 FIRST_BALANCE = 16.0
 """Records after which the currents' noise is known; it is looked at again after twice as many."""
 
@@ -54,7 +55,9 @@ def fold_record(
     rho = predict(state, record.elapsed_s)
     if not changed:
         add_candidate(state, bank, time_ns)
-    smooth(state, regressor(state, record.y, record.j2), sides[V2].q)
+    count = int(state.recent)
+    earlier = recent[max(count - APART, 0)].j2 if count > 0 else state.w
+    smooth(state, regressor(state, record.y, record.j2), earlier)
     update(state, record.y, record.j1, state.w)
     for s in range(SIDES):
         fold_side(sides[s], s, record)
@@ -83,7 +86,7 @@ def fold_first(state: FilterState, sides: list[SideState], record: Measurement) 
         The record.
     """
     predict(state, record.elapsed_s)
-    state.w = regressor(state, record.y, record.j2)
+    state.w = state.w_raw = regressor(state, record.y, record.j2)
     update(state, record.y, record.j1, state.w)
     for s in range(SIDES):
         fold_side(sides[s], s, record)
@@ -106,6 +109,7 @@ def restart(state: FilterState, sides: list[SideState]) -> None:
     state.P[:] = state.P0
     state.records = state.gap_s = state.candidates = state.recent = 0.0
     state.block = 1.0
+    state.w_near, state.w_far = 0.0, 0.0
     state.statistic = state.surprise = state.log_likelihood = 0.0
     for s in range(SIDES):
         begin(sides[s], s)
