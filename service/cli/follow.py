@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
 from core.condition.verdict.condition import Condition, condition_of
 from core.machines.motor_file import MotorFileError, read_motor
@@ -112,7 +113,7 @@ def follow(own: Member, bus: Bus, events: Sequence[GivenEvent], stale_after_ns: 
             _apply(follower, waiting.pop(0))
         try:
             follower.fold(one.observation, bus.records.neighbours(one.observation.time_ns))
-        except ValueError as error:
+        except ObservationError as error:
             skipped.append(one.refused(str(error)))
             continue
         steps.append(Step(one, _brief(follower, bus, one.observation.time_ns)))

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from core.condition.bus.bus_records import BusRecords
 from core.condition.bus.neighbours import StandingEstimate
+from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
 from core.machines.motor_file import read_motor
 from core.machines.parameters import Motor
@@ -84,7 +85,7 @@ def _standing(member: Member, beside: BusRecords) -> StandingEstimate | None:
         if one.observation is not None:
             try:
                 follower.fold(one.observation, beside.neighbours(one.observation.time_ns))
-            except ValueError:
+            except ObservationError:
                 # A record that cannot be folded tells nothing; of the motor that is followed it is listed.
                 continue
     return follower.standing_estimate()

@@ -8,10 +8,12 @@ import structlog
 
 from core.condition.bus.bus_records import BusRecords
 from core.condition.bus.neighbours import Neighbour, StandingEstimate
+from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
 from core.condition.verdict.condition import Condition, condition_of
 from core.machines.parameters import Motor
 from service.condition.checkpoints import is_kept
+from service.condition.errors import RecordFoldError
 from service.condition.motor_data import MotorHistory, motor_of
 from service.condition.standing import standing_document, standing_estimate
 from service.storage.records import (
@@ -39,7 +41,10 @@ class UnreadableCheckpointError(ValueError):
 
 
 def fold(due: FoldInput, motor: Motor) -> FoldResult:
-    """Fold what is due of a motor. motor: as the motors file has it now. Raises UnreadableCheckpointError."""
+    """Fold what is due of a motor. motor: as the motors file has it now.
+
+    Raises UnreadableCheckpointError, RecordFoldError.
+    """
     folding = _Folding(due, motor)
     folding.run()
     return folding.result()
@@ -71,7 +76,10 @@ class _Folding:
         for at, one in enumerate(observations):
             while events and events[0].time_ns <= times[at]:
                 self._apply(events.pop(0))
-            self._fold(one)
+            try:
+                self._fold(one)
+            except Exception as error:
+                raise RecordFoldError(one.recording_id, f"{type(error).__name__}: {error}") from error
             if at + 1 < len(times) and times[at] < times[at + 1] and is_kept(self._records, last):
                 self._checkpoints.append(Checkpoint(times[at], self._records, self._follower.save()))
         for event in events:
@@ -108,7 +116,7 @@ class _Folding:
         observation = one.observation
         try:
             self._follower.fold(observation, self._bus.neighbours(observation.time_ns))
-        except ValueError as error:
+        except ObservationError as error:
             log.warning("record left out of the condition", recording=one.recording_id, error=str(error))
             return
         said = self._say(observation.time_ns)

@@ -10,6 +10,7 @@ import structlog
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
+from service.condition.errors import RecordFoldError
 from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_recordings
 from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository
@@ -24,7 +25,7 @@ FAILURES = Backoff(first_s=1.0, longest_s=300.0)
 """Before a motor whose task has failed is tried again."""
 
 MOST_FAILURES = 3
-"""After so many in a row, the recording that cannot be observed is left out."""
+"""After so many in a row, the recording that cannot be observed or folded is left out."""
 
 REPORT_S = 60.0
 """Time between two lines of the log on how many recordings are yet to be observed."""
@@ -158,6 +159,10 @@ class ConditionWork:
             (recording, *_) = task.argument.recordings
             log.error("recording is left out of the condition", recording=recording.recording_id)
             self._repository.add_observations([(recording.recording_id, None)])
+            del self._trouble[task.motor]
+        elif isinstance(error, RecordFoldError) and trouble.failures >= MOST_FAILURES:
+            log.error("record left out of the condition", recording=error.recording_id, reason=error.reason)
+            self._repository.leave_out(error.recording_id, f"left out of the condition: {error.reason}")
             del self._trouble[task.motor]
 
     def _report(self, observed: int) -> None:

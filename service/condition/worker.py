@@ -15,6 +15,7 @@ from core.condition.observation import Observation
 from core.diagnosis.errors import DiagnosisError
 from core.machines.parameters import Motor
 from core.recordings import RecordingError, read
+from service.condition.record_times import ImpossibleTimeError, require_possible_time
 from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage.engine import connect
 from service.storage.records import ToObserve
@@ -54,7 +55,7 @@ class ObserveTask:
 def fold_motor(task: FoldTask) -> int:
     """Fold what is due of a motor, for about a round; return how many records that were.
 
-    Raises NotFoundError, SQLAlchemyError.
+    Raises NotFoundError, RecordFoldError, SQLAlchemyError.
     """
     return fold_due(_repository(task.database_url), task.motor, task.round_s)
 
@@ -62,7 +63,8 @@ def fold_motor(task: FoldTask) -> int:
 def fold_due(repository: Repository, motor: Motor, round_s: float = ROUND_S) -> int:
     """Fold what is due of a motor, for about a round; return how many records that were.
 
-    Of two that fold the same motor, the slower begins again. Raises NotFoundError, SQLAlchemyError.
+    Of two that fold the same motor, the slower begins again.
+    Raises NotFoundError, RecordFoldError, SQLAlchemyError.
     """
     from service.condition.folding import UnreadableCheckpointError, fold
 
@@ -98,8 +100,11 @@ def _observed(task: ObserveTask) -> Iterator[tuple[str, Observation | None]]:
     for one in task.recordings:
         try:
             recording = read(task.store.entry(one.digest), most_values=MOST_VALUES)
-            yield one.recording_id, observe(recording, task.motor)
-        except (RecordingError, DiagnosisError, RecordingStoreError) as error:
+            observation = observe(recording, task.motor)
+            if observation is not None:
+                require_possible_time(observation.time_ns, time_ns())
+            yield one.recording_id, observation
+        except (RecordingError, DiagnosisError, RecordingStoreError, ImpossibleTimeError) as error:
             log.warning("recording tells nothing", recording=one.recording_id, reason=str(error))
             yield one.recording_id, None
         if monotonic() >= end_s:

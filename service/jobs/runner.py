@@ -15,6 +15,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
+from service.condition.record_times import ImpossibleTimeError, require_possible_time
 from service.condition.work import ConditionTask, ConditionWork
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
@@ -272,14 +273,23 @@ class JobRunner:
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
             case Diagnosed(diagnosis, recorded_ns, observation):
+                now_ns, left_out = time.time_ns(), None
+                try:
+                    require_possible_time(recorded_ns, now_ns)
+                except ImpossibleTimeError as error:
+                    observation, left_out = None, str(error)
+                    log.warning(
+                        "record left out of the condition", recording=job.recording_id, reason=left_out
+                    )
                 try:
                     kept = self._repository.finish_job(
                         job.id,
                         diagnosis,
                         recorded_ns=recorded_ns,
-                        now_ns=time.time_ns(),
+                        now_ns=now_ns,
                         runner=self._id,
                         observation=observation,
+                        left_out=left_out,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")

@@ -4,6 +4,8 @@ from bisect import bisect_left, bisect_right
 from collections.abc import Iterable
 
 from core.condition.bus.neighbours import Neighbour, neighbour_of
+from core.condition.errors import ObservationError
+from core.condition.measuring.measurement import check
 from core.condition.observation import SAME_SUPPLY_WITHIN_NS, Observation
 from core.machines.parameters import Motor
 
@@ -21,7 +23,7 @@ class BusRecords:
         seen = [
             (observation.time_ns, neighbour_of(motor, observation))
             for motor, observation in records
-            if observation.positive_voltage_V != 0.0
+            if _is_possible(observation)
         ]
         self._seen = sorted(seen, key=lambda one: (one[0], one[1].motor))
         self._times_ns = [time_ns for time_ns, _ in self._seen]
@@ -47,3 +49,11 @@ class BusRecords:
             if neighbour.motor not in nearest or distance_ns < nearest[neighbour.motor][0]:
                 nearest[neighbour.motor] = distance_ns, neighbour
         return [nearest[name][1] for name in sorted(nearest)]
+
+
+def _is_possible(observation: Observation) -> bool:
+    try:
+        check(observation)
+    except ObservationError:
+        return False
+    return True

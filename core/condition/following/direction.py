@@ -101,8 +101,8 @@ class Direction:
 
         Raises
         ------
-        ValueError
-            If a number is missing or infinite, or the motor was not running.
+        ObservationError
+            If a number is missing, infinite or impossible, or the motor was not running.
         """
         header, state = self._header, self._state
         elapsed_s = max(observation.time_ns - header.as_of_ns, 0) * NANOSECONDS if header.recorder else 0.0

@@ -54,9 +54,11 @@ class Follower:
 
         Raises
         ------
+        ObservationError
+            If a number is missing, infinite or impossible, or the motor was not running. The state stays as
+            it was.
         ValueError
-            If a number is missing or infinite, the motor was not running, or the record is earlier than the
-            one before. The state stays as it was.
+            If the record is earlier than the one before. The state stays as it was.
         """
         before = self.as_of_ns
         if before is not None and observation.time_ns < before:

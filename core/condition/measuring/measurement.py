@@ -1,9 +1,10 @@
 """One record as the filter measures it: asymmetries as shares of the positive-sequence voltage."""
 
 from cmath import exp as cexp
-from math import isfinite, pi, sqrt
+from math import pi, sqrt
 from typing import NamedTuple
 
+from core.condition.errors import ObservationError
 from core.condition.observation import Observation
 from core.machines.parameters import Connection, MachineParameters, Motor
 
@@ -130,19 +131,19 @@ def measure(observation: Observation, motor: Motor, scale_ohm: float, elapsed_s:
 
     Raises
     ------
-    ValueError
-        If a number is missing or infinite, or the motor was not running on three phases.
+    ObservationError
+        If a number is missing, infinite or impossible, or the motor was not running on three phases.
     """
     check(observation)
     V1, I1 = observation.positive_voltage_V, observation.positive_current_A
     v2, i1, i2 = observation.negative_voltage_V / V1, I1 / V1, observation.negative_current_A / V1
     if abs(v2) >= LARGEST_UNBALANCE:
-        raise ValueError(
+        raise ObservationError(
             f"negative_voltage_V is {abs(v2):.0%} of positive_voltage_V: expected less than"
             f" {LARGEST_UNBALANCE:.0%}. Check the record's phases and its sequence"
         )
     if scale_ohm * abs(i1) < LEAST_CURRENT:
-        raise ValueError(
+        raise ObservationError(
             f"positive_current_A is {abs(I1):.3g} A at {abs(V1):.4g} V: expected that of a running motor"
         )
     f = observation.frequency_hz
@@ -170,10 +171,28 @@ def measure(observation: Observation, motor: Motor, scale_ohm: float, elapsed_s:
     )
 
 
-_FIELDS = (
-    "frequency_hz", "positive_voltage_V", "negative_voltage_V", "positive_current_A", "negative_current_A",
-    "zero_current_A", "scatter",
-)  # fmt: skip
+LARGEST_VOLTAGE_V = 1e9
+LARGEST_CURRENT_A = 1e9
+LEAST_VOLTAGE_V = 1e-6
+"""Peak values that no motor has; what lies beyond is a fault of the record."""
+FREQUENCIES_HZ = (5.0, 500.0)
+LARGEST_SCATTER = 1.0
+"""The noise is then as large as the voltage."""
+LARGEST_LOAD = 100.0
+LONGEST_RECORDER = 200
+"""Characters of the recorder's name: it is part of every state that is saved."""
+
+_BOUNDS = {
+    "positive_voltage_V": LARGEST_VOLTAGE_V,
+    "negative_voltage_V": LARGEST_VOLTAGE_V,
+    "zero_voltage_V": LARGEST_VOLTAGE_V,
+    "positive_current_A": LARGEST_CURRENT_A,
+    "negative_current_A": LARGEST_CURRENT_A,
+    "zero_current_A": LARGEST_CURRENT_A,
+    "scatter": LARGEST_SCATTER,
+    "load_level": LARGEST_LOAD,
+}
+"""Largest absolute values; a number that is none is beyond them too."""
 
 
 def check(observation: Observation) -> None:
@@ -186,24 +205,27 @@ def check(observation: Observation) -> None:
 
     Raises
     ------
-    ValueError
-        If a number is missing, infinite or impossible; the message names it.
+    ObservationError
+        If a number is missing, infinite or impossible, or a text too long; the message names it.
     """
-    o = observation
-    # One sum tells whether anything is wrong; only then is it looked for.
-    total = abs(o.positive_voltage_V) + abs(o.negative_voltage_V) + abs(o.positive_current_A)
-    total += abs(o.negative_current_A) + abs(o.zero_current_A) + o.frequency_hz + o.scatter
-    if not isfinite(total if o.zero_voltage_V is None else total + abs(o.zero_voltage_V)):
-        for name in (*_FIELDS, "zero_voltage_V"):
-            value = getattr(observation, name)
-            if value is not None and not isfinite(abs(value)):
-                raise ValueError(f"{name} is {value}: expected a finite number")
-        raise ValueError("the observation's numbers are too large to be added")
-    if o.scatter < 0.0:
-        raise ValueError(f"scatter is {o.scatter}: expected a variance, not below 0")
-    if o.frequency_hz <= 0.0:
-        raise ValueError(f"frequency_hz is {o.frequency_hz}: expected more than 0 Hz")
-    if o.positive_voltage_V == 0.0 or not isfinite(1.0 / abs(o.positive_voltage_V)):
-        raise ValueError(
-            f"positive_voltage_V is {o.positive_voltage_V}: expected the voltage of a running motor"
+    for name, largest in _BOUNDS.items():
+        value = getattr(observation, name)
+        if value is not None and not (abs(value.real) <= largest and abs(value.imag) <= largest):
+            raise ObservationError(f"{name} is {value:.4g}: expected a finite number, at most {largest:.4g}")
+    lowest, highest = FREQUENCIES_HZ
+    if not lowest <= observation.frequency_hz <= highest:
+        raise ObservationError(
+            f"frequency_hz is {observation.frequency_hz:.4g}: expected {lowest:g} Hz to {highest:g} Hz"
+        )
+    if observation.scatter < 0.0:
+        raise ObservationError(f"scatter is {observation.scatter}: expected a variance, not below 0")
+    if observation.cycles < 1:
+        raise ObservationError(f"cycles is {observation.cycles}: expected at least 1")
+    if len(observation.recorder) > LONGEST_RECORDER:
+        raise ObservationError(
+            f"recorder has {len(observation.recorder)} characters: expected at most {LONGEST_RECORDER}"
+        )
+    if abs(observation.positive_voltage_V) < LEAST_VOLTAGE_V:
+        raise ObservationError(
+            f"positive_voltage_V is {observation.positive_voltage_V:.4g}: expected that of a running motor"
         )

@@ -1,12 +1,14 @@
 """An observation of a motor's condition from each of its records, beside the record's own diagnosis."""
 
 from dataclasses import dataclass
+from hashlib import sha256
 from math import isfinite, sqrt
 from time import perf_counter
 
 import numpy as np
 
 from core.condition.measuring.impedance import negative_sequence_impedance
+from core.condition.measuring.measurement import LONGEST_RECORDER
 from core.condition.observation import Observation, VoltageChannels
 from core.diagnosis.acceptance import Accepted, accept
 from core.diagnosis.baseline import Baseline
@@ -173,14 +175,18 @@ def recorder_of(recording: Recording, channels: tuple[Channel, ...]) -> str:
     Returns
     -------
     str
-        The name.
+        The name. A long one is cut and ends with a digest of the whole.
     """
     place = "/".join(word for word in (recording.station, recording.device) if word)
     ratios = [
         channel.name + ("" if channel.transformer_ratio is None else f" {channel.transformer_ratio:.6g}:1")
         for channel in channels
     ]
-    return ", ".join([*([place] if place else []), *ratios])
+    name = ", ".join([*([place] if place else []), *ratios])
+    if len(name) <= LONGEST_RECORDER:
+        return name
+    digest = sha256(name.encode(errors="surrogatepass")).hexdigest()[:16]
+    return f"{name[: LONGEST_RECORDER - len(digest) - 1]} {digest}"
 
 
 def _voltage_channels(accepted: Accepted) -> VoltageChannels | None:

@@ -115,12 +115,14 @@ class JobRows(Sessions):
         now_ns: int,
         runner: str,
         observation: Observation | None = None,
+        left_out: str | None = None,
     ) -> bool:
         """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
 
         Again changes nothing. recorded_ns: trigger time written in the record.  observation: what the record
-        tells of its motor's condition; None where it tells nothing. Returns False, and keeps nothing, where
-        the job is not the runner's any more. Raises NotFoundError, UnstorableDiagnosisError.
+        tells of its motor's condition; None where it tells nothing.  left_out: why it does not count there,
+        for people. Returns False, and keeps nothing, where the job is not the runner's any more.
+        Raises NotFoundError, UnstorableDiagnosisError.
         """
         with self._write() as session:
             row = found(session, JobRow, job_id, "job", lock=True)
@@ -135,7 +137,7 @@ class JobRows(Sessions):
             session.add(_diagnosis_row(row, recording.motor, diagnosis, recorded_ns, now_ns))
             _end(row, JobState.DONE, None, now_ns)
             recording.state = RecordingState.DIAGNOSED
-            recording.reason = None
+            recording.reason = None if left_out is None else storable(left_out)
             recording.recorded_ns = recorded_ns
             withdraw_clock(recording)
             session.flush()

@@ -129,6 +129,14 @@ class ObservationRows(Sessions):
                     number += 1
         return number
 
+    def leave_out(self, recording_id: str, reason: str) -> None:
+        """Have a motor's condition follow without one of its recordings, which is kept with the reason."""
+        with self._write() as session:
+            forget_observation(session, recording_id)
+            recording = session.get(RecordingRow, recording_id)
+            if recording is not None:
+                recording.reason = storable(reason)
+
     def backlog(self) -> Backlog:
         """Return how much the conditions are behind the recordings."""
         unobserved = select(func.count()).select_from(UnobservedRecordingRow)

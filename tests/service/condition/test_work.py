@@ -1,5 +1,6 @@
 """Workers that have nothing to diagnose fold conditions, and observe recordings from before."""
 
+import pickle
 import time
 from collections.abc import Iterator
 from concurrent.futures import Future
@@ -7,6 +8,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,9 +16,13 @@ from alembic import command
 from sqlalchemy import Engine
 from sqlalchemy.orm import Session
 
+from core.condition.following.follower import Follower
+from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from core.recordings.comtrade_writer import write
+from core.time_stamps import nanoseconds
 from service.condition import work
+from service.condition.errors import RecordFoldError
 from service.condition.work import ConditionWork
 from service.condition.worker import ObserveTask
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Outcome
@@ -38,13 +44,18 @@ from testing.service.plants import NOW_NS, healthy, motor
 from testing.waiting import wait_until
 
 RECORDS = records_of_a_motor(12)
+WRONG_CLOCKS = {
+    100: replace(RECORDS[0], time_ns=nanoseconds("2095-01-01T00:00:00Z")),
+    101: replace(RECORDS[0], time_ns=HOUR_NS),
+}
 LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, backoff=Backoff(0.01, 0.1), lease_s=30.0)
 MOTORS = {name: motor(name) for name in (PUMP, FAN)}
 
 
 def observe_as_told(task: DiagnosisTask) -> Outcome:
     """A task that stands in for the diagnosis: the file says which of RECORDS it is."""
-    observation = RECORDS[int(task.entry.read_text())]
+    at = int(task.entry.read_text())
+    observation = WRONG_CLOCKS[at] if at in WRONG_CLOCKS else RECORDS[at]
     return Diagnosed(healthy(), observation.time_ns, observation)
 
 
@@ -90,13 +101,26 @@ def test_what_comes_and_what_a_database_of_before_holds_ends_in_conditions(
     for at in reversed(range(len(RECORDS))):
         stored = store.store({"E.CFF": str(at).encode()})
         repository.add_recording(stored, motor=FAN, now_ns=time.time_ns())
+    wrong_clocks = [
+        repository.add_recording(
+            store.store({"E.CFF": str(at).encode()}), motor=FAN, now_ns=time.time_ns()
+        ).recording.id
+        for at in WRONG_CLOCKS
+    ]
     with running(repository, store, database_url) as runner:
-        wait_until(lambda: repository.counts().jobs == {JobState.DONE: 4 + len(RECORDS)}, within_s=60)
+        done = 4 + len(RECORDS) + len(wrong_clocks)
+        wait_until(lambda: repository.counts().jobs == {JobState.DONE: done}, within_s=60)
         wait_until(lambda: repository.backlog() == Backlog(0, 0), within_s=60)
         assert runner.problem() is None
     points = {name: repository.condition_trend(name, limit=100).items for name in (PUMP, FAN)}
     assert [point.time_ns for point in points[FAN]] == [record.time_ns for record in RECORDS]
     assert repository.condition(FAN).as_of_ns == RECORDS[-1].time_ns
+    for id_, wrong in zip(wrong_clocks, ("2095", "before the year 2000"), strict=True):
+        assert repository.observation(id_) is None
+        reason = repository.recording(id_).reason
+        assert reason is not None
+        assert wrong in reason
+        assert "set the relay's clock" in reason
     assert len(points[PUMP]) == 3
     assert repository.observation(unreadable) is None
     found = repository.observation(points[PUMP][0].recording_id)
@@ -182,3 +206,38 @@ def test_a_recording_that_brings_its_worker_down_is_left_out_at_last(
         conditions.ended(task, failed(RuntimeError("its worker died")))
     assert asked == [ids, ids[:1], ids[:1]]
     assert repository.backlog().unobserved_recordings == 2
+
+
+def test_a_record_that_cannot_be_folded_is_left_out_at_last_and_the_others_count(
+    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
+    recorder = Recorder(repository, store)
+    ids = recorder.record_all(RECORDS[:5])
+    recorder.record(RECORDS[0], FAN)
+    refuse = RECORDS[3].time_ns
+    fold = Follower.fold
+
+    def failing(follower: Follower, observation: Observation, *others: Any) -> None:
+        if observation.time_ns == refuse:
+            raise OverflowError("too large")
+        fold(follower, observation, *others)
+
+    monkeypatch.setattr(Follower, "fold", failing)
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    tries = 0
+    while (task := conditions.next_task()) is not None:
+        tries += 1
+        assert tries < 10
+        future: Future[int] = Future()
+        try:
+            future.set_result(task.function(task.argument))
+        except RecordFoldError as error:
+            future.set_exception(pickle.loads(pickle.dumps(error)))  # noqa: S301 - as from a worker
+        conditions.ended(task, future)
+    assert repository.condition(PUMP).as_of_ns == RECORDS[4].time_ns
+    assert repository.condition(FAN).as_of_ns == RECORDS[0].time_ns
+    points = repository.condition_trend(PUMP, limit=10).items
+    assert [point.recording_id for point in points] == [*ids[:3], ids[4]]
+    reason = repository.recording(ids[3]).reason
+    assert reason == "left out of the condition: OverflowError: too large"

@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.condition.bus.bus_records import BusRecords
+from core.condition.errors import ObservationError
 from core.condition.events import Event, EventKind
 from core.condition.following.follower import Follower
 from core.condition.kinds import State
@@ -64,6 +66,37 @@ def test_a_missing_number_is_named_and_leaves_the_state_as_it_was() -> None:
     with pytest.raises(ValueError, match="negative_current_A"):
         follower.fold(record)
     assert follower.save() == before
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("negative_current_A", 1e200 + 0j),
+        ("zero_voltage_V", 1e12 + 0j),
+        ("positive_voltage_V", 0j),
+        ("frequency_hz", 1e9),
+        ("frequency_hz", float("nan")),
+        ("scatter", 1e300),
+        ("scatter", -1.0),
+        ("load_level", float("nan")),
+        ("recorder", "relay" * 2_000_000),
+        ("cycles", 0),
+    ],
+)
+def test_what_no_record_can_have_is_named_and_leaves_the_state_as_it_was(field: str, value: object) -> None:
+    follower = follow(healthy_records(12))
+    before = follower.save()
+    record = replace(healthy_records(13)[-1], **{field: value})  # type: ignore[arg-type] # any field
+    with pytest.raises(ObservationError, match=field):
+        follower.fold(record)
+    assert follower.save() == before
+
+
+def test_an_impossible_record_of_a_neighbour_is_not_compared_with() -> None:
+    (record,) = healthy_records(1)
+    absurd = replace(record, negative_voltage_V=1e200 + 0j)
+    assert not BusRecords([(MOTOR, absurd)]).neighbours(record.time_ns)
+    assert BusRecords([(MOTOR, record)]).neighbours(record.time_ns)
 
 
 def test_a_record_that_comes_late_is_refused() -> None:
