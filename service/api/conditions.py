@@ -112,16 +112,25 @@ def restart_reference(
 
 
 def _add(context: ApiContext, motor: str, kind: EventKind, text: str, by: str, time_ns: int | None) -> Note:
+    if kind is EventKind.PARAMETERS_EDITED:
+        raise _refused(
+            "body.kind",
+            "what is edited in the motors file is noted by the service itself when it starts: edit the file"
+            " and restart the service, or tell of it with the kind 'note'",
+        )
     now_ns = time.time_ns()
     if time_ns is None:
         time_ns = now_ns
     if time_ns > now_ns + FURTHEST_AHEAD_NS:
-        message = f"expected a time at most a day ahead of now, found {rfc3339(time_ns)}"
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-            f"body.time: {message}",
-            errors=[FieldError(location="body.time", message=message)],
-        )
+        raise _refused("body.time", f"expected a time at most a day ahead of now, found {rfc3339(time_ns)}")
     event = context.repository.add_event(motor, Event(time_ns, kind, text), by=by, now_ns=now_ns)
     context.on_new_job()
     return Note.model_validate(event)
+
+
+def _refused(location: str, message: str) -> ProblemError:
+    return ProblemError(
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        f"{location}: {message}",
+        errors=[FieldError(location=location, message=message)],
+    )

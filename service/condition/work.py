@@ -27,6 +27,9 @@ FAILURES = Backoff(first_s=1.0, longest_s=300.0)
 MOST_FAILURES = 3
 """After so many in a row, the recording that cannot be observed or folded is left out."""
 
+HELD_S = 600.0
+"""Time between two folds of a motor while recordings of its bus are yet to be observed."""
+
 REPORT_S = 60.0
 """Time between two lines of the log on how many recordings are yet to be observed."""
 
@@ -82,6 +85,8 @@ class ConditionWork:
         # Services that share a database begin with different motors, and seldom fold the same one.
         self._latest = choice(sorted(motors)) if motors else ""  # noqa: S311 - nothing to keep secret
         self._all_observed = False
+        self._begun_s = time.monotonic()
+        self._folded_s: dict[str, float] = {}
         self._progress = _Progress()
 
     def next_task(self) -> ConditionTask | None:
@@ -121,11 +126,20 @@ class ConditionWork:
     def _next_fold(self) -> ConditionTask | None:
         """Return the next motor to fold. They take turns: none waits until another has no more to do."""
         due = [motor for motor in self._repository.motors_to_fold() if self._is_free(motor)]
+        if due and not self._all_observed:
+            # Each recording that is yet to be observed would have them folded again.
+            awaiting = self._repository.motors_awaiting_observations()
+            now_s = time.monotonic()
+            due = [one for one in due if one not in awaiting or now_s >= self._held_until_s(one)]
         if not due:
             return None
         motor = next((one for one in due if one > self._latest), due[0])
         self._latest = motor
+        self._folded_s[motor] = time.monotonic()
         return ConditionTask(motor, fold_motor, FoldTask(self._database_url, self._motors[motor]))
+
+    def _held_until_s(self, motor: str) -> float:
+        return self._folded_s.get(motor, self._begun_s) + HELD_S
 
     def _next_observation(self) -> ConditionTask | None:
         if self._all_observed:

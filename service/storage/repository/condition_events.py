@@ -36,7 +36,9 @@ class ConditionEventRows(Sessions):
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
             row = _event(session, motor, event_id)
-            if row.withdrawn_ns is not None or row.by == MOTORS_FILE:
+            # A person may be called as the file is, but tells of no edit.
+            is_of_the_file = row.kind is EventKind.PARAMETERS_EDITED and row.by == MOTORS_FILE
+            if row.withdrawn_ns is not None or is_of_the_file:
                 present = "withdrawn" if row.withdrawn_ns is not None else "what the motors file tells"
                 raise StateConflictError("note", event_id, present=present, wanted="withdrawn")
             row.withdrawn_ns, row.withdrawn_by, row.withdrawn_reason = now_ns, storable(by), storable(reason)

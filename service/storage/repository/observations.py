@@ -98,6 +98,15 @@ class ObservationRows(Sessions):
             of_motor = exists().where(UnobservedRecordingRow.motor == MotorRow.name)
             return tuple(session.scalars(select(MotorRow.name).where(of_motor).order_by(MotorRow.name)))
 
+    def motors_awaiting_observations(self) -> frozenset[str]:
+        """Return the motors that have recordings to observe, and the others of their buses."""
+        with self._read() as session:
+            of_motor = exists().where(UnobservedRecordingRow.motor == MotorRow.name)
+            waiting = session.execute(select(MotorRow.name, MotorRow.bus).where(of_motor)).all()
+            buses = {bus for _, bus in waiting if bus is not None}
+            beside = session.scalars(select(MotorRow.name).where(MotorRow.bus.in_(buses)))
+            return frozenset(name for name, _ in waiting) | frozenset(beside)
+
     def recordings_to_observe(self, motor: str, limit: int) -> tuple[ToObserve, ...]:
         """Return some of a motor's recordings that are yet to be observed, oldest first."""
         query = (

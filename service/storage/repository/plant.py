@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
-from sqlalchemy import select, update
+from sqlalchemy import delete, select, update
 
 from service.plant import Plant, PlantMotor, Schedule
 from service.storage.engine import one_at_a_time
-from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow
+from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow, UnobservedRecordingRow
 from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
 from service.storage.repository.conditions import new_condition
 from service.storage.repository.fold_marks import EARLIEST_NS, mark
@@ -18,7 +18,8 @@ class PlantRows(Sessions):
     def sync_plant(self, plant: Plant) -> None:
         """Make the tables say what the plant's files say.
 
-        What left the plant is put out of service, not deleted: its recordings stay. Motors of a bus that
+        What left the plant is put out of service, not deleted: its recordings stay, and those
+        of a motor that are yet to be observed never are. Motors of a bus that
         others joined or left are folded anew, because what its motors see is compared.
         """
         with self._write() as session:
@@ -51,6 +52,11 @@ class PlantRows(Sessions):
                     )
                 )
             session.flush()
+            # Nobody observes them, and a rule of retention waits until they are observed.
+            out_of_service = select(MotorRow.name).where(MotorRow.in_service.is_(False))
+            session.execute(
+                delete(UnobservedRecordingRow).where(UnobservedRecordingRow.motor.in_(out_of_service))
+            )
             for name in _of_changed_buses(buses_before, plant):
                 mark(session, name, EARLIEST_NS)
             for motor in plant.motors:

@@ -297,6 +297,21 @@ def test_what_the_motors_file_tells_is_not_withdrawn(client: httpx.Client, repos
     assert "is what the motors file tells" in refused.json()["detail"]
 
 
+def test_a_person_who_is_called_as_the_file_is_withdraws_a_note(client: httpx.Client) -> None:
+    where = client.post(f"{MOTOR}/notes", json={**NOTE, "by": MOTORS_FILE}).headers["location"]
+    withdrawal = {"reason": "it was FAN-A2", "by": MOTORS_FILE}
+    assert client.post(f"{where}/withdrawal", json=withdrawal).status_code == 200
+
+
+def test_an_edit_of_the_motors_file_is_told_by_editing_it(client: httpx.Client) -> None:
+    refused = client.post(f"{MOTOR}/notes", json={**NOTE, "kind": "parameters-edited"})
+    assert refused.status_code == 422
+    (error,) = refused.json()["errors"]
+    assert error["location"] == "body.kind"
+    assert "edit the file and restart the service" in error["message"]
+    assert client.get(f"{MOTOR}/notes").json()["items"] == []
+
+
 def test_a_reference_is_restarted_with_a_reason(client: httpx.Client, repository: Repository) -> None:
     answer = client.post(f"{MOTOR}/reference", json={"reason": "surge test passed", "by": "A. Miller"})
     assert answer.status_code == 201

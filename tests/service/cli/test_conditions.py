@@ -190,6 +190,7 @@ def test_notes_are_taken_and_shown(mcc: Mcc, repository: Repository) -> None:
         (("note", "PUMP-A1", "x" * 501), 1, "at most 500 characters"),
         (("note", "PUMP-A1", "hums", "--time", "yesterday"), 1, "body.time"),
         (("note", "PUMP-A1", "hums", "--kind", "exploded"), 2, "exploded"),
+        (("note", "PUMP-A1", "hums", "--kind", "parameters-edited"), 1, "edit the file and restart"),
         (("restart-reference", "PUMP-A1"), 2, "--reason"),
         (("restart-reference", "PUMP-A1", "--reason", " "), 1, "--reason: expected a few words, found none"),
         (("withdraw-note", "PUMP-A1", "1", "--reason", "wrong"), 1, "note_id"),

@@ -24,7 +24,7 @@ from core.time_stamps import nanoseconds
 from service.condition import work
 from service.condition.errors import RecordFoldError
 from service.condition.work import ConditionWork
-from service.condition.worker import ObserveTask
+from service.condition.worker import FoldTask, ObserveTask
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Outcome
 from service.jobs.runner import JobLimits
 from service.jobs.worker_process import follow_service
@@ -38,7 +38,7 @@ from service.timing.backoff import Backoff
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import recording as waveforms
 from testing.machines.phase_circuits import running as operating
-from testing.service.following import FAN, PUMP, Recorder, note_motors
+from testing.service.following import FAN, PUMP, Recorder, note_motors, on_one_bus
 from testing.service.observations import HOUR_NS, records_of_a_motor
 from testing.service.plants import NOW_NS, healthy, motor
 from testing.waiting import wait_until
@@ -241,3 +241,36 @@ def test_a_record_that_cannot_be_folded_is_left_out_at_last_and_the_others_count
     assert [point.recording_id for point in points] == [*ids[:3], ids[4]]
     reason = repository.recording(ids[3]).reason
     assert reason == "left out of the condition: OverflowError: too large"
+
+
+def test_motors_of_a_bus_are_folded_once_all_its_recordings_are_observed(
+    repository: Repository,
+    store: RecordingStore,
+    database_url: str,
+    engine: Engine,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    repository.sync_plant(on_one_bus())
+    recorder = Recorder(repository, store)
+    waiting = recorder.record(None)
+    recorder.record(RECORDS[0], FAN)
+    with Session(engine) as session, session.begin():
+        session.add(UnobservedRecordingRow(recording_id=waiting, motor=PUMP, recorded_ns=NOW_NS))
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    task = conditions.next_task()
+    assert task is not None
+    assert isinstance(task.argument, ObserveTask)
+    assert conditions.next_task() is None, "each observation of the pump would have the fan folded again"
+    repository.add_observations([(waiting, RECORDS[0])])
+    observed: Future[int] = Future()
+    observed.set_result(1)
+    conditions.ended(task, observed)
+    given = [conditions.next_task() for _ in range(3)]
+    assert sorted(task.motor for task in given if task is not None) == [FAN, PUMP]
+
+    monkeypatch.setattr(work, "HELD_S", 0.0)
+    with Session(engine) as session, session.begin():
+        session.add(UnobservedRecordingRow(recording_id=waiting, motor=PUMP, recorded_ns=NOW_NS))
+    task = ConditionWork(repository, store, MOTORS, database_url=database_url).next_task()
+    assert task is not None
+    assert isinstance(task.argument, FoldTask), "new records do not wait long"

@@ -283,6 +283,24 @@ def test_recordings_from_before_are_observed_once(
     assert len(began(repository).observations) == 2
 
 
+def test_recordings_of_a_motor_that_left_the_plant_are_not_waited_for(
+    repository: Repository, recorder: Recorder, engine: Engine
+) -> None:
+    ids = {name: recorder.record(None, name) for name in (PUMP, FAN)}
+    with Session(engine) as session, session.begin():
+        session.add_all(
+            UnobservedRecordingRow(recording_id=id_, motor=name, recorded_ns=NOW_NS)
+            for name, id_ in ids.items()
+        )
+    plant = on_one_bus()
+    repository.sync_plant(plant)
+    assert repository.motors_to_observe() == (FAN, PUMP)
+    repository.sync_plant(replace(plant, motors=plant.motors[:1]))
+    (left,) = plant.motors[:1]
+    assert repository.motors_to_observe() == (left.name,)
+    assert repository.motors_awaiting_observations() == {PUMP, FAN}, "both on one bus"
+
+
 def test_motors_of_a_bus_that_another_joins_are_folded_anew(
     repository: Repository, recorder: Recorder
 ) -> None:
