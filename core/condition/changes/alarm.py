@@ -24,8 +24,6 @@ RUNNING: Final = 3
 SPACED: Final = 8
 SETTLED: Final = 64
 """Records after the alarm from which a channel's error that has been named is lived with."""
-MACHINE: Final = 0.06
-"""Relative standard deviation of what a level adds to y: the figures of a motor's file are off."""
 TAIL: Final = 0.025
 GRID: Final = 400
 WINDOW: Final = 256
@@ -276,17 +274,18 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     told: tuple[tuple[int, float], ...] = ()
     table, out, evidence = np.zeros((RECENT, 3)), np.zeros(5), np.zeros(len(PATHS))
     for p in range(len(PATHS)):
-        u, direction = signature(known, hypotheses[winding * len(PATHS) + p])
+        hypothesis = hypotheses[winding * len(PATHS) + p]
+        u, direction = signature(known, hypothesis)
         first = levels_since(state, recent, reference, u, one.time_ns, table)
         taken = int(state.recent) - first
         value, wandering = level_now(table[:taken])
         along(one, 0, bool(drifts), u, out)
-        evidence[p] = _evidence(out, direction, float(hypotheses[winding * len(PATHS) + p].share), drifts)
+        evidence[p] = _evidence(out, direction, float(hypothesis.share), drifts)
         along(one, 0, False, u, out)  # noqa: FBT003
         a, b, c = out[0], out[1], out[2]
         information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
         values.append(value)
-        scale = MACHINE**2 + known[2] ** 2
+        scale = hypothesis.scale**2 + known[2] ** 2
         spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
         if p == likeliest:
             times = [int(recent[first + i].time_ns) for i in range(taken)]

@@ -15,6 +15,7 @@ from core.condition.measuring.signatures import (
     shorted_turns,
     terminal_turn,
     turns_angle_slope,
+    turns_size_slope,
     voltage_channels,
 )
 from core.condition.observation import VoltageChannels
@@ -49,6 +50,9 @@ JOINT_DIRECTION: Final = 0.05
 """Standard deviations of the signatures' directions [rad]. Z2 leaves more of those in proportion to it
 uncertain, and R_s over X_ls, of relative standard deviation STATOR, more of that of shorted turns. A channel
 errs in phase as well as in ratio; a joint is a resistance."""
+MACHINE, RESISTANCE = 0.06, 0.12
+"""Relative standard deviations of the leakage and of R_s, which a motor's file gives at some temperature.
+What a level adds to y goes with them."""
 IMPEDANCE: Final = 0.1
 LOAD: Final = 0.75
 """Efficiency times power factor of a motor at rated load, from which its rated current follows."""
@@ -83,6 +87,8 @@ class Hypothesis(Protocol):
         Share of this place and path in its cause before.
     unit : float
         Size as it is told, per size.
+    scale : float
+        Relative standard deviation of the signature's size.
     """
 
     cause: int
@@ -97,6 +103,7 @@ class Hypothesis(Protocol):
     one_sided: bool
     share: float
     unit: float
+    scale: float
 
 
 HYPOTHESIS: Final = np.dtype(
@@ -113,6 +120,7 @@ HYPOTHESIS: Final = np.dtype(
         ("one_sided", "?"),
         ("share", "f8"),
         ("unit", "f8"),
+        ("scale", "f8"),
     ]
 )
 
@@ -146,6 +154,7 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
         for p, share in zip(PATHS, PATH_SHARES, strict=True):
             u = shorted_turns(motor, x, p)
             direction = hypot(TURNS_DIRECTION, STATOR * turns_angle_slope(motor, p))
+            scale = hypot(MACHINE, RESISTANCE * turns_size_slope(motor, p))
             rows.append(
                 (
                     Cause.SHORTED_TURNS,
@@ -160,6 +169,7 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
                     True,
                     share / 3.0,
                     1.0,
+                    scale,
                 )
             )
     for x, e in enumerate(voltage_channels(channels)):
@@ -181,6 +191,7 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
                 False,
                 1.0 / 3.0,
                 1.0,
+                0.0,
             )
         )
     for x in range(3):
@@ -201,6 +212,7 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
                 False,
                 1.0 / 3.0,
                 1.0,
+                0.0,
             )
         )
     rated = rated_current(motor, z)
@@ -210,7 +222,21 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
         u = A**x / 3.0
         share = 1.0 / 6.0 if delta else 1.0 / 3.0
         rows.append(
-            (Cause.JOINT, x, 0.0, 1, u, none, JOINT_DROP / rated, JOINT_DIRECTION, False, True, share, rated)
+            (
+                Cause.JOINT,
+                x,
+                0.0,
+                1,
+                u,
+                none,
+                JOINT_DROP / rated,
+                JOINT_DIRECTION,
+                False,
+                True,
+                share,
+                rated,
+                0.0,
+            )
         )
         if delta:
             rows.append(
@@ -227,6 +253,7 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
                     True,
                     share,
                     rated,
+                    0.0,
                 )
             )
     return np.array(rows, HYPOTHESIS).view(np.recarray)

@@ -61,6 +61,27 @@ def turns_angle_slope(motor: Motor, path_ratio: float) -> float:
     return R * X / (R * R + X * X)
 
 
+def turns_size_slope(motor: Motor, path_ratio: float) -> float:
+    """Return how fast the size of shorted turns' signature falls as R_s grows.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+    path_ratio : float
+        Resistance p of the path over that of the shorted turns.
+
+    Returns
+    -------
+    float
+        cos^2 phi, phi the angle of R_s (1 + p) + j X_ls [relative change per relative change].
+    """
+    machine, f = motor.parameters, motor.nameplate.rated_frequency_Hz
+    R = WARM * machine.stator_resistance_ohm * (1.0 + path_ratio)
+    X = 2.0 * pi * f * machine.stator_leakage_H
+    return R * R / (R * R + X * X)
+
+
 def terminal_turn(motor: Motor) -> complex:
     """Return the factor from V2/V1 of the terminals to that of the windings.
 

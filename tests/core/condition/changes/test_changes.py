@@ -1,5 +1,7 @@
 """What changes is seen and named, whatever the connection, the sequence and the phase."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from core.condition.kinds import Kind
 from core.machines.parameters import Connection
 from core.machines.winding_frame import terminal_winding
 from core.signals.sequence import PhaseSequence
-from tests.core.condition.simulated import Plant, follow, motor_of
+from tests.core.condition.simulated import PARAMETERS, Plant, follow, motor_of
 
 BEFORE, AFTER = 60, 12
 FRAMES = [(c, s) for c in Connection for s in PhaseSequence]
@@ -99,6 +101,23 @@ def test_the_level_of_a_growth_that_has_stopped_stays(seed: int) -> None:
     low, high = assessment.change.level.ci95
     assert low < 0.01 < high
     assert high < 0.015
+
+
+@pytest.mark.parametrize("ratio", [0.85, 1.25])
+def test_the_interval_holds_a_level_whose_winding_is_warmer_or_colder_than_the_file(ratio: float) -> None:
+    plant = Plant(path=3.0)
+    motor = motor_of()
+    R_s = ratio * PARAMETERS.stator_resistance_ohm
+    motor = replace(motor, parameters=replace(PARAMETERS, stator_resistance_ohm=R_s))
+    follower = follow(motor, plant.records(BEFORE))
+    plant.level = 0.01
+    for record in plant.records(60):
+        follower.fold(record)
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    low, high = assessment.change.level.ci95
+    assert low < 0.01 < high
 
 
 def test_a_supply_that_jumps_changes_nothing() -> None:
