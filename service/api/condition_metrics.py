@@ -8,6 +8,7 @@ from prometheus_client.registry import Collector
 
 from core.condition.kinds import State
 from core.units import NANOSECONDS_PER_SECOND
+from service.storage.records import ConditionEntry
 from service.storage.repository import Repository
 
 LABELS = ["motor"]
@@ -36,6 +37,21 @@ class ConditionMetrics(Collector):
             "Change of the fault level since the reference",
             labels=LABELS,
         )
+        kind = GaugeMetricFamily(
+            "mcc_motor_kind",
+            "1 for the kind of what has changed or stands out in the motor",
+            labels=["motor", "kind"],
+        )
+        interval = GaugeMetricFamily(
+            "mcc_motor_fault_level_bound_ratio",
+            "Bounds of the 95 % interval of the fault level in all",
+            labels=["motor", "bound"],
+        )
+        forecast = GaugeMetricFamily(
+            "mcc_motor_forecast_days",
+            "Days from the latest record until the fault level reaches the limit, by their quantile",
+            labels=["motor", "quantile"],
+        )
         as_of = GaugeMetricFamily(
             "mcc_motor_condition_timestamp_seconds",
             "Time of the latest record in the motor's condition (UNIX time)",
@@ -46,6 +62,11 @@ class ConditionMetrics(Collector):
             states[found.state] += 1
             for one in State:
                 state.add_metric([motor, one], found.state is one)
+            kind.add_metric([motor, found.kind], 1)
+            for bound, value in zip(("low", "high"), found.mu_f_ci95 or (), strict=False):
+                interval.add_metric([motor, bound], value)
+            for quantile, days in zip(("0.1", "0.5", "0.9"), _forecast_days(found), strict=False):
+                forecast.add_metric([motor, quantile], days)
             if found.mu_f is not None:
                 level.add_metric([motor], found.mu_f)
             if found.change is not None:
@@ -54,7 +75,7 @@ class ConditionMetrics(Collector):
                 as_of.add_metric([motor], found.as_of_ns / NANOSECONDS_PER_SECOND)
         for one in State:
             number.add_metric([one], states[one])
-        yield from (number, state, level, change, as_of)
+        yield from (number, state, kind, level, interval, change, forecast, as_of)
         backlog = self._repository.backlog()
         yield GaugeMetricFamily(
             "mcc_recordings_to_observe",
@@ -66,3 +87,9 @@ class ConditionMetrics(Collector):
             "Motors whose condition is about to follow a change",
             value=backlog.motors_to_fold,
         )
+
+
+def _forecast_days(entry: ConditionEntry) -> tuple[float, ...]:
+    forecast = (entry.document or {}).get("forecast")
+    days = forecast.get("days") if isinstance(forecast, dict) else None
+    return tuple(days or ())

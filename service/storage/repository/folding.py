@@ -39,6 +39,7 @@ from service.storage.repository.condition_alarms import settle_alarm
 from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus
 from service.storage.repository.observations import record_observation
 from service.storage.repository.sessions import Sessions, found, only, record_of
+from service.storage.repository.standing_changes import TOLD, is_material
 
 _OBSERVATIONS = Base.metadata.tables["observations"]
 """The table, not the class: statements for many rows at once look at no object of the session."""
@@ -109,9 +110,11 @@ class FoldingRows(Sessions):
                     setattr(row, name, figures[name])
                 motor = found(session, MotorRow, fold.motor, "motor")
                 settle_alarm(session, motor, result.condition, now_ns=now_ns)
-                if row.standing != result.standing:
-                    row.standing = result.standing
+                told = None if row.standing is None else row.standing.get(TOLD)
+                if is_material(told, result.standing):
+                    told = result.standing
                     _mark_latest_of_bus(session, fold.motor)
+                row.standing = None if result.standing is None else {**result.standing, TOLD: told}
             return True
 
     def forget_checkpoints(self, motor: str) -> None:

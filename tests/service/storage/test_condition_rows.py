@@ -339,3 +339,30 @@ def test_motors_of_a_bus_that_another_joins_are_folded_anew(
 
 def on_buses(plant: Plant, buses: dict[str, str]) -> Plant:
     return replace(plant, motors=tuple(replace(one, bus=buses[one.name]) for one in plant.motors))
+
+
+def test_the_others_of_a_bus_are_judged_anew_where_the_standing_asymmetry_has_really_changed(
+    repository: Repository, recorder: Recorder
+) -> None:
+    repository.sync_plant(on_one_bus())
+    estimate = {
+        "sequence": "abc",
+        "asymmetry": [1e-3, 2e-3],
+        "covariance": [[1e-8, 0.0], [0.0, 1e-8]],
+        "channels": [[1e-5, 0.0], [0.0, 1e-5]],
+        "others": 1,
+    }
+    recorder.record(observation(0), FAN)
+    fold = began(repository, FAN)
+    repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
+    # The third differs little from the second, and much from the one that the fan was judged with.
+    for hour, (asymmetry, marked) in enumerate([(1e-3, True), (1.015e-3, False), (1.03e-3, True)], start=1):
+        recorder.record(observation(hour))
+        fold = began(repository)
+        now = {**estimate, "asymmetry": [asymmetry, 2e-3]}
+        repository.finish_fold(fold, replace(nothing_more(fold), standing=now), now_ns=NOW_NS)
+        assert repository.motors_to_fold() == ((FAN,) if marked else ())
+        while (fan := repository.begin_fold(FAN, 10)) is not None:
+            assert fan.bus[0].standing is not None
+            assert fan.bus[0].standing["asymmetry"] == [asymmetry, 2e-3]
+            repository.finish_fold(fan, nothing_more(fan), now_ns=NOW_NS)
