@@ -70,9 +70,9 @@ class Change:
         Change of the fault level if it is shorted turns, beside what the motor had before.
     channel : {0, 1, 2} or None
         Likeliest phase of a channel or a joint, at the terminals; None for other kinds.
-    size : float
+    size : float or None
         Size of the likeliest kind: relative error of the channel, voltage drop of the joint over rated
-        voltage, or level.
+        voltage, or level; None of another impedance or another recorder, which have no single one.
     """
 
     since_ns: int
@@ -81,7 +81,7 @@ class Change:
     named: tuple[Kind, ...]
     level: Level
     channel: Winding | None
-    size: float
+    size: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +142,8 @@ class Assessment:
         a forecast is made of. Empty where no change is seen.
     unconfirmed : bool
         Whether the latest record surprises so much that another has to confirm it.
+    seen_by : str or None
+        Recorder and direction of rotation of the records that tell it, where the latest record has others.
     """
 
     as_of_ns: int
@@ -152,18 +154,21 @@ class Assessment:
     threshold: float
     levels: tuple[tuple[int, float], ...] = ()
     unconfirmed: bool = False
+    seen_by: str | None = None
 
-    def seen_at(self, as_of_ns: int) -> "Assessment":
-        """Return the same assessment as of a later record that it does not depend on.
+    def told_later(self, as_of_ns: int, seen_by: str) -> "Assessment":
+        """Return the same assessment as of a later record, which belongs to another reference.
 
         Parameters
         ----------
         as_of_ns : int
             Time of the later record, UTC [ns].
+        seen_by : str
+            Recorder and direction of rotation of this assessment's records.
 
         Returns
         -------
         Assessment
-            The assessment.
+            The assessment; its own latest record needs no confirmation any more.
         """
-        return replace(self, as_of_ns=as_of_ns)
+        return replace(self, as_of_ns=as_of_ns, unconfirmed=False, seen_by=seen_by)

@@ -46,12 +46,13 @@ def change_of(
         The change at the terminals.
     """
     cause = _likeliest(alarm, weighing)
-    since_ns, size = level.onset_ns, level.value
+    since_ns = level.onset_ns
+    size: float | None = level.value
     channel: Winding | None = None
     if cause is not Cause.SHORTED_TURNS:
         at = _place(cause, weighing, hypotheses)
         since_ns = int(bank[int(weighing.best[at, 0])].time_ns)
-        size = 0.0
+        size = None
         if at < len(hypotheses):
             one = hypotheses[at]
             size = float(weighing.best[at, 2] * one.unit)

@@ -53,7 +53,7 @@ NANOSECONDS = 1e-9
 
 
 class Direction:
-    """A motor's records in one direction of rotation.
+    """A motor's records in one direction of rotation, measured by one recorder.
 
     Parameters
     ----------
@@ -76,6 +76,36 @@ class Direction:
         self._nominal = rated / abs(rated)
         self._see(motor)
         self._restart(keep_impedance=False)
+
+    @property
+    def sequence(self) -> PhaseSequence:
+        """Order of the supply's phases at the terminals."""
+        return self._sequence
+
+    @property
+    def name(self) -> str:
+        """What measures the records, and the direction of rotation."""
+        return f"{self._header.recorder} ({self._sequence})"
+
+    def is_of(self, observation: Observation) -> bool:
+        """Return whether a record belongs to this reference.
+
+        Parameters
+        ----------
+        observation : Observation
+            The record.
+
+        Returns
+        -------
+        bool
+            Whether its recorder, its voltages and its direction are the same.
+        """
+        return observation.sequence is self._sequence and not self._header.measured_by(observation)
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether changes are looked for."""
+        return self.records > START
 
     @property
     def records(self) -> int:
@@ -176,7 +206,7 @@ class Direction:
             as_of_ns=header.as_of_ns,
             reference=Reference(
                 records=records,
-                complete=records > START,
+                complete=self.is_complete,
                 since_ns=header.since_ns,
                 detectable=self._detectable(records),
                 standing=Level(standing.level, standing.deviation, winding, standing.path_ratio),

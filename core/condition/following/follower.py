@@ -1,15 +1,22 @@
 """Following a motor: records and events go in one by one, and the state so far can be assessed and saved."""
 
 from collections.abc import Sequence
+from typing import Final
 
 from core.condition.assessment import Assessment
 from core.condition.bus.neighbours import Neighbour, StandingEstimate
 from core.condition.events import Event, EventKind
 from core.condition.following.direction import Direction
 from core.condition.following.saving import pack, unpack
+from core.condition.kinds import State
 from core.condition.observation import Observation
+from core.condition.severity import level_in_all, of_one_fault, state_of
 from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
+
+MOST_REFERENCES: Final = 4
+"""Most references of a motor: two relays of a motor that turns both ways."""
+SEVERITY: Final = (State.HEALTHY, State.WATCH, State.FAULT)
 
 
 class Follower:
@@ -19,7 +26,9 @@ class Follower:
     the same bits whether they come at once, one by one, or with the follower saved and restored in between.
     A record that comes late makes the caller restore an earlier state and fold from there.
 
-    Standing errors of a motor that turns the other way are others: each direction has its own reference.
+    Standing errors are others where the motor turns the other way or another recorder measures it: each
+    direction of rotation and each recorder has its own reference. What one of them tells is not taken back by
+    the records of another.
 
     Parameters
     ----------
@@ -29,8 +38,8 @@ class Follower:
 
     def __init__(self, motor: Motor) -> None:
         self._motor = motor
-        self._directions: dict[PhaseSequence, Direction] = {}
-        self._latest: PhaseSequence | None = None
+        self._directions: list[Direction] = []
+        """In the order of their latest records."""
 
     @property
     def motor(self) -> Motor:
@@ -40,7 +49,7 @@ class Follower:
     @property
     def as_of_ns(self) -> int | None:
         """Time of the latest record, UTC [ns]; None before the first."""
-        return None if self._latest is None else self._directions[self._latest].as_of_ns
+        return self._directions[-1].as_of_ns if self._directions else None
 
     def fold(self, observation: Observation, neighbours: Sequence[Neighbour] = ()) -> None:
         """Take one record in.
@@ -66,12 +75,12 @@ class Follower:
                 f"time_ns is {observation.time_ns}, before the latest record ({before}): restore an earlier"
                 " state and fold from there"
             )
-        direction = self._directions.get(observation.sequence)
-        if direction is None:
-            direction = Direction(self._motor, observation.sequence)
+        known = next((one for one in self._directions if one.is_of(observation)), None)
+        direction = self._begun(observation.sequence) if known is None else known
         direction.fold(self._motor, observation, neighbours)
-        self._directions[observation.sequence] = direction
-        self._latest = observation.sequence
+        self._directions = [*(one for one in self._directions if one is not known), direction]
+        if len(self._directions) > MOST_REFERENCES:
+            self._drop_one()
 
     def apply(self, event: Event, motor: Motor | None = None) -> None:
         """Let something be known that happened between two records.
@@ -86,8 +95,7 @@ class Follower:
         edited = self._motor if motor is None else motor
         if event.kind is EventKind.REWOUND:
             self._directions.clear()
-            self._latest = None
-        for direction in self._directions.values():
+        for direction in self._directions:
             direction.apply(event, self._motor, edited)
         self._motor = edited
 
@@ -104,17 +112,43 @@ class Follower:
         Assessment or None
             None before the first record, and before the first one after an event that ends the reference.
         """
-        if self._latest is None or not self._directions[self._latest].records:
+        if not self._directions or not self._directions[-1].records:
             return None
-        latest = self._directions[self._latest].assessment(self._motor, bus)
-        # A fault seen while the motor turned the other way stays one.
-        for sequence, direction in self._directions.items():
-            seen = bool(latest.change or latest.standing_fault)
-            if sequence is not self._latest and direction.records and not seen:
-                other = direction.assessment(self._motor, bus)
-                if other.change or other.standing_fault:
-                    return other.seen_at(latest.as_of_ns)
-        return latest
+        *others, latest = self._directions
+        told = [latest.assessment(self._motor, bus)]
+        told += [
+            one.assessment(self._motor, bus).told_later(latest.as_of_ns, one.name)
+            for one in others
+            if one.is_complete
+        ]
+        return max(told, key=self._severity)
+
+    def _severity(self, assessment: Assessment) -> tuple[int, float]:
+        """Return how bad an assessment is; equally bad ones do not take turns from record to record."""
+        limit = self._motor.limits.fault_level
+        state = state_of(assessment, limit)
+        if state is State.HEALTHY:
+            return SEVERITY.index(state), 0.0
+        if state is State.FAULT:
+            return SEVERITY.index(state), level_in_all(of_one_fault(assessment, limit))[0]
+        change = assessment.change
+        return SEVERITY.index(state), 0.0 if change is None else 1.0 / (1.0 + change.detected_ns)
+
+    def _begun(self, sequence: PhaseSequence) -> Direction:
+        """Return a new reference; what is known of the impedance in this direction is known to it."""
+        for one in reversed(self._directions):
+            if one.sequence is sequence:
+                return Direction.unpacked(self._motor, sequence, *one.packed())
+        return Direction(self._motor, sequence)
+
+    def _drop_one(self) -> None:
+        """Drop the reference that was least recently used, of those that have nothing to tell."""
+        limit = self._motor.limits.fault_level
+        for one in self._directions[:-1]:
+            if not one.is_complete or state_of(one.assessment(self._motor, ()), limit) is State.HEALTHY:
+                self._directions.remove(one)
+                return
+        del self._directions[0]
 
     def standing_estimate(self) -> StandingEstimate | None:
         """Return the standing asymmetry for the comparison on a bus.
@@ -124,9 +158,9 @@ class Follower:
         StandingEstimate or None
             None before the first record, and before the first one after an event that ends the reference.
         """
-        if self._latest is None or not self._directions[self._latest].records:
+        if not self._directions or not self._directions[-1].records:
             return None
-        return self._directions[self._latest].standing_estimate(self._motor)
+        return self._directions[-1].standing_estimate(self._motor)
 
     def save(self) -> bytes:
         """Return the whole state.
@@ -136,7 +170,7 @@ class Follower:
         bytes
             What `restore` reads.
         """
-        return pack(self._latest, self._directions)
+        return pack(self._directions)
 
     @classmethod
     def restore(cls, motor: Motor, state: bytes) -> "Follower":
@@ -160,5 +194,5 @@ class Follower:
             If it is no state of this version: fold the records again.
         """
         follower = cls(motor)
-        follower._latest, follower._directions = unpack(motor, state)
+        follower._directions = unpack(motor, state)
         return follower

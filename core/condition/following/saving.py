@@ -1,26 +1,26 @@
 """A follower's state as bytes: a header of text, then the arrays as they lie in memory."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Sequence
 from typing import Final
+from zlib import compress, decompress
+from zlib import error as zlib_error
 
 from core.condition.following.direction import Direction
 from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
 
-MAGIC: Final = b"StatorWatch follower 1\n"
+MAGIC: Final = b"StatorWatch follower 2\n"
 """Name and version; another layout gets another number."""
 
 
-def pack(latest: PhaseSequence | None, directions: Mapping[PhaseSequence, Direction]) -> bytes:
+def pack(directions: Sequence[Direction]) -> bytes:
     """Write a state.
 
     Parameters
     ----------
-    latest : PhaseSequence or None
-        Sequence of the latest record.
-    directions : mapping of PhaseSequence to Direction
-        What was learnt in each direction.
+    directions : sequence of Direction
+        What was learnt in each direction by each recorder.
 
     Returns
     -------
@@ -28,15 +28,15 @@ def pack(latest: PhaseSequence | None, directions: Mapping[PhaseSequence, Direct
         The state.
     """
     headers, bodies = [], []
-    for sequence in sorted(directions):
-        header, body = directions[sequence].packed()
-        headers.append({"sequence": str(sequence), "bytes": len(body)} | header)
+    for direction in directions:
+        header, numbers = direction.packed()
+        body = compress(numbers, level=1)
+        headers.append({"sequence": str(direction.sequence), "bytes": len(body)} | header)
         bodies.append(body)
-    text = json.dumps({"latest": None if latest is None else str(latest), "directions": headers})
-    return MAGIC + text.encode() + b"\n" + b"".join(bodies)
+    return MAGIC + json.dumps({"directions": headers}).encode() + b"\n" + b"".join(bodies)
 
 
-def unpack(motor: Motor, state: bytes) -> tuple[PhaseSequence | None, dict[PhaseSequence, Direction]]:
+def unpack(motor: Motor, state: bytes) -> list[Direction]:
     """Read a state.
 
     Parameters
@@ -48,10 +48,8 @@ def unpack(motor: Motor, state: bytes) -> tuple[PhaseSequence | None, dict[Phase
 
     Returns
     -------
-    latest : PhaseSequence or None
-        Sequence of the latest record.
-    directions : dict of PhaseSequence to Direction
-        What was learnt in each direction.
+    list of Direction
+        What was learnt in each direction by each recorder.
 
     Raises
     ------
@@ -66,13 +64,16 @@ def unpack(motor: Motor, state: bytes) -> tuple[PhaseSequence | None, dict[Phase
     if end < 0:
         raise ValueError("the saved state ends within its header: fold the records again")
     document = json.loads(state[len(MAGIC) : end])
-    start, directions = end + 1, {}
+    start, directions = end + 1, []
     for header in document["directions"]:
         body = state[start : start + header["bytes"]]
         if len(body) != header["bytes"]:
             raise ValueError("the saved state is shorter than its header says: fold the records again")
         sequence = PhaseSequence(header["sequence"])
-        directions[sequence] = Direction.unpacked(motor, sequence, header, body)
+        try:
+            numbers = decompress(body)
+        except zlib_error as error:
+            raise ValueError(f"the saved state is damaged ({error}): fold the records again") from error
+        directions.append(Direction.unpacked(motor, sequence, header, numbers))
         start += len(body)
-    latest = document["latest"]
-    return None if latest is None else PhaseSequence(latest), directions
+    return directions

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from math import exp, hypot
 from typing import Any, Final, cast
 
 from core.condition.assessment import (
@@ -14,21 +13,16 @@ from core.condition.assessment import (
     Phase,
     Reference,
 )
-from core.condition.following.standing import STANDING_SCORE
 from core.condition.forecast.forecast import Forecast, forecast, limit_ahead
 from core.condition.kinds import Kind, State
+from core.condition.severity import FEW, Interval, level_in_all, level_of, of_one_fault, stands_out, state_of
 from core.condition.verdict.advice import advice
-from core.condition.verdict.reasons import FEW, reasons_of
+from core.condition.verdict.reasons import reasons_of
 from core.machines.parameters import Motor
 from core.machines.winding_frame import Winding
 from core.time_stamps import nanoseconds, rfc3339
 
-Interval = tuple[float, float]
-
 MOST_CANDIDATES: Final = 3
-TURNS_OR_JOINT: Final = frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION))
-STANDING_FAULTS: Final = 0.01
-"""Share of motors that have shorted turns from the first record on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +52,7 @@ class Condition:
         Its 95 % interval; None where no change of the level is seen.
     size : float or None
         Size of the change in its own measure: relative error of a channel, voltage drop of a joint over
-        rated voltage, level of shorted turns; None where no change is seen.
+        rated voltage, level of shorted turns; None where no change is seen, or one without such a measure.
     since_ns : int or None
         Time of the first record that shows the change, UTC [ns].
     forecast : Forecast
@@ -209,13 +203,13 @@ def condition_of(
     if assessment is None:
         return _unknown(motor)
     limit = motor.limits.fault_level
-    change, reference = assessment.change, assessment.reference
-    state = _state(assessment, limit)
-    kind, candidates = _kind(assessment)
-    phase = _phase(assessment)
-    level = None if change is None or not _may_be_shorted_turns(change) else change.level
-    mu_f, mu_f_ci95 = _total(assessment, level)
-    ahead = _forecast(assessment, level, mu_f, limit)
+    fault, reference = of_one_fault(assessment, limit), assessment.reference
+    state = state_of(assessment, limit)
+    kind, candidates = _kind(fault, limit)
+    phase = _phase(fault)
+    level = level_of(fault.change)
+    mu_f, mu_f_ci95 = level_in_all(fault)
+    ahead = _forecast(fault, level, mu_f, limit)
     return Condition(
         motor=motor.name,
         state=state,
@@ -226,8 +220,8 @@ def condition_of(
         mu_f_ci95=mu_f_ci95,
         change=_change(reference, level),
         change_ci95=None if level is None else level.ci95,
-        size=None if change is None else change.size,
-        since_ns=_since(assessment),
+        size=_size(fault, mu_f),
+        since_ns=_since(fault, limit),
         forecast=ahead,
         reference=reference,
         as_of_ns=assessment.as_of_ns,
@@ -259,21 +253,7 @@ def _unknown(motor: Motor) -> Condition:
     )
 
 
-def _state(assessment: Assessment, limit: float) -> State:
-    change = assessment.change
-    above = change is not None and change.level.ci95[0] > limit
-    if assessment.standing_fault or (above and _is_shorted_turns(change)):
-        return State.FAULT
-    if change is not None or assessment.unconfirmed or _stands_out(assessment.reference):
-        return State.WATCH
-    return State.HEALTHY
-
-
-def _stands_out(reference: Reference) -> bool:
-    return reference.standing_score >= STANDING_SCORE and not reference.accepted
-
-
-def _kind(assessment: Assessment) -> tuple[Kind, tuple[Kind, ...]]:
+def _kind(assessment: Assessment, limit: float) -> tuple[Kind, tuple[Kind, ...]]:
     """Return the kind, and the candidates of an unclear one. What makes the state a fault goes first."""
     change = assessment.change
     if assessment.standing_fault:
@@ -282,7 +262,7 @@ def _kind(assessment: Assessment) -> tuple[Kind, tuple[Kind, ...]]:
         return change.named[0], ()
     if change is not None:
         return Kind.UNCLEAR, change.named or _likeliest(change)
-    if _stands_out(assessment.reference):
+    if stands_out(assessment, limit):
         return Kind.UNCLEAR, (Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL)
     return (Kind.UNCLEAR if assessment.unconfirmed else Kind.NONE), ()
 
@@ -305,17 +285,17 @@ def _phase(assessment: Assessment) -> Phase | None:
     return None if change.channel is None else PHASES[change.channel]
 
 
-def _may_be_shorted_turns(change: Change) -> bool:
-    if change.named:
-        return Kind.SHORTED_TURNS in change.named
-    return change.probabilities.get(Kind.SHORTED_TURNS, 0.0) >= FEW
-
-
-def _since(assessment: Assessment) -> int | None:
-    if assessment.change is not None:
+def _since(assessment: Assessment, limit: float) -> int | None:
+    """Return when it began. A standing fault was there from the first record on, whatever it grew by."""
+    if assessment.change is not None and not assessment.standing_fault:
         return assessment.change.since_ns
-    reference = assessment.reference
-    return reference.since_ns if assessment.standing_fault or _stands_out(reference) else None
+    return assessment.reference.since_ns if stands_out(assessment, limit) else None
+
+
+def _size(assessment: Assessment, mu_f: float) -> float | None:
+    if assessment.standing_fault:
+        return mu_f
+    return None if assessment.change is None else assessment.change.size
 
 
 def _change(reference: Reference, level: Level | None) -> float | None:
@@ -324,48 +304,12 @@ def _change(reference: Reference, level: Level | None) -> float | None:
     return 0.0 if reference.complete else None
 
 
-def _total(assessment: Assessment, level: Level | None) -> tuple[float, Interval]:
-    """Return the level in all, and its interval.
-
-    Most of what stands is errors of sensors: it counts with its probability to be shorted turns, and the
-    interval holds it whole. Neither part is below zero, because shorted turns do not heal.
-    """
-    standing = assessment.reference.standing
-    if assessment.reference.accepted or (level is not None and level.winding != standing.winding):
-        # Turns of another winding do not add to the level of this one.
-        standing = replace(standing, value=0.0)
-    share = 1.0 if assessment.standing_fault else _probability_of_standing_fault(assessment.reference)
-    value = share * max(0.0, standing.value)
-    low = standing.ci95[0] if assessment.standing_fault else 0.0
-    high = standing.ci95[1]
-    if level is not None:
-        value += max(0.0, level.value)
-        low += level.ci95[0] if _is_shorted_turns(assessment.change) else 0.0
-        above = hypot(standing.ci95[1] - standing.value, level.ci95[1] - level.value)
-        high = standing.value + level.value + above
-    return value, (min(low, value), max(high, value))
-
-
 def _forecast(assessment: Assessment, level: Level | None, mu_f: float, limit: float) -> Forecast:
     limit = limit_ahead(mu_f, limit)
     if level is None:
         return Forecast(limit)
     standing = mu_f - max(0.0, level.value)
     return forecast(assessment.levels, limit, today=level, standing=standing)
-
-
-def _is_shorted_turns(change: Change | None) -> bool:
-    """Tell whether the change is named as shorted turns, or as these or a joint."""
-    return (
-        change is not None
-        and Kind.SHORTED_TURNS in change.named
-        and frozenset(change.named) <= TURNS_OR_JOINT
-    )
-
-
-def _probability_of_standing_fault(reference: Reference) -> float:
-    """Return how likely the standing asymmetry is shorted turns, from its score and how rare those are."""
-    return 1.0 / (1.0 + (1.0 - STANDING_FAULTS) / STANDING_FAULTS * exp(-(reference.standing_score**2) / 2.0))
 
 
 def _is_stale(as_of_ns: int | None, now_ns: int, stale_after_ns: int) -> bool:

@@ -4,13 +4,10 @@ from collections.abc import Iterator
 from typing import Final
 
 from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
-from core.condition.following.standing import STANDING_SCORE
 from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
+from core.condition.severity import FEW, stands_out
 from core.time_stamps import SECONDS_END, rfc3339
-
-FEW: Final = 0.02
-"""A kind with less probability than this is no candidate."""
 
 HOURS_PER_DAY: Final = 24
 
@@ -47,8 +44,13 @@ def reasons_of(assessment: Assessment, limit: float, forecast: Forecast) -> tupl
     """
     found = [*_of_change(assessment.change, limit)] if assessment.change is not None else []
     found += _of_forecast(forecast)
-    found += _of_standing(assessment)
+    found += _of_standing(assessment, limit)
     found += _of_reference(assessment.reference)
+    if assessment.seen_by is not None:
+        found.append(
+            f"the latest record is of another recorder or direction of rotation than those of "
+            f"{assessment.seen_by}, in which this is seen; it stays until they or a person say otherwise"
+        )
     if assessment.unconfirmed and assessment.change is None:
         found.insert(0, "the latest record differs from all before: another has to confirm it")
     return tuple(found)
@@ -69,8 +71,9 @@ def _of_change(change: Change, limit: float) -> Iterator[str]:
         yield f"shorted turns in phase {level.phase} since {since}: {_interval(level)} more"
     else:
         where = "" if change.channel is None else f" of phase {PHASES[change.channel]}"
+        by = "" if change.size is None else f" by {change.size:.2%}"
         yield (
-            f"{WORDS[change.named[0]]}{where} has changed by {change.size:.2%} since {since}; "
+            f"{WORDS[change.named[0]]}{where} has changed{by} since {since}; "
             f"probability {change.probabilities.get(change.named[0], 0.0):.1%}"
         )
     if len(change.named) != 1 and change.probabilities.get(Kind.SHORTED_TURNS, 0.0) >= FEW:
@@ -94,7 +97,7 @@ def _of_forecast(forecast: Forecast) -> Iterator[str]:
         )
 
 
-def _of_standing(assessment: Assessment) -> Iterator[str]:
+def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
     reference = assessment.reference
     standing = reference.standing
     beyond = (
@@ -103,9 +106,11 @@ def _of_standing(assessment: Assessment) -> Iterator[str]:
     )
     if assessment.standing_fault:
         yield f"{beyond}: shorted turns in phase {standing.phase}, {_interval(standing)}"
+        above = standing.ci95[0] > limit
+        yield f"their interval {'lies above' if above else 'reaches below'} the motor's limit of {limit:.2%}"
     elif reference.accepted:
         yield "a person has declared the asymmetry that stands from the first record on healthy"
-    elif reference.standing_score >= STANDING_SCORE:
+    elif stands_out(assessment, limit):
         yield f"{beyond}; shorted turns would be in phase {standing.phase}: {_interval(standing)}"
     else:
         yield (

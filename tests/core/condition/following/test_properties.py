@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 from core.condition.assessment import Assessment
 from core.condition.events import Event, EventKind
 from core.condition.following.follower import Follower
+from core.condition.kinds import State
 from core.condition.observation import Observation
+from core.condition.verdict.condition import condition_of
 from core.machines.parameters import Connection
 from core.signals.sequence import PhaseSequence
 from tests.core.condition.simulated import HOUR_NS, Plant, follow, motor_of
@@ -209,3 +211,53 @@ def test_ten_years_of_records_leave_the_covariance_sound() -> None:
     assert state == follower.save()
     standing = assessed(follower).reference.standing
     assert 0.0 < standing.deviation < 0.02
+
+
+def test_a_record_of_another_recorder_takes_no_fault_back() -> None:
+    plant = Plant()
+    follower = follow(motor_of(), with_a_fault(plant))
+    before = assessed(follower)
+    assert before.change is not None
+    follower.fold(replace(plant.record(), recorder="uploaded by hand"))
+    after = assessed(follower)
+    assert after.change == before.change
+    assert after.as_of_ns == plant.time_ns
+    assert after.seen_by == "relay (abc)"
+    reasons = condition_of(motor_of(), after, plant.time_ns).reasons
+    assert any("another recorder" in reason for reason in reasons)
+    follower.apply(Event(plant.time_ns, EventKind.MAINTENANCE, "rewound a coil"))
+    follower.fold(plant.record())
+    assert assessed(follower).change is None
+
+
+def test_two_recorders_in_turn_complete_their_references_and_see_a_fault() -> None:
+    plant, follower = Plant(), Follower(motor_of())
+    for k in range(100):
+        if k == 70:
+            plant.level = 0.01
+        follower.fold(replace(plant.record(), recorder=f"relay {k % 2}"))
+        if k == 69:
+            assert assessed(follower).reference.records == 35
+            assert assessed(follower).change is None
+    states = []
+    for k in range(100, 106):
+        follower.fold(replace(plant.record(), recorder=f"relay {k % 2}"))
+        states.append(condition_of(motor_of(), follower.assessment(), plant.time_ns).state)
+    assert set(states) == {State.FAULT}
+    assert Follower.restore(motor_of(), follower.save()).save() == follower.save()
+    assert len(follower.save()) < 60_000
+
+
+def test_many_recorders_drop_no_reference_that_tells_a_fault() -> None:
+    plant = Plant()
+    follower = follow(motor_of(), with_a_fault(plant))
+    for k in range(12):
+        follower.fold(replace(plant.record(), recorder=f"upload {k}"))
+    assert assessed(follower).change is not None
+    assert len(follower.save()) < 2 * MOST_BYTES
+
+
+def test_a_damaged_state_is_refused() -> None:
+    state = follow(motor_of(), Plant().records(12)).save()
+    with pytest.raises(ValueError, match="fold the records again"):
+        Follower.restore(motor_of(), state[:-40] + bytes(40))

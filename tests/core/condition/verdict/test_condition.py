@@ -173,6 +173,43 @@ def test_a_standing_fault_that_grows_adds_up_where_it_is_one_winding() -> None:
     assert elsewhere.mu_f == pytest.approx(0.01)
 
 
+def test_a_standing_fault_is_one_only_above_the_motors_limit() -> None:
+    standing = reference(standing=level(0.06, 0.005), score=8.0)
+    lenient = replace(MOTOR, limits=replace(MOTOR.limits, fault_level=0.1))
+    found = assessment(reference=standing, standing_fault=True)
+    condition = condition_of(lenient, found, AS_OF_NS)
+    assert (condition.state, condition.kind) == (State.WATCH, Kind.SHORTED_TURNS)
+    assert any("reaches below" in reason for reason in condition.reasons)
+
+
+@pytest.mark.parametrize(
+    ("value", "score", "state"),
+    [(0.004, 3.1, State.HEALTHY), (0.004, 3.3, State.WATCH), (0.05, 2.8, State.WATCH)],
+)
+def test_a_standing_asymmetry_is_watched_before_it_is_sure(value: float, score: float, state: State) -> None:
+    condition = judged(assessment(reference=reference(standing=level(value, 0.001), score=score)))
+    assert condition.state is state
+    assert condition.mu_f is not None
+    assert state is not State.HEALTHY or condition.mu_f <= MOTOR.limits.fault_level
+
+
+@pytest.mark.parametrize(("grown", "phase", "mu_f"), [(0.01, "c", 0.03), (0.05, "b", 0.05)])
+def test_of_faults_in_two_windings_the_worse_is_told_alone(grown: float, phase: str, mu_f: float) -> None:
+    standing = reference(standing=level(0.03, 0.004, winding=2), score=7.0)
+    seen = change(Kind.SHORTED_TURNS, size=level(grown, 0.001))
+    condition = judged(assessment(seen, reference=standing, standing_fault=True))
+    assert (condition.state, condition.kind, condition.phase) == (State.FAULT, Kind.SHORTED_TURNS, phase)
+    assert condition.mu_f == pytest.approx(mu_f)
+    assert condition.since_ns == (standing.since_ns if phase == "c" else SINCE_NS)
+
+
+def test_another_impedance_has_no_size() -> None:
+    seen = replace(change(Kind.PARAMETERS), size=None, channel=None)
+    condition = judged(assessment(seen))
+    assert condition.size is None
+    assert "has changed since" in condition.reasons[0]
+
+
 def test_time_ages_a_condition_and_nothing_else() -> None:
     condition = judged(assessment())
     assert not condition.seen_at(AS_OF_NS + STALE_AFTER_NS).stale
@@ -206,7 +243,7 @@ CHANGES = st.builds(
     named=st.lists(KINDS, max_size=2, unique=True).map(tuple),
     level=LEVELS,
     channel=st.none() | st.sampled_from([0, 1, 2]),
-    size=st.floats(-0.1, 0.1),
+    size=st.none() | st.floats(-0.1, 0.1),
 )
 REFERENCES = st.builds(
     Reference,
@@ -247,4 +284,5 @@ def test_what_is_told_agrees_with_itself(found: Assessment) -> None:
     assert 0.0 <= condition.mu_f_ci95[0] <= condition.mu_f <= condition.mu_f_ci95[1]
     assert (condition.state is State.HEALTHY) == (condition.kind is Kind.NONE)
     assert condition.state is not State.FAULT or condition.phase is not None
+    assert condition.state is not State.HEALTHY or condition.mu_f <= MOTOR.limits.fault_level
     assert condition.reasons

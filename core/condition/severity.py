@@ -1,0 +1,168 @@
+"""How bad it is what a motor's records tell: its state and its fault level in all."""
+
+from dataclasses import replace
+from math import exp, hypot
+from typing import Final
+
+from core.condition.assessment import Assessment, Change, Level, Reference
+from core.condition.kinds import Kind, State
+
+Interval = tuple[float, float]
+
+TURNS_OR_JOINT: Final = frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION))
+FEW: Final = 0.02
+"""A kind with less probability than this is no candidate."""
+STANDING_FAULTS: Final = 0.01
+"""Share of motors that have shorted turns from the first record on."""
+WATCHED_SCORE: Final = 3.2
+"""Standard deviations from which on a standing asymmetry is watched: six sound motors in a thousand."""
+
+
+def state_of(assessment: Assessment, limit: float) -> State:
+    """Return the state of a motor.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        What the records tell.
+    limit : float
+        Limit of the motor, a fraction of the phase turns.
+
+    Returns
+    -------
+    State
+        The state; never unknown.
+    """
+    if level_in_all(of_one_fault(assessment, limit))[1][0] > limit:
+        return State.FAULT
+    if assessment.change is not None or assessment.unconfirmed or stands_out(assessment, limit):
+        return State.WATCH
+    return State.HEALTHY
+
+
+def of_one_fault(assessment: Assessment, limit: float) -> Assessment:
+    """Return the assessment with the worse of two faults, where the motor has them in two windings.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        What the records tell.
+    limit : float
+        Limit of the motor, a fraction of the phase turns.
+
+    Returns
+    -------
+    Assessment
+        The assessment, without the standing fault or without the change where both are seen and are not in
+        one winding. What is surely above the limit goes first, then what is larger.
+    """
+    change, standing = assessment.change, assessment.reference.standing
+    level = level_of(change)
+    if not assessment.standing_fault or level is None or level.winding == standing.winding:
+        return assessment
+    of_change = (is_shorted_turns(change) and level.ci95[0] > limit, level.value)
+    if of_change > (standing.ci95[0] > limit, standing.value):
+        return replace(assessment, standing_fault=False)
+    return replace(assessment, change=None, levels=())
+
+
+def stands_out(assessment: Assessment, limit: float) -> bool:
+    """Return whether the asymmetry that stands from the first record on asks for being watched.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        What the records tell.
+    limit : float
+        Limit of the motor, a fraction of the phase turns.
+
+    Returns
+    -------
+    bool
+        Whether sensors hardly leave so much, or the level that it likely means lies above the limit.
+    """
+    reference = assessment.reference
+    if reference.accepted:
+        return False
+    likely = _probability_of_standing_fault(reference) * reference.standing.value
+    return assessment.standing_fault or reference.standing_score >= WATCHED_SCORE or likely > limit
+
+
+def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
+    """Return the level in all, and its interval.
+
+    Most of what stands is errors of sensors: it counts with its probability to be shorted turns, and the
+    interval holds it whole. Neither part is below zero, because shorted turns do not heal.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        What the records tell, of one fault.
+
+    Returns
+    -------
+    level : float
+        Level, a fraction of the phase turns.
+    interval : tuple of float
+        Its 95 % interval. It begins above zero only where shorted turns are certain.
+    """
+    change, standing = assessment.change, assessment.reference.standing
+    level = level_of(change)
+    if assessment.reference.accepted or (level is not None and level.winding != standing.winding):
+        # Turns of another winding do not add to the level of this one.
+        standing = replace(standing, value=0.0, interval=None)
+    share = 1.0 if assessment.standing_fault else _probability_of_standing_fault(assessment.reference)
+    value = share * max(0.0, standing.value)
+    low = standing.ci95[0] if assessment.standing_fault else 0.0
+    high = standing.ci95[1]
+    if level is not None:
+        value += max(0.0, level.value)
+        low += level.ci95[0] if is_shorted_turns(change) else 0.0
+        above = hypot(standing.ci95[1] - standing.value, level.ci95[1] - level.value)
+        high = standing.value + level.value + above
+    return value, (min(low, value), max(high, value))
+
+
+def level_of(change: Change | None) -> Level | None:
+    """Return by how much a change adds to the fault level, or None where it is no shorted turns.
+
+    Parameters
+    ----------
+    change : Change or None
+        The change that is seen.
+
+    Returns
+    -------
+    Level or None
+        Its level where it may be shorted turns.
+    """
+    if change is None:
+        return None
+    if change.named:
+        return change.level if Kind.SHORTED_TURNS in change.named else None
+    return change.level if change.probabilities.get(Kind.SHORTED_TURNS, 0.0) >= FEW else None
+
+
+def is_shorted_turns(change: Change | None) -> bool:
+    """Return whether a change is named as shorted turns, or as these or a joint.
+
+    Parameters
+    ----------
+    change : Change or None
+        The change that is seen.
+
+    Returns
+    -------
+    bool
+        Whether it is.
+    """
+    return (
+        change is not None
+        and Kind.SHORTED_TURNS in change.named
+        and frozenset(change.named) <= TURNS_OR_JOINT
+    )
+
+
+def _probability_of_standing_fault(reference: Reference) -> float:
+    """Return how likely the standing asymmetry is shorted turns, from its score and how rare those are."""
+    return 1.0 / (1.0 + (1.0 - STANDING_FAULTS) / STANDING_FAULTS * exp(-(reference.standing_score**2) / 2.0))
