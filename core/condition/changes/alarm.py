@@ -294,7 +294,7 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
     shares /= shares.sum()
     mean = float(shares @ values)
     variance = float(shares @ (np.array(spreads) + (np.array(values) - mean) ** 2))
-    interval = _interval(shares, np.array(values), np.sqrt(spreads))
+    interval = interval_of(shares, np.array(values), np.sqrt(spreads))
     return TurnsLevel(mean, sqrt(variance), interval, winding, PATHS[likeliest], int(one.time_ns), told)
 
 
@@ -306,8 +306,19 @@ def _evidence(out: Array, direction: float, share: float, drifts: int) -> float:
     return float(np.logaddexp.reduce(found)) + log(share)
 
 
-def _interval(shares: Array, means: Array, deviations: Array) -> tuple[float, float]:
-    """Return the 95 % interval of a mixture of normal distributions."""
+def interval_of(shares: Array, means: Array, deviations: Array) -> tuple[float, float]:
+    """Return the 95 % interval of a mixture of normal distributions.
+
+    Parameters
+    ----------
+    shares, means, deviations : ndarray, shape (n,)
+        Weight, mean and standard deviation of each of them.
+
+    Returns
+    -------
+    tuple of float
+        Lower and upper end.
+    """
     low, high = float(np.min(means - 5.0 * deviations)), float(np.max(means + 5.0 * deviations))
     grid = np.linspace(low, high, GRID)
     below = ndtr((grid[:, np.newaxis] - means) / deviations) @ shares

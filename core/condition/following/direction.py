@@ -209,7 +209,9 @@ class Direction:
                 complete=self.is_complete,
                 since_ns=header.since_ns,
                 detectable=self._detectable(records),
-                standing=Level(standing.level, standing.deviation, winding, standing.path_ratio),
+                standing=Level(
+                    standing.level, standing.deviation, winding, standing.path_ratio, standing.interval
+                ),
                 standing_score=standing.score,
                 from_bus=standing.from_bus,
                 accepted=header.accepted,

@@ -2,18 +2,34 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import sqrt
+from math import hypot, sqrt
 from typing import Final
 
 import numpy as np
 
-from core.condition.measuring.signatures import PATHS, shorted_turns
+from core.condition.changes.alarm import interval_of
+from core.condition.changes.evidence import of_size
+from core.condition.changes.hypotheses import (
+    MACHINE,
+    PATH_SHARES,
+    RESISTANCE,
+    STATOR,
+    TURNS_DIRECTION,
+)
+from core.condition.measuring.signatures import (
+    PATHS,
+    shorted_turns,
+    turns_angle_slope,
+    turns_size_slope,
+)
 from core.machines.base import Array
 from core.machines.compiled import compiled_as_written as compiled
 from core.machines.parameters import Motor
 
 STANDING_SCORE: Final = 3.7
 """Standard deviations beyond which a standing asymmetry is no sound motor's: one motor in a thousand."""
+STANDING_LEVEL: Final = 0.05
+"""Usual size of a standing fault: so wide that it hardly counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +75,8 @@ class Standing:
         Standard deviations by which it lies above what a sound motor with such sensors shows.
     from_bus : bool
         Whether other motors of the bus took part in judging it.
+    interval : tuple of float
+        95 % interval of the level over all windings and paths that explain the asymmetry.
     """
 
     level: float
@@ -67,6 +85,7 @@ class Standing:
     path_ratio: float
     score: float
     from_bus: bool
+    interval: tuple[float, float]
 
 
 def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: bool) -> Standing:
@@ -89,6 +108,7 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
         The likeliest shorted turns.
     """
     best, level, deviation, score = _likeliest(asymmetry, covariance, _directions(motor))
+    low, high = _interval(motor, asymmetry, covariance)
     return Standing(
         level=level,
         deviation=deviation,
@@ -96,6 +116,7 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
         path_ratio=PATHS[best % len(PATHS)],
         score=score,
         from_bus=from_bus,
+        interval=(min(low, level), max(high, level)),
     )
 
 
@@ -158,3 +179,22 @@ def _directions(motor: Motor) -> Array:
     """Return what shorted turns add to E, shape (windings x paths, 2)."""
     found = [shorted_turns(motor, winding, p) for winding in range(3) for p in PATHS]
     return np.array([[u.real, u.imag] for u in found])
+
+
+def _interval(motor: Motor, asymmetry: Array, covariance: Array) -> tuple[float, float]:
+    """Return the interval of the level: several windings and paths may explain an asymmetry as well."""
+    W = _inverse(covariance)
+    found = []
+    for n, (x, y) in enumerate(_directions(motor).tolist()):
+        p = PATHS[n % len(PATHS)]
+        U = np.array([[x, -y], [y, x]])
+        Q, vector = U.T @ W @ U, U.T @ W @ asymmetry
+        direction = hypot(TURNS_DIRECTION, STATOR * turns_angle_slope(motor, p))
+        evidence, size, deviation = of_size(
+            Q[0, 0], Q[0, 1], Q[1, 1], vector[0], vector[1], STANDING_LEVEL, direction, one_sided=True
+        )
+        scale = hypot(MACHINE, RESISTANCE * turns_size_slope(motor, p))
+        found.append((evidence + np.log(PATH_SHARES[n % len(PATHS)]), size, hypot(deviation, scale * size)))
+    logs, sizes, deviations = np.array(found).T
+    shares = np.exp(logs - np.max(logs))
+    return interval_of(shares / shares.sum(), sizes, deviations)
