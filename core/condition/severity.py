@@ -82,10 +82,10 @@ def stands_out(assessment: Assessment, limit: float) -> bool:
         Whether sensors hardly leave so much, or the level that it likely means lies above the limit.
     """
     reference = assessment.reference
-    if reference.accepted:
-        return False
+    if assessment.standing_fault or reference.accepted:
+        return assessment.standing_fault
     likely = _probability_of_standing_fault(reference) * reference.standing.value
-    return assessment.standing_fault or reference.standing_score >= WATCHED_SCORE or likely > limit
+    return reference.standing_score >= WATCHED_SCORE or likely > limit
 
 
 def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
