@@ -74,7 +74,7 @@ def turns_size_slope(motor: Motor, path_ratio: float) -> float:
     Returns
     -------
     float
-        cos^2 phi, phi the angle of R_s (1 + p) + j X_ls [relative change per relative change].
+        Fall, cos^2 phi, phi the angle of R_s (1 + p) + j X_ls [relative change per relative change].
     """
     machine, f = motor.parameters, motor.nameplate.rated_frequency_Hz
     R = WARM * machine.stator_resistance_ohm * (1.0 + path_ratio)
