@@ -17,6 +17,7 @@ def standing_document(estimate: StandingEstimate) -> dict[str, Any]:
         "covariance": estimate.covariance.tolist(),
         "channels": estimate.channels.tolist(),
         "others": int(estimate.others),
+        "transformers": int(estimate.transformers),
     }
 
 
@@ -29,4 +30,5 @@ def standing_estimate(motor: str, document: Mapping[str, Any]) -> StandingEstima
         covariance=np.array(document["covariance"]),
         channels=np.array(document["channels"]),
         others=document["others"],
+        transformers=document["transformers"],
     )

@@ -1,6 +1,6 @@
 """How a motor's voltages differ from those of each other motor of its bus, record by record."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -9,8 +9,9 @@ import numpy as np
 from core.condition.bus.neighbours import Neighbour
 from core.signals.sequence import PhaseSequence
 
-SETTLED: Final = 8
+COMMON_RECORDS: Final = 8
 """Common records over which the difference to a motor is averaged before it is held."""
+SLOWEST: Final = 1.0 / 256.0
 MOST: Final = 24
 """Other motors that are compared with; the first to come are kept."""
 
@@ -30,6 +31,30 @@ class Pair:
     mean: complex
     records: int
 
+    @property
+    def is_settled(self) -> bool:
+        """Whether it is averaged over enough records."""
+        return self.records >= COMMON_RECORDS
+
+
+@dataclass(frozen=True, slots=True)
+class BusMean:
+    """How far a motor's V2/V1 lies from the mean of the bus.
+
+    Parameters
+    ----------
+    difference : complex
+        V2/V1 of this motor less the mean of all.
+    others : int
+        Number of other motors.
+    transformers : int
+        Number of voltage transformers that they and this motor have.
+    """
+
+    difference: complex
+    others: int
+    transformers: int
+
 
 @dataclass(slots=True)
 class BusDifferences:
@@ -37,6 +62,7 @@ class BusDifferences:
 
     Each other motor is compared with by itself, so that its absence from a record changes nothing. What is
     returned for a record is how far the differences have moved from where they were when they were settled.
+    A motor whose voltages are the same to the noise is behind the same transformer: it tells nothing of it.
 
     Parameters
     ----------
@@ -56,8 +82,8 @@ class BusDifferences:
     records: int = 0
 
     def fold(
-        self, ratio: complex, sequence: PhaseSequence, neighbours: Sequence[Neighbour]
-    ) -> tuple[complex | None, int]:
+        self, ratio: complex, sequence: PhaseSequence, neighbours: Sequence[Neighbour], same: float
+    ) -> complex | None:
         """Take one record in.
 
         Parameters
@@ -68,53 +94,53 @@ class BusDifferences:
             Order of the supply's phases at the terminals.
         neighbours : sequence of Neighbour
             What other motors saw at the same time.
+        same : float
+            Difference below which both motors are behind the same transformer.
 
         Returns
         -------
-        moved : complex or None
-            Movement of the differences, by the median of the motors; None where there is no common record.
-        motors : int
-            Number of motors it is taken from.
+        complex or None
+            Movement of the differences, by the median of the motors; None where no motor with a transformer
+            of its own was recorded.
         """
-        moves, joining = [], []
-        for neighbour in sorted(neighbours, key=lambda one: one.motor):
-            if neighbour.sequence is not sequence:
-                continue
-            difference = ratio - neighbour.negative_voltage_ratio
-            pair = self.pairs.get(neighbour.motor)
-            if pair is None or pair.records < SETTLED:
-                joining.append((neighbour.motor, difference))
-            if pair is not None:
-                moves.append(difference - pair.mean)
-        if not moves and not joining:
-            return None, 0
+        moves = []
+        found = {
+            one.motor: ratio - one.negative_voltage_ratio for one in neighbours if one.sequence is sequence
+        }
+        for name in sorted(found):
+            pair = self.pairs.get(name)
+            if pair is not None and pair.is_settled and abs(pair.mean) > same:
+                moves.append(found[name] - pair.mean)
         if moves:
             self.moved = self._consensus(moves)
-        for name, difference in joining:
-            self._settle(name, difference - self.moved)
-        # As slowly as the filter learns E: both belong to the same records.
-        self.records += 1
-        self.mean_moved += (self.moved - self.mean_moved) / self.records
-        return self.moved, max(len(moves), 1)
+            # As slowly as the filter learns E: both belong to the same records.
+            self.records += 1
+            self.mean_moved += (self.moved - self.mean_moved) / self.records
+        for name in sorted(found):
+            self._settle(name, found[name] - self.moved)
+        return self.moved if moves else None
 
-    def mean(self) -> tuple[complex, int]:
+    def mean(self, same: float) -> BusMean:
         """Return how far this motor's V2/V1 lies from the mean of all.
+
+        Parameters
+        ----------
+        same : float
+            Difference below which both motors are behind the same transformer.
 
         Returns
         -------
-        difference : complex
-            V2/V1 of this motor less the mean.
-        others : int
-            Number of other motors.
+        BusMean
+            The difference; of no motor where none has been compared with for long enough.
         """
-        settled = [pair.mean for pair in self.pairs.values() if pair.records >= SETTLED]
-        if not settled:
-            return 0j, 0
-        return (self.mean_moved + _mean(settled)) * len(settled) / (len(settled) + 1.0), len(settled)
+        settled = [pair.mean for pair in self.pairs.values() if pair.is_settled]
+        own = [mean + self.mean_moved for mean in settled if abs(mean) > same]
+        return BusMean(sum(own, 0j) / (len(settled) + 1.0), len(settled), len(own) + 1)
 
     def restart(self) -> None:
-        """Let the movement be averaged anew: the motor's own channels are others."""
-        self.records = 0
+        """Forget all: the motor's own channels are others."""
+        self.pairs.clear()
+        self.moved, self.mean_moved, self.records = 0j, 0j, 0
 
     def _settle(self, name: str, difference: complex) -> None:
         pair = self.pairs.get(name)
@@ -122,16 +148,13 @@ class BusDifferences:
             if len(self.pairs) < MOST:
                 self.pairs[name] = Pair(difference, 1)
             return
-        pair.records += 1
-        pair.mean += (difference - pair.mean) / pair.records
+        # A motor that has moved by itself comes back into line slowly.
+        gain = SLOWEST if pair.is_settled else 1.0 / (pair.records + 1)
+        pair.records = min(pair.records + 1, COMMON_RECORDS)
+        pair.mean += gain * (difference - pair.mean)
 
     def _consensus(self, moves: Sequence[complex]) -> complex:
         """Return where most differences moved; of two, the one that moved less: the other motor moved."""
         if len(moves) == 2:
             return min(moves, key=lambda move: abs(move - self.moved))
         return complex(np.median([m.real for m in moves]), np.median([m.imag for m in moves]))
-
-
-def _mean(values: Iterable[complex]) -> complex:
-    found = list(values)
-    return sum(found, 0j) / len(found)

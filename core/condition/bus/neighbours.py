@@ -50,6 +50,8 @@ class StandingEstimate:
         Covariance of what its voltage channels add to E at the terminals, before the first record.
     others : int
         Number of motors it has been compared with; 0 where its channels are not judged.
+    transformers : int
+        Number of voltage transformers that they and this motor have.
     """
 
     motor: str
@@ -58,6 +60,7 @@ class StandingEstimate:
     covariance: Array
     channels: Array
     others: int
+    transformers: int
 
 
 def neighbour_of(motor: Motor, observation: Observation) -> Neighbour:
@@ -101,7 +104,7 @@ def common_asymmetry(own: StandingEstimate, others: Sequence[StandingEstimate]) 
     )
     if not taken or not own.others:
         return None
-    prior = own.channels / (len(taken) + 1)
+    prior = own.channels / own.transformers
     weights = [np.linalg.inv(o.covariance) for o in taken]
     trust = np.ones(len(taken))
     mean, covariance = np.zeros(2), prior

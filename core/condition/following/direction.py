@@ -6,6 +6,7 @@ from typing import Any, cast
 import numpy as np
 
 from core.condition.assessment import Assessment, Change, Level, Reference
+from core.condition.bus.differences import COMMON_RECORDS
 from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
 from core.condition.changes.alarm import SETTLED, Alarm, Weighing, confirm, taken_up, turns_level, weigh
 from core.condition.changes.change import change_of
@@ -16,6 +17,7 @@ from core.condition.events import Event, EventKind
 from core.condition.filter.kalman import TEMPERATURE, WANDER_EC
 from core.condition.filter.prior import IMPEDANCE, prior_of
 from core.condition.filter.state import (
+    BUS,
     CANDIDATE,
     CANDIDATES,
     FILTER,
@@ -47,6 +49,9 @@ from core.signals.sequence import PhaseSequence
 
 UNCONFIRMED = 30.0
 """Chi-square of 2 above which a record has to be confirmed by another: one in three million."""
+SAME, MOST_SAME = 0.05, 0.2
+"""Shares of what channels of their class differ by, below which two motors have one voltage transformer: at
+least, and at most where the differences are noisy."""
 CLEARED = 3.0
 """Log of the detector's statistic below which a change has gone again."""
 NANOSECONDS = 1e-9
@@ -113,6 +118,11 @@ class Direction:
         return int(self._state.records)
 
     @property
+    def is_known(self) -> bool:
+        """Whether anything can be said: there are records, or a change from before them."""
+        return self._state.records > 0.0 or self._header.kept is not None
+
+    @property
     def as_of_ns(self) -> int:
         """Time of the latest record, UTC [ns]."""
         return self._header.as_of_ns
@@ -137,9 +147,10 @@ class Direction:
         header, state = self._header, self._state
         elapsed_s = max(observation.time_ns - header.as_of_ns, 0) * NANOSECONDS if header.recorder else 0.0
         record = measure(observation, motor, self._header.scale_ohm, elapsed_s)
-        moved, _ = header.bus.fold(record.v2, self._sequence, neighbours)
-        if moved is not None:
-            record = record._replace(bus=moved, has_bus=True)
+        if neighbours:
+            moved = header.bus.fold(record.v2, self._sequence, neighbours, self._same_transformer())
+            if moved is not None:
+                record = record._replace(bus=moved, has_bus=True)
         if header.measured_by(observation):
             known = bool(header.recorder)
             header.recorder, header.voltage_channels = observation.recorder, observation.voltage_channels
@@ -248,6 +259,7 @@ class Direction:
             covariance=rotated(noise + self._prior.own, turn),
             channels=rotated(self._prior.channels, turn),
             others=errors.others,
+            transformers=errors.transformers,
         )
 
     def packed(self) -> tuple[dict[str, Any], bytes]:
@@ -351,11 +363,17 @@ class Direction:
     def _errors(self) -> StandingErrors:
         state, prior = self._state, self._prior_of_E()
         E, spread = without_prior(state.x, state.P, prior)
-        difference, others = self._header.bus.mean()
+        bus = self._header.bus.mean(self._same_transformer())
         return StandingErrors(
             float(E[0]), float(E[1]), elements(spread), elements(prior),
-            difference.real, difference.imag, others,
+            bus.difference.real, bus.difference.imag, bus.others, bus.transformers,
         )  # fmt: skip
+
+    def _same_transformer(self) -> float:
+        """Return the difference of two motors' V2/V1 below which it is that of one transformer's noise."""
+        usual = float(np.sqrt(2.0 * np.trace(self._prior.channels)))
+        noise = 3.0 * float(np.sqrt(self._sides[BUS].r / COMMON_RECORDS))
+        return min(max(SAME * usual, noise), MOST_SAME * usual)
 
     def _standing(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Standing:
         own = self.standing_estimate(motor) if bus else None

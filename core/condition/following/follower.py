@@ -112,7 +112,7 @@ class Follower:
         Assessment or None
             None before the first record, and before the first one after an event that ends the reference.
         """
-        if not self._directions or not self._directions[-1].records:
+        if not self._directions or not self._directions[-1].is_known:
             return None
         *others, latest = self._directions
         told = [latest.assessment(self._motor, bus)]
@@ -158,7 +158,7 @@ class Follower:
         StandingEstimate or None
             None before the first record, and before the first one after an event that ends the reference.
         """
-        if not self._directions or not self._directions[-1].records:
+        if not self._directions or not self._directions[-1].is_known:
             return None
         return self._directions[-1].standing_estimate(self._motor)
 

@@ -48,6 +48,8 @@ class StandingErrors:
         By how much V2/V1 of the terminals exceeds the mean of the bus.
     others : int
         Number of other motors in it.
+    transformers : int
+        Number of voltage transformers that they and this motor have.
     """
 
     real: float
@@ -57,6 +59,7 @@ class StandingErrors:
     difference_real: float
     difference_imaginary: float
     others: int
+    transformers: int
 
 
 @dataclass(frozen=True, slots=True)

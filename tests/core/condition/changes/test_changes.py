@@ -185,6 +185,7 @@ def test_a_fault_beside_a_channel_that_was_named_is_seen_too() -> None:
     plant.voltage[2] *= 1.015
     for record in plant.records(90):
         follower.fold(record)
+        assert follower.assessment() is not None
     follower = Follower.restore(motor_of(), follower.save())
     assessment = follower.assessment()
     assert assessment is not None
