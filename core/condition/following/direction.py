@@ -110,7 +110,7 @@ class Direction:
     @property
     def is_complete(self) -> bool:
         """Whether changes are looked for, or one is told from before the reference."""
-        return self._state.records > START or self._header.kept is not None
+        return bool(self._state.records > START or self._header.kept is not None)
 
     @property
     def records(self) -> int:

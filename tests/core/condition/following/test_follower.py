@@ -1,5 +1,6 @@
 """A follower's records go in one by one, and its state survives being saved."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -116,6 +117,7 @@ def test_an_event_after_the_latest_record_leaves_a_condition_that_can_be_told(
     follower.apply(Event(count * HOUR_NS, kind, "worked at"))
     ends = kind not in (EventKind.NOTE, EventKind.PARAMETERS_EDITED)
     told = condition_of(MOTOR, follower.assessment(), count * HOUR_NS)
+    assert json.loads(json.dumps(told.as_dict())) == told.as_dict()
     assert told.state is (State.UNKNOWN if ends else State.HEALTHY)
     assert (follower.standing_estimate() is None) is ends
     follower = Follower.restore(MOTOR, follower.save())
