@@ -2,10 +2,10 @@
 
 A service of its own may open 1,024 descriptors, as Linux grants by default. Each attack holds 1,300
 connections to it (--connections), and opens each again half a second after the service has closed it.
-Meanwhile others ask for /healthz and for the list of motors, each time on a new connection. Told: the time
-within which 95 % of them had an answer and how many had none, descriptors and memory of the service above
-rest, growth of its log, and how many descriptors are left over ten seconds after the end. Ends with 1 where
-a limit is broken.
+Meanwhile others ask for /healthz and for the list of motors, each time on a new connection, from another
+address (--same-address: from that of the attack). Told: the time within which 95 % of them had an answer and
+how many had none, descriptors and memory of the service above rest, growth of its log, and how many
+descriptors are left over ten seconds after the end. Ends with 1 where a limit is broken.
 """
 
 import argparse
@@ -29,6 +29,7 @@ from testing.ports import LOOPBACK
 from testing.service.processes import Service, running_service
 
 DESCRIPTORS_OF_SERVICE = 1024
+ADDRESS_OF_OTHERS = "127.0.0.2"
 PROBE_PERIOD_S = 0.1
 PROBE_TIMEOUT_S = 5.0
 REOPEN_AFTER_S = 0.5
@@ -104,12 +105,16 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.attacks.connections", description=__doc__)
     parser.add_argument("--connections", type=int, default=1300)
     parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument(
+        "--same-address", action="store_true", help="the others ask from the attack's address"
+    )
     parser.add_argument("--only", help="the attack of this name alone")
     arguments = parser.parse_args()
+    others = LOOPBACK if arguments.same_address else ADDRESS_OF_OTHERS
     rows, broken = [], []
     for attack in ATTACKS:
         if arguments.only in (None, attack.name):
-            figures = measure(attack, arguments.connections, arguments.seconds)
+            figures = measure(attack, arguments.connections, arguments.seconds, others)
             rows.append(_row(attack, figures))
             print(f"{attack.name}: {figures.broken() or 'all limits kept'}", file=sys.stderr, flush=True)
             for failure in figures.failures:
@@ -130,8 +135,8 @@ def main() -> int:
     return 1 if broken else 0
 
 
-def measure(attack: Attack, connections: int, seconds: float) -> Figures:
-    """Attack a service for so long."""
+def measure(attack: Attack, connections: int, seconds: float, others: str = ADDRESS_OF_OTHERS) -> Figures:
+    """Attack a service for so long, and ask from the address of the others."""
     figures = Figures()
     with (
         tempfile.TemporaryDirectory(prefix="statorwatch-attack-") as directory,
@@ -141,11 +146,11 @@ def measure(attack: Attack, connections: int, seconds: float) -> Figures:
         _raise_limit()
         port = int(service.url.rpartition(":")[2])
         for path in figures.times_s:
-            _ask(port, path)
+            _ask(port, path, others)
         resting, memory_kb = _descriptors(service), _memory_kb(service)
         log_bytes = service.log.stat().st_size
         with _attackers(port, attack, connections):
-            _probe(service, port, figures, seconds)
+            _probe(service, port, figures, seconds, others)
         figures.log = service.log.read_bytes()[log_bytes:]
         figures.descriptors -= resting
         figures.memory_mb -= memory_kb / 1024
@@ -154,13 +159,13 @@ def measure(attack: Attack, connections: int, seconds: float) -> Figures:
     return figures
 
 
-def _probe(service: Service, port: int, figures: Figures, seconds: float) -> None:
+def _probe(service: Service, port: int, figures: Figures, seconds: float, others: str) -> None:
     """Ask like others do, while the attack goes on."""
     end_s = time.monotonic() + seconds
     while time.monotonic() < end_s:
         for path, times_s in figures.times_s.items():
             begun_s = time.monotonic()
-            failure = _ask(port, path)
+            failure = _ask(port, path, others)
             times_s.append(math.inf if failure else time.monotonic() - begun_s)
             if failure:
                 figures.failures.append(f"{path}, after {time.monotonic() - begun_s:.2f} s: {failure}")
@@ -169,9 +174,9 @@ def _probe(service: Service, port: int, figures: Figures, seconds: float) -> Non
         time.sleep(PROBE_PERIOD_S)
 
 
-def _ask(port: int, path: str) -> str:
+def _ask(port: int, path: str, address: str) -> str:
     """Ask like a new client, and return why there was no good answer; "" where there was one."""
-    client = http.client.HTTPConnection(LOOPBACK, port, timeout=PROBE_TIMEOUT_S)
+    client = http.client.HTTPConnection(LOOPBACK, port, timeout=PROBE_TIMEOUT_S, source_address=(address, 0))
     try:
         client.request("GET", path)
         answer = client.getresponse()

@@ -2,7 +2,7 @@
 
 from http import HTTPStatus
 
-from starlette.types import ASGIApp, Receive, Scope, Send
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.api.limits.connections import OVERLOADED, OpenConnections
 from service.api.problems import RETRY_AFTER_S, problem_response
@@ -18,6 +18,7 @@ class ConnectionGuard:
     def __init__(self, app: ASGIApp, connections: OpenConnections) -> None:
         self._app = app
         self._connections = connections
+        self._under_way: set[_Exchange] = set()
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -29,7 +30,7 @@ class ConnectionGuard:
             )
             refusal = problem_response(scope["path"], HTTPStatus.BAD_REQUEST, detail, headers=CLOSING)
             await refusal(scope, receive, send)
-        elif scope["path"] != ALWAYS_ANSWERED and self._connections.is_overloaded():
+        elif scope["path"] != ALWAYS_ANSWERED and self._is_overloaded():
             self._connections.tally.add("refused")
             headers = CLOSING | {"Retry-After": str(RETRY_AFTER_S)}
             refusal = problem_response(
@@ -37,7 +38,49 @@ class ConnectionGuard:
             )
             await refusal(scope, receive, send)
         else:
-            await self._app(scope, receive, send)
+            exchange = _Exchange(scope, receive, send)
+            self._under_way.add(exchange)
+            try:
+                await self._app(scope, exchange.receive, exchange.send)
+            finally:
+                self._under_way.discard(exchange)
+
+    def _is_overloaded(self) -> bool:
+        """Tell whether more requests are being answered than there may be connections.
+
+        A request is answered to its end, also when its client is gone. One that waits for its client costs
+        little, and does not count. One whose answer has not begun yet counts.
+        """
+        requests = len(self._connections.tasks)
+        most = self._connections.limits.most
+        return requests > most and requests - sum(map(_Exchange.waits_for_client, self._under_way)) > most
+
+
+class _Exchange:
+    """A request and its answer."""
+
+    def __init__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        headers = dict(scope["headers"])
+        self._receive = receive
+        self._send = send
+        self._has_more_body = b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
+        self._is_sending = False
+
+    def waits_for_client(self) -> bool:
+        """Tell whether the rest of the body is still to come, or the client is to take the answer."""
+        return self._has_more_body or self._is_sending
+
+    async def receive(self) -> Message:
+        message = await self._receive()
+        self._has_more_body = message["type"] == "http.request" and message.get("more_body", False)
+        return message
+
+    async def send(self, message: Message) -> None:
+        self._is_sending = True
+        try:
+            await self._send(message)
+        finally:
+            self._is_sending = False
 
 
 def _is_ambiguous(scope: Scope) -> bool:

@@ -2,7 +2,8 @@
 
 uvicorn closes a connection that is idle between two requests. It waits for ever for the header of the first
 one, for a body, and for a client to take its answer. Here every wait for a client has a limit. When there are
-as many connections as there may be, those that have kept the service waiting for longest make room.
+as many connections as there may be, those that have kept the service waiting for longest make room. Addresses
+that have no more than an equal share of the connections keep theirs.
 """
 
 import asyncio
@@ -10,6 +11,7 @@ import fcntl
 import logging
 import struct
 import termios
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
@@ -84,18 +86,23 @@ class OpenConnections(ServerState):
         if surplus <= 0:
             return
         least_s = SETTLED_S if surplus <= EXTRA else 0.0
+        connections_of = Counter(each.address() for each in present)
+        share = self.limits.most / len(connections_of)
         waits = [
             (waited_s, each)
             for each in present
-            if each is not new and (waited_s := each.waited_s(now_s)) is not None and waited_s >= least_s
+            if each is not new
+            and connections_of[each.address()] > share
+            and (waited_s := each.waited_s(now_s)) is not None
+            and waited_s >= least_s
         ]
         waits.sort(key=itemgetter(0), reverse=True)
         at_once = min(DISPLACED_AT_ONCE, 1 + len(waits) // 2)
-        longest = list(islice((each for _, each in waits if not each.has_sent_more()), at_once))
-        for each in longest:
+        displaced = list(islice((each for _, each in waits if not each.has_sent_more()), at_once))
+        for each in displaced:
             self.tally.add("displaced")
             each.give_up(HTTPStatus.SERVICE_UNAVAILABLE, OVERLOADED)
-        if surplus > EXTRA and not longest:
+        if surplus > EXTRA and not displaced:
             self.tally.add("refused")
             new.give_up(HTTPStatus.SERVICE_UNAVAILABLE, OVERLOADED)
 
@@ -103,16 +110,6 @@ class OpenConnections(ServerState):
         """Close the connections whose clients took longer than they may."""
         for connection in list(self._limited()):
             connection.close_if_overdue(now_s)
-
-    def is_overloaded(self) -> bool:
-        """Tell whether more requests are being answered than there may be connections.
-
-        A request is answered to its end, also when its client is gone. One that waits for it costs little.
-        """
-        if len(self.tasks) <= self.limits.most:
-            return False
-        waiting = sum(each.wait in (Wait.BODY, Wait.TAKING) for each in self._limited())
-        return len(self.tasks) - waiting > self.limits.most
 
     def _limited(self) -> Iterable["LimitedConnection"]:
         return (each for each in self.connections if isinstance(each, LimitedConnection))
@@ -139,6 +136,10 @@ class LimitedConnection(H11Protocol):
         self._received_bytes = 0
         self._unread_bytes = 0
         self._left_bytes = 0
+
+    def address(self) -> str:
+        """Return the address of the client's machine; "" on a socket that has none."""
+        return self.client[0] if self.client else ""
 
     def is_gone(self) -> bool:
         """Tell whether the connection is closed, but for asyncio's next turn."""
