@@ -78,6 +78,7 @@ class Condition(Document):
 class _Figures(Document):
     state: State
     kind: Kind
+    candidates: Listed[Kind]
     phase: Phase | None
     mu_f: float | None
     mu_f_ci95: Interval | None
@@ -86,7 +87,10 @@ class _Figures(Document):
 
 
 class ConditionPoint(_Figures):
-    """What was said of the motor from one of its records on; `record` is the id of the recording."""
+    """What was said of the motor from one of its records on; `record` is the id of the recording.
+
+    candidates: what an unclear kind may be, likeliest first; empty of records before they were kept.
+    """
 
     record: str = Field(validation_alias="recording_id")
     time: Time = Field(validation_alias="time_ns")
@@ -101,6 +105,7 @@ class ConditionDetails(Condition):
 class ConditionChange(_Figures):
     """A time at which the motor's state, kind or phase changed, or a note was taken into account.
 
+    candidates: what an unclear kind may be, likeliest first; empty of records before they were kept.
     recording_id, note_id: what caused it; one of them is null.
     """
 

@@ -6,11 +6,10 @@ from enum import StrEnum
 from importlib.metadata import version
 from math import isfinite
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
-from core.condition.events import EventKind
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, one_line, print_failure
 from service.process.garbage_collection import collection_paused
@@ -31,6 +30,9 @@ Time = Annotated[
     str | None,
     typer.Option(metavar="TIME", help="When it happened, as 2026-01-31T12:00:00Z (default: now)."),
 ]
+NoteKind = Literal["note", "maintenance", "recorder-changed", "rewound", "reference-restarted"]
+"""What a person may tell: all kinds of events but the one that only the motors file tells."""
+
 By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
 
 INTERRUPTED = 130
@@ -342,9 +344,9 @@ def note(
     text: Annotated[str, typer.Argument(metavar="TEXT", help="What happened, in words.")],
     url: Url = DEFAULT_URL,
     kind: Annotated[
-        EventKind,
+        NoteKind,
         typer.Option(help="What it is: all but a note change what the condition follows from."),
-    ] = EventKind.NOTE,
+    ] = "note",
     time: Time = None,
     by: By = None,
     *,
@@ -353,7 +355,7 @@ def note(
     """Tell what happened to a motor: maintenance, another winding, another relay, or just a note."""
     from service.cli.conditions import add_note
 
-    add_note(url, motor, text, kind=kind.value, time=time, by=by, as_json=as_json)
+    add_note(url, motor, text, kind=kind, time=time, by=by, as_json=as_json)
 
 
 @app.command()

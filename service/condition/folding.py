@@ -199,6 +199,7 @@ def _said(condition: Condition) -> Said:
     return {
         "state": condition.state,
         "kind": condition.kind,
+        "candidates": condition.candidates,
         "phase": condition.phase,
         "mu_f": condition.mu_f,
         "mu_f_ci95_low": low,

@@ -89,6 +89,7 @@ def entry_of(condition: Condition) -> ConditionEntry:
         version=1,
         state=condition.state,
         kind=condition.kind,
+        candidates=condition.candidates,
         phase=condition.phase,
         mu_f=condition.mu_f,
         mu_f_ci95_low=low,

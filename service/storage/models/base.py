@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from enum import StrEnum
 
-from sqlalchemy import JSON, BigInteger, Enum, MetaData
+from sqlalchemy import JSON, BigInteger, Dialect, Enum, MetaData, String, TypeDecorator
 from sqlalchemy.orm import DeclarativeBase
 
 from core.condition.events import EventKind
@@ -38,6 +38,19 @@ def _words(enum: type[StrEnum], length: int = 16) -> Enum:
     )
 
 
+class _Kinds(TypeDecorator[tuple[Kind, ...]]):
+    """Kinds in their order, as their values with spaces between; null where there are none."""
+
+    impl = String
+    cache_ok = True
+
+    def process_bind_param(self, value: tuple[Kind, ...] | None, _dialect: Dialect) -> str | None:
+        return " ".join(value) if value else None
+
+    def process_result_value(self, value: str | None, _dialect: Dialect) -> tuple[Kind, ...]:
+        return tuple(map(Kind, value.split())) if value else ()
+
+
 class Base(DeclarativeBase):
     metadata = MetaData(
         naming_convention={
@@ -62,6 +75,7 @@ class Base(DeclarativeBase):
         Verdict: _words(Verdict),
         State: _words(State),
         Kind: _words(Kind),
+        tuple[Kind, ...]: _Kinds,
         EventKind: _words(EventKind, 32),
         PhaseSequence: _words(PhaseSequence),
         VoltageChannels: _words(VoltageChannels),

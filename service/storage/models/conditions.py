@@ -13,8 +13,12 @@ from service.storage.models.base import Base
 
 
 class Figures:
-    """The columns of what is said of a motor at a time. phase: "a", "b" or "c".  mu_f, change: levels."""
+    """The columns of what is said of a motor at a time.
 
+    candidates: what an unclear kind may be.  phase: "a", "b" or "c".  mu_f, change: levels.
+    """
+
+    candidates: Mapped[tuple[Kind, ...]] = mapped_column(nullable=True)
     phase: Mapped[str | None] = mapped_column(String(1))
     mu_f: Mapped[float | None] = mapped_column(Double)
     mu_f_ci95_low: Mapped[float | None] = mapped_column(Double)

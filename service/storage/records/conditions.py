@@ -14,12 +14,14 @@ from service.storage.records.diagnoses import interval_of
 class ConditionFigures:
     """What is said of a motor at a time.
 
+    candidates: what an unclear kind may be, likeliest first.
     phase: "a", "b" or "c".  mu_f: total level.  change: level since the reference; each with its 95 %
     interval from all causes, and None where it is not known.
     """
 
     state: State
     kind: Kind
+    candidates: tuple[Kind, ...] = ()
     phase: Phase | None = None
     mu_f: float | None = None
     mu_f_ci95_low: float | None = None

@@ -29,7 +29,7 @@ __all__ = ["sqlite_database_url"]
 
 MOTOR = "/api/v1/motors/PUMP-A1"
 NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
-FIGURES = ("state", "kind", "phase", "mu_f", "mu_f_ci95", "change", "change_ci95")
+FIGURES = ("state", "kind", "candidates", "phase", "mu_f", "mu_f_ci95", "change", "change_ci95")
 
 Record = Callable[[float], str]
 
@@ -136,6 +136,7 @@ def test_the_history_says_what_changed_a_condition_latest_first(
     assert [item["note_id"] for item in items] == [note["id"] for note in notes]
     assert {item["recording_id"] for item in items} == {None}
     assert {name: items[0][name] for name in FIGURES} == {name: told(FAULT)[name] for name in FIGURES}
+    assert [item["candidates"] for item in items] == [[], ["voltage-channel", "shorted-turns"], []]
     first = client.get(url, params={"limit": 2}).json()
     rest = client.get(url, params={"limit": 2, "cursor": first["next_cursor"]}).json()
     assert first["items"] + rest["items"] == items

@@ -5,16 +5,18 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
+from typing import get_args
 
 import httpx
 import pytest
 from rich.console import Console
 
+from core.condition.events import EventKind
 from core.condition.kinds import Kind
 from core.condition.verdict.condition import Condition
 from core.time_stamps import rfc3339
 from service.api import ApiContext, create_app
-from service.cli.app import main
+from service.cli.app import NoteKind, main
 from service.cli.motors import motors_table
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
@@ -148,7 +150,8 @@ def test_the_history_of_a_condition_tells_what_changed_it(mcc: Mcc, repository: 
     lines = [" ".join(line.split()) for line in mcc("condition", "PUMP-A1", "--history").splitlines()]
     assert lines[-3:-1] == [
         "2025-10-09 08:53:20 UTC fault: shorted turns b 1.21 % [0.90..2.25] maintenance: new bearing (ann)",
-        "2025-10-09 08:53:20 UTC watch: unclear c 0.04 % [0.00..1.20] maintenance: new bearing (ann)",
+        "2025-10-09 08:53:20 UTC watch: voltage channel or shorted turns c 0.04 % [0.00..1.20]"
+        " maintenance: new bearing (ann)",
     ]
     found = json.loads(mcc("condition", "PUMP-A1", "--history", "--json"))
     assert [change["state"] for change in found["changes"]] == ["fault", "watch"]
@@ -182,6 +185,12 @@ def test_notes_are_taken_and_shown(mcc: Mcc, repository: Repository) -> None:
     assert notes[-1]["time"] == rfc3339(NOW_NS - 3200 * 10**9)
 
 
+def test_every_kind_of_note_that_is_offered_is_accepted(mcc: Mcc) -> None:
+    for kind in get_args(NoteKind):
+        assert json.loads(mcc("note", "PUMP-A1", "told", "--kind", kind, "--json"))["kind"] == kind
+    assert set(EventKind) - set(get_args(NoteKind)) == {EventKind.PARAMETERS_EDITED}
+
+
 @pytest.mark.parametrize(
     ("words", "status", "message"),
     [
@@ -190,7 +199,7 @@ def test_notes_are_taken_and_shown(mcc: Mcc, repository: Repository) -> None:
         (("note", "PUMP-A1", "x" * 501), 1, "at most 500 characters"),
         (("note", "PUMP-A1", "hums", "--time", "yesterday"), 1, "body.time"),
         (("note", "PUMP-A1", "hums", "--kind", "exploded"), 2, "exploded"),
-        (("note", "PUMP-A1", "hums", "--kind", "parameters-edited"), 1, "edit the file and restart"),
+        (("note", "PUMP-A1", "hums", "--kind", "parameters-edited"), 2, "reference-restarted"),
         (("restart-reference", "PUMP-A1"), 2, "--reason"),
         (("restart-reference", "PUMP-A1", "--reason", " "), 1, "--reason: expected a few words, found none"),
         (("withdraw-note", "PUMP-A1", "1", "--reason", "wrong"), 1, "note_id"),

@@ -11,6 +11,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, StorageError, connect, migrate
 from service.storage.migrations import config
 from service.storage.models import Base
+from testing.service.conditions import DRIFTING, tell
 from testing.service.plants import NOW_NS, fault
 
 ON_SQLITE = pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
@@ -147,6 +148,19 @@ def test_an_older_baseline_has_its_time_and_no_reason(
     assert {one.id for one in baseline.recordings} == set(ids)
     assert (baseline.chosen_ns, baseline.reason, baseline.by, baseline.doubts) == (NOW_NS, None, None, ())
     assert repository.baseline("FAN-A2").chosen_ns is None
+
+
+def test_what_an_older_condition_may_be_is_not_known(
+    database_url: str, engine: Engine, repository: Repository
+) -> None:
+    tell(repository, DRIFTING)
+    with engine.begin() as connection:
+        command.downgrade(config(connection), "0025")
+    migrate(database_url)
+    (change,) = repository.condition_history("PUMP-A1", limit=10).items
+    assert (change.kind, change.candidates) == ("unclear", ())
+    tell(repository, DRIFTING, now_ns=NOW_NS + 1)
+    assert repository.condition("PUMP-A1").candidates == DRIFTING.candidates
 
 
 def test_every_step_leads_back(database_url: str) -> None:
