@@ -27,6 +27,13 @@ So few that the requests of a burst are read and answered while it comes.
 QUEUE = 2048
 """Connections that the system holds until they are accepted. Those beyond try again after a second."""
 
+UNTAKEN_BYTES = 1 << 17
+"""What the system holds of answers for a client; Linux doubles it.
+
+By itself it would let that grow to megabytes, so that a client that takes no answer could have the service
+make dozens of them before it has to wait.
+"""
+
 OTHER_DESCRIPTORS = 300
 """What else the service may have open: the database, files under way, pipes to its processes."""
 
@@ -63,6 +70,7 @@ class ApiServer(uvicorn.Server):
         asyncio.get_running_loop().set_exception_handler(self._handle_loop_error)
         await super().startup(sockets)
         for each in sockets or ():
+            each.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNTAKEN_BYTES)  # its connections inherit it
             each.listen(QUEUE)
 
     async def on_tick(self, counter: int) -> bool:

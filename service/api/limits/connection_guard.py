@@ -30,7 +30,7 @@ class ConnectionGuard:
             )
             refusal = problem_response(scope["path"], HTTPStatus.BAD_REQUEST, detail, headers=CLOSING)
             await refusal(scope, receive, send)
-        elif scope["path"] != ALWAYS_ANSWERED and self._is_overloaded():
+        elif scope["path"] != ALWAYS_ANSWERED and self._is_refused(scope):
             self._connections.tally.add("refused")
             headers = CLOSING | {"Retry-After": str(RETRY_AFTER_S)}
             refusal = problem_response(
@@ -45,15 +45,18 @@ class ConnectionGuard:
             finally:
                 self._under_way.discard(exchange)
 
-    def _is_overloaded(self) -> bool:
+    def _is_refused(self, scope: Scope) -> bool:
         """Tell whether more requests are being answered than there may be connections.
 
         A request is answered to its end, also when its client is gone. One that waits for its client costs
-        little, and does not count. One whose answer has not begun yet counts.
+        little, and does not count. One whose answer has not begun yet counts. An address that has no more
+        than an equal share of the connections is answered all the same.
         """
         requests = len(self._connections.tasks)
         most = self._connections.limits.most
-        return requests > most and requests - sum(map(_Exchange.waits_for_client, self._under_way)) > most
+        if requests <= most or requests - sum(map(_Exchange.waits_for_client, self._under_way)) <= most:
+            return False
+        return self._connections.is_crowded(scope["client"][0] if scope["client"] else "")
 
 
 class _Exchange:

@@ -86,13 +86,12 @@ class OpenConnections(ServerState):
         if surplus <= 0:
             return
         least_s = SETTLED_S if surplus <= EXTRA else 0.0
-        connections_of = Counter(each.address() for each in present)
-        share = self.limits.most / len(connections_of)
+        crowded = self._crowded(present)
         waits = [
             (waited_s, each)
             for each in present
             if each is not new
-            and connections_of[each.address()] > share
+            and each.address() in crowded
             and (waited_s := each.waited_s(now_s)) is not None
             and waited_s >= least_s
         ]
@@ -110,6 +109,18 @@ class OpenConnections(ServerState):
         """Close the connections whose clients took longer than they may."""
         for connection in list(self._limited()):
             connection.close_if_overdue(now_s)
+
+    def is_crowded(self, address: str) -> bool:
+        """Tell whether an address has more than an equal share of the connections."""
+        return address in self._crowded(each for each in self._limited() if not each.is_gone())
+
+    def _crowded(self, present: Iterable["LimitedConnection"]) -> set[str]:
+        connections_of = Counter(each.address() for each in present)
+        return {
+            address
+            for address, connections in connections_of.items()
+            if connections * len(connections_of) > self.limits.most
+        }
 
     def _limited(self) -> Iterable["LimitedConnection"]:
         return (each for each in self.connections if isinstance(each, LimitedConnection))

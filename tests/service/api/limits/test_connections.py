@@ -205,6 +205,11 @@ def test_where_all_are_being_answered_health_alone_is_told(application: Applicat
         assert answer.headers["content-type"] == "application/problem+json"
         assert int(answer.headers["retry-after"]) > 0
         assert answer.headers["connection"] == "close"
+        with socket.create_connection(
+            ("127.0.0.1", port), PATIENCE_S, source_address=("127.0.0.2", 0)
+        ) as other:
+            other.sendall(POST % 1 + b"x")
+            assert other.recv(1 << 16).startswith(b"HTTP/1.1 200"), "it does not crowd the service"
         assert httpx.get(f"http://127.0.0.1:{port}/healthz", trust_env=False).status_code == 200
         application.go_on.set()
         assert eventually(
