@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import log, sqrt
+from math import hypot, log, sqrt
 from typing import Any, Final
 
 import numpy as np
 from scipy.special import ndtr
 
-from core.condition.changes.evidence import along, learnt_without, of_size, signature
+from core.condition.changes.evidence import Learnt, along, learnt_without, of_size, signature
 from core.condition.changes.hypotheses import CAUSES, LEVEL, Cause, Hypotheses
 from core.condition.changes.naming import SIZES, name, probabilities
 from core.condition.filter.levels import level_now, levels_since
@@ -23,7 +23,9 @@ RUNNING: Final = 3
 """Records in a row that have to agree on it."""
 SPACED: Final = 8
 SETTLED: Final = 64
-"""Records after the alarm from which a channel's error that has been named is lived with."""
+"""Records after the alarm from which a name is final, and what is no shorted turns is lived with."""
+APART: Final = 2.0
+"""Standard deviations by which the level of another winding has to be higher to be told instead."""
 TAIL: Final = 0.025
 GRID: Final = 400
 WINDOW: Final = 256
@@ -37,6 +39,9 @@ KINDS: Final[Mapping[Cause, Kind]] = {
     Cause.IMPEDANCE: Kind.PARAMETERS,
 }
 """What each cause is told as; another recorder changes voltage and current channels."""
+
+DEFECTS: Final = frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION))
+"""Defects of the motor itself and of its joints."""
 
 Names = tuple[Kind, ...]
 
@@ -71,9 +76,14 @@ class Alarm:
         return self.records <= SETTLED or (self.records <= WINDOW and self.records % SPACED == 0)
 
     @property
-    def is_of_channels(self) -> bool:
-        """Whether it has been named, and as nothing that is the motor's own defect."""
-        return bool(self.named) and not {Kind.SHORTED_TURNS, Kind.CONNECTION} & set(self.named)
+    def is_final(self) -> bool:
+        """Whether its name has held for so long that what does not fit it is another change."""
+        return bool(self.named) and self.records >= SETTLED
+
+    @property
+    def is_to_be_lived_with(self) -> bool:
+        """Whether it is no shorted turns for good, so that what comes after it is to be seen by itself."""
+        return self.is_final and Kind.SHORTED_TURNS not in self.named
 
 
 @dataclass(slots=True)
@@ -134,8 +144,19 @@ def confirm(alarm: Alarm, weighing: Weighing) -> None:
     sure = _certain(weighing.probabilities)
     alarm.running = alarm.running + 1 if sure == alarm.pending else 1
     alarm.pending = sure
-    if sure and alarm.running >= RUNNING:
+    if sure and alarm.running >= RUNNING and not _takes_back(alarm, sure):
         alarm.named = sure
+
+
+def _takes_back(alarm: Alarm, sure: Names) -> bool:
+    """Return whether another name would take back a defect of the motor.
+
+    All causes are of one change. After a second one none of them fits, and that with the most freedom, the
+    impedance, seems to fit best. A defect that has been named stays named then.
+    """
+    if not DEFECTS & set(alarm.named) or DEFECTS & set(sure):
+        return False
+    return sure == (Kind.PARAMETERS,) or alarm.is_final
 
 
 def by_kind(probabilities: Array) -> dict[Kind, float]:
@@ -170,7 +191,7 @@ def _certain(p: Array) -> Names:
 
 
 def taken_up(weighing: Weighing, bank: Any, hypotheses: Hypotheses) -> tuple[Array, Array]:
-    """Return what the filter's state has taken up of the likeliest change of a channel or a recorder.
+    """Return what the filter's state has taken up of the likeliest change of a channel, joint or recorder.
 
     Parameters
     ----------
@@ -188,8 +209,8 @@ def taken_up(weighing: Weighing, bank: Any, hypotheses: Hypotheses) -> tuple[Arr
     covariance : ndarray, shape (7, 7)
         Its covariance, f Lambda^-1 f'.
     """
-    of_channels = np.isin(hypotheses["cause"], (Cause.VOLTAGE_CHANNEL, Cause.CURRENT_CHANNEL))
-    logs = np.append(np.where(of_channels, weighing.logs[:-2], -np.inf), weighing.logs[-1])
+    turns = hypotheses["cause"] == Cause.SHORTED_TURNS
+    logs = np.append(np.where(turns, -np.inf, weighing.logs[:-2]), weighing.logs[-1])
     at = int(np.argmax(logs))
     another = at == len(hypotheses)
     row = weighing.best[at + 1 if another else at]
@@ -236,7 +257,9 @@ class TurnsLevel:
     levels: tuple[tuple[int, float], ...]
 
 
-def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weighing: Weighing) -> TurnsLevel:
+def turns_level(
+    state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weighing: Weighing, *, final: bool
+) -> TurnsLevel:
     """Return the change of the fault level, should the change be shorted turns.
 
     Parameters
@@ -251,36 +274,67 @@ def turns_level(state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weig
         All places of all causes.
     weighing : Weighing
         Weights after the latest record.
+    final : bool
+        Whether the change is named for good. What another winding shows then is a second change.
 
     Returns
     -------
     TurnsLevel
         The level, averaged over what the path may be.
     """
-    count = 3 * len(PATHS)
-    logs = weighing.logs[:count].reshape(3, len(PATHS))
-    winding = int(np.argmax(np.logaddexp.reduce(logs, axis=1)))
-    likeliest = int(np.argmax(logs[winding]))
-    at = winding * len(PATHS) + likeliest
+    logs = weighing.logs[: 3 * len(PATHS)].reshape(3, len(PATHS))
+    likeliest, paths = int(np.argmax(np.logaddexp.reduce(logs, axis=1))), np.argmax(logs, axis=1)
+    at = likeliest * len(PATHS) + int(paths[likeliest])
     one, size = bank[int(weighing.best[at, 0])], weighing.best[at, 2]
-    drifts = int(weighing.best[at, 1])
-    known = learnt_without(state, one, bool(drifts))
+    drifts = bool(weighing.best[at, 1])
+    known = learnt_without(state, one, drifts)
     u, _ = signature(known, hypotheses[at])
     # What the filter has taken up of the change comes off, so that the state is that of before it.
     column = 6 if drifts else 0
     jump = size * np.array([u.real, u.imag])
-    reference = np.array(state.x) - np.array(one.f)[:, column : column + 2] @ jump
+    before = _Before(
+        reference=np.array(state.x) - np.array(one.f)[:, column : column + 2] @ jump,
+        one=one,
+        drifts=drifts,
+        known=known,
+    )
+    found = _level_in(likeliest, int(paths[likeliest]), state, recent, hypotheses, before)
+    if not final:
+        return found
+    others = (
+        _level_in(w, int(paths[w]), state, recent, hypotheses, before) for w in range(3) if w != likeliest
+    )
+    other = max(others, key=lambda level: level.value)
+    apart = other.value - found.value
+    return other if apart > APART * hypot(other.deviation, found.deviation) else found
+
+
+@dataclass(frozen=True, slots=True)
+class _Before:
+    """The filter as it was before the change, the change's onset, and whether it drifts."""
+
+    reference: Array
+    one: Any
+    drifts: bool
+    known: Learnt
+
+
+def _level_in(
+    winding: int, likeliest: int, state: Any, recent: Any, hypotheses: Hypotheses, before: _Before
+) -> TurnsLevel:
+    """Return the change of the fault level if it is in one winding; `likeliest` is the path's index."""
+    one, drifts, known = before.one, before.drifts, before.known
     values, spreads = [], []
     told: tuple[tuple[int, float], ...] = ()
     table, out, evidence = np.zeros((RECENT, 3)), np.zeros(5), np.zeros(len(PATHS))
     for p in range(len(PATHS)):
         hypothesis = hypotheses[winding * len(PATHS) + p]
         u, direction = signature(known, hypothesis)
-        first = levels_since(state, recent, reference, u, one.time_ns, table)
+        first = levels_since(state, recent, before.reference, u, one.time_ns, table)
         taken = int(state.recent) - first
         value, wandering = level_now(table[:taken])
-        along(one, 0, bool(drifts), u, out)
-        evidence[p] = _evidence(out, direction, float(hypothesis.share), drifts)
+        along(one, 0, drifts, u, out)
+        evidence[p] = _evidence(out, direction, float(hypothesis.share), int(drifts))
         along(one, 0, False, u, out)  # noqa: FBT003
         a, b, c = out[0], out[1], out[2]
         information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))

@@ -8,7 +8,7 @@ import numpy as np
 from core.condition.assessment import Assessment, Change, Level, Reference
 from core.condition.bus.differences import COMMON_RECORDS
 from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
-from core.condition.changes.alarm import SETTLED, Alarm, Weighing, confirm, taken_up, turns_level, weigh
+from core.condition.changes.alarm import Alarm, Weighing, confirm, taken_up, turns_level, weigh
 from core.condition.changes.change import change_of
 from core.condition.changes.detectability import detectable
 from core.condition.changes.hypotheses import Hypotheses, hypotheses_of
@@ -337,7 +337,7 @@ class Direction:
             self._header.alarm = None
             self._header.standing = None if self._header.kept is None else self._header.standing
             self._state.candidates = 0.0
-        elif alarm.is_of_channels and alarm.records >= SETTLED:
+        elif alarm.is_to_be_lived_with:
             self._live_with(alarm, motor)
 
     def _live_with(self, alarm: Alarm, motor: Motor) -> None:
@@ -353,7 +353,9 @@ class Direction:
 
     def _change(self, alarm: Alarm, motor: Motor) -> tuple[Change, tuple[tuple[int, float], ...]]:
         weighing = self._weighing()
-        level = turns_level(self._state, self._bank, self._recent, self._hypotheses, weighing)
+        level = turns_level(
+            self._state, self._bank, self._recent, self._hypotheses, weighing, final=alarm.is_final
+        )
         change = change_of(
             alarm, weighing, level, self._hypotheses, self._bank, motor.nameplate.connection, self._sequence,
             self._header.voltage_channels,
