@@ -33,7 +33,12 @@ def condition_document(entry: ConditionEntry, now_ns: int, stale_after_ns: int) 
     document = {**_NOTHING, **(entry.document or {})}
     reference = document["reference"]
     known = reference if isinstance(reference, Mapping) else {}
-    is_stale = entry.as_of_ns is None or now_ns - entry.as_of_ns > stale_after_ns
+    stale = is_stale(entry, now_ns, stale_after_ns)
     return Condition.model_validate(
-        {**document, "motor": entry.motor, "stale": is_stale, "reference": {**_NO_REFERENCE, **known}}
+        {**document, "motor": entry.motor, "stale": stale, "reference": {**_NO_REFERENCE, **known}}
     )
+
+
+def is_stale(entry: ConditionEntry, now_ns: int, stale_after_ns: int) -> bool:
+    """Tell whether the latest record of a condition is too old, or there is none."""
+    return entry.as_of_ns is None or now_ns - entry.as_of_ns > stale_after_ns

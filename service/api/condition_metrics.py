@@ -1,5 +1,6 @@
 """The conditions of motors in figures, for Prometheus: a few time series a motor."""
 
+import time
 from collections import Counter
 from collections.abc import Iterator
 
@@ -8,6 +9,8 @@ from prometheus_client.registry import Collector
 
 from core.condition.kinds import State
 from core.units import NANOSECONDS_PER_SECOND
+from service.api.condition_documents import is_stale
+from service.condition.staleness import stale_after_ns
 from service.storage.records import ConditionEntry
 from service.storage.repository import Repository
 
@@ -15,10 +18,11 @@ LABELS = ["motor"]
 
 
 class ConditionMetrics(Collector):
-    """Asks the database when it is asked."""
+    """Asks the database when it is asked. stale_after_days: that of the settings."""
 
-    def __init__(self, repository: Repository) -> None:
+    def __init__(self, repository: Repository, stale_after_days: float | None) -> None:
         self._repository = repository
+        self._stale_after_days = stale_after_days
 
     def collect(self) -> Iterator[Metric]:
         number = GaugeMetricFamily(
@@ -57,9 +61,17 @@ class ConditionMetrics(Collector):
             "Time of the latest record in the motor's condition (UNIX time)",
             labels=LABELS,
         )
+        stale = GaugeMetricFamily(
+            "mcc_motor_condition_stale",
+            "1 where the latest record in the motor's condition is older than the motor's rule says, else 0",
+            labels=LABELS,
+        )
+        now_ns, schedules = time.time_ns(), self._repository.schedules()
         states: Counter[State] = Counter()
         for motor, found in self._repository.conditions().items():
             states[found.state] += 1
+            oldest_ns = stale_after_ns(schedules.get(motor), self._stale_after_days)
+            stale.add_metric([motor], is_stale(found, now_ns, oldest_ns))
             for one in State:
                 state.add_metric([motor, one], found.state is one)
             kind.add_metric([motor, found.kind], 1)
@@ -75,7 +87,7 @@ class ConditionMetrics(Collector):
                 as_of.add_metric([motor], found.as_of_ns / NANOSECONDS_PER_SECOND)
         for one in State:
             number.add_metric([one], states[one])
-        yield from (number, state, kind, level, interval, change, forecast, as_of)
+        yield from (number, state, kind, level, interval, change, forecast, as_of, stale)
         backlog = self._repository.backlog()
         yield GaugeMetricFamily(
             "mcc_recordings_to_observe",

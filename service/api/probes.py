@@ -53,7 +53,7 @@ def get_metrics(context: Context) -> Response:
     """
     registry = CollectorRegistry()
     registry.register(_StateCollector(context.repository))
-    registry.register(ConditionMetrics(context.repository))
+    registry.register(ConditionMetrics(context.repository, context.settings.stale_after_days))
     registry.register(LinkMetrics(context.repository))
     return Response(generate_latest(registry), media_type=CONTENT_TYPE_LATEST)
 

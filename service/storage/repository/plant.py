@@ -111,6 +111,12 @@ class PlantRows(Sessions):
             query = select(*columns_of(MotorEntry, MotorRow)).where(MotorRow.in_service)
             return page_of(session, query, [MotorRow.name], MotorEntry, limit=limit, after=after)
 
+    def schedules(self) -> Mapping[str, str | None]:
+        """Return the schedules of all motors in service, by name."""
+        with self._read() as session:
+            query = select(MotorRow.name, MotorRow.schedule).where(MotorRow.in_service)
+            return dict(session.execute(query).all())
+
     def motor(self, name: str) -> MotorEntry:
         """Return a motor by its name. Raises NotFoundError."""
         with self._read() as session:

@@ -15,6 +15,7 @@ from core.condition.observation import Observation
 from core.condition.verdict.condition import Condition
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
+from service.plant import Schedule
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import FoldResult
@@ -22,7 +23,7 @@ from service.storage.repository.motor_versions import MOTORS_FILE
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
 from testing.service.observations import HOUR_NS, observation
-from testing.service.plants import NOW_NS, healthy
+from testing.service.plants import NOW_NS, healthy, two_motor_plant
 from tests.service.fixtures import database_url as sqlite_database_url
 
 __all__ = ["sqlite_database_url"]
@@ -226,11 +227,30 @@ def test_the_metrics_have_the_conditions(client: httpx.Client, repository: Repos
         f'mcc_motor_fault_level_bound_ratio{{bound="high",{motor}}} 0.0225',
         f'mcc_motor_forecast_days{{{motor},quantile="0.5"}} 20.0',
         f"mcc_motor_condition_timestamp_seconds{{{motor}}} 1.76e+09",
+        f"mcc_motor_condition_stale{{{motor}}} 1.0",
         'mcc_alarms{kind="condition-fault"} 1.0',
         "mcc_recordings_to_observe 0.0",
         "mcc_motors_to_fold 1.0",
     }
     assert not [line for line in lines if line.startswith("mcc_motor_fault_level") and "FAN-A2" in line]
+
+
+def test_the_metrics_say_whether_a_condition_is_stale_by_the_motors_rule(
+    client: httpx.Client, repository: Repository
+) -> None:
+    two_hours = replace(HEALTHY, as_of_ns=time.time_ns() - 2 * HOUR_NS)
+    four_hours = replace(two_hours, motor="FAN-A2", as_of_ns=time.time_ns() - 4 * HOUR_NS)
+    for condition in (two_hours, four_hours):
+        tell(repository, condition)
+    name = "mcc_motor_condition_stale"
+    plant = two_motor_plant()
+    for expression, stale in (("0 * * * *", 1.0), ("0 */6 * * *", 0.0)):
+        schedule = Schedule.parse(expression)
+        motors = tuple(replace(one, schedule=schedule) for one in plant.motors)
+        repository.sync_plant(replace(plant, motors=motors))
+        lines = client.get("/metrics").text.splitlines()
+        assert f'{name}{{motor="PUMP-A1"}} 0.0' in lines
+        assert f'{name}{{motor="FAN-A2"}} {stale}' in lines
 
 
 def test_a_note_is_kept_and_the_condition_is_to_follow_it(
