@@ -2,11 +2,12 @@
 
 import time
 from http import HTTPStatus
+from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Query
 
 from service.api.context import Context
-from service.api.document import Name
+from service.api.document import Name, Person, Reason
 from service.api.problems import problems
 from service.api.schemas import Baseline, BaselineRequest
 
@@ -33,6 +34,11 @@ def set_baseline(context: Context, name: Name, wanted: BaselineRequest) -> Basel
 
 
 @router.delete("", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
-def drop_baseline(context: Context, name: Name) -> None:
-    """Delete a motor's baseline; its recordings stay."""
-    context.repository.delete_baseline(name)
+def drop_baseline(
+    context: Context,
+    name: Name,
+    reason: Annotated[Reason | None, Query(description="Why; it is kept.")] = None,
+    by: Annotated[Person | None, Query(description="Who says so; it is kept.")] = None,
+) -> None:
+    """Delete a motor's baseline; its recordings stay, and a note of the motor keeps who did so and why."""
+    context.repository.delete_baseline(name, reason=reason, by=by, now_ns=time.time_ns())

@@ -26,6 +26,9 @@ from service.storage.repository.condition_events import keep_event
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.texts import storable
 
+NOBODY = "not said"
+"""Who deleted a baseline, where the request does not say."""
+
 
 class BaselineRows(Sessions):
     def baseline(self, motor: str) -> BaselineEntry:
@@ -77,11 +80,23 @@ class BaselineRows(Sessions):
             session.flush()
             return _entry(session, motor)
 
-    def delete_baseline(self, motor: str) -> None:
-        """Delete the motor's baseline, if it has one; its recordings stay. Raises NotFoundError."""
+    def delete_baseline(
+        self, motor: str, *, reason: str | None = None, by: str | None = None, now_ns: int
+    ) -> None:
+        """Delete the motor's baseline, if it has one; its recordings stay.
+
+        A note of the motor keeps when, and reason and by: why and who did so, where it is said.
+        Raises NotFoundError.
+        """
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
+            baseline = _entry(session, motor)
+            if baseline.chosen_ns is None:
+                return
             _delete(session, motor)
+            what = f"baseline of {len(baseline.recordings)} recordings deleted"
+            note = what if reason is None else f"{what}: {reason}"
+            keep_event(session, motor, Event(now_ns, EventKind.NOTE, note), by or NOBODY, now_ns)
 
 
 def baseline_rows(session: Session, motor: str) -> Sequence[RecordingRow]:

@@ -91,6 +91,26 @@ def test_a_motor_has_no_baseline_until_it_is_given_one(client: httpx.Client, pla
     assert client.get(f"/api/v1/recordings/{ids[1]}").status_code == 200
 
 
+def test_who_deletes_a_baseline_and_why_is_kept(client: httpx.Client, plant: Plant) -> None:
+    ids = [plant.recording(healthy()) for _ in range(3)]
+    assert client.delete(BASELINE).status_code == 204
+    assert client.get(NOTES).json()["items"] == [], "there was none"
+    said = {"reason": "one of them showed a fault", "by": "A. Miller"}
+    for query in ({}, said):
+        client.put(BASELINE, json={"recording_ids": ids})
+        assert client.delete(BASELINE, params=query).status_code == 204
+        assert client.get(BASELINE).json() == NO_BASELINE
+    told, silent = client.get(NOTES).json()["items"]
+    assert told["text"] == "baseline of 3 recordings deleted: one of them showed a fault"
+    assert (told["kind"], told["by"]) == ("note", "A. Miller")
+    assert (silent["text"], silent["by"]) == ("baseline of 3 recordings deleted", "not said")
+    assert silent["time"] == silent["made_time"] < told["time"]
+    client.put(BASELINE, json={"recording_ids": ids})
+    for wrong in ({"reason": " "}, {"by": "A.\nMiller"}):
+        assert client.delete(BASELINE, params=wrong).status_code == 422
+    assert len(client.get(BASELINE).json()["recordings"]) == 3
+
+
 def test_a_worker_is_given_the_baselines_files(
     client: httpx.Client, plant: Plant, repository: Repository, store: RecordingStore
 ) -> None:

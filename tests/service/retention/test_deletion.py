@@ -131,7 +131,7 @@ def test_what_is_in_use_is_not_deleted(repository: Repository, store: RecordingS
     repository.set_baseline(MOTOR, ids, reason="new winding", by="A. Fitter", now_ns=NOW_NS)
     with pytest.raises(RecordingInUseError, match=r"part of the baseline of motor PUMP-A1; replace"):
         repository.delete_recording(ids[0], "x", now_ns=NOW_NS)
-    repository.delete_baseline(MOTOR)
+    repository.delete_baseline(MOTOR, now_ns=NOW_NS)
     repository.delete_recording(ids[0], "x", now_ns=NOW_NS)
 
 
