@@ -28,12 +28,17 @@ def set_baseline(context: Context, name: Name, wanted: BaselineRequest) -> Basel
     """
     ids = sorted(str(one) for one in wanted.recording_ids)
     baseline = context.repository.set_baseline(
-        name, ids, reason=wanted.reason, by=wanted.by, now_ns=time.time_ns()
+        name,
+        ids,
+        reason=wanted.reason,
+        by=wanted.by,
+        now_ns=time.time_ns(),
+        most_notes=context.settings.max_notes,
     )
     return Baseline.model_validate(baseline)
 
 
-@router.delete("", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
+@router.delete("", status_code=HTTPStatus.NO_CONTENT, responses=problems(404, 409))
 def drop_baseline(
     context: Context,
     name: Name,
@@ -41,4 +46,6 @@ def drop_baseline(
     by: Annotated[Person | None, Query(description="Who says so; it is kept.")] = None,
 ) -> None:
     """Delete a motor's baseline; its recordings stay, and a note of the motor keeps who did so and why."""
-    context.repository.delete_baseline(name, reason=reason, by=by, now_ns=time.time_ns())
+    context.repository.delete_baseline(
+        name, reason=reason, by=by, now_ns=time.time_ns(), most_notes=context.settings.max_notes
+    )

@@ -123,7 +123,9 @@ def _add(context: ApiContext, motor: str, kind: EventKind, text: str, by: str, t
         time_ns = now_ns
     if time_ns > now_ns + FURTHEST_AHEAD_NS:
         raise _refused("body.time", f"expected a time at most a day ahead of now, found {rfc3339(time_ns)}")
-    event = context.repository.add_event(motor, Event(time_ns, kind, text), by=by, now_ns=now_ns)
+    event = context.repository.add_event(
+        motor, Event(time_ns, kind, text), by=by, now_ns=now_ns, most_notes=context.settings.max_notes
+    )
     context.on_new_job()
     return Note.model_validate(event)
 

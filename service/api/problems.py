@@ -23,6 +23,7 @@ from service.storage.errors import (
     OutOfServiceError,
     RecordingInUseError,
     StateConflictError,
+    TooManyNotesError,
     TooManyWaitingError,
     UnusableBaselineError,
 )
@@ -37,6 +38,7 @@ STATUS_OF: dict[type[Exception], HTTPStatus] = {
     UnusableBaselineError: HTTPStatus.CONFLICT,
     OutOfServiceError: HTTPStatus.CONFLICT,
     StateConflictError: HTTPStatus.CONFLICT,
+    TooManyNotesError: HTTPStatus.CONFLICT,
     RecordingInUseError: HTTPStatus.CONFLICT,
 }
 """The HTTP status that answers each refusal of the storage."""

@@ -67,6 +67,7 @@ class Settings(BaseSettings):
     workers: int = Field(default=2, ge=1, le=256)
     max_open_requests: int = Field(default=100, ge=1, le=10_000)
     max_queued_diagnoses: int = Field(default=500, ge=1, le=10_000)
+    max_notes: int = Field(default=1000, ge=1, le=100_000)
     stale_after_days: float | None = Field(default=None, ge=0.01, le=MOST_DAYS)
     job_timeout_s: float = Field(default=60.0, ge=0.1, le=3600)
     job_attempts: int = Field(default=3, ge=1, le=20)

@@ -40,6 +40,16 @@ class TooManyWaitingError(StorageError):
         )
 
 
+class TooManyNotesError(StorageError):
+    """A motor has as many notes as it may have."""
+
+    def __init__(self, motor: str, most: int) -> None:
+        super().__init__(
+            f"motor {motor} has {most} notes, as many as it may have, and notes are kept for good: raise the "
+            "setting max_notes and start the service again; nothing was changed"
+        )
+
+
 class UnusableBaselineError(StorageError):
     """A recording that cannot stand for a motor's healthy condition."""
 

@@ -45,6 +45,7 @@ class BaselineRows(Sessions):
         reason: str | None = None,
         by: str | None = None,
         now_ns: int,
+        most_notes: int | None = None,
     ) -> BaselineEntry:
         """Replace the motor's baseline by these recordings.
 
@@ -52,8 +53,9 @@ class BaselineRows(Sessions):
         it stays when the baseline is replaced.
 
         reason, by: why the recordings stand for health, and who says so; needed where one is in doubt.
+        most_notes: so many the motor may have.
         Raises NotFoundError (for another motor's recording too), UnusableBaselineError (one that is not
-        diagnosed, or was refused), DoubtfulBaselineError.
+        diagnosed, or was refused), DoubtfulBaselineError, TooManyNotesError.
         """
         chosen = list(dict.fromkeys(recording_ids))
         with self._write() as session:
@@ -76,17 +78,23 @@ class BaselineRows(Sessions):
                 for one, cause in causes.items()
             )
             if reason is not None and by is not None:
-                keep_event(session, motor, _note(now_ns, chosen, doubts, reason), by, now_ns)
+                keep_event(session, motor, _note(now_ns, chosen, doubts, reason), by, now_ns, most_notes)
             session.flush()
             return _entry(session, motor)
 
     def delete_baseline(
-        self, motor: str, *, reason: str | None = None, by: str | None = None, now_ns: int
+        self,
+        motor: str,
+        *,
+        reason: str | None = None,
+        by: str | None = None,
+        now_ns: int,
+        most_notes: int | None = None,
     ) -> None:
         """Delete the motor's baseline, if it has one; its recordings stay.
 
         A note of the motor keeps when, and reason and by: why and who did so, where it is said.
-        Raises NotFoundError.
+        most_notes: so many the motor may have. Raises NotFoundError, TooManyNotesError.
         """
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
@@ -96,7 +104,7 @@ class BaselineRows(Sessions):
             _delete(session, motor)
             what = f"baseline of {len(baseline.recordings)} recordings deleted"
             note = what if reason is None else f"{what}: {reason}"
-            keep_event(session, motor, Event(now_ns, EventKind.NOTE, note), by or NOBODY, now_ns)
+            keep_event(session, motor, Event(now_ns, EventKind.NOTE, note), by or NOBODY, now_ns, most_notes)
 
 
 def baseline_rows(session: Session, motor: str) -> Sequence[RecordingRow]:

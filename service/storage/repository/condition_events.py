@@ -6,25 +6,41 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
-from service.storage.errors import NotFoundError, OutOfServiceError, StateConflictError
+from service.storage.errors import (
+    NotFoundError,
+    OutOfServiceError,
+    StateConflictError,
+    TooManyNotesError,
+)
 from service.storage.models import ConditionEventRow, MotorRow
 from service.storage.records import ConditionEvent, Cursor, Page
 from service.storage.repository.fold_marks import mark
 from service.storage.repository.motor_versions import MOTORS_FILE
-from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
+from service.storage.repository.sessions import (
+    Order,
+    Sessions,
+    columns_of,
+    found,
+    has_as_many,
+    page_of,
+    record_of,
+)
 from service.storage.texts import storable
 
 
 class ConditionEventRows(Sessions):
-    def add_event(self, motor: str, event: Event, *, by: str, now_ns: int) -> ConditionEvent:
+    def add_event(
+        self, motor: str, event: Event, *, by: str, now_ns: int, most_notes: int | None = None
+    ) -> ConditionEvent:
         """Keep what somebody tells of a motor, and have its condition follow.
 
-        Raises NotFoundError, OutOfServiceError.
+        most_notes: so many of them the motor may have.
+        Raises NotFoundError, OutOfServiceError, TooManyNotesError.
         """
         with self._write() as session:
             if not found(session, MotorRow, motor, "motor", lock=True).in_service:
                 raise OutOfServiceError("motor", motor)
-            return record_of(ConditionEvent, keep_event(session, motor, event, by, now_ns))
+            return record_of(ConditionEvent, keep_event(session, motor, event, by, now_ns, most_notes))
 
     def withdraw_event(
         self, motor: str, event_id: str, *, by: str, reason: str, now_ns: int
@@ -61,8 +77,15 @@ class ConditionEventRows(Sessions):
             return page_of(session, query, order, ConditionEvent, limit=limit, after=after, descending=True)
 
 
-def keep_event(session: Session, motor: str, event: Event, by: str, now_ns: int) -> ConditionEventRow:
-    """Add an event of a motor that is locked, and have its condition follow."""
+def keep_event(
+    session: Session, motor: str, event: Event, by: str, now_ns: int, most_notes: int | None
+) -> ConditionEventRow:
+    """Add an event of a motor that is locked, and have its condition follow. Raises TooManyNotesError."""
+    told = select(ConditionEventRow.id).where(
+        ConditionEventRow.motor == motor, ConditionEventRow.kind != EventKind.PARAMETERS_EDITED
+    )
+    if most_notes is not None and has_as_many(session, told, most_notes):
+        raise TooManyNotesError(motor, most_notes)
     row = ConditionEventRow(
         id=str(uuid.uuid4()),
         motor=motor,

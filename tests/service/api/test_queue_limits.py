@@ -21,7 +21,7 @@ BOTH = pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirec
 
 @pytest.fixture
 def context(repository: Repository, store: RecordingStore, tmp_path: Path) -> ApiContext:
-    settings = Settings(data_directory=tmp_path, max_open_requests=3, max_queued_diagnoses=3)
+    settings = Settings(data_directory=tmp_path, max_open_requests=3, max_queued_diagnoses=3, max_notes=3)
     return ApiContext(settings, repository, store)
 
 
@@ -73,3 +73,20 @@ def test_a_motor_has_so_many_queued_diagnoses(
     )
     assert of_the_relay.created, "no limit keeps a relay's record out"
     assert repository.counts().jobs == {JobState.QUEUED: 4}
+
+
+@BOTH
+def test_a_motor_has_so_many_notes(client: httpx.Client) -> None:
+    motor = "/api/v1/motors/PUMP-A1"
+    note, restart = {"text": "hums", "by": "A. Miller"}, {"reason": "tested", "by": "A. Miller"}
+    kept = [client.post(f"{motor}/notes", json=note).json()["id"] for _ in range(2)]
+    kept.append(client.post(f"{motor}/reference", json=restart).json()["id"])
+    client.post(f"{motor}/notes/{kept[0]}/withdrawal", json=restart)
+    for path, body in (("notes", note), ("reference", restart)):
+        refused = client.post(f"{motor}/{path}", json=body)
+        assert refused.status_code == 409
+        assert refused.headers["content-type"] == "application/problem+json"
+        assert "motor PUMP-A1 has 3 notes" in refused.json()["detail"]
+        assert "raise the setting max_notes" in refused.json()["detail"]
+    assert {one["id"] for one in client.get(f"{motor}/notes").json()["items"]} == set(kept)
+    assert client.post("/api/v1/motors/FAN-A2/notes", json=note).status_code == 201
