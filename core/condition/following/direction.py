@@ -9,6 +9,7 @@ from core.condition.assessment import Assessment, Change, Level, Reference
 from core.condition.bus.differences import COMMON_RECORDS
 from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
 from core.condition.changes.alarm import Alarm, Weighing, confirm, taken_up, turns_level, weigh
+from core.condition.changes.before_change import before_change
 from core.condition.changes.change import change_of
 from core.condition.changes.detectability import detectable
 from core.condition.changes.hypotheses import Hypotheses, hypotheses_of
@@ -54,6 +55,8 @@ SAME, MOST_SAME = 0.05, 0.2
 least, and at most where the differences are noisy."""
 CLEARED = 3.0
 """Log of the detector's statistic below which a change has gone again."""
+SUSPECTED = 3.0
+"""The same above which a change is likely enough not to be taken for what stands."""
 NANOSECONDS = 1e-9
 
 
@@ -364,7 +367,10 @@ class Direction:
 
     def _errors(self) -> StandingErrors:
         state, prior = self._state, self._prior_of_E()
-        E, spread = without_prior(state.x, state.P, prior)
+        # Where a change is likely, what the filter has taken up of it is not what stands.
+        suspected = state.statistic > SUSPECTED
+        x, P = before_change(state, self._bank) if suspected else (state.x, state.P)
+        E, spread = without_prior(x, P, prior)
         bus = self._header.bus.mean(self._same_transformer())
         return StandingErrors(
             float(E[0]), float(E[1]), elements(spread), elements(prior),

@@ -28,3 +28,20 @@ def test_the_assessment_tells_that_interval() -> None:
     assert standing.interval is not None
     low, high = standing.ci95
     assert low < 0.03 < high
+
+
+@pytest.mark.parametrize("winding", [0, 1, 2])
+def test_a_fault_on_a_constant_supply_does_not_come_to_stand(winding: int) -> None:
+    """The filter takes it for an error of the impedance: only their priors tell that from E."""
+    plant = Plant(supply_swing=0.0, unbalance=0.02, seed=1, winding=winding)
+    follower = follow(motor_of(), plant.records(60))
+    healthy = follower.assessment()
+    plant.level = 0.02
+    for record in plant.records(12):
+        follower.fold(record)
+    faulty = follower.assessment()
+    assert healthy is not None
+    assert faulty is not None
+    assert faulty.change is not None
+    assert faulty.change.level.winding == winding
+    assert faulty.reference.standing_score == pytest.approx(healthy.reference.standing_score, abs=0.1)
