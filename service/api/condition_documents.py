@@ -9,6 +9,11 @@ from service.storage.records import ConditionEntry
 
 NOT_JUDGED = "no valid record of the motor has been judged yet"
 
+NOT_FOLDED = (
+    "what came after the latest record is not taken into account: {}; it is tried again with the next record,"
+    " with another diagnosis, and when the service starts"
+)
+
 _NO_REFERENCE: Mapping[str, object] = {
     **dict.fromkeys(ConditionReference.model_fields),
     "records": 0,
@@ -34,6 +39,10 @@ def condition_document(entry: ConditionEntry, now_ns: int, stale_after_ns: int) 
     reference = document["reference"]
     known = reference if isinstance(reference, Mapping) else {}
     stale = is_stale(entry, now_ns, stale_after_ns)
+    if entry.problem is not None:
+        told = document["reasons"]
+        known_reasons = told if isinstance(told, list) and entry.document is not None else []
+        document["reasons"] = [NOT_FOLDED.format(entry.problem), *known_reasons]
     return Condition.model_validate(
         {**document, "motor": entry.motor, "stale": stale, "reference": {**_NO_REFERENCE, **known}}
     )

@@ -99,6 +99,11 @@ class ConditionMetrics(Collector):
             "Motors whose condition is about to follow a change",
             value=backlog.motors_to_fold,
         )
+        yield GaugeMetricFamily(
+            "mcc_motors_set_aside",
+            "Motors whose condition does not follow their records, because folding them failed",
+            value=backlog.motors_set_aside,
+        )
 
 
 def _forecast_days(entry: ConditionEntry) -> tuple[float, ...]:

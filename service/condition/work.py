@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from random import choice
 
 import structlog
+from pebble import ProcessExpired
 from structlog.typing import FilteringBoundLogger
 
 from core.machines.parameters import Motor
@@ -15,6 +16,7 @@ from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_
 from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository
 from service.timing.backoff import Backoff
+from service.timing.database_silence import does_not_answer
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
@@ -25,10 +27,16 @@ FAILURES = Backoff(first_s=1.0, longest_s=300.0)
 """Before a motor whose task has failed is tried again."""
 
 MOST_FAILURES = 3
-"""After so many in a row, the recording that cannot be observed or folded is left out."""
+"""After so many in a row, the recording that cannot be observed or folded is left out.
+
+A motor whose fold fails otherwise, or brings its worker down, is set aside until something changes again.
+"""
 
 HELD_S = 600.0
 """Time between two folds of a motor while recordings of its bus are yet to be observed."""
+
+MOST_CHARACTERS = 300
+"""Of what is told of a failure."""
 
 REPORT_S = 60.0
 """Time between two lines of the log on how many recordings are yet to be observed."""
@@ -60,9 +68,9 @@ class _Progress:
 class ConditionWork:
     """Says which motor is folded next, or which recordings are observed. For use by one thread.
 
-    One task a motor at a time. A motor whose task fails is tried again after a pause; meanwhile its condition
-    ages. Several services may share a database: what two of them do twice is kept
-    once.
+    One task a motor at a time. A motor whose task fails is tried again after a pause, and set aside after a
+    few failures; meanwhile its condition ages. Several services may share a database: what two of them do
+    twice is kept once.
     """
 
     def __init__(
@@ -88,6 +96,10 @@ class ConditionWork:
         self._begun_s = time.monotonic()
         self._folded_s: dict[str, float] = {}
         self._progress = _Progress()
+
+    def begin(self) -> None:
+        """Have motors tried again that were set aside. Raises SQLAlchemyError."""
+        self._repository.resume_folds()
 
     def next_task(self) -> ConditionTask | None:
         """Return the next task, which is under way from now on; None where there is nothing to do.
@@ -178,6 +190,15 @@ class ConditionWork:
             log.error("record left out of the condition", recording=error.recording_id, reason=error.reason)
             self._repository.leave_out(error.recording_id, f"left out of the condition: {error.reason}")
             del self._trouble[task.motor]
+        elif (
+            isinstance(task.argument, FoldTask)
+            and trouble.failures >= MOST_FAILURES
+            and not does_not_answer(error)
+        ):
+            problem = f"folding failed {trouble.failures} times, the last time: {_words(error)}"
+            log.error("motor set aside: its condition follows no records", motor=task.motor, reason=problem)
+            self._repository.set_fold_aside(task.motor, problem)
+            del self._trouble[task.motor]
 
     def _report(self, observed: int) -> None:
         """Log now and then how far observing has come."""
@@ -187,3 +208,12 @@ class ConditionWork:
         left = self._repository.backlog().unobserved_recordings
         log.info("stored recordings observed", number=self._progress.observed, left=left)
         self._progress = _Progress()
+
+
+def _words(error: BaseException) -> str:
+    """Return why a task failed, for people."""
+    if isinstance(error, ProcessExpired):
+        return f"the worker process died (exit code {error.exitcode})"
+    if isinstance(error, TimeoutError):
+        return "it took too long"
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"[:MOST_CHARACTERS]

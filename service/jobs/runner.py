@@ -98,6 +98,8 @@ class JobRunner:
     def start(self) -> None:
         """Queue this installation's interrupted jobs again and start the thread, which starts the workers."""
         self._register()
+        if self._conditions is not None:
+            self._conditions.begin()
         self._worker.start()
 
     def stop(self) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from sqlalchemy import Double, ForeignKey, Index, LargeBinary, String
+from sqlalchemy import Double, ForeignKey, Index, LargeBinary, String, false
 from sqlalchemy.orm import Mapped, mapped_column
 
 from core.condition.events import EventKind
@@ -72,7 +72,7 @@ class ConditionRow(Figures, Base):
 
     version: counts the folds; who folded from an older version writes nothing.  document: what
     `Condition.as_dict()` gave; null before the first fold, as is as_of_ns.  standing: its standing asymmetry,
-    for the other motors of its bus.
+    for the other motors of its bus.  problem: why what came since is not folded; null while it is.
     """
 
     __tablename__ = "conditions"
@@ -85,6 +85,7 @@ class ConditionRow(Figures, Base):
     as_of_ns: Mapped[int | None]
     document: Mapped[Mapping[str, object] | None]
     standing: Mapped[Mapping[str, object] | None]
+    problem: Mapped[str | None]
 
 
 class ConditionChangeRow(Figures, Base):
@@ -146,6 +147,7 @@ class FoldMarkRow(Base):
     """From which time on a motor's observations or events have changed, and are to be folded again.
 
     A row for each change: who makes one waits for nobody, and a fold takes away those that it knew of.
+    set_aside: the fold failed too often; it is tried again with the next change.
     """
 
     __tablename__ = "fold_marks"
@@ -153,6 +155,7 @@ class FoldMarkRow(Base):
     id: Mapped[str] = mapped_column(String(36), primary_key=True)
     motor: Mapped[str] = mapped_column(ForeignKey("motors.name"))
     from_ns: Mapped[int]
+    set_aside: Mapped[bool] = mapped_column(server_default=false())
 
     __table_args__ = (Index("ix_fold_marks_motor_from_ns", "motor", "from_ns"),)
 

@@ -47,6 +47,7 @@ class ConditionEntry(ConditionFigures):
 
     version: how often it was folded; 0 where it never was.  document: `Condition.as_dict()`, with what was
     stale when it was made; None before the first fold.  as_of_ns: time of the latest record in it.
+    problem: why what came since is not folded; None while it is.
     """
 
     motor: str
@@ -54,6 +55,7 @@ class ConditionEntry(ConditionFigures):
     since_ns: int | None
     as_of_ns: int | None
     document: Mapping[str, object] | None
+    problem: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -198,7 +200,11 @@ class ToObserve:
 
 @dataclass(frozen=True, slots=True)
 class Backlog:
-    """How much the conditions are behind: recordings without an observation, motors with changes."""
+    """How much the conditions are behind: recordings without an observation, motors with changes.
+
+    motors_set_aside: those whose changes are not folded, because that failed.
+    """
 
     unobserved_recordings: int
     motors_to_fold: int
+    motors_set_aside: int = 0

@@ -2,7 +2,7 @@
 
 import uuid
 
-from sqlalchemy import Select, func, select
+from sqlalchemy import ColumnElement, Select, func, select, update
 from sqlalchemy.orm import Session, aliased
 
 from core.condition.observation import SAME_SUPPLY_WITHIN_NS
@@ -30,6 +30,11 @@ def mark_with_bus(session: Session, motor: str, time_ns: int) -> None:
     )
     for neighbour, from_ns in session.execute(neighbours).all():
         mark(session, neighbour, from_ns)
+
+
+def resume(session: Session, *of: ColumnElement[bool]) -> None:
+    """Have motors folded that were set aside, all or some."""
+    session.execute(update(FoldMarkRow).where(FoldMarkRow.set_aside, *of).values(set_aside=False))
 
 
 def others_of_bus(motor: str) -> Select[str]:

@@ -36,10 +36,11 @@ from service.storage.records import (
     RecordObservation,
 )
 from service.storage.repository.condition_alarms import settle_alarm
-from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus
+from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
 from service.storage.repository.observations import record_observation
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.repository.standing_changes import TOLD, is_material
+from service.storage.texts import storable
 
 _OBSERVATIONS = Base.metadata.tables["observations"]
 """The table, not the class: statements for many rows at once look at no object of the session."""
@@ -50,9 +51,23 @@ IDS_A_STATEMENT = 500
 
 class FoldingRows(Sessions):
     def motors_to_fold(self) -> tuple[str, ...]:
-        """Return the motors of which something has changed."""
+        """Return the motors of which something has changed; those set aside with the next change only."""
+        waiting = select(FoldMarkRow.motor).where(FoldMarkRow.set_aside.is_(False)).distinct()
         with self._read() as session:
-            return tuple(session.scalars(select(FoldMarkRow.motor).distinct().order_by(FoldMarkRow.motor)))
+            return tuple(session.scalars(waiting.order_by(FoldMarkRow.motor)))
+
+    def set_fold_aside(self, motor: str, problem: str) -> None:
+        """Have a motor folded no more until something changes again, and keep why."""
+        with self._write() as session:
+            session.execute(
+                update(ConditionRow).where(ConditionRow.motor == motor).values(problem=storable(problem))
+            )
+            session.execute(update(FoldMarkRow).where(FoldMarkRow.motor == motor).values(set_aside=True))
+
+    def resume_folds(self) -> None:
+        """Have the motors folded that were set aside: the service that starts may be a mended one."""
+        with self._write() as session:
+            resume(session)
 
     def begin_fold(self, motor: str, most_records: int) -> FoldInput | None:
         """Return what a fold of a motor needs, with about so many observations; None where none is due.
@@ -97,6 +112,7 @@ class FoldingRows(Sessions):
             if row.version != fold.version:
                 return False
             row.version += 1
+            row.problem = None
             for some in _in_parts(fold.marks):
                 session.execute(delete(FoldMarkRow).where(FoldMarkRow.id.in_(some)))
             if fold.next_ns is not None:

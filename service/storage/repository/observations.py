@@ -10,7 +10,14 @@ from sqlalchemy.orm import Session
 
 from core.condition.observation import Observation
 from service.storage.errors import UnstorableDiagnosisError
-from service.storage.models import FoldMarkRow, MotorRow, ObservationRow, RecordingRow, UnobservedRecordingRow
+from service.storage.models import (
+    ConditionRow,
+    FoldMarkRow,
+    MotorRow,
+    ObservationRow,
+    RecordingRow,
+    UnobservedRecordingRow,
+)
 from service.storage.records import (
     Backlog,
     ConditionPoint,
@@ -19,7 +26,7 @@ from service.storage.records import (
     RecordObservation,
     ToObserve,
 )
-from service.storage.repository.fold_marks import mark_with_bus
+from service.storage.repository.fold_marks import mark_with_bus, resume
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of
 from service.storage.texts import storable
 
@@ -149,9 +156,10 @@ class ObservationRows(Sessions):
     def backlog(self) -> Backlog:
         """Return how much the conditions are behind the recordings."""
         unobserved = select(func.count()).select_from(UnobservedRecordingRow)
-        marked = select(func.count(FoldMarkRow.motor.distinct()))
+        marked = select(func.count(FoldMarkRow.motor.distinct())).where(FoldMarkRow.set_aside.is_(False))
+        problems = select(func.count(ConditionRow.motor)).where(ConditionRow.problem.is_not(None))
         with self._read() as session:
-            return Backlog(session.scalar(unobserved) or 0, session.scalar(marked) or 0)
+            return Backlog(*(session.scalar(query) or 0 for query in (unobserved, marked, problems)))
 
 
 def keep_observation(
@@ -166,6 +174,7 @@ def keep_observation(
     row = None if observation is None else _row(recording_id, motor, observation)
     if before is not None:
         if row is not None and record_observation(before) == record_observation(row):
+            resume(session, FoldMarkRow.motor == motor)
             return
         forget_observation(session, recording_id)
     if row is not None:

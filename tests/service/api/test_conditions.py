@@ -231,6 +231,7 @@ def test_the_metrics_have_the_conditions(client: httpx.Client, repository: Repos
         'mcc_alarms{kind="condition-fault"} 1.0',
         "mcc_recordings_to_observe 0.0",
         "mcc_motors_to_fold 1.0",
+        "mcc_motors_set_aside 0.0",
     }
     assert not [line for line in lines if line.startswith("mcc_motor_fault_level") and "FAN-A2" in line]
 

@@ -1,8 +1,10 @@
 """Workers that have nothing to diagnose fold conditions, and observe recordings from before."""
 
+import os
 import pickle
+import signal
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -13,7 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 from alembic import command
+from pebble import ProcessExpired
 from sqlalchemy import Engine
+from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
 from core.condition.following.follower import Follower
@@ -21,10 +25,11 @@ from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from core.recordings.comtrade_writer import write
 from core.time_stamps import nanoseconds
-from service.condition import work
+from service.api.condition_documents import condition_document
+from service.condition import work, worker
 from service.condition.errors import RecordFoldError
 from service.condition.work import ConditionWork
-from service.condition.worker import FoldTask, ObserveTask
+from service.condition.worker import FoldTask, ObserveTask, fold_due
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Outcome
 from service.jobs.runner import JobLimits
 from service.jobs.worker_process import follow_service
@@ -38,7 +43,7 @@ from service.timing.backoff import Backoff
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import recording as waveforms
 from testing.machines.phase_circuits import running as operating
-from testing.service.following import FAN, PUMP, Recorder, note_motors, on_one_bus
+from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
 from testing.service.observations import HOUR_NS, records_of_a_motor
 from testing.service.plants import NOW_NS, healthy, motor
 from testing.waiting import wait_until
@@ -61,9 +66,12 @@ def observe_as_told(task: DiagnosisTask) -> Outcome:
 
 @contextmanager
 def running(
-    repository: Repository, store: RecordingStore, database_url: str, **edited: Motor
+    repository: Repository,
+    store: RecordingStore,
+    database_url: str,
+    prepare_worker: Callable[[], None] = follow_service,
 ) -> Iterator[JobRunner]:
-    conditions = ConditionWork(repository, store, MOTORS | edited, database_url=database_url)
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
     runner = JobRunner(
         repository,
         store,
@@ -72,7 +80,7 @@ def running(
         limits=LIMITS,
         installation="ours",
         conditions=conditions,
-        prepare_worker=follow_service,
+        prepare_worker=prepare_worker,
         poll_period_s=0.05,
     )
     runner.start()
@@ -179,6 +187,107 @@ def test_a_motor_that_cannot_be_folded_is_tried_again_later(
         assert task is not None
         conditions.ended(task, failed(RuntimeError("a bug")))
         assert (conditions.next_task() is None) == (pause_s > 0.0)
+
+
+KILLED = ProcessExpired("Abnormal termination", code=-9)  # type: ignore[no-untyped-call]  # pebble's
+
+
+@pytest.mark.parametrize(
+    ("error", "words"),
+    [
+        (RuntimeError("a bug"), "RuntimeError: a bug"),
+        (KILLED, "the worker process died (exit code -9)"),
+        (TimeoutError("Task timeout"), "it took too long"),
+    ],
+)
+def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_changes(
+    repository: Repository,
+    store: RecordingStore,
+    database_url: str,
+    monkeypatch: pytest.MonkeyPatch,
+    error: Exception,
+    words: str,
+) -> None:
+    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
+    recorder = Recorder(repository, store)
+    (first, *_) = recorder.record_all(RECORDS[:2])
+    recorder.record(RECORDS[0], FAN)
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+
+    def tries() -> int:
+        """How often the pump is tried; every try fails. The fan is folded."""
+        number = 0
+        while (task := conditions.next_task()) is not None:
+            if task.motor == PUMP:
+                number += 1
+                conditions.ended(task, failed(error))
+            else:
+                folded: Future[int] = Future()
+                folded.set_result(task.function(task.argument))
+                conditions.ended(task, folded)
+        return number
+
+    assert tries() == 3
+    assert repository.condition(FAN).as_of_ns == RECORDS[0].time_ns
+    problem = repository.condition(PUMP).problem
+    assert problem == f"folding failed 3 times, the last time: {words}"
+    assert repository.backlog() == Backlog(0, motors_to_fold=0, motors_set_aside=1)
+    told = condition_document(repository.condition(PUMP), NOW_NS, HOUR_NS)
+    assert problem in told.reasons[0]
+    assert "tried again with the next record" in told.reasons[0]
+    assert tries() == 0
+    recorder.record(RECORDS[2])
+    assert tries() == 3, "a new record"
+    recorder.diagnose_again(first, RECORDS[0])
+    assert tries() == 3, "another diagnosis"
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    assert tries() == 0
+    conditions.begin()
+    assert tries() == 3, "a service that starts"
+    recorder.record(RECORDS[3])
+    fold_all(repository)
+    assert repository.condition(PUMP).problem is None
+    assert repository.condition(PUMP).as_of_ns == RECORDS[3].time_ns, "all of them count in the end"
+    assert repository.backlog() == Backlog(0, 0)
+
+
+def test_a_database_that_does_not_answer_sets_no_motor_aside(
+    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
+    Recorder(repository, store).record(RECORDS[0])
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    for _ in range(5):
+        task = conditions.next_task()
+        assert task is not None
+        conditions.ended(task, failed(OperationalError("UPDATE", {}, Exception("database is locked"))))
+    assert repository.condition(PUMP).problem is None
+
+
+def die_of_the_pump() -> None:
+    """Prepare a worker that is killed by each fold of the pump."""
+    follow_service()
+
+    def fold_or_die(repository: Repository, motor: Motor, round_s: float) -> int:
+        if motor.name == PUMP:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return fold_due(repository, motor, round_s)
+
+    worker.fold_due = fold_or_die  # type: ignore[assignment]  # in a process of its own
+
+
+@pytest.mark.campaign  # workers take seconds to load, and are loaded anew after each kill
+def test_folds_that_kill_their_worker_hold_up_no_other_motor(
+    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(work, "FAILURES", Backoff(0.01, 0.01))
+    recorder = Recorder(repository, store)
+    recorder.record(RECORDS[0])
+    recorder.record(RECORDS[0], FAN)
+    with running(repository, store, database_url, prepare_worker=die_of_the_pump):
+        wait_until(lambda: repository.backlog() == Backlog(0, 0, motors_set_aside=1), within_s=60)
+        assert repository.condition(FAN).as_of_ns == RECORDS[0].time_ns
+    assert "the worker process died (exit code -9)" in str(repository.condition(PUMP).problem)
 
 
 def test_a_recording_that_brings_its_worker_down_is_left_out_at_last(
