@@ -58,7 +58,7 @@ class Plant:
         random = self.random
         self.swing = 0.9 * self.swing + self.supply_swing * 0.4 * complex(*random.normal(size=2))
         v1, v2 = RATED_V, RATED_V * (self.unbalance + self.swing)
-        backward = Z2 * (1.0 + 0.03 * random.normal())
+        backward = self.backward_impedance()
         loaded = complex(random.uniform(*self.load), -0.75)
         # In the machine's own frame, positive sequence; windings of a delta see the line voltages.
         turn = np.exp(1j * np.pi / 6.0)
@@ -77,6 +77,10 @@ class Plant:
         voltage = voltage + self.noise * RATED_V * self._white()
         current = current + self.noise * self._white()
         return self._observation(voltage * self.scale, current * self.scale)
+
+    def backward_impedance(self) -> complex:
+        """Negative-sequence impedance at the next record [ohm]."""
+        return Z2 * (1.0 + 0.03 * self.random.normal())
 
     def records(self, count: int) -> list[Observation]:
         """So many records in a row."""

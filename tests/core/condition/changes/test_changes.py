@@ -72,22 +72,6 @@ def test_a_joint_is_named_or_told_beside_shorted_turns() -> None:
     assert change.channel == 1
 
 
-def test_a_slow_growth_is_shorted_turns_and_not_a_late_step() -> None:
-    plant = Plant()
-    follower = follow(motor_of(), plant.records(BEFORE))
-    for k in range(100):
-        plant.level = 1e-4 * k
-        follower.fold(plant.record())
-    assessment = follower.assessment()
-    assert assessment is not None
-    assert assessment.change is not None
-    assert Kind.SHORTED_TURNS in assessment.change.named
-    assert assessment.change.level.value == pytest.approx(0.01, abs=0.002)
-    times = [time for time, _ in assessment.levels]
-    assert times == sorted(times)
-    assert assessment.levels[-1][1] > assessment.levels[0][1] + 0.004
-
-
 @pytest.mark.parametrize("seed", range(3))
 def test_the_level_of_a_growth_that_has_stopped_stays(seed: int) -> None:
     plant = Plant(seed=seed)
@@ -134,25 +118,6 @@ def test_without_zero_voltage_a_channel_is_never_certain_to_be_shorted_turns_alo
     voltage = [plant.voltage[0], plant.voltage[1], plant.voltage[2] * 1.02]
     change = changed(plant, voltage=voltage)
     assert change.probabilities[Kind.VOLTAGE_CHANNEL] > 0.02
-
-
-@pytest.mark.parametrize("first", [0, 3])
-def test_an_outlier_among_the_first_records_fakes_no_change(first: int) -> None:
-    plant = Plant()
-    records = plant.records(first)
-    plant.noise = 2e-2
-    records += plant.records(1)
-    plant.noise = 2e-4
-    follower = follow(motor_of(), records + plant.records(60))
-    assert not saw(follower)
-
-
-def test_noise_ten_times_that_of_a_single_record_raises_no_alarm() -> None:
-    plant = Plant(noise=2e-3)
-    follower = Follower(motor_of())
-    for record in plant.records(300):
-        follower.fold(record)
-        assert not saw(follower)
 
 
 def test_many_healthy_motors_stay_so() -> None:
