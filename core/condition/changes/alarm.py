@@ -26,6 +26,9 @@ SETTLED: Final = 64
 """Records after the alarm from which a name is final, and what is no shorted turns is lived with."""
 APART: Final = 2.0
 """Standard deviations by which the level of another winding has to be higher to be told instead."""
+DRIFT_SHAPE: Final = 0.12
+"""Relative standard deviation of the level of a change that drifts: no growth is a straight line, and what
+the filter takes up of it before the alarm depends on its course."""
 TAIL: Final = 0.025
 GRID: Final = 400
 WINDOW: Final = 256
@@ -324,6 +327,7 @@ def _level_in(
 ) -> TurnsLevel:
     """Return the change of the fault level if it is in one winding; `likeliest` is the path's index."""
     one, drifts, known = before.one, before.drifts, before.known
+    shape = DRIFT_SHAPE if drifts else 0.0
     values, spreads = [], []
     told: tuple[tuple[int, float], ...] = ()
     table, out, evidence = np.zeros((RECENT, 3)), np.zeros(5), np.zeros(len(PATHS))
@@ -339,7 +343,7 @@ def _level_in(
         a, b, c = out[0], out[1], out[2]
         information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
         values.append(value)
-        scale = hypothesis.scale**2 + known[2] ** 2
+        scale = hypothesis.scale**2 + known[2] ** 2 + shape**2
         spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
         if p == likeliest:
             times = [int(recent[first + i].time_ns) for i in range(taken)]
