@@ -157,8 +157,10 @@ def _takes_back(alarm: Alarm, sure: Names) -> bool:
     All causes are of one change. After a second one none of them fits, and that with the most freedom, the
     impedance, seems to fit best. A defect that has been named stays named then.
     """
-    if not DEFECTS & set(alarm.named) or DEFECTS & set(sure):
+    if not DEFECTS & set(alarm.named):
         return False
+    if DEFECTS & set(sure):
+        return alarm.is_final and alarm.named == (Kind.SHORTED_TURNS,) and sure == (Kind.CONNECTION,)
     return sure == (Kind.PARAMETERS,) or alarm.is_final
 
 

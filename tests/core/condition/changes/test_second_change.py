@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import pytest
 
+from core.condition.changes.alarm import KINDS, Alarm, Weighing, confirm
 from core.condition.following.follower import Follower
 from core.condition.kinds import Kind, State
 from core.condition.verdict.condition import Condition, condition_of
@@ -113,3 +114,27 @@ def test_a_second_error_of_a_channel_is_named_in_its_channel() -> None:
     course.plant.voltage[1] *= 0.985
     told = course.records(12)
     assert (told.kind, told.phase) == (Kind.VOLTAGE_CHANNEL, "b")
+
+
+@pytest.mark.parametrize(
+    ("named", "sure", "records", "told"),
+    [
+        ((Kind.SHORTED_TURNS,), (Kind.PARAMETERS,), 20, (Kind.SHORTED_TURNS,)),
+        ((Kind.SHORTED_TURNS,), (Kind.CONNECTION,), 100, (Kind.SHORTED_TURNS,)),
+        ((Kind.SHORTED_TURNS,), (Kind.VOLTAGE_CHANNEL,), 100, (Kind.SHORTED_TURNS,)),
+        ((Kind.SHORTED_TURNS,), (Kind.VOLTAGE_CHANNEL,), 20, (Kind.VOLTAGE_CHANNEL,)),
+        ((Kind.SHORTED_TURNS, Kind.CONNECTION), (Kind.CONNECTION,), 100, (Kind.CONNECTION,)),
+        ((Kind.VOLTAGE_CHANNEL,), (Kind.SHORTED_TURNS,), 100, (Kind.SHORTED_TURNS,)),
+    ],
+)
+def test_a_name_that_is_final_takes_no_shorted_turns_back(
+    named: tuple[Kind, ...], sure: tuple[Kind, ...], records: int, told: tuple[Kind, ...]
+) -> None:
+    causes = {kind: cause for cause, kind in KINDS.items()}
+    weighing = Weighing()
+    for kind in sure:
+        weighing.probabilities[causes[kind]] = 0.99 / len(sure)
+    alarm = Alarm(0, records=records, named=named)
+    for _ in range(3):
+        confirm(alarm, weighing)
+    assert alarm.named == told
