@@ -26,15 +26,17 @@ class ConditionReference(Document):
     """What the motor was like before any change, as learnt from `records` records.
 
     complete: whether changes are looked for. standing: level that the asymmetry from the first record on
-    would mean if it were shorted turns (..._deviation: standard deviation, ..._score: standard deviations
-    beyond what the sensors leave). detectable: step of the level that would be seen within ten records in
-    nine of ten cases. from_bus: whether other motors of the bus took part in judging it.
+    would mean if it were shorted turns (..._ci95: 95 % interval, ..._deviation: standard deviation,
+    ..._score: standard deviations beyond what the sensors leave). detectable: step of the level that would be
+    seen within ten records in nine of ten cases. from_bus: whether other motors of the bus took part in
+    judging it.
     accepted: whether a person said that the motor is healthy as it is.
     """
 
     records: int
     complete: bool
     standing: float | None
+    standing_ci95: tuple[float, float] | None
     standing_deviation: float | None
     standing_phase: Phase | None
     standing_path_ratio: float | None

@@ -79,7 +79,7 @@ class Standing:
     from_bus : bool
         Whether other motors of the bus took part in judging it.
     interval : tuple of float
-        95 % interval of the level over all windings and paths that explain the asymmetry.
+        95 % interval of the level over all windings and paths that explain the asymmetry, not below zero.
     """
 
     level: float
@@ -119,7 +119,7 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
         path_ratio=PATHS[best % len(PATHS)],
         score=score,
         from_bus=from_bus,
-        interval=(min(low, level), max(high, level)),
+        interval=(max(0.0, min(low, level)), max(0.0, high, level)),
     )
 
 

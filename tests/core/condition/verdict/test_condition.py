@@ -245,13 +245,17 @@ CHANGES = st.builds(
     channel=st.none() | st.sampled_from([0, 1, 2]),
     size=st.none() | st.floats(-0.1, 0.1),
 )
+STANDING = st.builds(
+    lambda found, low, high: replace(found, interval=(low, low + high)),
+    LEVELS, st.floats(0.0, 0.1), st.floats(0.0, 0.2),
+)  # fmt: skip
 REFERENCES = st.builds(
     Reference,
     records=st.integers(1, 10**6),
     complete=st.booleans(),
     since_ns=st.none() | st.integers(0, AS_OF_NS),
     detectable=st.none() | st.floats(0, 0.1),
-    standing=LEVELS,
+    standing=STANDING,
     standing_score=st.floats(0, 50),
     from_bus=st.booleans(),
     accepted=st.booleans(),
