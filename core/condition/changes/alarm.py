@@ -2,11 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import hypot, log, sqrt
+from math import erfc, hypot, log, sqrt
 from typing import Any, Final
 
 import numpy as np
-from scipy.special import ndtr
 
 from core.condition.changes.evidence import Learnt, along, learnt_without, of_size, signature
 from core.condition.changes.hypotheses import CAUSES, LEVEL, Cause, Hypotheses
@@ -16,6 +15,7 @@ from core.condition.filter.state import RECENT
 from core.condition.kinds import Kind
 from core.condition.measuring.signatures import PATHS
 from core.machines.base import Array
+from core.machines.compiled import compiled_as_written as compiled
 
 CERTAIN: Final = 0.98
 """Posterior probability at which a cause is named."""
@@ -380,6 +380,36 @@ def interval_of(shares: Array, means: Array, deviations: Array) -> tuple[float, 
         Lower and upper end.
     """
     low, high = float(np.min(means - 5.0 * deviations)), float(np.max(means + 5.0 * deviations))
-    grid = np.linspace(low, high, GRID)
-    below = ndtr((grid[:, np.newaxis] - means) / deviations) @ shares
-    return float(np.interp(TAIL, below, grid)), float(np.interp(1.0 - TAIL, below, grid))
+    return (
+        _quantile(TAIL, low, high, shares, means, deviations),
+        _quantile(1.0 - TAIL, low, high, shares, means, deviations),
+    )
+
+
+@compiled
+def _quantile(share: float, low: float, high: float, shares: Array, means: Array, deviations: Array) -> float:
+    """Return the value below which a share of the mixture lies, linear between the points of a grid."""
+    step = (high - low) / (GRID - 1)
+    first, last = 0, GRID - 1
+    before, after = _below(low, shares, means, deviations), _below(high, shares, means, deviations)
+    if share <= before:
+        return low
+    if share >= after:
+        return high
+    while last - first > 1:
+        middle = (first + last) // 2
+        below = _below(low + middle * step, shares, means, deviations)
+        if below <= share:
+            first, before = middle, below
+        else:
+            last, after = middle, below
+    return low + step * (first + (share - before) / (after - before))
+
+
+@compiled
+def _below(value: float, shares: Array, means: Array, deviations: Array) -> float:
+    """Return the share of the mixture below a value."""
+    found = 0.0
+    for n in range(shares.size):
+        found += shares[n] * 0.5 * erfc((means[n] - value) / (deviations[n] * sqrt(2.0)))
+    return found

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import hypot, sqrt
+from math import hypot, log, sqrt
 from typing import Final
 
 import numpy as np
@@ -186,18 +186,46 @@ def _directions(motor: Motor) -> Array:
 
 def _interval(motor: Motor, asymmetry: Array, covariance: Array) -> tuple[float, float]:
     """Return the interval of the level: several windings and paths may explain an asymmetry as well."""
-    W = _inverse(covariance)
-    found = []
-    for n, (x, y) in enumerate(_directions(motor).tolist()):
-        p = PATHS[n % len(PATHS)]
-        U = np.array([[x, -y], [y, x]])
-        Q, vector = U.T @ W @ U, U.T @ W @ asymmetry
-        direction = hypot(TURNS_DIRECTION, STATOR * turns_angle_slope(motor, p))
-        evidence, size, deviation = of_size(
-            Q[0, 0], Q[0, 1], Q[1, 1], vector[0], vector[1], STANDING_LEVEL, direction, one_sided=True
-        )
-        scale = hypot(MACHINE, RESISTANCE * turns_size_slope(motor, p))
-        found.append((evidence + np.log(PATH_SHARES[n % len(PATHS)]), size, hypot(deviation, scale * size)))
-    logs, sizes, deviations = np.array(found).T
+    logs, sizes, deviations = _explained(asymmetry, covariance, _directions(motor), _tolerances(motor))
     shares = np.exp(logs - np.max(logs))
     return interval_of(shares / shares.sum(), sizes, deviations)
+
+
+@lru_cache(maxsize=256)
+def _tolerances(motor: Motor) -> Array:
+    """Return of each direction how sure it is, how sure its size is, and the log of its share before."""
+    found = []
+    for n in range(3 * len(PATHS)):
+        p = PATHS[n % len(PATHS)]
+        direction = hypot(TURNS_DIRECTION, STATOR * turns_angle_slope(motor, p))
+        scale = hypot(MACHINE, RESISTANCE * turns_size_slope(motor, p))
+        found.append([direction, scale, log(PATH_SHARES[n % len(PATHS)])])
+    return np.array(found)
+
+
+@compiled
+def _explained(
+    asymmetry: Array, covariance: Array, directions: Array, tolerances: Array
+) -> tuple[Array, Array, Array]:
+    """Return of each direction the log of its weight, the size and its standard deviation."""
+    W = _inverse(covariance)
+    number = directions.shape[0]
+    logs, sizes, deviations = np.empty(number), np.empty(number), np.empty(number)
+    for n in range(directions.shape[0]):
+        x, y = directions[n]
+        direction, scale, share = tolerances[n]
+        # U' W for the size and across it, U = [[x, -y], [y, x]]
+        u0, u1 = x * W[0, 0] + y * W[1, 0], x * W[0, 1] + y * W[1, 1]
+        v0, v1 = x * W[1, 0] - y * W[0, 0], x * W[1, 1] - y * W[0, 1]
+        evidence, size, deviation = of_size(
+            u0 * x + u1 * y,
+            u1 * x - u0 * y,
+            v1 * x - v0 * y,
+            u0 * asymmetry[0] + u1 * asymmetry[1],
+            v0 * asymmetry[0] + v1 * asymmetry[1],
+            STANDING_LEVEL,
+            direction,
+            one_sided=True,
+        )
+        logs[n], sizes[n], deviations[n] = evidence + share, size, hypot(deviation, scale * size)
+    return logs, sizes, deviations
