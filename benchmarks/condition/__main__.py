@@ -23,6 +23,7 @@ from benchmarks.condition.detection import detection
 from benchmarks.condition.disturbances import disturbances
 from benchmarks.condition.end_to_end import AFTER, BEFORE, CYCLES, SPACING_H, end_to_end
 from benchmarks.condition.false_alarms import false_alarms
+from benchmarks.condition.folding import folding
 from benchmarks.condition.forecasts import forecasts
 from benchmarks.condition.mill import mill
 from benchmarks.condition.second_changes import second_changes
@@ -161,6 +162,14 @@ def _cost(effort: Effort, pool: Executor) -> Iterator[str]:
     yield from cost(effort.cost_motors, effort.cost_records, effort.long_records, pool)
 
 
+def _folding(effort: Effort, pool: Executor) -> Iterator[str]:
+    yield "As the workers of the service do it: observations read from a database of their own, followed,"
+    yield "what is said from each record on and the history written back, 500 records a transaction."
+    yield "With whatever else the machine did at the time."
+    yield ""
+    yield from folding(effort.cost_motors, effort.cost_records, pool)
+
+
 def _files(effort: Effort, pool: Executor) -> Iterator[str]:
     before, after = effort.file_records
     yield "The simulator's windings in phase variables, integrated in time, with load swings, harmonics,"
@@ -180,6 +189,7 @@ SUBJECTS = {
     "bus": Subject("Five motors on a bus", _bus),
     "forecasts": Subject("Forecasts", _forecasts),
     "cost": Subject("Cost", _cost),
+    "folding": Subject("Cost in the service", _folding),
     "files": Subject("Records through files", _files),
 }
 MILL = "mill"

@@ -171,7 +171,7 @@ def keep_observation(
     """
     session.execute(delete(UnobservedRecordingRow).where(UnobservedRecordingRow.recording_id == recording_id))
     before = session.get(ObservationRow, recording_id)
-    row = None if observation is None else _row(recording_id, motor, observation)
+    row = None if observation is None else observation_row(recording_id, motor, observation)
     if before is not None:
         if row is not None and record_observation(before) == record_observation(row):
             resume(session, FoldMarkRow.motor == motor)
@@ -223,7 +223,8 @@ def _point(*values: Any) -> ConditionPoint:
     return ConditionPoint(**dict(zip(_POINT_FIELDS, values, strict=True)))
 
 
-def _row(recording_id: str, motor: str, observation: Observation) -> ObservationRow:
+def observation_row(recording_id: str, motor: str, observation: Observation) -> ObservationRow:
+    """Return the row of what a recording tells. Raises UnstorableDiagnosisError."""
     row = ObservationRow(recording_id=recording_id, motor=motor, recorder=storable(observation.recorder))
     for column, field in PHASORS:
         value: complex | None = getattr(observation, field)
