@@ -25,7 +25,7 @@ class BusRecords:
             for motor, observation in records
             if _is_possible(observation)
         ]
-        self._seen = sorted(seen, key=lambda one: (one[0], one[1].motor))
+        self._seen = sorted(seen, key=_order)
         self._times_ns = [time_ns for time_ns, _ in self._seen]
 
     def neighbours(self, time_ns: int) -> list[Neighbour]:
@@ -49,6 +49,13 @@ class BusRecords:
             if neighbour.motor not in nearest or distance_ns < nearest[neighbour.motor][0]:
                 nearest[neighbour.motor] = distance_ns, neighbour
         return [nearest[name][1] for name in sorted(nearest)]
+
+
+def _order(seen: tuple[int, Neighbour]) -> tuple[int, str, float, float]:
+    """Return what records are put in order by: two of one time are told apart by what they saw."""
+    time_ns, one = seen
+    ratio = one.negative_voltage_ratio
+    return time_ns, one.motor, ratio.real, ratio.imag
 
 
 def _is_possible(observation: Observation) -> bool:
