@@ -151,7 +151,8 @@ def _forecasts(effort: Effort, pool: Executor) -> Iterator[str]:
     yield f"{effort.growing} motors a row, a fault that grows by 0.002 to 0.02 % a record (hourly), at a"
     yield "rate that wanders by a factor of two or more, or exponentially with 25 to 100 records; up to four"
     yield "forecasts of each motor from the change's detection on. The time is that until the true level"
-    yield "reaches the limit of the forecast. Expected of an interval of 80 %: that it holds it in 80 %."
+    yield "reaches the limit of the forecast. Published are the 5, 50 and 95 % quantiles, as an interval of"
+    yield "80 %. Expected of it: that it holds the time in 80 %."
     yield ""
     yield from forecasts(effort.growing, pool)
 

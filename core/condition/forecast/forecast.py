@@ -8,18 +8,21 @@ where noise is that of a growth that wanders with density q: lambda = 0 and q = 
 lambda > 0 a growth that feeds itself. A Kalman filter gives each trend its likelihood, and the time to the
 limit is that of their mixture. Times are counted in mean distances of the records, so that the same trends
 suit hourly and daily records.
+
+Three doubts widen it, because no motor follows one of these trends: the level may be another by a factor,
+the records may have drifted, and the growth ahead may be faster or slower than that seen.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import sqrt
+from math import log
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.condition.assessment import NORMAL_95, Level
-from core.condition.forecast.trends import filtered, moved, onset
+from core.condition.forecast.trends import filtered, onset, reached, scatter, smoothed
 from core.units import NANOSECONDS_PER_DAY
 
 Array = NDArray[np.float64]
@@ -39,35 +42,32 @@ QUANTILES: Final = (0.05, 0.5, 0.95)
 FEWEST: Final = 4
 """With fewer records there is no telling growth from scatter."""
 
-FEW: Final = 8.0
-"""So many records tell their own variance within about half; it is taken as larger where there are few."""
+DRIFT: Final = 0.1
+"""Standard deviation of what the levels may have drifted since the onset without growth, relative to the
+level: what shorted turns show changes with the temperature and the load."""
 
-MEDIAN_OF_SQUARES: Final = 0.4549
-"""Median of the square of a standard normal variable."""
+TIME_DOUBT: Final = 0.4
+"""Standard deviation of the log of the factor by which the time to the limit is another, because the growth
+ahead is not that seen."""
 
-SCALE_STEPS: Final = np.linspace(-2.0, 2.0, 7)
-SCALE_WEIGHTS: Final = np.exp(-(SCALE_STEPS**2) / 2.0) / np.sum(np.exp(-(SCALE_STEPS**2) / 2.0))
-"""Standard deviations by which today's level is another, and the probability of each."""
+HIGHER_SHARE: Final = 0.7
+"""Share of the way to the upper end of today's level that is taken: a level is rather told too high, because
+the path is taken for worse than it is where records cannot tell it."""
 
-SCALE_SPREAD: Final = 1.3
-"""Its interval is taken as so much wider: where the path is another, all levels err in one direction."""
-
-GROWTH_DOUBT: Final = 0.25
-"""Relative standard deviation of the growth ahead beside that seen: no fault is a line, and what the
-reference took in at the beginning makes a growth look steeper."""
-
-LEAST_SCALE: Final = 0.05
-NEGLIGIBLE: Final = 1e-4
-"""Trends of less probability are left out."""
-
-LEAST_VARIANCE: Final = 1e-14
+LEAST_SHARE: Final = 0.1
+"""The level is at least so much of what it seems."""
 
 LONGEST_DAYS: Final = 3650.0
 """A limit that is not reached in ten years for sure is no trend."""
 
-STEPS: Final = 120
-"""Number of times at which the mixture is computed."""
+SHORTEST: Final = 0.1
+"""First of the times at which the mixture is computed [records]."""
 
+STEP: Final = TIME_DOUBT / 2.0
+"""Log of the ratio of each of these times to the one before."""
+
+_KERNEL = np.exp(-0.5 * (np.arange(-6, 7) * STEP / TIME_DOUBT) ** 2)
+_KERNEL /= _KERNEL.sum()
 _LAMBDA, _Q = (grid.ravel() for grid in np.meshgrid(RATES, DENSITIES, indexing="ij"))
 _LN_PRIOR = np.log(
     np.where(
@@ -87,9 +87,9 @@ class Forecast:
     limit : float
         Level that is asked for, a fraction of the phase turns.
     days : tuple of float or None
-        Time from the latest record until the limit: it is earlier than the first and later than the last
-        with one chance in ten each, and as likely before as after the middle one [days]. None where the
-        records show no trend towards the limit.
+        Time from the latest record until the limit: 5, 50 and 95 % quantiles of the mixture [days]. The
+        outer ones are to be read as an interval of 80 %. None where the records show no trend towards the
+        limit.
     growth_per_day : float or None
         Growth of the level today, a fraction of the phase turns a day; None where nothing changes, and
         where there are too few records to tell.
@@ -155,61 +155,48 @@ def forecast(
     spacing_days = float(-days[0] / (days.size - 1))
     t = days / spacing_days
     m = np.array([level for _, level in levels])
-    scatter = _variance(t, m)
-    first = onset(t, m, scatter, _Q[_LAMBDA == 0.0])
-    state, covariance, ln_likelihood = filtered(t[first:], m[first:], scatter, _LAMBDA, _Q)
+    variance = scatter(t, m)
+    first = onset(t, m, variance, DENSITIES)
+    state, covariance, ln_likelihood = filtered(
+        t, m, variance, _LAMBDA, _Q, np.full(_LAMBDA.size, first, dtype=np.int64)
+    )
     weight = np.exp(ln_likelihood + _LN_PRIOR - np.max(ln_likelihood + _LN_PRIOR))
     weight /= weight.sum()
-    scales = _scales(float(weight @ state[:, 0]), today)
-    likely = weight > NEGLIGIBLE
-    # Steps grow with the time itself, from a hundredth of a record on.
-    horizon = max(LONGEST_DAYS / spacing_days, 0.02)
-    ahead = np.concatenate(([0.0], np.geomspace(0.01, horizon, STEPS - 1)))
-    mean, variance = moved(ahead, state[likely], covariance[likely], _LAMBDA[likely], _Q[likely])
-    variance += (GROWTH_DOUBT * (mean - mean[:, :1])) ** 2
-    # A level that is s times as large reaches the limit when this one reaches what is left over s.
-    left = ((limit - standing) / scales)[:, np.newaxis, np.newaxis]
-    reached = SCALE_WEIGHTS @ (weight[likely] @ _normal((mean - left) / np.sqrt(variance)))
+    covariance[2] += (DRIFT * state[0] / max(-t[first], 1.0)) ** 2
+    scale, below, above = _scale(float(weight @ state[0]), today)
+    ahead = _times(LONGEST_DAYS / spacing_days)
+    likely = reached(ahead, weight, state, covariance, _LAMBDA, _Q, (limit - standing) / scale, below, above)
     return Forecast(
         limit,
-        days=_quantiles(np.maximum.accumulate(reached), ahead * spacing_days),
-        growth_per_day=float(scales[SCALE_STEPS.size // 2]) * float(weight @ state[:, 1]) / spacing_days,
+        days=_quantiles(likely, ahead * spacing_days),
+        growth_per_day=scale * float(weight @ state[1]) / spacing_days,
     )
 
 
-def _scales(level: float, today: Level | None) -> Array:
-    """Return by which factors the levels may have to be taken, from the interval of today's."""
-    if today is None or level <= 0.0 or today.value <= 0.0:
-        return np.ones(SCALE_STEPS.size)
-    low, high = today.ci95
-    spread = np.where(SCALE_STEPS < 0.0, today.value - low, high - today.value) * SCALE_SPREAD / NORMAL_95
-    return np.maximum((today.value + SCALE_STEPS * spread) / level, LEAST_SCALE)
+def _scale(level: float, today: Level | None) -> tuple[float, float, float]:
+    """Return by which factor the levels are to be taken, and the doubts of it.
 
-
-def _variance(t: Array, m: Array) -> float:
-    """Return the variance of single levels, from how far each lies beside the line through its neighbours.
-
-    It is that of the median, so that a step in the levels is not taken for scatter.
+    A level that is s times as large reaches the limit when this one reaches what is left over s. So the
+    doubts are those of 1/s: to the side where the limit is reached later, and to that where it is earlier.
     """
-    share = (t[1:-1] - t[:-2]) / np.maximum(t[2:] - t[:-2], 1e-9)
-    beside = m[1:-1] - (1.0 - share) * m[:-2] - share * m[2:]
-    squares = beside**2 / (1.0 + share**2 + (1.0 - share) ** 2)
-    return max(float(np.median(squares)) / MEDIAN_OF_SQUARES * (1.0 + FEW / t.size), LEAST_VARIANCE)
+    if today is None or level <= 0.0 or today.value <= 0.0:
+        return 1.0, 0.0, 0.0
+    low, high = today.ci95
+    later = today.value / max(low, LEAST_SHARE * today.value) - 1.0
+    earlier = 1.0 - today.value / max(high, today.value)
+    return today.value / level, HIGHER_SHARE * earlier / NORMAL_95, max(later, 0.0) / NORMAL_95
 
 
-def _quantiles(reached: Array, days: Array) -> tuple[float, float, float] | None:
-    if reached[-1] < QUANTILES[-1]:
+def _times(longest: float) -> Array:
+    """Return the times at which the mixture is computed: now, and then each later by the same ratio."""
+    number = max(int(log(longest / SHORTEST) / STEP), 1) + 2 if longest > SHORTEST else 2
+    return np.concatenate(([0.0], SHORTEST * np.exp(STEP * np.arange(number))))
+
+
+def _quantiles(likely: Array, days: Array) -> tuple[float, float, float] | None:
+    """Return when the limit is reached with each probability, the growth ahead being faster or slower."""
+    doubted = smoothed(likely, _KERNEL)
+    if doubted[-1] < QUANTILES[-1]:
         return None
-    low, mid, high = (float(np.interp(share, reached, days)) for share in QUANTILES)
+    low, mid, high = (float(np.interp(share, doubted, days)) for share in QUANTILES)
     return low, mid, high
-
-
-def _normal(z: Array) -> Array:
-    """Return the normal distribution function, by an approximation of 1.5e-7 (Abramowitz, Stegun 7.1.26)."""
-    x = np.abs(z) / sqrt(2.0)
-    s = 1.0 / (1.0 + 0.3275911 * x)
-    polynomial = s * (
-        0.254829592 + s * (-0.284496736 + s * (1.421413741 + s * (-1.453152027 + s * 1.061405429)))
-    )
-    erf = 1.0 - polynomial * np.exp(-x * x)
-    return 0.5 * (1.0 + np.sign(z) * erf)

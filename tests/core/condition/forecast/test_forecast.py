@@ -160,6 +160,39 @@ def test_a_step_at_the_onset_is_not_taken_for_growth() -> None:
     assert told_of.days[1] == pytest.approx((0.002 / 2e-5 - 56.0) / 24.0, rel=0.2)
 
 
+def test_a_level_that_drifts_with_the_winding_s_temperature_shows_no_trend() -> None:
+    rng = np.random.default_rng(8)
+    warming = 0.004 * (1.0 + 0.1 * np.linspace(0.0, 1.0, 200))
+    levels = warming + 2e-5 * rng.standard_normal(200)
+    found = forecast([(k * NANOSECONDS_PER_DAY // 24, float(m)) for k, m in enumerate(levels)], LIMIT)
+    assert found.days is None
+    assert found.growth_per_day == pytest.approx(0.0004 * PER_DAY / 199.0, rel=0.2)
+
+
+def test_growth_that_has_stopped_shows_no_trend_any_more() -> None:
+    rng = np.random.default_rng(9)
+    t = np.arange(300.0)
+    m = 3e-5 * np.minimum(t, 100.0)
+    told_then, told_later = told(t, m, rng, 100), [told(t, m, rng, upto) for upto in (200, 250, 299)]
+    assert told_then.days is not None
+    assert [one.days for one in told_later] == [None, None, None]
+
+
+def test_the_interval_of_today_s_level_is_that_of_the_time() -> None:
+    levels = [(k * NANOSECONDS_PER_DAY // 24, 1e-5 * k) for k in range(201)]
+    likely = forecast(levels, LIMIT, today=Level(0.002, 1e-6, 0, 0.0)).days
+    less = forecast(levels, LIMIT, today=Level(0.002, 4e-4, 0, 0.0, (0.001, 0.002))).days
+    more = forecast(levels, LIMIT, today=Level(0.002, 4e-4, 0, 0.0, (0.002, 0.004))).days
+    assert likely is not None
+    assert less is not None
+    assert more is not None
+    # A level that is half of that in truth reaches the limit after four times the days so far.
+    assert less[2] > 4.0 * 200.0 / PER_DAY > likely[2]
+    assert less[0] == pytest.approx(likely[0], rel=0.15)
+    assert more[0] < 0.8 * likely[0]
+    assert more[2] == pytest.approx(likely[2], rel=0.15)
+
+
 def test_it_is_fast() -> None:
     rng = np.random.default_rng(5)
     levels = [
@@ -171,4 +204,4 @@ def test_it_is_fast() -> None:
         begun = perf_counter()
         forecast(levels, LIMIT)
         spent.append(perf_counter() - begun)
-    assert min(spent) < 0.001
+    assert min(spent) < 0.0003
