@@ -73,6 +73,9 @@ class Change:
     size : float or None
         Size of the likeliest kind: relative error of the channel, voltage drop of the joint over rated
         voltage, or level; None of another impedance or another recorder, which have no single one.
+    surely_above : float
+        What the level lay above for certain, once, while the change was named as shorted turns; 0 where that
+        was never looked at.
     """
 
     since_ns: int
@@ -82,6 +85,7 @@ class Change:
     level: Level
     channel: Winding | None
     size: float | None
+    surely_above: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,11 +33,35 @@ def state_of(assessment: Assessment, limit: float) -> State:
     State
         The state; never unknown.
     """
-    if level_in_all(of_one_fault(assessment, limit))[1][0] > limit:
+    worse = of_one_fault(assessment, limit)
+    if level_in_all(worse)[1][0] > limit or stays_a_fault(worse.change, limit):
         return State.FAULT
     if assessment.change is not None or assessment.unconfirmed or stands_out(assessment, limit):
         return State.WATCH
     return State.HEALTHY
+
+
+def stays_a_fault(change: Change | None, limit: float) -> bool:
+    """Return whether a change that was called a fault once is one still.
+
+    Shorted turns do not heal. So the state does not turn back because the interval of a level at the limit
+    reaches below it again, but only where all of the interval lies below.
+
+    Parameters
+    ----------
+    change : Change or None
+        The change that is seen.
+    limit : float
+        Limit of the motor, a fraction of the phase turns.
+
+    Returns
+    -------
+    bool
+        Whether it is.
+    """
+    if change is None or change.surely_above <= limit or not is_shorted_turns(change):
+        return False
+    return change.level.ci95[1] > limit
 
 
 def of_one_fault(assessment: Assessment, limit: float) -> Assessment:

@@ -22,6 +22,7 @@ CERTAIN: Final = 0.98
 RUNNING: Final = 3
 """Records in a row that have to agree on it."""
 SPACED: Final = 8
+SELDOM: Final = 32
 SETTLED: Final = 64
 """Records after the alarm from which a name is final, and what is no shorted turns is lived with."""
 APART: Final = 2.0
@@ -65,6 +66,9 @@ class Alarm:
         Kinds that the latest records are sure of.
     running : int
         Number of such records in a row.
+    surely_above : float
+        What the level lay above for certain, once, while it was named as shorted turns. It is looked at until
+        it exceeds the motor's limit.
     """
 
     detected_ns: int
@@ -72,11 +76,28 @@ class Alarm:
     named: Names = ()
     pending: Names = ()
     running: int = 0
+    surely_above: float = 0.0
 
     @property
     def is_to_be_weighed(self) -> bool:
         """Whether the latest record takes part in naming: every one at first, every eighth later."""
         return self.records <= SETTLED or (self.records <= WINDOW and self.records % SPACED == 0)
+
+    def may_be_called(self, limit: float) -> bool:
+        """Return whether the latest record may make it a fault that stays one: seldom even much later.
+
+        Parameters
+        ----------
+        limit : float
+            Limit of the motor, a fraction of the phase turns.
+
+        Returns
+        -------
+        bool
+            Whether its level is to be looked at.
+        """
+        is_looked_at = self.is_to_be_weighed or self.records % SELDOM == 0
+        return is_looked_at and self.surely_above <= limit and Kind.SHORTED_TURNS in self.named
 
     @property
     def is_final(self) -> bool:

@@ -66,6 +66,7 @@ def change_of(
         level=Level(level.value, level.deviation, winding, level.path_ratio, level.interval),
         channel=channel,
         size=size,
+        surely_above=alarm.surely_above,
     )
 
 

@@ -43,6 +43,7 @@ from core.condition.kinds import Kind
 from core.condition.measuring.measurement import Measurement, measure, negative_impedance
 from core.condition.measuring.signatures import terminal_turn
 from core.condition.observation import Observation
+from core.condition.severity import is_shorted_turns
 from core.machines.base import Array
 from core.machines.parameters import Motor
 from core.machines.winding_frame import terminal_winding
@@ -336,6 +337,10 @@ class Direction:
         alarm.records += 1
         if alarm.is_to_be_weighed:
             confirm(alarm, self._weighing())
+        if alarm.may_be_called(motor.limits.fault_level):
+            change = self._change(alarm, motor)[0]
+            if is_shorted_turns(change):
+                alarm.surely_above = max(alarm.surely_above, change.level.ci95[0])
         if self._state.statistic < CLEARED:
             self._header.alarm = None
             self._header.standing = None if self._header.kept is None else self._header.standing

@@ -145,6 +145,7 @@ def _change(words: Mapping[str, Any]) -> Change:
         level=Level(**level),
         channel=words["channel"],
         size=words["size"],
+        surely_above=words["surely_above"],
     )
 
 

@@ -6,7 +6,7 @@ from typing import Final
 from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
 from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
-from core.condition.severity import FEW, stands_out
+from core.condition.severity import FEW, stands_out, stays_a_fault
 from core.time_stamps import SECONDS_END, rfc3339
 
 HOURS_PER_DAY: Final = 24
@@ -81,6 +81,8 @@ def _of_change(change: Change, limit: float) -> Iterator[str]:
     if Kind.SHORTED_TURNS in change.named:
         above = level.ci95[0] > limit
         yield f"the interval {'lies above' if above else 'reaches below'} the motor's limit of {limit:.2%}"
+        if not above and stays_a_fault(change, limit):
+            yield "it lay above the limit before; shorted turns do not heal, so it stays a fault"
 
 
 def _of_forecast(forecast: Forecast) -> Iterator[str]:

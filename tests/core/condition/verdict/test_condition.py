@@ -114,6 +114,25 @@ def test_only_shorted_turns_above_the_limit_are_a_fault(
     assert condition.candidates == (named if len(named) > 1 else ())
 
 
+@pytest.mark.parametrize(
+    ("value", "named", "state"),
+    [
+        (0.0055, (Kind.SHORTED_TURNS,), State.FAULT),
+        (0.0055, (Kind.SHORTED_TURNS, Kind.CONNECTION), State.FAULT),
+        (0.003, (Kind.SHORTED_TURNS,), State.WATCH),
+        (0.0055, (Kind.CONNECTION,), State.WATCH),
+    ],
+)
+def test_what_was_called_a_fault_stays_one_until_it_is_surely_below_the_limit(
+    value: float, named: tuple[Kind, ...], state: State
+) -> None:
+    seen = change(*named, size=level(value))
+    assert judged(assessment(seen)).state is State.WATCH
+    condition = judged(assessment(replace(seen, surely_above=0.0051)))
+    assert condition.state is state
+    assert any("stays a fault" in reason for reason in condition.reasons) == (state is State.FAULT)
+
+
 def test_an_open_change_is_watched_with_its_candidates() -> None:
     probabilities = {Kind.SUPPLY: 0.005, Kind.CONNECTION: 0.295, Kind.SHORTED_TURNS: 0.7}
     condition = judged(assessment(change(probabilities=probabilities)))
@@ -244,6 +263,7 @@ CHANGES = st.builds(
     level=LEVELS,
     channel=st.none() | st.sampled_from([0, 1, 2]),
     size=st.none() | st.floats(-0.1, 0.1),
+    surely_above=st.floats(0.0, 0.1),
 )
 STANDING = st.builds(
     lambda found, low, high: replace(found, interval=(low, low + high)),
