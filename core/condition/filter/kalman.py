@@ -33,8 +33,8 @@ OUTLIER = 12.25
 LEARNING_CLIP, LEARNING_MEAN = 6.0, 1.85
 LEAST_SHARE = 0.3
 """Share of the noise in the innovation above which the innovation teaches the noise."""
-SLOWEST = 0.01
-"""Least gain of the learnt noise: it remembers a hundred records."""
+FIRST_KNOWN, MOST_KNOWN = 2.5, 100.0
+"""Records that the noise is known from after the first eight, and at most: it remembers a hundred."""
 W_APART, W_CLIP = 16.0, 9.0
 W_FIRST = 8.0
 W_JUMP = 6.0
@@ -191,6 +191,7 @@ def update(state: FilterState, y: complex, j1: complex, j2: complex) -> None:
     )
     state.surprise = _chi_square(nominal, a, b, c, nu[0], nu[1])
     state.share = 2.0 * nominal / (a + c + 2.0 * nominal)
+    _tell_noise(state, nominal, a, b, c)
     R = _bounded_noise(nominal, a, b, c, nu[0], nu[1])
     determinant = (a + R) * (c + R) - b * b
     Si[0, 0], Si[1, 1] = (c + R) / determinant, (a + R) / determinant
@@ -213,9 +214,24 @@ def learn_noise(state: FilterState) -> None:
         The filter, after `update`.
     """
     if state.share > LEAST_SHARE:
-        gain = max(1.0 / (state.records + 8.0), SLOWEST)
-        excess = min(state.surprise, LEARNING_CLIP) / LEARNING_MEAN - 1.0
-        state.s2 *= 1.0 + gain * state.share * excess
+        state.noise_known = min(state.noise_known + state.noise_information, MOST_KNOWN)
+        state.s2 *= 1.0 + state.noise_score / state.noise_known
+
+
+@compiled
+def _tell_noise(state: FilterState, R: float, a: float, b: float, c: float) -> None:
+    """Leave slope and curvature of the log-likelihood over ln R in the state; S = [[a + R, b], [b, c + R]].
+
+    One record of nothing but noise has a curvature of 1. Of an outlier, the slope is that at a usual one.
+    """
+    nu = state.nu
+    p, q = a + R, c + R
+    determinant = p * q - b * b
+    u = (q * nu[0] - b * nu[1]) / determinant
+    v = (p * nu[1] - b * nu[0]) / determinant
+    usual = 2.0 / LEARNING_MEAN * min(1.0, LEARNING_CLIP / max(state.surprise, TINY))
+    state.noise_score = 0.5 * R * (usual * (u * u + v * v) - (p + q) / determinant)
+    state.noise_information = 0.5 * R * R * (p * p + q * q + 2.0 * b * b) / (determinant * determinant)
 
 
 @compiled

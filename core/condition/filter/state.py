@@ -47,6 +47,10 @@ class FilterState(Protocol):
         Squared innovation of the latest record over its variance, a chi-square of 2.
     share : float
         Share of the noise in the innovation's variance.
+    noise_score, noise_information : float
+        Slope and curvature of the latest record's log-likelihood over ln s2.
+    noise_known : float
+        Number of records that s2 is known from, each counted by what it tells.
     log_likelihood : float
         Log density of the latest record, but for a constant.
     candidates, recent : float
@@ -80,6 +84,9 @@ class FilterState(Protocol):
     gap_s: float
     surprise: float
     share: float
+    noise_score: float
+    noise_information: float
+    noise_known: float
     log_likelihood: float
     candidates: float
     recent: float
@@ -111,6 +118,9 @@ FILTER: Final = np.dtype(
         ("gap_s", "f8"),
         ("surprise", "f8"),
         ("share", "f8"),
+        ("noise_score", "f8"),
+        ("noise_information", "f8"),
+        ("noise_known", "f8"),
         ("log_likelihood", "f8"),
         ("candidates", "f8"),
         ("recent", "f8"),

@@ -451,10 +451,11 @@ class Direction:
             start.clear()
 
     def _likeliest_start(self, records: Sequence[Measurement]) -> float:
-        """Fold the first records with the noise that makes them likeliest; return its variance."""
-        noise = starting_noise(records)
-        tried = [(self._fold_start(records, noise * step), -k) for k, step in enumerate(NOISE_STEPS)]
-        s2 = noise * NOISE_STEPS[-max(tried)[1]]
+        """Fold the first records with the noise that they tell; return its variance."""
+        steps = starting_noise(records) * np.array(NOISE_STEPS)
+        logs = np.array([self._fold_start(records, s2) for s2 in steps.tolist()])
+        shares = np.exp(logs - logs.max())
+        s2 = float(shares @ steps / shares.sum())
         self._fold_start(records, s2)
         return s2
 

@@ -6,6 +6,7 @@ from core.condition.changes.detection import detect, learn_gap
 from core.condition.changes.hypotheses import Hypothesis
 from core.condition.filter.change_bank import add_candidate, fold_candidates
 from core.condition.filter.kalman import (
+    FIRST_KNOWN,
     learn_noise,
     predict,
     rebalance,
@@ -109,6 +110,7 @@ def restart(state: FilterState, sides: list[SideState]) -> None:
     state.P[:] = state.P0
     state.records = state.gap_s = state.candidates = state.recent = 0.0
     state.block = 1.0
+    state.noise_known = FIRST_KNOWN
     state.w_near, state.w_far = 0.0, 0.0
     state.statistic = state.surprise = state.log_likelihood = 0.0
     for s in range(SIDES):

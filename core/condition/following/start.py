@@ -10,7 +10,7 @@ from core.condition.measuring.measurement import Measurement
 FEWEST: Final = 4
 LEAST_NOISE: Final = 3e-4**2
 """Least variance of y's noise to start from: what the records of measured motors repeat to."""
-NOISE_STEPS: Final = tuple(4.0**k for k in range(6))
+NOISE_STEPS: Final = tuple(2.0**k for k in range(11))
 """Multiples of the records' own scatter that the first records are tried with."""
 
 

@@ -36,7 +36,7 @@ def test_a_fault_on_a_constant_supply_does_not_come_to_stand(winding: int) -> No
     plant = Plant(supply_swing=0.0, unbalance=0.02, seed=1, winding=winding)
     follower = follow(motor_of(), plant.records(60))
     healthy = follower.assessment()
-    plant.level = 0.02
+    plant.level = 0.03
     for record in plant.records(12):
         follower.fold(record)
     faulty = follower.assessment()
