@@ -1,6 +1,7 @@
 """Every test of the conditions runs on both databases; on PostgreSQL in make test-all.
 
-What differs between the two, their statements and transactions, tests/service/storage has in every run.
+One of folding runs on PostgreSQL in every run, and what differs between the two, their statements and
+transactions, tests/service/storage has in every run.
 """
 
 import pytest

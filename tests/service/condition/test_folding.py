@@ -58,6 +58,7 @@ def require_same(repository: Repository, follower: Follower, of: Motor | None = 
     assert repository.checkpoints(PUMP)[-1].state == follower.save()
 
 
+@pytest.mark.parametrize("database_url", ["sqlite", "postgresql"], indirect=True)  # both in every run
 def test_records_in_any_order_of_arrival_give_the_condition_of_all_at_once(
     repository: Repository, recorder: Recorder
 ) -> None:
