@@ -1,10 +1,13 @@
-"""What holds for all tests: their order, and how many processes run them."""
+"""What holds for all tests: their order, how many processes run them, and where their files lie."""
 
 import os
+import shutil
 from pathlib import PurePath
 
 import pytest
 from hypothesis import settings
+
+from testing.memory_folder import memory_folder
 
 # How long an example takes says more about what else the machine is doing: times are benchmarks' business.
 settings.register_profile("untimed", deadline=None)
@@ -15,6 +18,18 @@ WAITING = ("tests/service/collector", "tests/hostile")
 """Folders of long tests: those that start services keep a core busy, those of relays mostly wait."""
 
 PROCESSES_OF_A_CORE = 2
+
+
+FILES_BYTES = 4 * 1024**3
+"""More than the files of all tests need."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have the tests' files lie in memory where there is room: commits of databases wait for a disk."""
+    del config
+    folder = memory_folder()
+    if folder is not None and shutil.disk_usage(folder).free >= FILES_BYTES:
+        os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(folder))
 
 
 def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
