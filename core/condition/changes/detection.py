@@ -16,7 +16,7 @@ import numpy as np
 
 from core.condition.changes.evidence import along, learnt_without, most_of_pair, of_free, of_size, signature
 from core.condition.changes.hypotheses import IMPEDANCE, WEIGHTS, Cause, Hypothesis
-from core.condition.filter.state import START, Candidate, FilterState
+from core.condition.filter.state import Candidate, FilterState
 from core.machines.compiled import compiled_as_written as compiled
 
 MOTOR_YEARS = 1_000.0
@@ -116,20 +116,3 @@ def _of_candidate(
     if max(most[0, 0], most[1, 0]) > NEGLIGIBLE:
         total += _W_RARE * exp(min(of_free(one.step, one.d[0:4], recorder), LARGEST))
     return total
-
-
-@compiled
-def exceeds(state: FilterState) -> bool:
-    """Return whether the detector raises an alarm.
-
-    Parameters
-    ----------
-    state : FilterState
-        The filter.
-
-    Returns
-    -------
-    bool
-        Whether its statistic has crossed the threshold.
-    """
-    return state.records > START and state.statistic >= state.threshold
