@@ -21,6 +21,10 @@ WATCHED_SCORE: Final = 3.2
 def state_of(assessment: Assessment, limit: float) -> State:
     """Return the state of a motor.
 
+    A change is a fault where its whole interval lies above the limit. A standing fault is one already where
+    its likeliest level does: it is certain that sensors do not leave so much, and the interval is wide only
+    because the path may be another one.
+
     Parameters
     ----------
     assessment : Assessment
@@ -34,7 +38,8 @@ def state_of(assessment: Assessment, limit: float) -> State:
         The state; never unknown.
     """
     worse = of_one_fault(assessment, limit)
-    if level_in_all(worse)[1][0] > limit or stays_a_fault(worse.change, limit):
+    level, (low, _) = level_in_all(worse)
+    if low > limit or stays_a_fault(worse.change, limit) or (worse.standing_fault and level > limit):
         return State.FAULT
     if assessment.change is not None or assessment.unconfirmed or stands_out(assessment, limit):
         return State.WATCH

@@ -108,8 +108,8 @@ def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
     )
     if assessment.standing_fault:
         yield f"{beyond}: shorted turns in phase {standing.phase}, {_interval(standing)}"
-        above = standing.ci95[0] > limit
-        yield f"their interval {'lies above' if above else 'reaches below'} the motor's limit of {limit:.2%}"
+        above = "above" if standing.value > limit else "below"
+        yield f"their likeliest level lies {above} the motor's limit of {limit:.2%}"
     elif reference.accepted:
         yield "a person has declared the asymmetry that stands from the first record on healthy"
     elif stands_out(assessment, limit):

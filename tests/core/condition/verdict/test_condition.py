@@ -198,7 +198,10 @@ def test_a_standing_fault_is_one_only_above_the_motors_limit() -> None:
     found = assessment(reference=standing, standing_fault=True)
     condition = condition_of(lenient, found, AS_OF_NS)
     assert (condition.state, condition.kind) == (State.WATCH, Kind.SHORTED_TURNS)
-    assert any("reaches below" in reason for reason in condition.reasons)
+    assert any("lies below the motor's limit" in reason for reason in condition.reasons)
+    unsure = reference(standing=level(0.06, 0.04), score=3.8)
+    judged_by_default = condition_of(MOTOR, assessment(reference=unsure, standing_fault=True), AS_OF_NS)
+    assert judged_by_default.state is State.FAULT, "its interval reaches below the limit, its level does not"
 
 
 @pytest.mark.parametrize(
