@@ -1,21 +1,15 @@
-"""A change that the detector has raised: naming it, and how large it is."""
+"""A change that the detector has raised, and its name."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import erfc, hypot, log, sqrt
 from typing import Any, Final
 
 import numpy as np
 
-from core.condition.changes.evidence import Learnt, along, learnt_without, of_size, signature
-from core.condition.changes.hypotheses import CAUSES, LEVEL, Cause, Hypotheses
-from core.condition.changes.naming import SIZES, name, probabilities
-from core.condition.filter.levels import level_now, levels_since
-from core.condition.filter.state import RECENT
+from core.condition.changes.hypotheses import CAUSES, Cause, Hypotheses
+from core.condition.changes.naming import name, probabilities
 from core.condition.kinds import Kind
-from core.condition.measuring.signatures import PATHS
 from core.machines.base import Array
-from core.machines.compiled import compiled_as_written as compiled
 
 CERTAIN: Final = 0.98
 """Posterior probability at which a cause is named."""
@@ -25,13 +19,6 @@ SPACED: Final = 8
 SELDOM: Final = 32
 SETTLED: Final = 64
 """Records after the alarm from which a name is final, and what is no shorted turns is lived with."""
-APART: Final = 2.0
-"""Standard deviations by which the level of another winding has to be higher to be told instead."""
-DRIFT_SHAPE: Final = 0.12
-"""Relative standard deviation of the level of a change that drifts: no growth is a straight line, and what
-the filter takes up of it before the alarm depends on its course."""
-TAIL: Final = 0.025
-GRID: Final = 400
 WINDOW: Final = 256
 """Records after the alarm within which a cause is named."""
 
@@ -149,7 +136,7 @@ def weigh(state: Any, bank: Any, hypotheses: Hypotheses, recorder: Array) -> Wei
         Their probabilities.
     """
     places = len(hypotheses) + 2
-    found = Weighing(logs=np.zeros(places), best=np.zeros((places, 5)))
+    found = Weighing(np.zeros(CAUSES), np.zeros(places), np.zeros((places, 5)))
     name(state, bank, hypotheses, recorder, found.logs, found.best)
     probabilities(hypotheses, found.logs, found.probabilities)
     return found
@@ -252,185 +239,3 @@ def taken_up(weighing: Weighing, bank: Any, hypotheses: Hypotheses) -> tuple[Arr
     spread = np.linalg.pinv(information)
     f = one.f[:, columns]
     return np.asarray(f @ spread @ one.d[columns]), np.asarray(f @ spread @ f.T)
-
-
-@dataclass(frozen=True, slots=True)
-class TurnsLevel:
-    """Change of the fault level if the change is shorted turns.
-
-    Parameters
-    ----------
-    value, deviation : float
-        Level now and its standard deviation from all causes.
-    interval : tuple of float
-        95 % interval.
-    winding : int
-        Winding of the positive-sequence frame.
-    path_ratio : float
-        Resistance of the path over that of the shorted turns.
-    onset_ns : int
-        Time of the first record that likeliest shows it, UTC [ns].
-    levels : tuple of tuple of int and float
-        Time [ns] and level of each record since then, or of means of several.
-    """
-
-    value: float
-    deviation: float
-    interval: tuple[float, float]
-    winding: int
-    path_ratio: float
-    onset_ns: int
-    levels: tuple[tuple[int, float], ...]
-
-
-def turns_level(
-    state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weighing: Weighing, *, final: bool
-) -> TurnsLevel:
-    """Return the change of the fault level, should the change be shorted turns.
-
-    Parameters
-    ----------
-    state : FilterState
-        The filter.
-    bank : array of Candidate
-        Candidates.
-    recent : array of Recent
-        Latest records.
-    hypotheses : array of Hypothesis
-        All places of all causes.
-    weighing : Weighing
-        Weights after the latest record.
-    final : bool
-        Whether the change is named for good. What another winding shows then is a second change.
-
-    Returns
-    -------
-    TurnsLevel
-        The level, averaged over what the path may be.
-    """
-    logs = weighing.logs[: 3 * len(PATHS)].reshape(3, len(PATHS))
-    likeliest, paths = int(np.argmax(np.logaddexp.reduce(logs, axis=1))), np.argmax(logs, axis=1)
-    at = likeliest * len(PATHS) + int(paths[likeliest])
-    one, size = bank[int(weighing.best[at, 0])], weighing.best[at, 2]
-    drifts = bool(weighing.best[at, 1])
-    known = learnt_without(state, one, drifts)
-    u, _ = signature(known, hypotheses[at])
-    # What the filter has taken up of the change comes off, so that the state is that of before it.
-    column = 6 if drifts else 0
-    jump = size * np.array([u.real, u.imag])
-    before = _Before(
-        reference=np.array(state.x) - np.array(one.f)[:, column : column + 2] @ jump,
-        one=one,
-        drifts=drifts,
-        known=known,
-    )
-    found = _level_in(likeliest, int(paths[likeliest]), state, recent, hypotheses, before)
-    if not final:
-        return found
-    others = (
-        _level_in(w, int(paths[w]), state, recent, hypotheses, before) for w in range(3) if w != likeliest
-    )
-    other = max(others, key=lambda level: level.value)
-    apart = other.value - found.value
-    return other if apart > APART * hypot(other.deviation, found.deviation) else found
-
-
-@dataclass(frozen=True, slots=True)
-class _Before:
-    """The filter as it was before the change, the change's onset, and whether it drifts."""
-
-    reference: Array
-    one: Any
-    drifts: bool
-    known: Learnt
-
-
-def _level_in(
-    winding: int, likeliest: int, state: Any, recent: Any, hypotheses: Hypotheses, before: _Before
-) -> TurnsLevel:
-    """Return the change of the fault level if it is in one winding; `likeliest` is the path's index."""
-    one, drifts, known = before.one, before.drifts, before.known
-    shape = DRIFT_SHAPE if drifts else 0.0
-    values, spreads = [], []
-    told: tuple[tuple[int, float], ...] = ()
-    table, out, evidence = np.zeros((RECENT, 3)), np.zeros(5), np.zeros(len(PATHS))
-    for p in range(len(PATHS)):
-        hypothesis = hypotheses[winding * len(PATHS) + p]
-        u, direction = signature(known, hypothesis)
-        first = levels_since(state, recent, before.reference, u, one.time_ns, table)
-        taken = int(state.recent) - first
-        value, wandering = level_now(table[:taken])
-        along(one, 0, drifts, u, out)
-        evidence[p] = _evidence(out, direction, float(hypothesis.share), int(drifts))
-        along(one, 0, False, u, out)  # noqa: FBT003
-        a, b, c = out[0], out[1], out[2]
-        information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
-        values.append(value)
-        scale = hypothesis.scale**2 + known[2] ** 2 + shape**2
-        spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
-        if p == likeliest:
-            times = [int(recent[first + i].time_ns) for i in range(taken)]
-            told = tuple(zip(times, table[:taken, 0].tolist(), strict=True))
-    shares = np.exp(evidence - np.max(evidence))
-    shares /= shares.sum()
-    mean = float(shares @ values)
-    variance = float(shares @ (np.array(spreads) + (np.array(values) - mean) ** 2))
-    interval = interval_of(shares, np.array(values), np.sqrt(spreads))
-    return TurnsLevel(mean, sqrt(variance), interval, winding, PATHS[likeliest], int(one.time_ns), told)
-
-
-def _evidence(out: Array, direction: float, share: float, drifts: int) -> float:
-    """Return the log of the posterior weight of a path: how well its direction fits decides."""
-    a, b, c, l0, l1 = out
-    usual = LEVEL * (0.5 if drifts else 1.0)
-    found = [of_size(a, b, c, l0, l1, k * usual, direction, one_sided=True)[0] for k in SIZES]
-    return float(np.logaddexp.reduce(found)) + log(share)
-
-
-def interval_of(shares: Array, means: Array, deviations: Array) -> tuple[float, float]:
-    """Return the 95 % interval of a mixture of normal distributions.
-
-    Parameters
-    ----------
-    shares, means, deviations : ndarray, shape (n,)
-        Weight, mean and standard deviation of each of them.
-
-    Returns
-    -------
-    tuple of float
-        Lower and upper end.
-    """
-    low, high = float(np.min(means - 5.0 * deviations)), float(np.max(means + 5.0 * deviations))
-    return (
-        _quantile(TAIL, low, high, shares, means, deviations),
-        _quantile(1.0 - TAIL, low, high, shares, means, deviations),
-    )
-
-
-@compiled
-def _quantile(share: float, low: float, high: float, shares: Array, means: Array, deviations: Array) -> float:
-    """Return the value below which a share of the mixture lies, linear between the points of a grid."""
-    step = (high - low) / (GRID - 1)
-    first, last = 0, GRID - 1
-    before, after = _below(low, shares, means, deviations), _below(high, shares, means, deviations)
-    if share <= before:
-        return low
-    if share >= after:
-        return high
-    while last - first > 1:
-        middle = (first + last) // 2
-        below = _below(low + middle * step, shares, means, deviations)
-        if below <= share:
-            first, before = middle, below
-        else:
-            last, after = middle, below
-    return low + step * (first + (share - before) / (after - before))
-
-
-@compiled
-def _below(value: float, shares: Array, means: Array, deviations: Array) -> float:
-    """Return the share of the mixture below a value."""
-    found = 0.0
-    for n in range(shares.size):
-        found += shares[n] * 0.5 * erfc((means[n] - value) / (deviations[n] * sqrt(2.0)))
-    return found

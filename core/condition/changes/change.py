@@ -5,8 +5,9 @@ from typing import Any
 import numpy as np
 
 from core.condition.assessment import Change, Level
-from core.condition.changes.alarm import KINDS, Alarm, TurnsLevel, Weighing, by_kind
+from core.condition.changes.alarm import KINDS, Alarm, Weighing, by_kind
 from core.condition.changes.hypotheses import CAUSES, Cause, Hypotheses
+from core.condition.changes.turns_level import TurnsLevel
 from core.condition.kinds import Kind
 from core.condition.measuring.signatures import channel_of
 from core.condition.observation import VoltageChannels

@@ -75,7 +75,7 @@ def name(
     logs[:] = NOTHING
     best[:] = 0.0
     best[:, 4] = NOTHING
-    temper = np.ones(SIDES + 1)
+    temper, out, joint = np.ones(SIDES + 1), np.zeros(5), np.zeros(5)
     most = _temper(state, bank, temper)
     for i in range(int(state.candidates)):
         one = bank[i]
@@ -87,7 +87,7 @@ def name(
             for s in range(SIDES):
                 still[s] = _still(one, s, drifts, temper[s])
             for h in range(places):
-                _weigh_place(known, one, i, drifts, h, hypotheses[h], temper, still, logs, best)
+                _weigh_place(known, one, i, drifts, h, hypotheses[h], temper, still, out, joint, logs, best)
         _weigh_free(one, i, recorder, temper, logs, best)
 
 
@@ -133,10 +133,12 @@ def _still(one: Candidate, s: int, drifts: int, power: float) -> float:
 @compiled
 def _weigh_place(
     known: Learnt, one: Candidate, i: int, drifts: int, h: int, it: Hypothesis, temper: Array,
-    still: Array, logs: Array, best: Array,
+    still: Array, out: Array, joint: Array, logs: Array, best: Array,
 ) -> None:  # fmt: skip
-    """Add the evidence of one onset, as a step or a drift, for one place of a cause."""
-    out, joint = np.zeros(5), np.zeros(5)
+    """Add the evidence of one onset, as a step or a drift, for one place of a cause.
+
+    In `out` and `joint` it works: what y tells, and what y and the side channels tell together.
+    """
     u, direction = signature(known, it)
     along(one, it.column, drifts == 1, u, out)
     for k in range(5):

@@ -8,11 +8,12 @@ import numpy as np
 from core.condition.assessment import Assessment, Change, Level, Reference
 from core.condition.bus.differences import COMMON_RECORDS
 from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
-from core.condition.changes.alarm import Alarm, Weighing, confirm, taken_up, turns_level, weigh
+from core.condition.changes.alarm import Alarm, Weighing, confirm, taken_up, weigh
 from core.condition.changes.before_change import before_change
 from core.condition.changes.change import change_of
 from core.condition.changes.detectability import detectable
 from core.condition.changes.hypotheses import Hypotheses, hypotheses_of
+from core.condition.changes.turns_level import TurnsLevel, turns_level
 from core.condition.complex_parts import elements, rotated, symmetric, turned
 from core.condition.events import Event, EventKind
 from core.condition.filter.kalman import TEMPERATURE, WANDER_EC
@@ -83,6 +84,8 @@ class Direction:
         rated = negative_impedance(motor.parameters, motor.nameplate.rated_frequency_Hz)
         self._header.scale_ohm = abs(rated)
         self._nominal = rated / abs(rated)
+        self._weighed: Weighing | None = None
+        self._turns_level: TurnsLevel | None = None
         self._see(motor)
         self._restart(keep_impedance=False)
 
@@ -151,6 +154,7 @@ class Direction:
         header, state = self._header, self._state
         elapsed_s = max(observation.time_ns - header.as_of_ns, 0) * NANOSECONDS if header.recorder else 0.0
         record = measure(observation, motor, self._header.scale_ohm, elapsed_s)
+        self._forget_weights()
         if neighbours:
             moved = header.bus.fold(record.v2, self._sequence, neighbours, self._same_transformer())
             if moved is not None:
@@ -188,6 +192,7 @@ class Direction:
         motor, edited : Motor
             The motor before and after it.
         """
+        self._forget_weights()
         if event.kind is EventKind.PARAMETERS_EDITED:
             self._move_impedance(motor, edited)
         elif event.kind in (EventKind.RECORDER_CHANGED, EventKind.MAINTENANCE):
@@ -331,7 +336,28 @@ class Direction:
         return self._hypotheses
 
     def _weighing(self) -> Weighing:
-        return weigh(self._state, self._bank, self._hypotheses, self._recorder)
+        """Return the weights after the latest record, which are computed once."""
+        if self._weighed is None:
+            self._weighed = weigh(self._state, self._bank, self._hypotheses, self._recorder)
+        return self._weighed
+
+    def _level(self, alarm: Alarm) -> TurnsLevel:
+        """Return the level after the latest record, which is computed once."""
+        if self._turns_level is None:
+            self._turns_level = turns_level(
+                self._state,
+                self._bank,
+                self._recent,
+                self._hypotheses,
+                self._weighing(),
+                final=alarm.is_final,
+            )  # fmt: skip
+        return self._turns_level
+
+    def _forget_weights(self) -> None:
+        """Let weights and level be computed anew: the state or the motor is another."""
+        self._weighed = None
+        self._turns_level = None
 
     def _follow_up(self, alarm: Alarm, motor: Motor) -> None:
         alarm.records += 1
@@ -360,13 +386,10 @@ class Direction:
         header.kept, header.standing = kept, standing
 
     def _change(self, alarm: Alarm, motor: Motor) -> tuple[Change, tuple[tuple[int, float], ...]]:
-        weighing = self._weighing()
-        level = turns_level(
-            self._state, self._bank, self._recent, self._hypotheses, weighing, final=alarm.is_final
-        )
+        level = self._level(alarm)
         change = change_of(
-            alarm, weighing, level, self._hypotheses, self._bank, motor.nameplate.connection, self._sequence,
-            self._header.voltage_channels,
+            alarm, self._weighing(), level, self._hypotheses, self._bank, motor.nameplate.connection,
+            self._sequence, self._header.voltage_channels,
         )  # fmt: skip
         return change, level.levels
 

@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from core.condition.changes.alarm import interval_of
 from core.condition.changes.evidence import of_size
 from core.condition.changes.hypotheses import (
     MACHINE,
@@ -16,6 +15,7 @@ from core.condition.changes.hypotheses import (
     STATOR,
     TURNS_DIRECTION,
 )
+from core.condition.changes.mixture import interval_of
 from core.condition.measuring.signatures import (
     PATHS,
     shorted_turns,

@@ -1,0 +1,215 @@
+"""How large a change is if it is shorted turns: in which winding, and averaged over what the path may be."""
+
+from dataclasses import dataclass
+from math import exp, hypot, log, log1p, sqrt
+from typing import Any, Final
+
+import numpy as np
+
+from core.condition.changes.alarm import Weighing
+from core.condition.changes.evidence import Learnt, along, learnt_without, of_size, signature
+from core.condition.changes.hypotheses import LEVEL, Hypotheses, Hypothesis
+from core.condition.changes.mixture import interval_of
+from core.condition.changes.naming import SIZES
+from core.condition.filter.levels import level_now, levels_since
+from core.condition.filter.state import RECENT, Candidate, FilterState, Recent
+from core.condition.measuring.signatures import PATHS
+from core.machines.base import Array
+from core.machines.compiled import compiled_as_written as compiled
+
+APART: Final = 2.0
+"""Standard deviations by which the level of another winding has to be higher to be told instead."""
+DRIFT_SHAPE: Final = 0.12
+"""Relative standard deviation of the level of a change that drifts: no growth is a straight line, and what
+the filter takes up of it before the alarm depends on its course."""
+OF_A_PATH: Final = 8
+"""Numbers that `_weigh_paths` finds of a path."""
+
+
+@dataclass(frozen=True, slots=True)
+class TurnsLevel:
+    """Change of the fault level if the change is shorted turns.
+
+    Parameters
+    ----------
+    value, deviation : float
+        Level now and its standard deviation from all causes.
+    interval : tuple of float
+        95 % interval.
+    winding : int
+        Winding of the positive-sequence frame.
+    path_ratio : float
+        Resistance of the path over that of the shorted turns.
+    onset_ns : int
+        Time of the first record that likeliest shows it, UTC [ns].
+    levels : tuple of tuple of int and float
+        Time [ns] and level of each record since then, or of means of several.
+    """
+
+    value: float
+    deviation: float
+    interval: tuple[float, float]
+    winding: int
+    path_ratio: float
+    onset_ns: int
+    levels: tuple[tuple[int, float], ...]
+
+
+def turns_level(
+    state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weighing: Weighing, *, final: bool
+) -> TurnsLevel:
+    """Return the change of the fault level, should the change be shorted turns.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter.
+    bank : array of Candidate
+        Candidates.
+    recent : array of Recent
+        Latest records.
+    hypotheses : array of Hypothesis
+        All places of all causes.
+    weighing : Weighing
+        Weights after the latest record.
+    final : bool
+        Whether the change is named for good. What another winding shows then is a second change.
+
+    Returns
+    -------
+    TurnsLevel
+        The level, averaged over what the path may be.
+    """
+    logs = weighing.logs[: 3 * len(PATHS)].reshape(3, len(PATHS))
+    likeliest, paths = int(np.argmax(np.logaddexp.reduce(logs, axis=1))), np.argmax(logs, axis=1).tolist()
+    at = likeliest * len(PATHS) + paths[likeliest]
+    candidate, drifts, size = weighing.best[at, :3].tolist()
+    one = bank[int(candidate)]
+    before = _before(state, one, hypotheses, at, size, drifts=bool(drifts))
+    found = _level_in(likeliest, paths[likeliest], state, recent, hypotheses, before)
+    if final:
+        others = (
+            _level_in(w, paths[w], state, recent, hypotheses, before) for w in range(3) if w != likeliest
+        )
+        other = max(others, key=lambda level: level.value)
+        apart = other.value - found.value
+        if apart > APART * hypot(other.deviation, found.deviation):
+            found = other
+    times = recent["time_ns"][found.first : found.first + len(found.levels)].tolist()
+    return TurnsLevel(
+        value=found.value,
+        deviation=found.deviation,
+        interval=interval_of(found.shares, found.values, np.sqrt(found.spreads)),
+        winding=found.winding,
+        path_ratio=PATHS[paths[found.winding]],
+        onset_ns=int(one["time_ns"]),
+        levels=tuple(zip(times, found.levels, strict=True)),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Before:
+    """The filter as it was before the change, the change's onset, and whether it drifts."""
+
+    reference: Array
+    one: Any
+    drifts: bool
+    known: Learnt
+
+
+def _before(state: Any, one: Any, hypotheses: Hypotheses, at: int, size: float, *, drifts: bool) -> _Before:
+    """Take off the state what the filter has taken up of the change."""
+    known = learnt_without(state, one, drifts)
+    u, _ = signature(known, hypotheses[at])
+    column = 6 if drifts else 0
+    jump = size * np.array([u.real, u.imag])
+    reference = np.array(state["x"]) - np.array(one["f"])[:, column : column + 2] @ jump
+    return _Before(reference, one, drifts, known)
+
+
+@dataclass(frozen=True, slots=True)
+class _WindingLevel:
+    """The level if the change is in one winding.
+
+    shares, values, spreads: weight, level and variance of each path.  levels: those of each record, by the
+    likeliest path.  first: place of the first of these records among the recent ones.
+    """
+
+    winding: int
+    value: float
+    deviation: float
+    shares: Array
+    values: Array
+    spreads: Array
+    levels: list[float]
+    first: int
+
+
+def _level_in(
+    winding: int, likeliest: int, state: Any, recent: Any, hypotheses: Hypotheses, before: _Before
+) -> _WindingLevel:
+    """Return the change of the fault level if it is in one winding; `likeliest` is the path's index."""
+    shape = DRIFT_SHAPE if before.drifts else 0.0
+    table, levels = np.empty((len(PATHS), OF_A_PATH)), np.empty(RECENT)
+    first, taken = _weigh_paths(
+        state, recent, hypotheses, before.reference, before.one, before.drifts, before.known,
+        winding * len(PATHS), likeliest, table, levels,
+    )  # fmt: skip
+    spreads = []
+    for value, wandering, a, b, c, direction, relative, _ in table.tolist():
+        information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
+        scale = relative**2 + before.known[2] ** 2 + shape**2
+        spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
+    values, evidence, variances = table[:, 0].copy(), table[:, 7], np.array(spreads)
+    shares = np.exp(evidence - np.max(evidence))
+    shares /= shares.sum()
+    mean = float(shares @ values)
+    variance = float(shares @ (variances + (values - mean) ** 2))
+    return _WindingLevel(
+        winding, mean, sqrt(variance), shares, values, variances, levels[:taken].tolist(), first
+    )
+
+
+@compiled
+def _weigh_paths(
+    state: FilterState, recent: list[Recent], hypotheses: list[Hypothesis], reference: Array,
+    one: Candidate, drifts: bool, known: Learnt, begin: int, likeliest: int, table: Array, levels: Array,
+) -> tuple[int, int]:  # fmt: skip
+    """Find what each path makes of a change in one winding.
+
+    Fills `table` by path with the level, what wandering adds to its variance, the information on it as a
+    step (a, b, c), the deviation of its direction and, relatively, of its size, and the log of the path's
+    weight; and `levels` with those of each record by the likeliest path. Returns the place of the first of
+    these records, and their number.
+    """
+    found, out = np.zeros((RECENT, 3)), np.zeros(5)
+    first = taken = 0
+    for p in range(len(PATHS)):
+        it = hypotheses[begin + p]
+        u, direction = signature(known, it)
+        first = levels_since(state, recent, reference, u, one.time_ns, found)
+        taken = int(state.recent) - first
+        value, wandering = level_now(found[:taken])
+        if p == likeliest:
+            levels[:taken] = found[:taken, 0]
+        along(one, 0, drifts, u, out)
+        evidence = _evidence(out, direction, it.share, drifts)
+        along(one, 0, False, u, out)  # noqa: FBT003
+        table[p, 0], table[p, 1] = value, wandering
+        table[p, 2], table[p, 3], table[p, 4] = out[0], out[1], out[2]
+        table[p, 5], table[p, 6], table[p, 7] = direction, it.scale, evidence
+    return first, taken
+
+
+@compiled
+def _evidence(out: Array, direction: float, share: float, drifts: bool) -> float:
+    """Return the log of the posterior weight of a path: how well its direction fits decides."""
+    usual = LEVEL * (0.5 if drifts else 1.0)
+    usually, _, _ = of_size(
+        out[0], out[1], out[2], out[3], out[4], SIZES[0] * usual, direction, one_sided=True
+    )
+    widely, _, _ = of_size(
+        out[0], out[1], out[2], out[3], out[4], SIZES[1] * usual, direction, one_sided=True
+    )
+    high, low = max(usually, widely), min(usually, widely)
+    return high + log1p(exp(low - high)) + log(share)
