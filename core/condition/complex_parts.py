@@ -45,22 +45,6 @@ def rotated(covariance: Array, factor: complex) -> Array:
     return np.asarray(turn @ covariance @ turn.T)
 
 
-def elements(matrix: Array) -> list[float]:
-    """Return the elements of a symmetric matrix.
-
-    Parameters
-    ----------
-    matrix : ndarray, shape (2, 2)
-        The matrix.
-
-    Returns
-    -------
-    list of float
-        Elements 00, 01, 11.
-    """
-    return [float(matrix[0, 0]), float(matrix[0, 1]), float(matrix[1, 1])]
-
-
 def symmetric(values: Sequence[float]) -> Array:
     """Return the symmetric matrix of its elements.
 

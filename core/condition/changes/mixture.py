@@ -12,6 +12,7 @@ TAIL: Final = 0.025
 GRID: Final = 400
 
 
+@compiled
 def interval_of(shares: Array, means: Array, deviations: Array) -> tuple[float, float]:
     """Return the 95 % interval of a mixture of normal distributions.
 
@@ -25,7 +26,7 @@ def interval_of(shares: Array, means: Array, deviations: Array) -> tuple[float, 
     tuple of float
         Lower and upper end.
     """
-    low, high = float(np.min(means - 5.0 * deviations)), float(np.max(means + 5.0 * deviations))
+    low, high = np.min(means - 5.0 * deviations), np.max(means + 5.0 * deviations)
     return (
         _quantile(TAIL, low, high, shares, means, deviations),
         _quantile(1.0 - TAIL, low, high, shares, means, deviations),

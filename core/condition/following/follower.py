@@ -121,7 +121,7 @@ class Follower:
             for one in others
             if one.is_complete
         ]
-        return max(told, key=self._severity)
+        return told[0] if len(told) == 1 else max(told, key=self._severity)
 
     def _severity(self, assessment: Assessment) -> tuple[int, float]:
         """Return how bad an assessment is; equally bad ones do not take turns from record to record."""

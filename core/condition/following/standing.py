@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from core.condition.changes.before_change import before_change
 from core.condition.changes.evidence import of_size
 from core.condition.changes.hypotheses import (
     MACHINE,
@@ -16,6 +17,8 @@ from core.condition.changes.hypotheses import (
     TURNS_DIRECTION,
 )
 from core.condition.changes.mixture import interval_of
+from core.condition.filter.kalman import WANDER_EC
+from core.condition.filter.state import Candidate, FilterState
 from core.condition.measuring.signatures import (
     PATHS,
     shorted_turns,
@@ -30,6 +33,9 @@ STANDING_SCORE: Final = 3.7
 """Standard deviations beyond which a standing asymmetry is no sound motor's: one motor in a thousand."""
 STANDING_LEVEL: Final = 0.05
 """Usual size of a standing fault: so wide that it hardly counts."""
+SUSPECTED: Final = 3.0
+"""Log of the detector's statistic above which a change is likely enough not to be taken for what stands."""
+WANDER_VARIANCE: Final = WANDER_EC**2
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,8 +116,12 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
     Standing
         The likeliest shorted turns.
     """
-    best, level, deviation, score = _likeliest(asymmetry, covariance, _directions(motor))
-    low, high = _interval(motor, asymmetry, covariance)
+    directions, tolerances = _shown_by(motor)
+    best, level, deviation, score = _likeliest(asymmetry, covariance, directions)
+    # Several windings and paths may explain an asymmetry as well.
+    logs, sizes, deviations = _explained(asymmetry, covariance, directions, tolerances)
+    shares = np.exp(logs - logs.max())
+    low, high = interval_of(shares / shares.sum(), sizes, deviations)
     return Standing(
         level=level,
         deviation=deviation,
@@ -124,32 +134,48 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
 
 
 @compiled
-def without_prior(estimate: Array, covariance: Array, prior: Array) -> tuple[Array, Array]:
-    """Take the prior out of an estimate.
+def of_records(
+    state: FilterState, bank: list[Candidate], voltage: Array
+) -> tuple[tuple[float, float], tuple[float, float, float], tuple[float, float, float]]:
+    """Return E as the records alone tell it, without the prior.
 
     Parameters
     ----------
-    estimate, covariance : ndarray, shapes (n,), (n, n)
-        What the filter says; E comes first.
-    prior : ndarray, shape (2, 2)
-        Covariance that it started from, about zero.
+    state : FilterState
+        The filter.
+    bank : array of Candidate
+        Candidates. Where a change is likely, what the filter has taken up of it is not what stands.
+    voltage : ndarray, shape (2, 2)
+        Covariance that E started from, about zero.
 
     Returns
     -------
-    estimate, covariance : ndarray, shapes (2,), (2, 2)
-        What the records alone say: Lam0^-1 d0 and Lam0^-1 with Lam0 = P0^-1 - P0^-1 P P0^-1, which is the
-        covariance of what a sound motor shows, the prior's spread included.
+    estimate : tuple of float
+        Lam0^-1 d0, its real and imaginary part.
+    spread, prior : tuple of float
+        Lam0^-1 with Lam0 = P0^-1 - P0^-1 P P0^-1, which is the covariance of what a sound motor shows, and
+        the prior's spread P0 that is part of it: their elements 00, 01, 11.
     """
+    x, P = state.x.copy(), state.P.copy()
+    if state.statistic > SUSPECTED:
+        x, P = before_change(state, bank)
+    prior = voltage.copy()
+    for i in range(2):
+        prior[i, i] += WANDER_VARIANCE * state.records
     # Lam0^-1 = P0 (P0 - P)^-1 P0
-    gained = _inverse(prior - covariance[:2, :2])
+    gained = _inverse(prior - P[:2, :2])
     spread, found = np.zeros((2, 2)), np.zeros(2)
     for i in range(2):
         for j in range(2):
             for k in range(2):
-                found[i] += prior[i, j] * gained[j, k] * estimate[k]
+                found[i] += prior[i, j] * gained[j, k] * x[k]
                 for m in range(2):
                     spread[i, m] += prior[i, j] * gained[j, k] * prior[k, m]
-    return found, spread
+    return (
+        (found[0], found[1]),
+        (spread[0, 0], spread[0, 1], spread[1, 1]),
+        (prior[0, 0], prior[0, 1], prior[1, 1]),
+    )
 
 
 @compiled
@@ -178,29 +204,21 @@ def _likeliest(asymmetry: Array, covariance: Array, directions: Array) -> tuple[
 
 
 @lru_cache(maxsize=256)
-def _directions(motor: Motor) -> Array:
-    """Return what shorted turns add to E, shape (windings x paths, 2)."""
-    found = [shorted_turns(motor, winding, p) for winding in range(3) for p in PATHS]
-    return np.array([[u.real, u.imag] for u in found])
+def _shown_by(motor: Motor) -> tuple[Array, Array]:
+    """Return what shorted turns add to E, by winding and path, and how surely.
 
-
-def _interval(motor: Motor, asymmetry: Array, covariance: Array) -> tuple[float, float]:
-    """Return the interval of the level: several windings and paths may explain an asymmetry as well."""
-    logs, sizes, deviations = _explained(asymmetry, covariance, _directions(motor), _tolerances(motor))
-    shares = np.exp(logs - np.max(logs))
-    return interval_of(shares / shares.sum(), sizes, deviations)
-
-
-@lru_cache(maxsize=256)
-def _tolerances(motor: Motor) -> Array:
-    """Return of each direction how sure it is, how sure its size is, and the log of its share before."""
-    found = []
-    for n in range(3 * len(PATHS)):
-        p = PATHS[n % len(PATHS)]
-        direction = hypot(TURNS_DIRECTION, STATOR * turns_angle_slope(motor, p))
-        scale = hypot(MACHINE, RESISTANCE * turns_size_slope(motor, p))
-        found.append([direction, scale, log(PATH_SHARES[n % len(PATHS)])])
-    return np.array(found)
+    The first array has real and imaginary part, the second how sure the direction is, how sure the size is,
+    and the log of the path's share before.
+    """
+    directions, tolerances = [], []
+    for winding in range(3):
+        for p, share in zip(PATHS, PATH_SHARES, strict=True):
+            u = shorted_turns(motor, winding, p)
+            directions.append([u.real, u.imag])
+            direction = hypot(TURNS_DIRECTION, STATOR * turns_angle_slope(motor, p))
+            scale = hypot(MACHINE, RESISTANCE * turns_size_slope(motor, p))
+            tolerances.append([direction, scale, log(share)])
+    return np.array(directions), np.array(tolerances)
 
 
 @compiled
