@@ -1,9 +1,11 @@
 """Compilation of functions with numba, with typed signatures and a cache beside the source."""
 
 from collections.abc import Callable
-from typing import ParamSpec, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar, cast
 
 import numba
+
+from core.machines.compile_cache import ProgramCache
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -22,8 +24,7 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     result here depends on the sign of a zero or on the order of a sum. NaN and infinity keep their meaning,
     because a candidate without a finite answer has to be told from the others.
 
-    The cache notices a change in the file of a function, not in those of the functions it calls: after
-    editing one, remove __pycache__.
+    The cache notices a change in the function's module and in those that it imports.
 
     Parameters
     ----------
@@ -35,10 +36,7 @@ def compiled(function: Callable[P, R]) -> Callable[P, R]:
     callable
         The compiled function.
     """
-    return cast(
-        Callable[P, R],
-        numba.njit(cache=True, nogil=True, fastmath=FAST_MATH, error_model="numpy")(function),
-    )
+    return _cached(numba.njit(nogil=True, fastmath=FAST_MATH, error_model="numpy")(function), function)
 
 
 def compiled_as_written(function: Callable[P, R]) -> Callable[P, R]:
@@ -58,4 +56,9 @@ def compiled_as_written(function: Callable[P, R]) -> Callable[P, R]:
     callable
         The compiled function.
     """
-    return cast(Callable[P, R], numba.njit(cache=True, nogil=True, error_model="numpy")(function))
+    return _cached(numba.njit(nogil=True, error_model="numpy")(function), function)
+
+
+def _cached(dispatcher: Any, function: Callable[P, R]) -> Callable[P, R]:
+    dispatcher._cache = ProgramCache(function)  # noqa: SLF001  # as its own enable_caching() does
+    return cast(Callable[P, R], dispatcher)
