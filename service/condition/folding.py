@@ -11,6 +11,7 @@ from core.condition.bus.neighbours import Neighbour, StandingEstimate
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
 from core.condition.verdict.condition import Condition, condition_of
+from core.condition.verdict.verdict import Verdict, verdict_of
 from core.machines.parameters import Motor
 from service.condition.checkpoints import is_kept
 from service.condition.errors import RecordFoldError
@@ -119,7 +120,7 @@ class _Folding:
         except ObservationError as error:
             log.warning("record left out of the condition", recording=one.recording_id, error=str(error))
             return
-        said = self._say(observation.time_ns)
+        said = self._say()
         self._points.append(
             ConditionPoint(recording_id=one.recording_id, time_ns=observation.time_ns, **said)
         )
@@ -128,7 +129,7 @@ class _Folding:
 
     def _apply(self, event: ConditionEvent) -> None:
         self._follower.apply(event.event, self._history.edited_at(event.time_ns))
-        self._note(self._say(event.time_ns), event.time_ns, event_id=event.id)
+        self._note(self._say(), event.time_ns, event_id=event.id)
 
     def _note(
         self, said: Said, time_ns: int, *, recording_id: str | None = None, event_id: str | None = None
@@ -140,11 +141,10 @@ class _Folding:
             )
         )
 
-    def _say(self, now_ns: int) -> Said:
+    def _say(self) -> Said:
         """Return what is said now. A forecast, which takes long, is made at the end only."""
         assessment = self._follower.assessment(self._bus.standings)
-        brief = None if assessment is None else replace(assessment, levels=())
-        return _said(condition_of(self._motor, brief, now_ns))
+        return _said(verdict_of(assessment, self._motor.limits.fault_level))
 
     def _entry(self) -> ConditionEntry:
         """Return the motor's condition, as it was said of it with its latest record."""
@@ -193,7 +193,7 @@ def _first_ns(due: FoldInput) -> int:
     )
 
 
-def _said(condition: Condition) -> Said:
+def _said(condition: Condition | Verdict) -> Said:
     low, high = condition.mu_f_ci95 or (None, None)
     change_low, change_high = condition.change_ci95 or (None, None)
     return {

@@ -2,27 +2,25 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Final, cast
+from typing import Any, cast
 
 from core.condition.assessment import (
     PHASES,
     STALE_AFTER_NS,
     Assessment,
-    Change,
     Level,
     Phase,
     Reference,
 )
 from core.condition.forecast.forecast import Forecast, forecast, limit_ahead
 from core.condition.kinds import Kind, State
-from core.condition.severity import FEW, Interval, level_in_all, level_of, of_one_fault, stands_out, state_of
+from core.condition.severity import Interval, level_of, of_one_fault, stands_out
 from core.condition.verdict.advice import advice
 from core.condition.verdict.reasons import reasons_of
+from core.condition.verdict.verdict import verdict_of
 from core.machines.parameters import Motor
 from core.machines.winding_frame import Winding
 from core.time_stamps import nanoseconds, rfc3339
-
-MOST_CANDIDATES: Final = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,33 +198,30 @@ def condition_of(
     Condition
         The condition.
     """
-    if assessment is None:
-        return _unknown(motor)
     limit = motor.limits.fault_level
-    fault, reference = of_one_fault(assessment, limit), assessment.reference
-    state = state_of(assessment, limit)
-    kind, candidates = _kind(fault, limit)
-    phase = _phase(fault)
-    level = level_of(fault.change)
-    mu_f, mu_f_ci95 = level_in_all(fault)
-    ahead = _forecast(fault, level, mu_f, limit)
+    verdict = verdict_of(assessment, limit)
+    if assessment is None or verdict.mu_f is None:
+        return _unknown(motor)
+    fault = of_one_fault(assessment, limit)
+    state, kind = verdict.state, verdict.kind
+    ahead = _forecast(fault, level_of(fault.change), verdict.mu_f, limit)
     return Condition(
         motor=motor.name,
         state=state,
         kind=kind,
-        candidates=candidates,
-        phase=phase,
-        mu_f=mu_f,
-        mu_f_ci95=mu_f_ci95,
-        change=_change(reference, level),
-        change_ci95=None if level is None else level.ci95,
-        size=_size(fault, mu_f),
+        candidates=verdict.candidates,
+        phase=verdict.phase,
+        mu_f=verdict.mu_f,
+        mu_f_ci95=verdict.mu_f_ci95,
+        change=verdict.change,
+        change_ci95=verdict.change_ci95,
+        size=_size(fault, verdict.mu_f),
         since_ns=_since(fault, limit),
         forecast=ahead,
-        reference=reference,
+        reference=assessment.reference,
         as_of_ns=assessment.as_of_ns,
         stale=_is_stale(assessment.as_of_ns, now_ns, stale_after_ns),
-        advice=advice(state, kind, phase=phase, candidates=candidates),
+        advice=advice(state, kind, phase=verdict.phase, candidates=verdict.candidates),
         reasons=reasons_of(assessment, limit, ahead),
     )
 
@@ -253,38 +248,6 @@ def _unknown(motor: Motor) -> Condition:
     )
 
 
-def _kind(assessment: Assessment, limit: float) -> tuple[Kind, tuple[Kind, ...]]:
-    """Return the kind, and the candidates of an unclear one. What makes the state a fault goes first."""
-    change = assessment.change
-    if assessment.standing_fault:
-        return Kind.SHORTED_TURNS, ()
-    if change is not None and len(change.named) == 1:
-        return change.named[0], ()
-    if change is not None:
-        return Kind.UNCLEAR, change.named or _likeliest(change)
-    if stands_out(assessment, limit):
-        return Kind.UNCLEAR, (Kind.SHORTED_TURNS, Kind.VOLTAGE_CHANNEL)
-    return (Kind.UNCLEAR if assessment.unconfirmed else Kind.NONE), ()
-
-
-def _likeliest(change: Change) -> tuple[Kind, ...]:
-    possible = [kind for kind, probability in change.probabilities.items() if probability >= FEW]
-    possible.sort(key=lambda kind: -change.probabilities[kind])
-    return tuple(possible[:MOST_CANDIDATES])
-
-
-def _phase(assessment: Assessment) -> Phase | None:
-    """Return the phase of what is named; nothing has a phase while all is open."""
-    change = assessment.change
-    if assessment.standing_fault:
-        return assessment.reference.standing.phase
-    if change is None or not change.named:
-        return None
-    if Kind.SHORTED_TURNS in change.named:
-        return change.level.phase
-    return None if change.channel is None else PHASES[change.channel]
-
-
 def _since(assessment: Assessment, limit: float) -> int | None:
     """Return when it began. A standing fault was there from the first record on, whatever it grew by."""
     if assessment.change is not None and not assessment.standing_fault:
@@ -296,12 +259,6 @@ def _size(assessment: Assessment, mu_f: float) -> float | None:
     if assessment.standing_fault:
         return mu_f
     return None if assessment.change is None else assessment.change.size
-
-
-def _change(reference: Reference, level: Level | None) -> float | None:
-    if level is not None:
-        return max(0.0, level.value)
-    return 0.0 if reference.complete else None
 
 
 def _forecast(assessment: Assessment, level: Level | None, mu_f: float, limit: float) -> Forecast:

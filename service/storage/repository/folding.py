@@ -37,7 +37,7 @@ from service.storage.records import (
 )
 from service.storage.repository.condition_alarms import settle_alarm
 from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
-from service.storage.repository.observations import record_observation
+from service.storage.repository.observations import OBSERVED, record_observation
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.repository.standing_changes import TOLD, is_material
 from service.storage.texts import storable
@@ -174,17 +174,17 @@ def _observations(
 ) -> tuple[tuple[RecordObservation, ...], int | None]:
     """Return the next observations of a motor, whole times only, and the time of the first one beyond."""
     following = (
-        select(ObservationRow)
+        select(*OBSERVED)
         .where(ObservationRow.motor == motor, ObservationRow.time_ns > done_ns)
         .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
     )
-    rows = session.scalars(following.limit(most + 1)).all()
+    rows = session.execute(following.limit(most + 1)).all()
     next_ns = None
     if len(rows) > most:
         next_ns = rows[most].time_ns
         rows = [row for row in rows if row.time_ns < next_ns]
         if not rows:
-            rows = session.scalars(following.where(ObservationRow.time_ns == next_ns)).all()
+            rows = session.execute(following.where(ObservationRow.time_ns == next_ns)).all()
             next_ns = session.scalar(
                 select(func.min(ObservationRow.time_ns)).where(
                     ObservationRow.motor == motor, ObservationRow.time_ns > rows[0].time_ns
@@ -215,14 +215,14 @@ def _neighbours(
         return ()
     first_ns, last_ns = (observations[at].observation.time_ns for at in (0, -1))
     query = (
-        select(ObservationRow)
+        select(*OBSERVED)
         .where(
             ObservationRow.motor.in_(others_of_bus(motor)),
             ObservationRow.time_ns.between(first_ns - SAME_SUPPLY_WITHIN_NS, last_ns + SAME_SUPPLY_WITHIN_NS),
         )
         .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
     )
-    return tuple(record_observation(row) for row in session.scalars(query))
+    return tuple(record_observation(row) for row in session.execute(query))
 
 
 def _bus(session: Session, motor: str) -> tuple[BusMotor, ...]:

@@ -5,7 +5,7 @@ from dataclasses import fields
 from math import isfinite
 from typing import Any
 
-from sqlalchemy import delete, exists, func, select
+from sqlalchemy import Row, delete, exists, func, select
 from sqlalchemy.orm import Session
 
 from core.condition.observation import Observation
@@ -51,6 +51,18 @@ OTHERS = (
 )
 """Columns that are called as the fields are."""
 
+
+OBSERVED = [
+    ObservationRow.__table__.c[name]
+    for name in (
+        "recording_id",
+        "motor",
+        "recorder",
+        *OTHERS,
+        *(f"{column}_{part}" for column, _ in PHASORS for part in ("re", "im")),
+    )
+]
+"""Columns of what a recording tells, without what is said from it on."""
 
 _POINT_FIELDS = [field.name for field in fields(ConditionPoint)]
 
@@ -193,8 +205,8 @@ def forget_observation(session: Session, recording_id: str) -> None:
         session.flush()
 
 
-def record_observation(row: ObservationRow) -> RecordObservation:
-    """Return what is in a row."""
+def record_observation(row: ObservationRow | Row[Any]) -> RecordObservation:
+    """Return what is in a row of the table or of OBSERVED."""
     zero_voltage = (
         None
         if row.zero_voltage_re is None or row.zero_voltage_im is None
