@@ -77,7 +77,7 @@ class ConditionMetrics(Collector):
             kind.add_metric([motor, found.kind], 1)
             for bound, value in zip(("low", "high"), found.mu_f_ci95 or (), strict=False):
                 interval.add_metric([motor, bound], value)
-            for quantile, days in zip(("0.1", "0.5", "0.9"), _forecast_days(found), strict=False):
+            for quantile, days in zip(("0.05", "0.5", "0.95"), _forecast_days(found), strict=False):
                 forecast.add_metric([motor, quantile], days)
             if found.mu_f is not None:
                 level.add_metric([motor], found.mu_f)

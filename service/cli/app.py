@@ -209,7 +209,7 @@ def follow(
         ),
     ] = None,
     events: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="A file of events (TOML, tables [[event]]).")
+        Path | None, typer.Option(metavar="FILE", help=r"A file of events (TOML, tables [\[event]]).")
     ] = None,
     stale_after: Annotated[
         float,

@@ -37,17 +37,18 @@ def given_events(words: Sequence[str], file: Path | None) -> list[GivenEvent]:
 
     Raises CommandError (wrong use) for what is no event, MotorFileError and OSError for its files.
     """
-    found = [GivenEvent(_event_of(word)) for word in words]
+    found = [_of_word(word) for word in words]
     if file is not None:
         found += _read(file)
     return sorted(found, key=lambda one: one.event.time_ns)
 
 
-def _event_of(word: str) -> Event:
+def _of_word(word: str) -> GivenEvent:
     """Return the event of TIME=KIND or TIME=KIND:REASON."""
     time, _, rest = word.partition("=")
     kind, _, reason = rest.partition(":")
-    return _event(f"--event {word}", time, kind, reason)
+    where = f"--event {word}"
+    return _given(where, _event(where, time, kind, reason), None)
 
 
 def _read(file: Path) -> list[GivenEvent]:
@@ -78,7 +79,14 @@ def _from_table(file: Path, number: int, table: Mapping[str, object]) -> GivenEv
         time = time.astimezone(UTC).isoformat()
     event = _event(where, str(time), str(table.get("kind", "")), str(table.get("reason", "")))
     named = table.get("motor")
-    return GivenEvent(event, None if named is None else read_motor(file.parent / str(named)))
+    return _given(where, event, None if named is None else read_motor(file.parent / str(named)))
+
+
+def _given(where: str, event: Event, motor: Motor | None) -> GivenEvent:
+    if motor is None and event.kind is EventKind.PARAMETERS_EDITED:
+        expected = 'the motor as it is from then on (motor = "MOTOR.toml" in a file for --events)'
+        raise _wrong(where, expected, "none")
+    return GivenEvent(event, motor)
 
 
 def _event(where: str, time: str, kind: str, reason: str) -> Event:

@@ -13,6 +13,9 @@ PAGE = ROOT / "docs" / "reference" / "commands.md"
 TYPES = re.compile(r" <(?:bool|int|float|str|path|list\[\w+\])>")
 """Names of Python types, which tell a reader nothing."""
 
+ESCAPED = r"\["
+"""How help texts write a bracket that is no mark-up."""
+
 
 def commands() -> Iterator[tuple[str, typer.core.TyperCommand]]:
     """Yield each command with the words that start it, in the order of its program's help."""
@@ -38,7 +41,7 @@ def lines(name: str, command: typer.core.TyperCommand) -> Iterator[str]:
     for parameter in command.params:
         record = parameter.get_help_record(context)
         if record is not None:
-            usage, meaning = (text.replace("|", "\\|") for text in record)
+            usage, meaning = (text.replace(ESCAPED, "[").replace("|", "\\|") for text in record)
             yield f"| `{TYPES.sub('', usage)}` | {meaning.strip()} |"
     yield ""
 

@@ -190,9 +190,11 @@ def test_events_come_from_a_file_too_with_the_motor_as_it_is_then(
     [
         ("--event", "yesterday=rewound"),
         ("--event", "2026-01-31T12:00:00Z=polished"),
+        ("--event", "2026-01-31T12:00:00Z=parameters-edited:as commissioned"),
         ("--events", "[[event]]\ntime = 2026-01-31\nkind = 'rewound'\n"),
         ("--events", "[[event]]\ntime = 2026-01-31T12:00:00Z\nkind = 3\n"),
         ("--events", "[[event]]\ntime = 2026-01-31T12:00:00Z\nkind = 'rewound'\nwho = 'me'\n"),
+        ("--events", "[[event]]\ntime = 2026-01-31T12:00:00Z\nkind = 'parameters-edited'\n"),
         ("--events", "event = 3\n"),
         ("--events", "[motor]\n"),
         ("--events", "= = ="),
@@ -207,6 +209,16 @@ def test_what_is_no_event_is_wrong_use(
     assert main(["follow", str(few), "--motor", str(few / "PUMP.toml"), option, text, "--json"]) == 2
     error = json.loads(capsys.readouterr().out)["error"]
     assert error["type"] == "EventUnusable"
+
+
+def test_edited_parameters_need_the_motor_as_it_is_then(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    event = "2026-01-31T12:00:00Z=parameters-edited"
+    assert main(["follow", str(few), "--motor", str(few / "PUMP.toml"), "--event", event]) == 2
+    told = " ".join(capsys.readouterr().err.split())
+    assert f"--event {event}: expected the motor as it is from then on" in told
+    assert 'motor = "MOTOR.toml" in a file for --events' in told
 
 
 def test_other_motors_of_the_bus_take_part(

@@ -18,3 +18,11 @@ def test_no_word_of_a_command_is_taken_for_mark_up(
     monkeypatch.setenv("COLUMNS", "200")
     assert main([name, "--help"]) == 0
     assert " ".join(COMMANDS[name].split()) in " ".join(capsys.readouterr().out.split())
+
+
+def test_brackets_of_an_option_are_not_taken_for_mark_up(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
+    assert main(["follow", "--help"]) == 0
+    assert "A file of events (TOML, tables [[event]])." in capsys.readouterr().out
