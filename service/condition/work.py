@@ -44,11 +44,15 @@ REPORT_S = 60.0
 
 @dataclass(frozen=True, slots=True)
 class ConditionTask:
-    """A task for a worker: call `function` with `argument`."""
+    """A task for a worker: call `function` with `argument`.
+
+    marks: of the changes that are folded, where the motor's fold has failed before.
+    """
 
     motor: str
     function: Callable[..., int]
     argument: FoldTask | ObserveTask
+    marks: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
@@ -148,7 +152,9 @@ class ConditionWork:
         motor = next((one for one in due if one > self._latest), due[0])
         self._latest = motor
         self._folded_s[motor] = time.monotonic()
-        return ConditionTask(motor, fold_motor, FoldTask(self._database_url, self._motors[motor]))
+        # They may be many, and are of use only where the motor is about to be set aside.
+        marks = self._repository.fold_marks(motor) if motor in self._trouble else ()
+        return ConditionTask(motor, fold_motor, FoldTask(self._database_url, self._motors[motor]), marks)
 
     def _held_until_s(self, motor: str) -> float:
         return self._folded_s.get(motor, self._begun_s) + HELD_S
@@ -197,7 +203,7 @@ class ConditionWork:
         ):
             problem = f"folding failed {trouble.failures} times, the last time: {_words(error)}"
             log.error("motor set aside: its condition follows no records", motor=task.motor, reason=problem)
-            self._repository.set_fold_aside(task.motor, problem)
+            self._repository.set_fold_aside(task.motor, task.marks, problem)
             del self._trouble[task.motor]
 
     def _report(self, observed: int) -> None:

@@ -56,13 +56,22 @@ class FoldingRows(Sessions):
         with self._read() as session:
             return tuple(session.scalars(waiting.order_by(FoldMarkRow.motor)))
 
-    def set_fold_aside(self, motor: str, problem: str) -> None:
-        """Have a motor folded no more until something changes again, and keep why."""
+    def fold_marks(self, motor: str) -> tuple[str, ...]:
+        """Return the ids of a motor's marks: the changes that a fold beginning now takes in."""
+        with self._read() as session:
+            return tuple(session.scalars(select(FoldMarkRow.id).where(FoldMarkRow.motor == motor)))
+
+    def set_fold_aside(self, motor: str, marks: Sequence[str], problem: str) -> None:
+        """Have a motor folded no more until something changes again, and keep why.
+
+        marks: what could not be folded. A mark that came meanwhile stays, and has the motor tried again.
+        """
         with self._write() as session:
             session.execute(
                 update(ConditionRow).where(ConditionRow.motor == motor).values(problem=storable(problem))
             )
-            session.execute(update(FoldMarkRow).where(FoldMarkRow.motor == motor).values(set_aside=True))
+            for some in _in_parts(marks):
+                session.execute(update(FoldMarkRow).where(FoldMarkRow.id.in_(some)).values(set_aside=True))
 
     def resume_folds(self) -> None:
         """Have the motors folded that were set aside: the service that starts may be a mended one."""

@@ -223,7 +223,8 @@ def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_chang
                 conditions.ended(task, failed(error))
             else:
                 folded: Future[int] = Future()
-                folded.set_result(task.function(task.argument))
+                assert isinstance(task.argument, FoldTask)
+                folded.set_result(fold_due(repository, task.argument.motor))
                 conditions.ended(task, folded)
         return number
 
@@ -248,6 +249,27 @@ def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_chang
     fold_all(repository)
     assert repository.condition(PUMP).problem is None
     assert repository.condition(PUMP).as_of_ns == RECORDS[3].time_ns, "all of them count in the end"
+    assert repository.backlog() == Backlog(0, 0)
+
+
+def test_a_record_that_comes_during_the_failing_fold_has_the_motor_tried_again(
+    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
+    recorder = Recorder(repository, store)
+    recorder.record(RECORDS[0])
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    for number in range(3):
+        task = conditions.next_task()
+        assert task is not None
+        if number == 2:
+            recorder.record(RECORDS[1])
+        conditions.ended(task, failed(RuntimeError("a bug")))
+    assert repository.condition(PUMP).problem is not None
+    assert conditions.next_task() is not None, "the record that has come does not wait for another one"
+    fold_all(repository)
+    assert repository.condition(PUMP).problem is None
+    assert repository.condition(PUMP).as_of_ns == RECORDS[1].time_ns
     assert repository.backlog() == Backlog(0, 0)
 
 
