@@ -37,13 +37,22 @@ def state_of(assessment: Assessment, limit: float) -> State:
     State
         The state; never unknown.
     """
-    worse = of_one_fault(assessment, limit)
-    level, (low, _) = level_in_all(worse)
-    if low > limit or stays_a_fault(worse.change, limit) or (worse.standing_fault and level > limit):
+    if _is_fault(of_one_fault(assessment, limit), limit):
         return State.FAULT
     if assessment.change is not None or assessment.unconfirmed or stands_out(assessment, limit):
         return State.WATCH
     return State.HEALTHY
+
+
+def _is_fault(assessment: Assessment, limit: float) -> bool:
+    """Return whether what is seen of one winding is a fault."""
+    change = assessment.change
+    if level_in_all(assessment)[1][0] > limit or stays_a_fault(change, limit):
+        return True
+    if not assessment.standing_fault:
+        return False
+    sure = assessment if is_shorted_turns(change) else replace(assessment, change=None)
+    return level_in_all(sure)[0] > limit
 
 
 def stays_a_fault(change: Change | None, limit: float) -> bool:
@@ -83,16 +92,16 @@ def of_one_fault(assessment: Assessment, limit: float) -> Assessment:
     -------
     Assessment
         The assessment, without the standing fault or without the change where both are seen and are not in
-        one winding. What is surely above the limit goes first, then what is larger.
+        one winding. What is a fault by itself goes first, then what is larger.
     """
-    change, standing = assessment.change, assessment.reference.standing
-    level = level_of(change)
+    standing, level = assessment.reference.standing, level_of(assessment.change)
     if not assessment.standing_fault or level is None or level.winding == standing.winding:
         return assessment
-    of_change = (is_shorted_turns(change) and level.ci95[0] > limit, level.value)
-    if of_change > (standing.ci95[0] > limit, standing.value):
-        return replace(assessment, standing_fault=False)
-    return replace(assessment, change=None, levels=())
+    alone = replace(assessment, change=None, levels=())
+    changed = replace(assessment, standing_fault=False)
+    if (_is_fault(changed, limit), level.value) > (_is_fault(alone, limit), standing.value):
+        return changed
+    return alone
 
 
 def stands_out(assessment: Assessment, limit: float) -> bool:

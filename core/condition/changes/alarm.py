@@ -70,21 +70,14 @@ class Alarm:
         """Whether the latest record takes part in naming: every one at first, every eighth later."""
         return self.records <= SETTLED or (self.records <= WINDOW and self.records % SPACED == 0)
 
-    def may_be_called(self, limit: float) -> bool:
-        """Return whether the latest record may make it a fault that stays one: seldom even much later.
+    @property
+    def may_be_called(self) -> bool:
+        """Whether the latest record may make it a fault that stays one: seldom even much later.
 
-        Parameters
-        ----------
-        limit : float
-            Limit of the motor, a fraction of the phase turns.
-
-        Returns
-        -------
-        bool
-            Whether its level is to be looked at.
+        It does not depend on the motor's limit: a limit that is edited later counts for all records alike.
         """
         is_looked_at = self.is_to_be_weighed or self.records % SELDOM == 0
-        return is_looked_at and self.surely_above <= limit and Kind.SHORTED_TURNS in self.named
+        return is_looked_at and Kind.SHORTED_TURNS in self.named
 
     @property
     def is_final(self) -> bool:

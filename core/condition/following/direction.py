@@ -10,6 +10,7 @@ from core.condition.assessment import Assessment, Change, Level, Reference
 from core.condition.bus.differences import COMMON_RECORDS
 from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
 from core.condition.changes.alarm import Alarm, Weighing, confirm, taken_up, weigh
+from core.condition.changes.before_change import before_change
 from core.condition.changes.change import change_of
 from core.condition.changes.detectability import detectable
 from core.condition.changes.hypotheses import Hypotheses, hypotheses_of
@@ -17,7 +18,7 @@ from core.condition.changes.turns_level import TurnsLevel, turns_level
 from core.condition.complex_parts import rotated, symmetric, turned
 from core.condition.events import Event, EventKind
 from core.condition.filter.kalman import TEMPERATURE
-from core.condition.filter.prior import IMPEDANCE, prior_of
+from core.condition.filter.prior import IMPEDANCE, impedance_alone, prior_of
 from core.condition.filter.state import (
     BUS,
     CANDIDATE,
@@ -194,8 +195,10 @@ class Direction:
         self._forget_weights()
         if event.kind is EventKind.PARAMETERS_EDITED:
             self._move_impedance(motor, edited)
-        elif event.kind in (EventKind.RECORDER_CHANGED, EventKind.MAINTENANCE):
+        elif event.kind is EventKind.RECORDER_CHANGED:
             self._restart(keep_impedance=True)
+        elif event.kind is EventKind.MAINTENANCE:
+            self._maintain()
         elif event.kind is EventKind.REFERENCE_RESTARTED:
             self._restart(keep_impedance=True)
             self._header.accepted = True
@@ -364,7 +367,7 @@ class Direction:
         alarm.records += 1
         if alarm.is_to_be_weighed:
             confirm(alarm, self._weighing())
-        if alarm.may_be_called(motor.limits.fault_level):
+        if alarm.may_be_called:
             change = self._change(alarm, motor)[0]
             if is_shorted_turns(change):
                 alarm.surely_above = max(alarm.surely_above, change.level.ci95[0])
@@ -381,10 +384,26 @@ class Direction:
         kept, standing = self._change(alarm, motor)[0], header.standing
         # The impedance has taken up some of the change.
         taken, spread = taken_up(self._weighing(), self._bank, self._hypotheses)
-        self._state.x[4:] -= taken[4:]
-        self._state.P[4:, 4:] += spread[4:, 4:]
+        self._state.x -= taken
+        self._state.P += spread
         self._restart(keep_impedance=Kind.PARAMETERS not in alarm.named)
         header.kept, header.standing = kept, standing
+
+    def _maintain(self) -> None:
+        """Close a change; one that may be shorted turns is looked for again: few works mend a winding.
+
+        Against the reference of before it the next records show within a few whether it is still there. Any
+        other change may have been mended where it was learnt, so that the channels are learnt anew.
+        """
+        header, state = self._header, self._state
+        if header.alarm is None or Kind.SHORTED_TURNS not in header.alarm.named:
+            self._restart(keep_impedance=True)
+            return
+        state.x[:], state.P[:] = before_change(state, self._bank)
+        state.candidates = state.recent = 0.0
+        state.block = 1.0
+        header.alarm = None
+        header.standing = None if header.kept is None else header.standing
 
     def _change(self, alarm: Alarm, motor: Motor) -> tuple[Change, tuple[tuple[int, float], ...]]:
         level = self._level(alarm)
@@ -447,8 +466,7 @@ class Direction:
         x, P = np.zeros(7), np.diag(errors**2)
         P[:2, :2] = prior.voltage
         if keep_impedance:
-            x[4:] = state.x[4:]
-            P[4:, 4:] = state.P[4:, 4:]
+            x[4:], P[4:, 4:] = impedance_alone(state)
         state.x0[:], state.P0[:] = x, P
         state.current_deviation = prior.current
         state.nominal = self._nominal

@@ -7,7 +7,7 @@ from core.condition.kinds import Kind, State
 
 HEALTHY = ("Nothing needs to be done.",)
 UNKNOWN = (
-    "Have the motor recorded while it runs: there is no usable record yet.",
+    "Have the motor recorded while it runs: there is no usable record yet, or none since the latest event.",
     "If records exist, look why they were refused: wrong channels, a wrong ratio, or no steady running.",
 )
 FAULT_URGENCY = (

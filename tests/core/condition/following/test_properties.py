@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from core.condition.assessment import Assessment
 from core.condition.events import Event, EventKind
 from core.condition.following.follower import Follower
-from core.condition.kinds import State
+from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
 from core.condition.verdict.condition import condition_of
 from core.machines.parameters import Connection
@@ -155,6 +155,58 @@ def test_an_event_closes_a_change_and_the_reference_is_learnt_anew(kind: EventKi
     assert assessment.reference.accepted == (kind is EventKind.REFERENCE_RESTARTED)
 
 
+@pytest.mark.parametrize("supply_swing", [0.0, 0.003])
+@pytest.mark.parametrize("after", [8, 60, 200])
+def test_maintenance_that_mends_no_winding_takes_no_fault_back(after: int, supply_swing: float) -> None:
+    motor, plant = motor_of(), Plant(supply_swing=supply_swing)
+    follower = follow(motor, plant.records(60))
+    plant.level = 0.02
+    for record in plant.records(after):
+        follower.fold(record)
+    assert condition_of(motor, assessed(follower), plant.time_ns).state is State.FAULT
+    follower.apply(Event(plant.time_ns, EventKind.MAINTENANCE, "bearings greased"))
+    assert assessed(follower).change is None
+    for record in plant.records(8):
+        follower.fold(record)
+    again = condition_of(motor, assessed(follower), plant.time_ns)
+    assert (again.state, again.phase) == (State.FAULT, "a")
+    assert again.change == pytest.approx(plant.level, rel=0.3)
+
+
+@pytest.mark.parametrize("after", [8, 60])
+def test_maintenance_that_mends_a_joint_leaves_nothing(after: int) -> None:
+    motor, plant = motor_of(), Plant(load=(0.7, 0.75))
+    follower = follow(motor, plant.records(60))
+    plant.joint_ohm = 1.0
+    for record in plant.records(after):
+        follower.fold(record)
+    change = assessed(follower).change
+    assert change is not None
+    assert Kind.CONNECTION in change.named
+    plant.joint_ohm = 0.0
+    follower.apply(Event(plant.time_ns, EventKind.MAINTENANCE, "terminals tightened"))
+    for record in plant.records(40):
+        follower.fold(record)
+        assert assessed(follower).change is None
+    assert condition_of(motor, assessed(follower), plant.time_ns).state is State.HEALTHY
+
+
+@pytest.mark.parametrize("kind", [EventKind.RECORDER_CHANGED, EventKind.MAINTENANCE])
+@pytest.mark.parametrize("supply_swing", [0.0, 0.003])
+def test_a_fault_that_stands_is_seen_again_after_an_event(kind: EventKind, supply_swing: float) -> None:
+    """The impedance that was learnt beside it does not explain it away."""
+    motor, plant = motor_of(), Plant(level=0.1, path=0.5, unbalance=0.003 + 0.002j, supply_swing=supply_swing)
+    follower = follow(motor, plant.records(60))
+    assert assessed(follower).standing_fault
+    follower.apply(Event(plant.time_ns, kind, "terminals cleaned"))
+    for record in plant.records(4):
+        follower.fold(record)
+    again = condition_of(motor, assessed(follower), plant.time_ns)
+    assert again.state is State.FAULT
+    assert again.mu_f_ci95 is not None
+    assert again.mu_f_ci95[0] < plant.level < again.mu_f_ci95[1]
+
+
 def test_another_recorder_begins_a_reference_without_being_told() -> None:
     plant = Plant()
     follower = follow(motor_of(), plant.records(40))
@@ -225,7 +277,7 @@ def test_a_record_of_another_recorder_takes_no_fault_back() -> None:
     assert after.seen_by == "relay (abc)"
     reasons = condition_of(motor_of(), after, plant.time_ns).reasons
     assert any("another recorder" in reason for reason in reasons)
-    follower.apply(Event(plant.time_ns, EventKind.MAINTENANCE, "rewound a coil"))
+    follower.apply(Event(plant.time_ns, EventKind.REWOUND, "one coil"))
     follower.fold(plant.record())
     assert assessed(follower).change is None
 

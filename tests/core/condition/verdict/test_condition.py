@@ -205,6 +205,34 @@ def test_a_standing_fault_is_one_only_above_the_motors_limit() -> None:
 
 
 @pytest.mark.parametrize(
+    "beside",
+    [
+        change(size=level(0.009, 0.004, winding=0), probabilities={Kind.SHORTED_TURNS: 0.5}),
+        change(Kind.SHORTED_TURNS, size=level(0.01, 0.004, winding=0)),
+        change(Kind.VOLTAGE_CHANNEL),
+        change(Kind.CONNECTION, size=level(0.009, winding=0)),
+    ],
+)
+def test_what_is_no_fault_beside_a_standing_fault_takes_nothing_back(beside: Change) -> None:
+    standing = reference(standing=level(0.008, 0.003), score=4.0)
+    assert judged(assessment(reference=standing, standing_fault=True)).state is State.FAULT
+    assert judged(assessment(beside, reference=standing, standing_fault=True)).state is State.FAULT
+
+
+def test_a_standing_fault_below_the_limit_takes_no_called_fault_back() -> None:
+    called = replace(change(Kind.SHORTED_TURNS, size=level(0.0045, 0.0005)), surely_above=0.0051)
+    below = reference(standing=level(0.0048, 0.001, winding=2), score=3.8)
+    assert judged(assessment(called)).state is State.FAULT
+    assert judged(assessment(called, reference=below, standing_fault=True)).state is State.FAULT
+
+
+def test_an_open_change_does_not_lift_a_standing_fault_above_the_limit() -> None:
+    below = reference(standing=level(0.003, 0.0005), score=4.0)
+    open_change = change(size=level(0.003), probabilities={Kind.SHORTED_TURNS: 0.03})
+    assert judged(assessment(open_change, reference=below, standing_fault=True)).state is State.WATCH
+
+
+@pytest.mark.parametrize(
     ("value", "score", "state"),
     [(0.004, 3.1, State.HEALTHY), (0.004, 3.3, State.WATCH), (0.05, 2.8, State.WATCH)],
 )
