@@ -33,12 +33,11 @@ def set_baseline(context: Context, name: Name, wanted: BaselineRequest) -> Basel
         reason=wanted.reason,
         by=wanted.by,
         now_ns=time.time_ns(),
-        most_notes=context.settings.max_notes,
     )
     return Baseline.model_validate(baseline)
 
 
-@router.delete("", status_code=HTTPStatus.NO_CONTENT, responses=problems(404, 409))
+@router.delete("", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
 def drop_baseline(
     context: Context,
     name: Name,
@@ -46,6 +45,4 @@ def drop_baseline(
     by: Annotated[Person | None, Query(description="Who says so; it is kept.")] = None,
 ) -> None:
     """Delete a motor's baseline; its recordings stay, and a note of the motor keeps who did so and why."""
-    context.repository.delete_baseline(
-        name, reason=reason, by=by, now_ns=time.time_ns(), most_notes=context.settings.max_notes
-    )
+    context.repository.delete_baseline(name, reason=reason, by=by, now_ns=time.time_ns())

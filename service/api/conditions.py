@@ -123,8 +123,10 @@ def _add(context: ApiContext, motor: str, kind: EventKind, text: str, by: str, t
         time_ns = now_ns
     if time_ns > now_ns + FURTHEST_AHEAD_NS:
         raise _refused("body.time", f"expected a time at most a day ahead of now, found {rfc3339(time_ns)}")
+    # However much was noted of a motor before: who tested it can say that it is healthy.
+    most_notes = None if kind is EventKind.REFERENCE_RESTARTED else context.settings.max_notes
     event = context.repository.add_event(
-        motor, Event(time_ns, kind, text), by=by, now_ns=now_ns, most_notes=context.settings.max_notes
+        motor, Event(time_ns, kind, text), by=by, now_ns=now_ns, most_notes=most_notes
     )
     context.on_new_job()
     return Note.model_validate(event)

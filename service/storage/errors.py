@@ -45,8 +45,8 @@ class TooManyNotesError(StorageError):
 
     def __init__(self, motor: str, most: int) -> None:
         super().__init__(
-            f"motor {motor} has {most} notes, as many as it may have, and notes are kept for good: raise the "
-            "setting max_notes and start the service again; nothing was changed"
+            f"motor {motor} has {most} notes or more, the most it may have, and notes are kept for good: "
+            "raise the setting max_notes and start the service again; nothing was changed"
         )
 
 

@@ -45,7 +45,6 @@ class BaselineRows(Sessions):
         reason: str | None = None,
         by: str | None = None,
         now_ns: int,
-        most_notes: int | None = None,
     ) -> BaselineEntry:
         """Replace the motor's baseline by these recordings.
 
@@ -53,9 +52,8 @@ class BaselineRows(Sessions):
         it stays when the baseline is replaced.
 
         reason, by: why the recordings stand for health, and who says so; needed where one is in doubt.
-        most_notes: so many the motor may have.
         Raises NotFoundError (for another motor's recording too), UnusableBaselineError (one that is not
-        diagnosed, or was refused), DoubtfulBaselineError, TooManyNotesError.
+        diagnosed, or was refused), DoubtfulBaselineError.
         """
         chosen = list(dict.fromkeys(recording_ids))
         with self._write() as session:
@@ -78,7 +76,7 @@ class BaselineRows(Sessions):
                 for one, cause in causes.items()
             )
             if reason is not None and by is not None:
-                keep_event(session, motor, _note(now_ns, chosen, doubts, reason), by, now_ns, most_notes)
+                keep_event(session, motor, _note(now_ns, chosen, doubts, reason), by, now_ns)
             session.flush()
             return _entry(session, motor)
 
@@ -89,12 +87,11 @@ class BaselineRows(Sessions):
         reason: str | None = None,
         by: str | None = None,
         now_ns: int,
-        most_notes: int | None = None,
     ) -> None:
         """Delete the motor's baseline, if it has one; its recordings stay.
 
         A note of the motor keeps when, and reason and by: why and who did so, where it is said.
-        most_notes: so many the motor may have. Raises NotFoundError, TooManyNotesError.
+        Raises NotFoundError.
         """
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
@@ -104,7 +101,7 @@ class BaselineRows(Sessions):
             _delete(session, motor)
             what = f"baseline of {len(baseline.recordings)} recordings deleted"
             note = what if reason is None else f"{what}: {reason}"
-            keep_event(session, motor, Event(now_ns, EventKind.NOTE, note), by or NOBODY, now_ns, most_notes)
+            keep_event(session, motor, Event(now_ns, EventKind.NOTE, note), by or NOBODY, now_ns)
 
 
 def baseline_rows(session: Session, motor: str) -> Sequence[RecordingRow]:

@@ -34,13 +34,18 @@ class ConditionEventRows(Sessions):
     ) -> ConditionEvent:
         """Keep what somebody tells of a motor, and have its condition follow.
 
-        most_notes: so many of them the motor may have.
+        most_notes: so many of them the motor may have, those that baselines leave counted; None: any number.
         Raises NotFoundError, OutOfServiceError, TooManyNotesError.
         """
         with self._write() as session:
             if not found(session, MotorRow, motor, "motor", lock=True).in_service:
                 raise OutOfServiceError("motor", motor)
-            return record_of(ConditionEvent, keep_event(session, motor, event, by, now_ns, most_notes))
+            told = select(ConditionEventRow.id).where(
+                ConditionEventRow.motor == motor, ConditionEventRow.kind != EventKind.PARAMETERS_EDITED
+            )
+            if most_notes is not None and has_as_many(session, told, most_notes):
+                raise TooManyNotesError(motor, most_notes)
+            return record_of(ConditionEvent, keep_event(session, motor, event, by, now_ns))
 
     def withdraw_event(
         self, motor: str, event_id: str, *, by: str, reason: str, now_ns: int
@@ -77,15 +82,8 @@ class ConditionEventRows(Sessions):
             return page_of(session, query, order, ConditionEvent, limit=limit, after=after, descending=True)
 
 
-def keep_event(
-    session: Session, motor: str, event: Event, by: str, now_ns: int, most_notes: int | None
-) -> ConditionEventRow:
-    """Add an event of a motor that is locked, and have its condition follow. Raises TooManyNotesError."""
-    told = select(ConditionEventRow.id).where(
-        ConditionEventRow.motor == motor, ConditionEventRow.kind != EventKind.PARAMETERS_EDITED
-    )
-    if most_notes is not None and has_as_many(session, told, most_notes):
-        raise TooManyNotesError(motor, most_notes)
+def keep_event(session: Session, motor: str, event: Event, by: str, now_ns: int) -> ConditionEventRow:
+    """Add an event of a motor that is locked, and have its condition follow."""
     row = ConditionEventRow(
         id=str(uuid.uuid4()),
         motor=motor,

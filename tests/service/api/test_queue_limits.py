@@ -11,7 +11,8 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import RemoteRecord
 from service.storage.states import JobState
-from testing.service.plants import NOW_NS
+from testing.service.job_runner import RUNNER
+from testing.service.plants import NOW_NS, healthy
 
 REQUEST = "/api/v1/motors/PUMP-A1/event-reports"
 
@@ -82,11 +83,52 @@ def test_a_motor_has_so_many_notes(client: httpx.Client) -> None:
     kept = [client.post(f"{motor}/notes", json=note).json()["id"] for _ in range(2)]
     kept.append(client.post(f"{motor}/reference", json=restart).json()["id"])
     client.post(f"{motor}/notes/{kept[0]}/withdrawal", json=restart)
-    for path, body in (("notes", note), ("reference", restart)):
-        refused = client.post(f"{motor}/{path}", json=body)
-        assert refused.status_code == 409
-        assert refused.headers["content-type"] == "application/problem+json"
-        assert "motor PUMP-A1 has 3 notes" in refused.json()["detail"]
-        assert "raise the setting max_notes" in refused.json()["detail"]
+    refused = client.post(f"{motor}/notes", json=note)
+    assert refused.status_code == 409
+    assert refused.headers["content-type"] == "application/problem+json"
+    assert "motor PUMP-A1 has 3 notes" in refused.json()["detail"]
+    assert "raise the setting max_notes" in refused.json()["detail"]
     assert {one["id"] for one in client.get(f"{motor}/notes").json()["items"]} == set(kept)
     assert client.post("/api/v1/motors/FAN-A2/notes", json=note).status_code == 201
+
+
+@BOTH
+def test_no_number_of_notes_keeps_a_wrong_baseline_or_reference(
+    client: httpx.Client, repository: Repository, store: RecordingStore
+) -> None:
+    motor = "/api/v1/motors/PUMP-A1"
+    note, restart = {"text": "hums", "by": "A. Miller"}, {"reason": "tested", "by": "A. Miller"}
+    ids = [diagnosed(repository, store, b"%d" % number) for number in range(3)]
+    for _ in range(3):
+        assert client.post(f"{motor}/notes", json=note).status_code == 201
+    assert client.put(f"{motor}/baseline", json={"recording_ids": ids, **restart}).status_code == 200
+    assert client.delete(f"{motor}/baseline", params=restart).status_code == 204
+    assert client.get(f"{motor}/baseline").json()["recordings"] == []
+    assert client.post(f"{motor}/reference", json=restart).status_code == 201
+    again = {**note, "kind": "reference-restarted"}
+    assert client.post(f"{motor}/notes", json=again).status_code == 201
+    assert len(client.get(f"{motor}/notes").json()["items"]) == 7, "they are kept"
+    assert client.post(f"{motor}/notes", json=note).status_code == 409
+
+
+@BOTH
+def test_what_baselines_and_references_note_counts(
+    client: httpx.Client, repository: Repository, store: RecordingStore
+) -> None:
+    motor = "/api/v1/motors/PUMP-A1"
+    note, restart = {"text": "hums", "by": "A. Miller"}, {"reason": "tested", "by": "A. Miller"}
+    ids = [diagnosed(repository, store, b"%d" % number) for number in range(3)]
+    client.put(f"{motor}/baseline", json={"recording_ids": ids, **restart})
+    client.delete(f"{motor}/baseline")
+    assert client.post(f"{motor}/notes", json=note).status_code == 201
+    assert client.post(f"{motor}/notes", json=note).status_code == 409
+
+
+def diagnosed(repository: Repository, store: RecordingStore, content: bytes) -> str:
+    """Add a recording of the pump that is diagnosed as healthy; return its id."""
+    stored = store.store({"E.CFF": content})
+    added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS).recording
+    claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
+    assert claimed is not None
+    repository.finish_job(claimed.job.id, healthy(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    return added.id
