@@ -20,11 +20,17 @@ from service.storage.models import (
     MotorRow,
     ObservationRow,
     RecordingRow,
+    UnobservedRecordingRow,
 )
 from service.storage.records import BaselineDoubt, BaselineEntry, RecordingEntry
 from service.storage.repository.condition_events import keep_event
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.texts import storable
+
+NOT_KNOWN_YET = (
+    "the motor's condition at it is not known yet: ask again when the condition follows it, seconds after"
+    " its diagnosis"
+)
 
 NOBODY = "not said"
 """Who deleted a baseline, where the request does not say."""
@@ -152,7 +158,7 @@ def _doubt(session: Session, motor: str, recording_id: str) -> str | None:
         raise UnusableBaselineError(recording_id, f"it is {recording.state}, not diagnosed")
     if diagnosis.verdict is Verdict.UNDIAGNOSABLE:
         raise UnusableBaselineError(recording_id, "the diagnosis refused it")
-    return _doubt_of_verdict(diagnosis) or _doubt_of_condition(session.get(ObservationRow, recording_id))
+    return _doubt_of_verdict(diagnosis) or _doubt_of_condition(session, recording_id)
 
 
 def _doubt_of_verdict(diagnosis: DiagnosisRow) -> str | None:
@@ -166,10 +172,17 @@ def _doubt_of_verdict(diagnosis: DiagnosisRow) -> str | None:
     return None
 
 
-def _doubt_of_condition(observation: ObservationRow | None) -> str | None:
-    """Shorted turns that only the records in a row show, or that nothing tells from something else."""
-    if observation is None or observation.state is None or observation.kind is None:
-        return None
+def _doubt_of_condition(session: Session, recording_id: str) -> str | None:
+    """Shorted turns that only the records in a row show, or that nothing tells from something else.
+
+    Right after a diagnosis nobody knows; a recording that tells nothing of the condition is in no doubt.
+    """
+    observation = session.get(ObservationRow, recording_id)
+    if observation is None:
+        is_to_be_observed = session.get(UnobservedRecordingRow, recording_id) is not None
+        return NOT_KNOWN_YET if is_to_be_observed else None
+    if observation.state is None:
+        return NOT_KNOWN_YET
     if observation.state is State.FAULT or (
         observation.state is State.WATCH and observation.kind in (Kind.SHORTED_TURNS, Kind.UNCLEAR)
     ):

@@ -7,6 +7,8 @@ from uuid import uuid4
 
 import httpx
 import pytest
+from sqlalchemy import Engine
+from sqlalchemy.orm import Session
 
 from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
@@ -15,6 +17,7 @@ from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.storage.models import UnobservedRecordingRow
 from service.storage.records import ConditionPoint, FoldResult
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
@@ -65,12 +68,19 @@ class Plant:
 
 
 def fold(repository: Repository, recording_id: str, state: State, kind: Kind) -> None:
-    """Have the motor's condition be this from the recording on."""
+    """Have the motor's condition be this at the recording, and healthy at the others."""
     given = repository.begin_fold("PUMP-A1", 100)
     assert given is not None
-    (time_ns,) = [one.observation.time_ns for one in given.observations if one.recording_id == recording_id]
-    point = ConditionPoint(recording_id=recording_id, time_ns=time_ns, state=state, kind=kind)
-    assert repository.finish_fold(given, FoldResult([point], [], [], [], None), now_ns=NOW_NS)
+    points = [
+        ConditionPoint(
+            recording_id=one.recording_id,
+            time_ns=one.observation.time_ns,
+            state=state if one.recording_id == recording_id else State.HEALTHY,
+            kind=kind if one.recording_id == recording_id else Kind.NONE,
+        )
+        for one in given.observations
+    ]
+    assert repository.finish_fold(given, FoldResult(points, [], [], [], None), now_ns=NOW_NS)
 
 
 @pytest.fixture
@@ -218,6 +228,36 @@ def test_a_healthy_recording_of_a_motor_in_a_bad_condition_is_in_doubt(
     if status == 409:
         (error,) = answer.json()["errors"]
         assert error["message"] == f"the motor's condition was {state} ({kind}) at it"
+
+
+def test_a_recording_that_the_condition_does_not_follow_yet_is_in_doubt(
+    client: httpx.Client, plant: Plant, repository: Repository
+) -> None:
+    """Or a baseline that is set right after the diagnosis is guarded by nothing but that."""
+    tells_nothing = plant.recording(healthy())
+    ids = [plant.recording(healthy(), observation=observation(number)) for number in range(2)]
+    wanted = {"recording_ids": [tells_nothing, *ids]}
+    refused = client.put(BASELINE, json=wanted)
+    assert refused.status_code == 409
+    named = {each["location"]: each["message"] for each in refused.json()["errors"]}
+    assert named.keys() == {f"body.recording_ids.{one}" for one in ids}
+    assert all("condition at it is not known yet: ask again" in message for message in named.values())
+    assert client.get(BASELINE).json() == NO_BASELINE
+    fold(repository, ids[0], State.HEALTHY, Kind.NONE)
+    assert client.put(BASELINE, json=wanted).status_code == 200
+
+
+def test_a_recording_that_is_yet_to_be_observed_is_in_doubt(
+    client: httpx.Client, plant: Plant, repository: Repository, engine: Engine
+) -> None:
+    ids = [plant.recording(healthy()) for _ in range(3)]
+    with Session(engine) as session, session.begin():
+        session.add(UnobservedRecordingRow(recording_id=ids[1], motor="PUMP-A1", recorded_ns=NOW_NS))
+    refused = client.put(BASELINE, json={"recording_ids": ids})
+    assert refused.status_code == 409
+    assert [each["location"] for each in refused.json()["errors"]] == [f"body.recording_ids.{ids[1]}"]
+    repository.add_observations([(ids[1], None)])
+    assert client.put(BASELINE, json={"recording_ids": ids}).status_code == 200
 
 
 @pytest.mark.parametrize("method", ["GET", "PUT", "DELETE"])
