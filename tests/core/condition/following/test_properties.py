@@ -155,10 +155,9 @@ def test_an_event_closes_a_change_and_the_reference_is_learnt_anew(kind: EventKi
     assert assessment.reference.accepted == (kind is EventKind.REFERENCE_RESTARTED)
 
 
-@pytest.mark.parametrize("supply_swing", [0.0, 0.003])
 @pytest.mark.parametrize("after", [8, 60, 200])
-def test_maintenance_that_mends_no_winding_takes_no_fault_back(after: int, supply_swing: float) -> None:
-    motor, plant = motor_of(), Plant(supply_swing=supply_swing)
+def test_maintenance_that_mends_no_winding_takes_no_fault_back(after: int) -> None:
+    motor, plant = motor_of(), Plant()
     follower = follow(motor, plant.records(60))
     plant.level = 0.02
     for record in plant.records(after):
