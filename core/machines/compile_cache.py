@@ -16,6 +16,11 @@ class ProgramCache(FunctionCache):  # type: ignore[misc]  # numba has no types
 
     numba looks at the file of the function alone. What it has compiled holds the functions that it calls as
     they were, and would be taken for theirs after an update that changes these only.
+
+    Parameters
+    ----------
+    function : callable
+        The function.
     """
 
     def __init__(self, function: Any) -> None:

@@ -93,7 +93,7 @@ def impedance_alone(state: FilterState) -> tuple[Array, Array]:
     Returns
     -------
     x : ndarray, shape (3,)
-        r, x and t.
+        Parts r and x of the error, and t.
     P : ndarray, shape (3, 3)
         Their covariance; that of before the first record where the records tell nothing without E's prior.
     """
