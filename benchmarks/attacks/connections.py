@@ -23,10 +23,9 @@ from dataclasses import dataclass, field
 from multiprocessing.synchronize import Event
 from pathlib import Path
 
-import scl
 from benchmarks.reporting import table
 from testing.ports import LOOPBACK
-from testing.service.processes import Service, running_service
+from testing.service.processes import Service, running_service, switched_off_plant
 
 DESCRIPTORS_OF_SERVICE = 1024
 ADDRESS_OF_OTHERS = "127.0.0.2"
@@ -141,7 +140,7 @@ def measure(attack: Attack, connections: int, seconds: float, others: str = ADDR
     with (
         tempfile.TemporaryDirectory(prefix="statorwatch-attack-") as directory,
         _few_descriptors(),
-        running_service(Path(directory), scl.DEMO_PLANT_SCD) as service,
+        running_service(Path(directory), switched_off_plant(Path(directory))) as service,
     ):
         _raise_limit()
         port = int(service.url.rpartition(":")[2])

@@ -9,11 +9,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import scl
 from benchmarks.attacks.attack import Target
 from benchmarks.attacks.observation import cpu_s
 from service.demo.addresses import free_ports
-from testing.service.processes import service_environment
+from testing.service.processes import service_environment, switched_off_plant
 
 ADDRESS_SPACE_BYTES = 8 << 30
 """Of each process of the service: beyond it an attack meets a MemoryError, and the machine lives on."""
@@ -33,7 +32,7 @@ def victim(source: Path, **settings: str) -> Iterator[tuple[int, Target]]:
         directory = Path(name)
         (port,) = free_ports(1)
         settings = {
-            "MCC_SCD": str(scl.DEMO_PLANT_SCD),
+            "MCC_SCD": str(switched_off_plant(directory)),
             "MCC_PORT": str(port),
             "PYTHONPATH": str(source),
             **settings,

@@ -20,6 +20,8 @@ RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_S
 MOTOR_NAMES = ("PUMP-A1", "FAN-A2", "MILL-A3", "CONVEYOR-B1", "COMPRESSOR-B2", "PUMP-B3")
 
 START_LIMIT_S = 60.0
+NOBODY = "127.66.0.1"
+"""A loopback address at which nothing listens, also not the demo plant of another process."""
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,14 @@ class SimulatedPlant:
     def records(self) -> set[tuple[str, str]]:
         """(relay, record) of everything the relays recorded."""
         return {(path.parts[-3], path.stem) for path in self.files.glob("*/EVENTS/*.CFG")}
+
+
+def switched_off_plant(directory: Path) -> Path:
+    """Write the demo plant's SCD with relays that do not answer."""
+    scd = directory / "plant.scd"
+    addresses = {relay: Address(NOBODY, 10_211 + k) for k, relay in enumerate(RELAYS)}
+    scl.with_addresses(scl.DEMO_PLANT_SCD, scd, addresses)
+    return scd
 
 
 @contextmanager

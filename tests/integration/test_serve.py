@@ -16,7 +16,13 @@ from service.cli.output import one_line
 from service.cli.run_service import TROUBLES
 from service.configuration.settings import Settings
 from service.demo import MOTORS
-from testing.service.processes import descendants, is_alive, running_service, serve_in_vain
+from testing.service.processes import (
+    descendants,
+    is_alive,
+    running_service,
+    serve_in_vain,
+    switched_off_plant,
+)
 from testing.waiting import eventually
 
 API_PAGE = Path(__file__).parents[2] / "docs" / "reference" / "api.md"
@@ -28,7 +34,7 @@ pytestmark = pytest.mark.timeout(300)
 def test_every_part_is_documented_and_ready_and_sigterm_ends_every_process(tmp_path: Path) -> None:
     page = API_PAGE.read_text(encoding="utf-8")
     documented = re.findall(r"^\| `(\w+)` \|", page.partition("| Part of `/readyz` |")[2], re.MULTILINE)
-    with running_service(tmp_path, scl.DEMO_PLANT_SCD) as service:
+    with running_service(tmp_path, switched_off_plant(tmp_path)) as service:
         parts = httpx.get(f"{service.url}/readyz", trust_env=False).json()["parts"]
         assert parts == dict.fromkeys(documented, "ready")
         below = descendants(service.process_id)
@@ -39,7 +45,7 @@ def test_every_part_is_documented_and_ready_and_sigterm_ends_every_process(tmp_p
 
 
 def test_ctrl_c_is_an_ordinary_end(tmp_path: Path) -> None:
-    with running_service(tmp_path, scl.DEMO_PLANT_SCD) as service:
+    with running_service(tmp_path, switched_off_plant(tmp_path)) as service:
         assert service.process is not None
         service.process.send_signal(signal.SIGINT)
         assert service.process.wait(30) == 0
