@@ -101,7 +101,7 @@ class OpenConnections(ServerState):
         for each in displaced:
             self.tally.add("displaced")
             each.give_up(HTTPStatus.SERVICE_UNAVAILABLE, OVERLOADED)
-        if surplus > EXTRA and not displaced:
+        if surplus > EXTRA and not displaced and new.address() in crowded:
             self.tally.add("refused")
             new.give_up(HTTPStatus.SERVICE_UNAVAILABLE, OVERLOADED)
 
