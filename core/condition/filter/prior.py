@@ -5,8 +5,6 @@ from math import hypot, pi, sqrt
 
 import numpy as np
 
-from core.condition.filter.kalman import TEMPERATURE
-from core.condition.filter.state import FilterState
 from core.condition.measuring.signatures import terminal_turn, voltage_channels
 from core.condition.observation import VoltageChannels
 from core.machines.base import Array
@@ -76,35 +74,3 @@ def prior_of(motor: Motor, channels: VoltageChannels) -> Prior:
         own=0.5 * OWN_VOLTAGE**2 * np.eye(2),
         current=sqrt(0.5) * hypot(sensors.current_deviation(f) / sqrt(3.0), OWN_CURRENT),
     )
-
-
-def impedance_alone(state: FilterState) -> tuple[Array, Array]:
-    """Return what is known of the impedance's error and the temperature where E may be anything.
-
-    On a supply whose V2/V1 is constant nothing tells an error of the impedance from E but how large either
-    may be. There shorted turns that stand from the first record on are taken for both. A reference that
-    begins with E as unknown as at first must not be told that the impedance explains them.
-
-    Parameters
-    ----------
-    state : FilterState
-        The filter.
-
-    Returns
-    -------
-    x : ndarray, shape (3,)
-        Parts r and x of the error, and t.
-    P : ndarray, shape (3, 3)
-        Their covariance; that of before the first record where the records tell nothing without E's prior.
-    """
-    kept = slice(4, 7)
-    usual = np.diag([IMPEDANCE**2, IMPEDANCE**2, TEMPERATURE**2])
-    information = np.linalg.inv(state.P)
-    without = information.copy()
-    without[:2, :2] -= np.linalg.inv(state.P0[:2, :2])
-    if np.linalg.eigvalsh(without)[0] <= 0.0:  # the filter has forgotten more than its prior told
-        return np.zeros(3), usual
-    spread = np.linalg.inv(without)
-    if np.any(np.diag(spread)[4:6] >= IMPEDANCE**2):
-        return np.zeros(3), usual
-    return (spread @ (information @ state.x))[kept], spread[kept, kept]

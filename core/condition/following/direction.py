@@ -17,8 +17,9 @@ from core.condition.changes.hypotheses import Hypotheses, hypotheses_of
 from core.condition.changes.turns_level import TurnsLevel, turns_level
 from core.condition.complex_parts import rotated, symmetric, turned
 from core.condition.events import Event, EventKind
+from core.condition.filter.impedance import impedance_alone, move_impedance
 from core.condition.filter.kalman import TEMPERATURE
-from core.condition.filter.prior import IMPEDANCE, impedance_alone, prior_of
+from core.condition.filter.prior import IMPEDANCE, prior_of
 from core.condition.filter.state import (
     BUS,
     CANDIDATE,
@@ -31,7 +32,7 @@ from core.condition.filter.state import (
     START,
     FilterState,
 )
-from core.condition.following.folding import fold_first, fold_record, restart
+from core.condition.following.folding import fold_record, restart
 from core.condition.following.header import Header
 from core.condition.following.standing import (
     STANDING_SCORE,
@@ -40,9 +41,9 @@ from core.condition.following.standing import (
     of_records,
     standing_of,
 )
-from core.condition.following.start import NOISE_STEPS, in_order, noise_of_currents, starting_noise
+from core.condition.following.start import fold_start
 from core.condition.kinds import Kind
-from core.condition.measuring.measurement import Measurement, measure, negative_impedance
+from core.condition.measuring.measurement import measure, negative_impedance
 from core.condition.measuring.signatures import terminal_turn
 from core.condition.observation import Observation
 from core.condition.severity import is_shorted_turns
@@ -168,7 +169,10 @@ class Direction:
         if self._figures["records"] < START:
             if not header.start:
                 header.since_ns = observation.time_ns
-            self._begin(record)
+            header.start.append(record)
+            fold_start(state, self._sides, header.start)
+            if len(header.start) == START:
+                header.start.clear()
             return
         alarm = header.alarm
         hypotheses = self._see(motor)
@@ -372,9 +376,7 @@ class Direction:
             if is_shorted_turns(change):
                 alarm.surely_above = max(alarm.surely_above, change.level.ci95[0])
         if self._figures["statistic"] < CLEARED:
-            self._header.alarm = None
-            self._header.standing = None if self._header.kept is None else self._header.standing
-            self._state.candidates = 0.0
+            self._close_alarm()
         elif alarm.is_to_be_lived_with:
             self._live_with(alarm, motor)
 
@@ -395,15 +397,20 @@ class Direction:
         Against the reference of before it the next records show within a few whether it is still there. Any
         other change may have been mended where it was learnt, so that the channels are learnt anew.
         """
-        header, state = self._header, self._state
-        if header.alarm is None or Kind.SHORTED_TURNS not in header.alarm.named:
+        alarm, state = self._header.alarm, self._state
+        if alarm is None or Kind.SHORTED_TURNS not in alarm.named:
             self._restart(keep_impedance=True)
             return
         state.x[:], state.P[:] = before_change(state, self._bank)
-        state.candidates = state.recent = 0.0
-        state.block = 1.0
+        state.recent, state.block = 0.0, 1.0
+        self._close_alarm()
+
+    def _close_alarm(self) -> None:
+        """Look for changes of the same reference again."""
+        header = self._header
         header.alarm = None
         header.standing = None if header.kept is None else header.standing
+        self._state.candidates = 0.0
 
     def _change(self, alarm: Alarm, motor: Motor) -> tuple[Change, tuple[tuple[int, float], ...]]:
         level = self._level(alarm)
@@ -447,16 +454,9 @@ class Direction:
         f, z = motor.nameplate.rated_frequency_Hz, self._header.scale_ohm
         before = negative_impedance(motor.parameters, f) / z
         after = negative_impedance(edited.parameters, f) / z
-        state, start, b = self._state, self._header.start, self._state.balance
-        for x in (state.x, state.x0):
-            found = complex(x[4], x[5]) / before
-            Z2 = before * (1.0 + (1.0 - b) * found) / (1.0 - b * found)
-            other = (Z2 / after - 1.0) / (1.0 + b * (Z2 / after - 1.0))
-            ratio = (1.0 - b * other) / (1.0 - b * found)
-            x[0], x[1] = turned(x[:2], ratio)
-            x[2], x[3] = turned(x[2:4], ratio)
-            x[4], x[5] = (after * other).real, (after * other).imag
-        self._nominal = state.nominal = after
+        start = self._header.start
+        move_impedance(self._state, before, after)
+        self._nominal = after
         start[:] = [record._replace(y=record.y + (before - after) * record.j2) for record in start]
 
     def _restart(self, *, keep_impedance: bool) -> None:
@@ -475,33 +475,3 @@ class Direction:
         header.accepted = False
         header.alarm = header.standing = header.kept = None
         header.bus.restart()
-
-    def _begin(self, record: Measurement) -> None:
-        """Fold the first records in their order of ordinariness, with the noise that makes them likeliest."""
-        start = self._header.start
-        start.append(record)
-        records = in_order(start)
-        self._state.balance = 0.0
-        self._state.balance = min(noise_of_currents(records) / self._likeliest_start(records), 1.0)
-        self._likeliest_start(records)
-        if len(start) == START:
-            start.clear()
-
-    def _likeliest_start(self, records: Sequence[Measurement]) -> float:
-        """Fold the first records with the noise that they tell; return its variance."""
-        steps = starting_noise(records) * np.array(NOISE_STEPS)
-        logs = np.array([self._fold_start(records, s2) for s2 in steps.tolist()])
-        shares = np.exp(logs - logs.max())
-        s2 = float(shares @ steps / shares.sum())
-        self._fold_start(records, s2)
-        return s2
-
-    def _fold_start(self, records: Sequence[Measurement], s2: float) -> float:
-        state = self._state
-        restart(state, self._sides)
-        state.s2 = s2
-        total = 0.0
-        for record in records:
-            fold_first(state, self._sides, record)
-            total += state.log_likelihood
-        return total

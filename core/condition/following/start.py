@@ -1,10 +1,12 @@
 """The first records of a reference: put in order, so that an outlier among them fakes no change."""
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
+from core.condition.filter.state import FilterState
+from core.condition.following.folding import fold_first, restart
 from core.condition.measuring.measurement import Measurement
 
 FEWEST: Final = 4
@@ -12,6 +14,45 @@ LEAST_NOISE: Final = 3e-4**2
 """Least variance of y's noise to start from: what the records of measured motors repeat to."""
 NOISE_STEPS: Final = tuple(2.0**k for k in range(11))
 """Multiples of the records' own scatter that the first records are tried with."""
+
+
+def fold_start(state: FilterState, sides: Any, records: Sequence[Measurement]) -> None:
+    """Fold the first records in their order of ordinariness, with the noise that makes them likeliest.
+
+    Parameters
+    ----------
+    state : FilterState
+        The filter; x0 and P0 are set.
+    sides : array of SideState
+        Side channels.
+    records : sequence of Measurement
+        All records so far, in the order of time.
+    """
+    ordered = in_order(records)
+    state.balance = 0.0
+    state.balance = min(noise_of_currents(ordered) / _fold_likeliest(state, sides, ordered), 1.0)
+    _fold_likeliest(state, sides, ordered)
+
+
+def _fold_likeliest(state: FilterState, sides: Any, records: Sequence[Measurement]) -> float:
+    """Fold the first records with the noise that they tell; return its variance."""
+    steps = starting_noise(records) * np.array(NOISE_STEPS)
+    logs = np.array([_fold_all(state, sides, records, s2) for s2 in steps.tolist()])
+    shares = np.exp(logs - logs.max())
+    s2 = float(shares @ steps / shares.sum())
+    _fold_all(state, sides, records, s2)
+    return s2
+
+
+def _fold_all(state: FilterState, sides: Any, records: Sequence[Measurement], s2: float) -> float:
+    """Fold the first records with noise of a variance; return the log of their likelihood."""
+    restart(state, sides)
+    state.s2 = s2
+    total = 0.0
+    for record in records:
+        fold_first(state, sides, record)
+        total += state.log_likelihood
+    return total
 
 
 def in_order(records: Sequence[Measurement]) -> list[Measurement]:

@@ -190,6 +190,20 @@ def test_maintenance_that_mends_a_joint_leaves_nothing(after: int) -> None:
     assert condition_of(motor, assessed(follower), plant.time_ns).state is State.HEALTHY
 
 
+def test_two_events_without_a_record_between_them_forget_no_more_than_one() -> None:
+    def saved(kinds: list[EventKind]) -> bytes:
+        plant = Plant()
+        follower = follow(motor_of(), plant.records(60))
+        for kind in kinds:
+            follower.apply(Event(plant.time_ns, kind, "seen to"))
+        for record in plant.records(12):
+            follower.fold(record)
+        return follower.save()
+
+    once = saved([EventKind.RECORDER_CHANGED])
+    assert saved([EventKind.RECORDER_CHANGED, EventKind.MAINTENANCE]) == once
+
+
 @pytest.mark.parametrize("kind", [EventKind.RECORDER_CHANGED, EventKind.MAINTENANCE])
 @pytest.mark.parametrize("supply_swing", [0.0, 0.003])
 def test_a_fault_that_stands_is_seen_again_after_an_event(kind: EventKind, supply_swing: float) -> None:
