@@ -146,6 +146,10 @@ class Assessment:
         a forecast is made of. Empty where no change is seen.
     unconfirmed : bool
         Whether the latest record surprises so much that another has to confirm it.
+    called_above : float
+        Level that a standing fault was called with; 0 where none was.
+    held_score : float
+        The standing score, which stays while that falls by little; 0 where it is not held.
     seen_by : str or None
         Recorder and direction of rotation of the records that tell it, where the latest record has others.
     """
@@ -158,6 +162,8 @@ class Assessment:
     threshold: float
     levels: tuple[tuple[int, float], ...] = ()
     unconfirmed: bool = False
+    called_above: float = 0.0
+    held_score: float = 0.0
     seen_by: str | None = None
 
     def told_later(self, as_of_ns: int, seen_by: str) -> "Assessment":

@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import exp, hypot
 from typing import Final
 
-from core.condition.assessment import Assessment, Change, Level, Reference
+from core.condition.assessment import Assessment, Change, Level
 from core.condition.kinds import Kind, State
 
 Interval = tuple[float, float]
@@ -23,7 +23,7 @@ def state_of(assessment: Assessment, limit: float) -> State:
 
     A change is a fault where its whole interval lies above the limit. A standing fault is one already where
     its likeliest level does: it is certain that sensors do not leave so much, and the interval is wide only
-    because the path may be another one.
+    because the path may be another one. Either stays one until its whole interval lies below the limit.
 
     Parameters
     ----------
@@ -51,6 +51,8 @@ def _is_fault(assessment: Assessment, limit: float) -> bool:
         return True
     if not assessment.standing_fault:
         return False
+    if standing_stays_a_fault(assessment, limit):
+        return True
     sure = assessment if is_shorted_turns(change) else replace(assessment, change=None)
     return level_in_all(sure)[0] > limit
 
@@ -76,6 +78,24 @@ def stays_a_fault(change: Change | None, limit: float) -> bool:
     if change is None or change.surely_above <= limit or not is_shorted_turns(change):
         return False
     return change.level.ci95[1] > limit
+
+
+def standing_stays_a_fault(assessment: Assessment, limit: float) -> bool:
+    """Return whether a standing fault that was called once is one still, as `stays_a_fault` of a change.
+
+    Parameters
+    ----------
+    assessment : Assessment
+        What the records tell.
+    limit : float
+        Limit of the motor, a fraction of the phase turns.
+
+    Returns
+    -------
+    bool
+        Whether it is.
+    """
+    return assessment.called_above > limit and assessment.reference.standing.ci95[1] > limit
 
 
 def of_one_fault(assessment: Assessment, limit: float) -> Assessment:
@@ -122,8 +142,9 @@ def stands_out(assessment: Assessment, limit: float) -> bool:
     reference = assessment.reference
     if assessment.standing_fault or reference.accepted:
         return assessment.standing_fault
-    likely = _probability_of_standing_fault(reference) * reference.standing.value
-    return reference.standing_score >= WATCHED_SCORE or likely > limit
+    score = max(reference.standing_score, assessment.held_score)
+    likely = _probability_of_standing_fault(score) * reference.standing.value
+    return score >= WATCHED_SCORE or likely > limit
 
 
 def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
@@ -149,7 +170,11 @@ def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
     if assessment.reference.accepted or (level is not None and level.winding != standing.winding):
         # Turns of another winding do not add to the level of this one.
         standing = replace(standing, value=0.0, interval=None)
-    share = 1.0 if assessment.standing_fault else _probability_of_standing_fault(assessment.reference)
+    share = (
+        1.0
+        if assessment.standing_fault
+        else _probability_of_standing_fault(assessment.reference.standing_score)
+    )
     value = share * max(0.0, standing.value)
     low = standing.ci95[0] if assessment.standing_fault else 0.0
     high = standing.ci95[1]
@@ -201,6 +226,6 @@ def is_shorted_turns(change: Change | None) -> bool:
     )
 
 
-def _probability_of_standing_fault(reference: Reference) -> float:
+def _probability_of_standing_fault(score: float) -> float:
     """Return how likely the standing asymmetry is shorted turns, from its score and how rare those are."""
-    return 1.0 / (1.0 + (1.0 - STANDING_FAULTS) / STANDING_FAULTS * exp(-(reference.standing_score**2) / 2.0))
+    return 1.0 / (1.0 + (1.0 - STANDING_FAULTS) / STANDING_FAULTS * exp(-(score**2) / 2.0))

@@ -35,11 +35,17 @@ from core.condition.filter.state import (
 from core.condition.following.folding import fold_record, restart
 from core.condition.following.header import Header
 from core.condition.following.standing import (
+    LOOKED_AT,
     STANDING_SCORE,
+    SUSPECTED,
+    USUAL_SCORE,
     Standing,
     StandingErrors,
+    held,
     of_records,
+    score_of,
     standing_of,
+    surest,
 )
 from core.condition.following.start import fold_start
 from core.condition.kinds import Kind
@@ -183,8 +189,12 @@ class Direction:
         if alarm is None and self._figures["statistic"] >= self._figures["threshold"]:
             alarm = header.alarm = Alarm(observation.time_ns)
             header.standing = header.standing or self._errors()
+            if score_of(motor, header.standing) < USUAL_SCORE:
+                header.called = None  # it was the beginning of this change
         if alarm is not None:
             self._follow_up(alarm, motor)
+        elif self._figures["records"] % LOOKED_AT == 0.0:
+            self._look_at_standing(motor)
 
     def apply(self, event: Event, motor: Motor, edited: Motor) -> None:
         """Let something be known that happened between two records.
@@ -223,7 +233,7 @@ class Direction:
             What is seen.
         """
         header, figures = self._header, self._figures
-        standing = self._standing(motor, bus)
+        standing = self._told_standing(motor, bus)
         records, alarm = int(figures["records"]), header.alarm
         connection = motor.nameplate.connection
         winding = terminal_winding(standing.winding, self._sequence, connection)
@@ -248,6 +258,8 @@ class Direction:
             threshold=float(figures["threshold"]),
             levels=levels,
             unconfirmed=records > START and bool(figures["surprise"] > UNCONFIRMED),
+            called_above=0.0 if header.called is None else header.called.above,
+            held_score=0.0 if standing.from_bus else held(standing.score, header.held_score),
         )
 
     def standing_estimate(self, motor: Motor) -> StandingEstimate:
@@ -263,7 +275,9 @@ class Direction:
         StandingEstimate
             Asymmetry at the terminals.
         """
-        errors = self._header.standing or self._errors()
+        return self._estimate(motor, self._header.standing or self._errors())
+
+    def _estimate(self, motor: Motor, errors: StandingErrors) -> StandingEstimate:
         turn = 1.0 / terminal_turn(motor)
         difference = np.array([errors.difference_real, errors.difference_imaginary])
         noise = symmetric(errors.spread) - symmetric(errors.prior)
@@ -433,11 +447,36 @@ class Direction:
         noise = 3.0 * sqrt(self._sides["r"][BUS] / COMMON_RECORDS)
         return min(max(SAME * self._usual_channel, noise), MOST_SAME * self._usual_channel)
 
-    def _standing(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Standing:
-        own = self.standing_estimate(motor) if bus else None
+    def _look_at_standing(self, motor: Motor) -> None:
+        """Call a standing fault, and keep the errors that tell it surest: shorted turns do not heal.
+
+        A second change beside it, before it is detected, and a supply that stays constant both have the
+        filter take up some of it. While a change is suspected nothing is called: it may be of that change.
+        """
+        header = self._header
+        if self._figures["statistic"] > SUSPECTED:
+            return
+        errors = self._errors()
+        score = score_of(motor, errors)
+        header.held_score = held(score, header.held_score)
+        header.called = surest(motor, errors, score, header.called)
+
+    def _told_standing(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Standing:
+        """Return what stands, and of a standing fault that was called what told it surest.
+
+        It is called no more where all of the interval now lies below the motor's limit.
+        """
+        header = self._header
+        now = self._standing(motor, bus, header.standing or self._errors())
+        if header.called is None or now.interval[1] <= motor.limits.fault_level:
+            return now
+        called = self._standing(motor, bus, header.called.errors)
+        return max(now, called, key=lambda standing: standing.score)
+
+    def _standing(self, motor: Motor, bus: Sequence[StandingEstimate], errors: StandingErrors) -> Standing:
+        own = self._estimate(motor, errors) if bus else None
         common = common_asymmetry(own, bus) if own else None
         if own is None or common is None:
-            errors = self._header.standing or self._errors()
             asymmetry = np.array([errors.real, errors.imaginary])
             return standing_of(motor, asymmetry, symmetric(errors.spread), from_bus=False)
         asymmetry = turned(own.asymmetry - common[0], terminal_turn(motor))
@@ -473,5 +512,6 @@ class Direction:
         restart(state, self._sides)
         header.start.clear()
         header.accepted = False
-        header.alarm = header.standing = header.kept = None
+        header.alarm = header.standing = header.kept = header.called = None
+        header.held_score = 0.0
         header.bus.restart()

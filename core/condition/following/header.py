@@ -7,7 +7,7 @@ from typing import Any
 from core.condition.assessment import Change, Level
 from core.condition.bus.differences import BusDifferences, Pair
 from core.condition.changes.alarm import Alarm
-from core.condition.following.standing import StandingErrors
+from core.condition.following.standing import Called, StandingErrors
 from core.condition.kinds import Kind
 from core.condition.measuring.measurement import Measurement
 from core.condition.observation import Observation, VoltageChannels
@@ -36,6 +36,10 @@ class Header:
         An earlier change of the channels or the impedance, with which the reference has been learnt.
     standing : StandingErrors or None
         The standing errors as they were when the change was detected.
+    called : Called or None
+        The standing fault that was called.
+    held_score : float
+        Score of the standing errors, held while it falls by little.
     bus : BusDifferences
         Differences from the bus's other motors.
     start : list of Measurement
@@ -51,6 +55,8 @@ class Header:
     alarm: Alarm | None = None
     kept: Change | None = None
     standing: StandingErrors | None = None
+    called: Called | None = None
+    held_score: float = 0.0
     bus: BusDifferences = field(default_factory=BusDifferences)
     start: list[Measurement] = field(default_factory=list)
 
@@ -88,6 +94,8 @@ class Header:
             "alarm": None if self.alarm is None else asdict(self.alarm),
             "kept": None if self.kept is None else asdict(self.kept),
             "standing": None if self.standing is None else asdict(self.standing),
+            "called": None if self.called is None else asdict(self.called),
+            "held_score": self.held_score,
             "moved": [self.bus.moved.real, self.bus.moved.imag],
             "mean_moved": [self.bus.mean_moved.real, self.bus.mean_moved.imag, self.bus.records],
             "pairs": {n: [p.mean.real, p.mean.imag, p.records] for n, p in self.bus.pairs.items()},
@@ -123,6 +131,8 @@ class Header:
             alarm=alarm,
             kept=None if words["kept"] is None else _change(words["kept"]),
             standing=None if words["standing"] is None else StandingErrors(**words["standing"]),
+            called=None if words["called"] is None else _called(words["called"]),
+            held_score=words["held_score"],
             bus=BusDifferences(
                 {n: Pair(complex(re, im), count) for n, (re, im, count) in words["pairs"].items()},
                 complex(*words["moved"]),
@@ -147,6 +157,10 @@ def _change(words: Mapping[str, Any]) -> Change:
         size=words["size"],
         surely_above=words["surely_above"],
     )
+
+
+def _called(words: Mapping[str, Any]) -> Called:
+    return Called(StandingErrors(**words["errors"]), words["score"], words["above"])
 
 
 def _as_list(record: Measurement) -> list[float | bool]:

@@ -10,7 +10,7 @@ from core.condition.following.direction import Direction
 from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
 
-MAGIC: Final = b"StatorWatch follower 3\n"
+MAGIC: Final = b"StatorWatch follower 4\n"
 """Name and version; another layout gets another number."""
 
 

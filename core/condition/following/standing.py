@@ -17,6 +17,7 @@ from core.condition.changes.hypotheses import (
     TURNS_DIRECTION,
 )
 from core.condition.changes.mixture import interval_of
+from core.condition.complex_parts import symmetric
 from core.condition.filter.kalman import WANDER_EC
 from core.condition.filter.state import Candidate, FilterState
 from core.condition.measuring.signatures import (
@@ -33,6 +34,12 @@ STANDING_SCORE: Final = 3.7
 """Standard deviations beyond which a standing asymmetry is no sound motor's: one motor in a thousand."""
 STANDING_LEVEL: Final = 0.05
 """Usual size of a standing fault: so wide that it hardly counts."""
+LOOKED_AT: Final = 8
+"""Every so many records it is looked whether a standing fault is to be called."""
+DEAD_BAND: Final = 0.5
+"""By how much a score has to fall before it counts as lower: what it wanders by says nothing."""
+USUAL_SCORE: Final = 2.0
+"""Score that one sound motor in ten reaches."""
 SUSPECTED: Final = 3.0
 """Log of the detector's statistic above which a change is likely enough not to be taken for what stands."""
 WANDER_VARIANCE: Final = WANDER_EC**2
@@ -68,6 +75,25 @@ class StandingErrors:
     transformers: int
 
 
+@dataclass(slots=True)
+class Called:
+    """A standing fault that was called, as the records told it surest.
+
+    Parameters
+    ----------
+    errors : StandingErrors
+        The standing errors then.
+    score : float
+        Standard deviations by which they lay above what a sound motor with such sensors shows.
+    above : float
+        Highest of the levels that were likeliest with them, a fraction of the phase turns.
+    """
+
+    errors: StandingErrors
+    score: float
+    above: float
+
+
 @dataclass(frozen=True, slots=True)
 class Standing:
     """Shorted turns that would explain the standing asymmetry best.
@@ -95,6 +121,71 @@ class Standing:
     score: float
     from_bus: bool
     interval: tuple[float, float]
+
+
+def held(score: float, before: float) -> float:
+    """Return a score that does not follow another down until that has fallen by the dead band.
+
+    Parameters
+    ----------
+    score : float
+        The score now.
+    before : float
+        What this function returned last.
+
+    Returns
+    -------
+    float
+        The held score, not below the score and at most the dead band above it.
+    """
+    return min(max(score, before), score + DEAD_BAND)
+
+
+def score_of(motor: Motor, errors: StandingErrors) -> float:
+    """Return by how many standard deviations errors lie above what a sound motor shows.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+    errors : StandingErrors
+        The standing errors, judged without a bus.
+
+    Returns
+    -------
+    float
+        The score of `standing_of`.
+    """
+    asymmetry = np.array([errors.real, errors.imaginary])
+    return _likeliest(asymmetry, symmetric(errors.spread), _shown_by(motor)[0])[3]
+
+
+def surest(motor: Motor, errors: StandingErrors, score: float, called: Called | None) -> Called | None:
+    """Call a standing fault where the score is high enough, or surer than it was called before.
+
+    It does not depend on the motor's limit: a limit that is edited later counts for all records alike.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+    errors : StandingErrors
+        The standing errors, judged without a bus.
+    score : float
+        Their score.
+    called : Called or None
+        The standing fault that was called before.
+
+    Returns
+    -------
+    Called or None
+        The standing fault, as it was told surest.
+    """
+    if score < STANDING_SCORE or (called is not None and score <= called.score):
+        return called
+    asymmetry = np.array([errors.real, errors.imaginary])
+    level = standing_of(motor, asymmetry, symmetric(errors.spread), from_bus=False).level
+    return Called(errors, score, max(level, 0.0 if called is None else called.above))
 
 
 def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: bool) -> Standing:

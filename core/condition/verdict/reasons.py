@@ -6,7 +6,7 @@ from typing import Final
 from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
 from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
-from core.condition.severity import FEW, stands_out, stays_a_fault
+from core.condition.severity import FEW, standing_stays_a_fault, stands_out, stays_a_fault
 from core.time_stamps import SECONDS_END, rfc3339
 
 HOURS_PER_DAY: Final = 24
@@ -110,6 +110,8 @@ def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
         yield f"{beyond}: shorted turns in phase {standing.phase}, {_interval(standing)}"
         above = "above" if standing.value > limit else "below"
         yield f"their likeliest level lies {above} the motor's limit of {limit:.2%}"
+        if standing.value <= limit and standing_stays_a_fault(assessment, limit):
+            yield "it lay above the limit before; shorted turns do not heal, so it stays a fault"
     elif reference.accepted:
         yield "a person has declared the asymmetry that stands from the first record on healthy"
     elif stands_out(assessment, limit):

@@ -1,10 +1,24 @@
 """The level of a fault that stands from the first record on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from core.condition.following.standing import standing_of
+from core.condition.events import Event, EventKind
+from core.condition.following.follower import Follower
+from core.condition.following.standing import (
+    STANDING_SCORE,
+    StandingErrors,
+    held,
+    score_of,
+    standing_of,
+    surest,
+)
+from core.condition.kinds import State
 from core.condition.measuring.signatures import PATHS, shorted_turns
+from core.condition.verdict.condition import condition_of
+from core.machines.sensors import SensorClass
 from tests.core.condition.simulated import Plant, follow, motor_of
 
 
@@ -45,3 +59,58 @@ def test_a_fault_on_a_constant_supply_does_not_come_to_stand(winding: int) -> No
     assert faulty.change is not None
     assert faulty.change.level.winding == winding
     assert faulty.reference.standing_score == pytest.approx(healthy.reference.standing_score, abs=0.1)
+
+
+def test_a_called_fault_does_not_fade_while_a_second_change_is_not_yet_seen() -> None:
+    motor = replace(motor_of(), sensors=SensorClass(0.005, 0.005, 10e-6, 10e-6))
+    plant = Plant(level=0.04, noise=5e-4)
+    follower = follow(motor, plant.records(60))
+    plant.joint_ohm, plant.joint = 6.0, 1
+    for record in plant.records(15):
+        follower.fold(record)
+        assessment = follower.assessment()
+        assert assessment is not None
+        condition = condition_of(motor, assessment, record.time_ns)
+        assert (condition.state, condition.phase) == (State.FAULT, "a")
+        assert condition.mu_f == pytest.approx(0.04, rel=0.2)
+    assert assessment is not None
+    assert assessment.change is not None, "the second change is seen by now"
+
+
+def test_a_called_fault_does_not_wear_away_on_a_constant_supply() -> None:
+    """The filter takes ever more of it for an error of the impedance."""
+    motor, plant = motor_of(), Plant(level=0.1, supply_swing=0.0)
+    follower = follow(motor, plant.records(400))
+    assessment = Follower.restore(motor, follower.save()).assessment()
+    assert assessment == follower.assessment()
+    assert assessment is not None
+    standing = assessment.reference.standing
+    assert standing.value == pytest.approx(0.1, rel=0.2)
+    low, high = standing.ci95
+    assert low < 0.1 < high
+    assert assessment.reference.standing_score > 5.0
+
+
+def test_a_fault_that_was_called_is_one_no_more_where_all_of_it_lies_below_the_limit() -> None:
+    motor = motor_of()
+    follower = follow(motor, Plant(level=0.1, supply_swing=0.0).records(60))
+    lenient = replace(motor, limits=replace(motor.limits, fault_level=0.5))
+    follower.apply(Event(0, EventKind.PARAMETERS_EDITED), lenient)
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.reference.standing_score < 5.0, "what the records tell now"
+
+
+def test_a_standing_fault_is_kept_as_it_was_told_surest() -> None:
+    motor = motor_of()
+    errors = StandingErrors(0.01, 0.0, [1e-6, 0.0, 1e-6], [1e-6, 0.0, 1e-6], 0.0, 0.0, 0, 1)
+    score = score_of(motor, errors)
+    called = surest(motor, errors, score, None)
+    assert called is not None
+    assert surest(motor, errors, STANDING_SCORE - 0.1, None) is None
+    assert surest(motor, errors, score - 0.1, called) is called
+
+
+@pytest.mark.parametrize(("score", "before", "after"), [(3.0, 3.3, 3.3), (3.0, 3.9, 3.5), (3.0, 0.0, 3.0)])
+def test_a_score_is_held_while_it_falls_by_little(score: float, before: float, after: float) -> None:
+    assert held(score, before) == after

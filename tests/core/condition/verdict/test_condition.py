@@ -204,6 +204,23 @@ def test_a_standing_fault_is_one_only_above_the_motors_limit() -> None:
     assert judged_by_default.state is State.FAULT, "its interval reaches below the limit, its level does not"
 
 
+def test_a_standing_fault_stays_one_until_it_is_surely_below_the_limit() -> None:
+    below = reference(standing=level(0.0045, 0.0005), score=4.0)
+    assert judged(assessment(reference=below, standing_fault=True)).state is State.WATCH
+    condition = judged(assessment(reference=below, standing_fault=True, called_above=0.0051))
+    assert condition.state is State.FAULT
+    assert any("stays a fault" in reason for reason in condition.reasons)
+    surely = replace(below, standing=level(0.003, 0.0005))
+    assert judged(assessment(reference=surely, standing_fault=True, called_above=0.0051)).state is State.WATCH
+
+
+def test_a_standing_asymmetry_is_watched_until_its_score_has_fallen_for_sure() -> None:
+    fallen = reference(standing=level(0.004, 0.001), score=3.0)
+    assert judged(assessment(reference=fallen)).state is State.HEALTHY
+    held = judged(assessment(reference=fallen, held_score=3.3))
+    assert (held.state, held.kind) == (State.WATCH, Kind.UNCLEAR)
+
+
 @pytest.mark.parametrize(
     "beside",
     [
@@ -320,6 +337,8 @@ ASSESSMENTS = st.builds(
     statistic=st.floats(0, 100),
     threshold=st.just(16.0),
     unconfirmed=st.booleans(),
+    called_above=st.floats(0.0, 0.1),
+    held_score=st.floats(0.0, 50.0),
 )
 
 
