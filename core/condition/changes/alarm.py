@@ -109,12 +109,12 @@ class Weighing:
     best: Array = field(default_factory=lambda: np.zeros((0, 5)))
 
 
-def weigh(state: Any, bank: Any, hypotheses: Hypotheses, recorder: Array) -> Weighing:
+def weigh(filters: Any, bank: Any, hypotheses: Hypotheses, recorder: Array) -> Weighing:
     """Weigh all causes of a change.
 
     Parameters
     ----------
-    state : FilterState
+    filters : array of FilterState, shape (1,)
         The filter.
     bank : array of Candidate
         Candidates.
@@ -130,7 +130,7 @@ def weigh(state: Any, bank: Any, hypotheses: Hypotheses, recorder: Array) -> Wei
     """
     places = len(hypotheses) + 2
     found = Weighing(np.zeros(CAUSES), np.zeros(places), np.zeros((places, 5)))
-    name(state, bank, hypotheses, recorder, found.logs, found.best)
+    name(filters, bank, hypotheses, recorder, found.logs, found.best)
     probabilities(hypotheses, found.logs, found.probabilities)
     return found
 
@@ -222,13 +222,13 @@ def taken_up(weighing: Weighing, bank: Any, hypotheses: Hypotheses) -> tuple[Arr
     row = weighing.best[at + 1 if another else at]
     one, drifts = bank[int(row[0])], bool(row[1])
     if another or not drifts:
-        first = 0 if another else 2 * int(hypotheses[at].column)
+        first = 0 if another else 2 * int(hypotheses[at]["column"])
         last = 4 if another else first + 2
-        information, columns = one.step[first:last, first:last], slice(first, last)
+        information, columns = one["step"][first:last, first:last], slice(first, last)
     else:
-        current = int(hypotheses[at].column) == 1
-        information = one.ramp_current if current else one.ramp_voltage
+        current = int(hypotheses[at]["column"]) == 1
+        information = one["ramp_current" if current else "ramp_voltage"]
         columns = slice(8, 10) if current else slice(6, 8)
     spread = np.linalg.pinv(information)
-    f = one.f[:, columns]
-    return np.asarray(f @ spread @ one.d[columns]), np.asarray(f @ spread @ f.T)
+    f = one["f"][:, columns]
+    return np.asarray(f @ spread @ one["d"][columns]), np.asarray(f @ spread @ f.T)

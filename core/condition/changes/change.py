@@ -52,12 +52,12 @@ def change_of(
     channel: Winding | None = None
     if cause is not Cause.SHORTED_TURNS:
         at = _place(cause, weighing, hypotheses)
-        since_ns = int(bank[int(weighing.best[at, 0])].time_ns)
+        since_ns = int(bank[int(weighing.best[at, 0])]["time_ns"])
         size = None
         if at < len(hypotheses):
             one = hypotheses[at]
-            size = float(weighing.best[at, 2] * one.unit)
-            channel = _channel(cause, int(one.place), connection, sequence, channels)
+            size = float(weighing.best[at, 2] * one["unit"])
+            channel = _channel(cause, int(one["place"]), connection, sequence, channels)
     winding = terminal_winding(level.winding, sequence, connection)
     return Change(
         since_ns=since_ns,

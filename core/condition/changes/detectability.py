@@ -19,12 +19,12 @@ _TURNS = int(Cause.SHORTED_TURNS)
 
 
 @compiled
-def detectable(state: FilterState, hypotheses: list[Hypothesis]) -> float:
+def detectable(filters: list[FilterState], hypotheses: list[Hypothesis]) -> float:
     """Return the least step of the fault level that nine of ten times would be seen within ten records.
 
     Parameters
     ----------
-    state : FilterState
+    filters : array of FilterState, shape (1,)
         The filter, after a record: the next ones are taken to be alike.
     hypotheses : array of Hypothesis
         All places of all causes.
@@ -34,6 +34,7 @@ def detectable(state: FilterState, hypotheses: list[Hypothesis]) -> float:
     float
         Equivalent level in the winding and with the path that show least, a fraction of the phase turns.
     """
+    state = filters[0]
     H, P = state.H, state.P
     S = np.zeros((2, 2))
     for r in range(2):

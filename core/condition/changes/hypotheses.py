@@ -256,7 +256,7 @@ def hypotheses_of(motor: Motor, channels: VoltageChannels, scale_ohm: float) -> 
                     0.0,
                 )
             )
-    return np.array(rows, HYPOTHESIS).view(np.recarray)
+    return np.array(rows, HYPOTHESIS)
 
 
 def rated_current(motor: Motor, scale_ohm: float) -> float:

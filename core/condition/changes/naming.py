@@ -47,7 +47,7 @@ _CURRENT = int(Cause.CURRENT_CHANNEL)
 
 @compiled
 def name(
-    state: FilterState,
+    filters: list[FilterState],
     bank: list[Candidate],
     hypotheses: list[Hypothesis],
     recorder: Array,
@@ -58,7 +58,7 @@ def name(
 
     Parameters
     ----------
-    state : FilterState
+    filters : array of FilterState, shape (1,)
         The filter.
     bank : array of Candidate
         Candidates.
@@ -71,7 +71,7 @@ def name(
     best : ndarray, shape (places + 2, 5)
         Filled with what fits each best: candidate, whether it drifts, size, its deviation, log of evidence.
     """
-    places = len(hypotheses)
+    state, places = filters[0], len(hypotheses)
     logs[:] = NOTHING
     best[:] = 0.0
     best[:, 4] = NOTHING

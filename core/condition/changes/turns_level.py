@@ -5,6 +5,7 @@ from math import exp, hypot, log, log1p, sqrt
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.condition.changes.alarm import Weighing
 from core.condition.changes.evidence import Learnt, along, learnt_without, of_size, signature
@@ -23,7 +24,9 @@ DRIFT_SHAPE: Final = 0.12
 """Relative standard deviation of the level of a change that drifts: no growth is a straight line, and what
 the filter takes up of it before the alarm depends on its course."""
 OF_A_PATH: Final = 8
-"""Numbers that `_weigh_paths` finds of a path."""
+"""Numbers that `_weigh_windings` finds of a path."""
+
+Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +59,13 @@ class TurnsLevel:
 
 
 def turns_level(
-    state: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weighing: Weighing, *, final: bool
+    filters: Any, bank: Any, recent: Any, hypotheses: Hypotheses, weighing: Weighing, *, final: bool
 ) -> TurnsLevel:
     """Return the change of the fault level, should the change be shorted turns.
 
     Parameters
     ----------
-    state : FilterState
+    filters : array of FilterState, shape (1,)
         The filter.
     bank : array of Candidate
         Candidates.
@@ -81,58 +84,45 @@ def turns_level(
         The level, averaged over what the path may be.
     """
     logs = weighing.logs[: 3 * len(PATHS)].reshape(3, len(PATHS))
-    likeliest, paths = int(np.argmax(np.logaddexp.reduce(logs, axis=1))), np.argmax(logs, axis=1).tolist()
-    at = likeliest * len(PATHS) + paths[likeliest]
-    candidate, drifts, size = weighing.best[at, :3].tolist()
-    one = bank[int(candidate)]
-    before = _before(state, one, hypotheses, at, size, drifts=bool(drifts))
-    found = _level_in(likeliest, paths[likeliest], state, recent, hypotheses, before)
+    likeliest = int(np.argmax(np.logaddexp.reduce(logs, axis=1)))
+    paths: Indices = np.argmax(logs, axis=1)
+    at = likeliest * len(PATHS) + int(paths[likeliest])
+    candidate, drifting, size = weighing.best[at, :3].tolist()
+    onset, drifts = int(candidate), bool(drifting)
+    windings = np.arange(3) if final else np.array([likeliest])
+    known, jump = _known_without(filters, bank, hypotheses, onset, drifts, at, size)
+    # What the filter has taken up of the change comes off its state.
+    column = 6 if drifts else 0
+    reference = filters["x"][0] - bank["f"][onset, :, column : column + 2] @ jump
+    table, levels = np.empty((3, len(PATHS), OF_A_PATH)), np.empty((3, RECENT))
+    first, taken = _weigh_windings(
+        filters, bank, recent, hypotheses, reference, onset, drifts, known, windings, paths, table, levels
+    )
+    shape = DRIFT_SHAPE if drifts else 0.0
+    found = _level_in(likeliest, table, known[2], shape)
     if final:
-        others = (
-            _level_in(w, paths[w], state, recent, hypotheses, before) for w in range(3) if w != likeliest
-        )
+        others = (_level_in(w, table, known[2], shape) for w in range(3) if w != likeliest)
         other = max(others, key=lambda level: level.value)
         apart = other.value - found.value
         if apart > APART * hypot(other.deviation, found.deviation):
             found = other
-    times = recent["time_ns"][found.first : found.first + len(found.levels)].tolist()
+    times = recent["time_ns"][first : first + taken].tolist()
     return TurnsLevel(
         value=found.value,
         deviation=found.deviation,
         interval=interval_of(found.shares, found.values, np.sqrt(found.spreads)),
         winding=found.winding,
-        path_ratio=PATHS[paths[found.winding]],
-        onset_ns=int(one["time_ns"]),
-        levels=tuple(zip(times, found.levels, strict=True)),
+        path_ratio=PATHS[int(paths[found.winding])],
+        onset_ns=int(bank["time_ns"][onset]),
+        levels=tuple(zip(times, levels[found.winding, :taken].tolist(), strict=True)),
     )
-
-
-@dataclass(frozen=True, slots=True)
-class _Before:
-    """The filter as it was before the change, the change's onset, and whether it drifts."""
-
-    reference: Array
-    one: Any
-    drifts: bool
-    known: Learnt
-
-
-def _before(state: Any, one: Any, hypotheses: Hypotheses, at: int, size: float, *, drifts: bool) -> _Before:
-    """Take off the state what the filter has taken up of the change."""
-    known = learnt_without(state, one, drifts)
-    u, _ = signature(known, hypotheses[at])
-    column = 6 if drifts else 0
-    jump = size * np.array([u.real, u.imag])
-    reference = np.array(state["x"]) - np.array(one["f"])[:, column : column + 2] @ jump
-    return _Before(reference, one, drifts, known)
 
 
 @dataclass(frozen=True, slots=True)
 class _WindingLevel:
     """The level if the change is in one winding.
 
-    shares, values, spreads: weight, level and variance of each path.  levels: those of each record, by the
-    likeliest path.  first: place of the first of these records among the recent ones.
+    shares, values, spreads: weight, level and variance of each path.
     """
 
     winding: int
@@ -141,63 +131,65 @@ class _WindingLevel:
     shares: Array
     values: Array
     spreads: Array
-    levels: list[float]
-    first: int
 
 
-def _level_in(
-    winding: int, likeliest: int, state: Any, recent: Any, hypotheses: Hypotheses, before: _Before
-) -> _WindingLevel:
-    """Return the change of the fault level if it is in one winding; `likeliest` is the path's index."""
-    shape = DRIFT_SHAPE if before.drifts else 0.0
-    table, levels = np.empty((len(PATHS), OF_A_PATH)), np.empty(RECENT)
-    first, taken = _weigh_paths(
-        state, recent, hypotheses, before.reference, before.one, before.drifts, before.known,
-        winding * len(PATHS), likeliest, table, levels,
-    )  # fmt: skip
+def _level_in(winding: int, table: Array, direction_of_Z2: float, shape: float) -> _WindingLevel:
+    """Return the change of the fault level if it is in one winding, from what `_weigh_windings` found."""
+    found = table[winding]
     spreads = []
-    for value, wandering, a, b, c, direction, relative, _ in table.tolist():
+    for value, wandering, a, b, c, direction, relative, _ in found.tolist():
         information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
-        scale = relative**2 + before.known[2] ** 2 + shape**2
+        scale = relative**2 + direction_of_Z2**2 + shape**2
         spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
-    values, evidence, variances = table[:, 0].copy(), table[:, 7], np.array(spreads)
+    values, evidence, variances = found[:, 0].copy(), found[:, 7], np.array(spreads)
     shares = np.exp(evidence - np.max(evidence))
     shares /= shares.sum()
     mean = float(shares @ values)
     variance = float(shares @ (variances + (values - mean) ** 2))
-    return _WindingLevel(
-        winding, mean, sqrt(variance), shares, values, variances, levels[:taken].tolist(), first
-    )
+    return _WindingLevel(winding, mean, sqrt(variance), shares, values, variances)
 
 
 @compiled
-def _weigh_paths(
-    state: FilterState, recent: list[Recent], hypotheses: list[Hypothesis], reference: Array,
-    one: Candidate, drifts: bool, known: Learnt, begin: int, likeliest: int, table: Array, levels: Array,
-) -> tuple[int, int]:  # fmt: skip
-    """Find what each path makes of a change in one winding.
+def _known_without(
+    filters: list[FilterState], bank: list[Candidate], hypotheses: list[Hypothesis],
+    onset: int, drifts: bool, at: int, size: float,
+) -> tuple[Learnt, Array]:  # fmt: skip
+    """Return what is learnt without the change, and the jump that the change makes in y."""
+    known = learnt_without(filters[0], bank[onset], drifts)
+    u, _ = signature(known, hypotheses[at])
+    return known, size * np.array([u.real, u.imag])
 
-    Fills `table` by path with the level, what wandering adds to its variance, the information on it as a
-    step (a, b, c), the deviation of its direction and, relatively, of its size, and the log of the path's
-    weight; and `levels` with those of each record by the likeliest path. Returns the place of the first of
-    these records, and their number.
+
+@compiled
+def _weigh_windings(
+    filters: list[FilterState], bank: list[Candidate], recent: list[Recent], hypotheses: list[Hypothesis],
+    reference: Array, onset: int, drifts: bool, known: Learnt, windings: Indices, likeliest: Indices,
+    table: Array, levels: Array,
+) -> tuple[int, int]:  # fmt: skip
+    """Find what each path makes of a change in each of some windings.
+
+    Fills `table` by winding and path with the level, what wandering adds to its variance, the information
+    on it as a step (a, b, c), the deviation of its direction and, relatively, of its size, and the log of the
+    path's weight; and `levels` with those of each record by the winding's likeliest path. Returns the place
+    of the first of these records, and their number.
     """
+    state, one = filters[0], bank[onset]
     found, out = np.zeros((RECENT, 3)), np.zeros(5)
     first = taken = 0
-    for p in range(len(PATHS)):
-        it = hypotheses[begin + p]
-        u, direction = signature(known, it)
-        first = levels_since(state, recent, reference, u, one.time_ns, found)
-        taken = int(state.recent) - first
-        value, wandering = level_now(found[:taken])
-        if p == likeliest:
-            levels[:taken] = found[:taken, 0]
-        along(one, 0, drifts, u, out)
-        evidence = _evidence(out, direction, it.share, drifts)
-        along(one, 0, False, u, out)  # noqa: FBT003
-        table[p, 0], table[p, 1] = value, wandering
-        table[p, 2], table[p, 3], table[p, 4] = out[0], out[1], out[2]
-        table[p, 5], table[p, 6], table[p, 7] = direction, it.scale, evidence
+    for w in windings:
+        for p in range(len(PATHS)):
+            it, row = hypotheses[w * len(PATHS) + p], table[w, p]
+            u, direction = signature(known, it)
+            first = levels_since(state, recent, reference, u, one.time_ns, found)
+            taken = int(state.recent) - first
+            row[0], row[1] = level_now(found[:taken])
+            if p == likeliest[w]:
+                levels[w, :taken] = found[:taken, 0]
+            along(one, 0, drifts, u, out)
+            row[7] = _evidence(out, direction, it.share, drifts)
+            along(one, 0, False, u, out)  # noqa: FBT003
+            row[2], row[3], row[4] = out[0], out[1], out[2]
+            row[5], row[6] = direction, it.scale
     return first, taken
 
 

@@ -27,15 +27,15 @@ FIRST_BALANCE = 16.0
 
 @compiled
 def fold_record(
-    state: FilterState, bank: list[Candidate], sides: list[SideState], recent: list[Recent],
+    filters: list[FilterState], bank: list[Candidate], sides: list[SideState], recent: list[Recent],
     hypotheses: list[Hypothesis], recorder: Array, record: Measurement, time_ns: int, changed: bool,
 ) -> None:  # fmt: skip
     """Take one record in and look for a change.
 
     Parameters
     ----------
-    state : FilterState
-        The filter.
+    filters : array of FilterState, shape (1,)
+        The filter. An array is handed to compiled code in a tenth of the time that its record takes.
     bank : array of Candidate
         Candidates.
     sides : array of SideState
@@ -53,6 +53,7 @@ def fold_record(
     changed : bool
         Whether a change has been detected: its onsets are kept then, and the noise is no longer learnt.
     """
+    state = filters[0]
     rho = predict(state, record.elapsed_s)
     if not changed:
         add_candidate(state, bank, time_ns)

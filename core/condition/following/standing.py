@@ -226,13 +226,13 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
 
 @compiled
 def of_records(
-    state: FilterState, bank: list[Candidate], voltage: Array
+    filters: list[FilterState], bank: list[Candidate], voltage: Array
 ) -> tuple[tuple[float, float], tuple[float, float, float], tuple[float, float, float]]:
     """Return E as the records alone tell it, without the prior.
 
     Parameters
     ----------
-    state : FilterState
+    filters : array of FilterState, shape (1,)
         The filter.
     bank : array of Candidate
         Candidates. Where a change is likely, what the filter has taken up of it is not what stands.
@@ -247,6 +247,7 @@ def of_records(
         Lam0^-1 with Lam0 = P0^-1 - P0^-1 P P0^-1, which is the covariance of what a sound motor shows, and
         the prior's spread P0 that is part of it: their elements 00, 01, 11.
     """
+    state = filters[0]
     x, P = state.x.copy(), state.P.copy()
     if state.statistic > SUSPECTED:
         x, P = before_change(state, bank)
