@@ -76,6 +76,8 @@ class Change:
     surely_above : float
         What the level lay above for certain, once, while the change was named as shorted turns; 0 where that
         was never looked at.
+    size_ci95 : tuple of float or None
+        95 % interval of the size; None where there is none.
     """
 
     since_ns: int
@@ -86,6 +88,7 @@ class Change:
     channel: Winding | None
     size: float | None
     surely_above: float = 0.0
+    size_ci95: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,7 +53,7 @@ class Condition(Document):
     kind: what has changed, or stands out from the first record on; `candidates` where that is unclear.
     mu_f: fault level in all, change: since the reference, as fractions of the phase turns, each with its 95 %
     interval from noise, sensors and parameters. size: of the change in its own measure, for example the
-    relative error of a channel. since: first record that shows the change. as_of: latest record that counts;
+    relative error of a channel, with its 95 % interval. since: first record that shows the change. as_of: latest record that counts;
     stale: whether that is too old.
     """
 
@@ -67,6 +67,7 @@ class Condition(Document):
     change: float | None
     change_ci95: Interval | None
     size: float | None
+    size_ci95: Interval | None = None
     since: Time | None
     growth_per_day: float | None
     forecast: Forecast

@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from service.cli.output import failing_clearly, one_line, print_document, results
-from service.client.conditions import as_of, condition_lines, condition_of, day, state_text
+from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import (
     detection,
@@ -72,7 +72,7 @@ def motors_table(healths: Sequence[Document]) -> Table:
             Text(str(health["motor"])),
             state_text(condition),
             _level(condition),
-            day(condition["since"]),
+            since_day(condition),
             as_of(condition),
             _link(health),
         )

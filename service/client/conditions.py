@@ -44,9 +44,15 @@ def as_of(condition: Document) -> Text:
     return Text(f"{when} stale", style="yellow") if condition["stale"] else Text(when)
 
 
-def day(time: object) -> str:
-    """Return the date of an RFC 3339 time; "-" where there is none."""
-    return "-" if time is None else str(time)[:10]
+def since_day(condition: Document) -> str:
+    """Return the date of the first record that shows a change; "-" where there is none."""
+    return "-" if condition["since"] is None or stands(condition) else str(condition["since"])[:10]
+
+
+def stands(condition: Document) -> bool:
+    """Return whether what is told was there with the first record: when it began is not known."""
+    since, reference = condition["since"], condition["reference"]
+    return since is not None and isinstance(reference, Mapping) and since == reference.get("since")
 
 
 def condition_lines(condition: Document) -> list[tuple[str, Text]]:
@@ -55,12 +61,12 @@ def condition_lines(condition: Document) -> list[tuple[str, Text]]:
     if condition["mu_f"] is not None:
         lines.append(("fault level", Text(level(condition["mu_f"], condition["mu_f_ci95"]))))
     if condition["since"] is not None:
-        lines.append(("since", Text(to_the_second(condition["since"]))))
+        lines.append(("since", Text(_since(condition))))
     if condition["change_ci95"] is not None:
         lines.append(("change of the level", Text(level(condition["change"], condition["change_ci95"]))))
         lines.append(("growth", Text(_growth(condition))))
-    elif condition["size"] is not None:
-        lines.append(("size of the change", Text(f"{percent(condition['size'])} %")))
+    elif condition["size"] is not None and not stands(condition):
+        lines.append(("size of the change", Text(level(condition["size"], condition.get("size_ci95")))))
     lines.extend(("why", Text(reason)) for reason in _texts(condition["reasons"]))
     lines.append(("reference", Text(_reference(condition["reference"]))))
     when = condition["as_of"]
@@ -72,6 +78,11 @@ def condition_lines(condition: Document) -> list[tuple[str, Text]]:
     return lines
 
 
+def _since(condition: Document) -> str:
+    since = to_the_second(condition["since"])
+    return f"before the first record, of {since}" if stands(condition) else since
+
+
 def _growth(condition: Document) -> str:
     growth, forecast = condition["growth_per_day"], condition["forecast"]
     if not isinstance(growth, int | float):
@@ -81,7 +92,7 @@ def _growth(condition: Document) -> str:
         return words
     days = forecast["days"]
     if not isinstance(days, Sequence):
-        return f"{words}; no trend towards {percent(forecast['limit'])} %"
+        return f"not certain, {words} at best guess; it may never reach {percent(forecast['limit'])} %"
     low, middle, high = days
     return (
         f"{words}; {percent(forecast['limit'])} % in about {middle:.3g} days, "

@@ -1,5 +1,7 @@
 """A change as people are told of it: at the terminals, in its own measure."""
 
+from dataclasses import replace
+from math import hypot
 from typing import Any
 
 import numpy as np
@@ -7,6 +9,7 @@ import numpy as np
 from core.condition.assessment import Change, Level
 from core.condition.changes.alarm import KINDS, Alarm, Weighing, by_kind
 from core.condition.changes.hypotheses import CAUSES, Cause, Hypotheses
+from core.condition.changes.size import size_of
 from core.condition.changes.turns_level import TurnsLevel
 from core.condition.kinds import Kind
 from core.condition.measuring.signatures import channel_of
@@ -17,7 +20,7 @@ from core.signals.sequence import PhaseSequence
 
 
 def change_of(
-    alarm: Alarm, weighing: Weighing, level: TurnsLevel, hypotheses: Hypotheses, bank: Any,
+    alarm: Alarm, weighing: Weighing, level: TurnsLevel, hypotheses: Hypotheses, filters: Any, bank: Any,
     connection: Connection, sequence: PhaseSequence, channels: VoltageChannels,
 ) -> Change:  # fmt: skip
     """Tell of a change.
@@ -32,6 +35,8 @@ def change_of(
         Change of the fault level, should it be shorted turns.
     hypotheses : array of Hypothesis
         All places of all causes.
+    filters : array of FilterState, shape (1,)
+        The filter.
     bank : array of Candidate
         Candidates.
     connection : Connection
@@ -49,15 +54,15 @@ def change_of(
     cause = _likeliest(alarm, weighing)
     since_ns = level.onset_ns
     size: float | None = level.value
+    interval: tuple[float, float] | None = level.interval
     channel: Winding | None = None
     if cause is not Cause.SHORTED_TURNS:
         at = _place(cause, weighing, hypotheses)
         since_ns = int(bank[int(weighing.best[at, 0])]["time_ns"])
-        size = None
+        size = interval = None
         if at < len(hypotheses):
-            one = hypotheses[at]
-            size = float(weighing.best[at, 2] * one["unit"])
-            channel = _channel(cause, int(one["place"]), connection, sequence, channels)
+            size, interval = size_of(filters, bank, hypotheses, at, weighing.best[at])
+            channel = _channel(cause, int(hypotheses[at]["place"]), connection, sequence, channels)
     winding = terminal_winding(level.winding, sequence, connection)
     return Change(
         since_ns=since_ns,
@@ -68,7 +73,33 @@ def change_of(
         channel=channel,
         size=size,
         surely_above=alarm.surely_above,
+        size_ci95=interval,
     )
+
+
+def continued(change: Change, earlier: Change | None) -> Change:
+    """Return a change with what the same channel had changed by before its reference was learnt anew.
+
+    Parameters
+    ----------
+    change : Change
+        The change since that reference.
+    earlier : Change or None
+        The change that the reference was learnt with.
+
+    Returns
+    -------
+    Change
+        Both in one, where one channel or joint is named in both; else the change as it is.
+    """
+    if earlier is None or (earlier.named, earlier.channel) != (change.named, change.channel):
+        return change
+    if earlier.size is None or earlier.size_ci95 is None or change.size is None or change.size_ci95 is None:
+        return change
+    size = earlier.size + change.size
+    below = hypot(earlier.size - earlier.size_ci95[0], change.size - change.size_ci95[0])
+    above = hypot(earlier.size_ci95[1] - earlier.size, change.size_ci95[1] - change.size)
+    return replace(change, since_ns=earlier.since_ns, size=size, size_ci95=(size - below, size + above))
 
 
 def _likeliest(alarm: Alarm, weighing: Weighing) -> Cause:

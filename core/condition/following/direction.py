@@ -11,7 +11,7 @@ from core.condition.bus.differences import COMMON_RECORDS
 from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
 from core.condition.changes.alarm import Alarm, Weighing, confirm, taken_up, weigh
 from core.condition.changes.before_change import before_change
-from core.condition.changes.change import change_of
+from core.condition.changes.change import change_of, continued
 from core.condition.changes.detectability import detectable
 from core.condition.changes.hypotheses import Hypotheses, hypotheses_of
 from core.condition.changes.turns_level import TurnsLevel, turns_level
@@ -429,10 +429,10 @@ class Direction:
     def _change(self, alarm: Alarm, motor: Motor) -> tuple[Change, tuple[tuple[int, float], ...]]:
         level = self._level(alarm)
         change = change_of(
-            alarm, self._weighing(), level, self._hypotheses, self._bank, motor.nameplate.connection,
-            self._sequence, self._header.voltage_channels,
+            alarm, self._weighing(), level, self._hypotheses, self._filter, self._bank,
+            motor.nameplate.connection, self._sequence, self._header.voltage_channels,
         )  # fmt: skip
-        return change, level.levels
+        return continued(change, self._header.kept), level.levels
 
     def _errors(self) -> StandingErrors:
         (real, imaginary), spread, prior = of_records(self._filter, self._bank, self._voltage)

@@ -145,8 +145,7 @@ class Header:
 
 def _change(words: Mapping[str, Any]) -> Change:
     level = dict(words["level"])
-    if level["interval"] is not None:
-        level["interval"] = (level["interval"][0], level["interval"][1])
+    level["interval"] = _interval(level["interval"])
     return Change(
         since_ns=words["since_ns"],
         detected_ns=words["detected_ns"],
@@ -156,11 +155,16 @@ def _change(words: Mapping[str, Any]) -> Change:
         channel=words["channel"],
         size=words["size"],
         surely_above=words["surely_above"],
+        size_ci95=_interval(words["size_ci95"]),
     )
 
 
 def _called(words: Mapping[str, Any]) -> Called:
     return Called(StandingErrors(**words["errors"]), words["score"], words["above"])
+
+
+def _interval(ends: Sequence[float] | None) -> tuple[float, float] | None:
+    return None if ends is None else (ends[0], ends[1])
 
 
 def _as_list(record: Measurement) -> list[float | bool]:

@@ -17,7 +17,7 @@ from core.condition.kinds import Kind, State
 from core.condition.severity import Interval, level_of, of_one_fault, stands_out
 from core.condition.verdict.advice import advice
 from core.condition.verdict.reasons import reasons_of
-from core.condition.verdict.verdict import verdict_of
+from core.condition.verdict.verdict import Verdict, verdict_of
 from core.machines.parameters import Motor
 from core.machines.winding_frame import Winding
 from core.time_stamps import nanoseconds, rfc3339
@@ -51,6 +51,8 @@ class Condition:
     size : float or None
         Size of the change in its own measure: relative error of a channel, voltage drop of a joint over
         rated voltage, level of shorted turns; None where no change is seen, or one without such a measure.
+    size_ci95 : tuple of float or None
+        Its 95 % interval; None where there is no size.
     since_ns : int or None
         Time of the first record that shows the change, UTC [ns].
     forecast : Forecast
@@ -77,6 +79,7 @@ class Condition:
     change: float | None
     change_ci95: Interval | None
     size: float | None
+    size_ci95: Interval | None
     since_ns: int | None
     forecast: Forecast
     reference: Reference | None
@@ -121,6 +124,7 @@ class Condition:
             "change": self.change,
             "change_ci95": _listed(self.change_ci95),
             "size": self.size,
+            "size_ci95": _listed(self.size_ci95),
             "since": _time(self.since_ns),
             "growth_per_day": self.forecast.growth_per_day,
             "forecast": {"limit": self.forecast.limit, "days": _listed(self.forecast.days)},
@@ -138,7 +142,8 @@ class Condition:
         Parameters
         ----------
         document : mapping
-            What `as_dict` returned; further keys are left out.
+            What `as_dict` returned; further keys are left out. Those of earlier versions have no
+            `size_ci95`.
 
         Returns
         -------
@@ -163,6 +168,7 @@ class Condition:
             change=document["change"],
             change_ci95=_interval(document["change_ci95"]),
             size=document["size"],
+            size_ci95=_interval(document.get("size_ci95")),
             since_ns=_time_ns(document["since"]),
             forecast=Forecast(
                 limit=forecast["limit"],
@@ -204,6 +210,7 @@ def condition_of(
         return _unknown(motor)
     fault = of_one_fault(assessment, limit)
     state, kind = verdict.state, verdict.kind
+    size, size_ci95 = _size(fault, verdict)
     ahead = _forecast(fault, level_of(fault.change), verdict.mu_f, limit)
     return Condition(
         motor=motor.name,
@@ -215,7 +222,8 @@ def condition_of(
         mu_f_ci95=verdict.mu_f_ci95,
         change=verdict.change,
         change_ci95=verdict.change_ci95,
-        size=_size(fault, verdict.mu_f),
+        size=size,
+        size_ci95=size_ci95,
         since_ns=_since(fault, limit),
         forecast=ahead,
         reference=assessment.reference,
@@ -238,6 +246,7 @@ def _unknown(motor: Motor) -> Condition:
         change=None,
         change_ci95=None,
         size=None,
+        size_ci95=None,
         since_ns=None,
         forecast=Forecast(motor.limits.fault_level),
         reference=None,
@@ -255,10 +264,12 @@ def _since(assessment: Assessment, limit: float) -> int | None:
     return assessment.reference.since_ns if stands_out(assessment, limit) else None
 
 
-def _size(assessment: Assessment, mu_f: float) -> float | None:
+def _size(assessment: Assessment, verdict: Verdict) -> tuple[float | None, Interval | None]:
+    """Return the size of what is seen, and its interval. A standing fault has only its level in all."""
     if assessment.standing_fault:
-        return mu_f
-    return None if assessment.change is None else assessment.change.size
+        return verdict.mu_f, verdict.mu_f_ci95
+    change = assessment.change
+    return (None, None) if change is None else (change.size, change.size_ci95)
 
 
 def _forecast(assessment: Assessment, level: Level | None, mu_f: float, limit: float) -> Forecast:

@@ -6,10 +6,12 @@ from typing import Final
 from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
 from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
-from core.condition.severity import FEW, standing_stays_a_fault, stands_out, stays_a_fault
+from core.condition.severity import FEW, Interval, standing_stays_a_fault, stands_out, stays_a_fault
 from core.time_stamps import SECONDS_END, rfc3339
 
 HOURS_PER_DAY: Final = 24
+MOST_CERTAIN: Final = 99.0
+"""Highest probability that is told as a figure [%]."""
 
 WORDS: Final = {
     Kind.NONE: "nothing",
@@ -62,7 +64,7 @@ def _of_change(change: Change, limit: float) -> Iterator[str]:
     if not change.named:
         likely = sorted(change.probabilities.items(), key=lambda one: -one[1])
         yield f"something has changed since {since}; it may be " + ", ".join(
-            f"{WORDS[kind]} ({probability:.0%})" for kind, probability in likely if probability >= FEW
+            f"{WORDS[kind]} ({_chance(probability)})" for kind, probability in likely if probability >= FEW
         )
     elif len(change.named) > 1:
         either = " or ".join(WORDS[kind] for kind in change.named)
@@ -71,16 +73,15 @@ def _of_change(change: Change, limit: float) -> Iterator[str]:
         yield f"shorted turns in phase {level.phase} since {since}: {_interval(level)} more"
     else:
         where = "" if change.channel is None else f" of phase {PHASES[change.channel]}"
-        by = "" if change.size is None else f" by {change.size:.2%}"
         yield (
-            f"{WORDS[change.named[0]]}{where} has changed{by} since {since}; "
-            f"probability {change.probabilities.get(change.named[0], 0.0):.1%}"
+            f"{WORDS[change.named[0]]}{where} has changed{_by(change)} since {since}; "
+            f"probability {_chance(change.probabilities.get(change.named[0], 0.0))}"
         )
     if len(change.named) != 1 and change.probabilities.get(Kind.SHORTED_TURNS, 0.0) >= FEW:
         yield f"if it is shorted turns, they are in phase {level.phase}: {_interval(level)}"
     if Kind.SHORTED_TURNS in change.named:
         above = level.ci95[0] > limit
-        yield f"the interval {'lies above' if above else 'reaches below'} the motor's limit of {limit:.2%}"
+        yield f"the interval {'lies above' if above else 'reaches below'} the motor's limit of {_percent(limit)}"
         if not above and stays_a_fault(change, limit):
             yield "it lay above the limit before; shorted turns do not heal, so it stays a fault"
 
@@ -90,11 +91,11 @@ def _of_forecast(forecast: Forecast) -> Iterator[str]:
     if growth is None:
         return
     if forecast.days is None:
-        yield f"the level shows no trend towards {forecast.limit:.2%}"
+        yield f"whether the level grows is not certain: it may never reach {_percent(forecast.limit)}"
     else:
         low, mid, high = (_days(days) for days in forecast.days)
         yield (
-            f"the level grows by {growth:.3%} a day; it reaches {forecast.limit:.2%} in about {mid}, between "
+            f"the level grows by {100.0 * growth:.3f} % a day; it reaches {_percent(forecast.limit)} in about {mid}, between "
             f"{low} and {high} with 80 %"
         )
 
@@ -109,7 +110,7 @@ def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
     if assessment.standing_fault:
         yield f"{beyond}: shorted turns in phase {standing.phase}, {_interval(standing)}"
         above = "above" if standing.value > limit else "below"
-        yield f"their likeliest level lies {above} the motor's limit of {limit:.2%}"
+        yield f"their likeliest level lies {above} the motor's limit of {_percent(limit)}"
         if standing.value <= limit and standing_stays_a_fault(assessment, limit):
             yield "it lay above the limit before; shorted turns do not heal, so it stays a fault"
     elif reference.accepted:
@@ -119,7 +120,7 @@ def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
     else:
         yield (
             "the asymmetry that stands from the first record on is one of sensors of this class; it can hide "
-            f"shorted turns up to {standing.ci95[1]:.2%}"
+            f"shorted turns up to {_percent(standing.ci95[1])}"
         )
 
 
@@ -128,14 +129,38 @@ def _of_reference(reference: Reference) -> Iterator[str]:
         yield f"the reference is still being learnt ({reference.records} records): no change can be seen yet"
     elif reference.detectable is not None:
         yield (
-            f"the reference holds {reference.records} records; a step of {reference.detectable:.2%} of the "
+            f"the reference holds {reference.records} records; a step of {_percent(reference.detectable)} of the "
             "turns would be seen within ten records in nine of ten cases"
         )
 
 
 def _interval(level: Level) -> str:
-    low, high = level.ci95
-    return f"{max(0.0, level.value):.2%} (95 % interval {low:.2%} to {high:.2%})"
+    return _with_interval(max(0.0, level.value), level.ci95)
+
+
+def _by(change: Change) -> str:
+    if change.size is None:
+        return ""
+    if change.size_ci95 is None:
+        return f" by {_percent(change.size)}"
+    return f" by {_with_interval(change.size, change.size_ci95)}"
+
+
+def _with_interval(value: float, interval: Interval) -> str:
+    return f"{_percent(value)} (95 % interval {_percent(interval[0])} to {_percent(interval[1])})"
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.2f} %"
+
+
+def _chance(probability: float) -> str:
+    """Return a probability in words. No model is so exact that it could be certain."""
+    return (
+        f"more than {MOST_CERTAIN:.0f} %"
+        if 100.0 * probability > MOST_CERTAIN
+        else f"{100.0 * probability:.0f} %"
+    )
 
 
 def _days(days: float) -> str:

@@ -11,7 +11,7 @@ from core.condition.kinds import Kind
 from core.machines.parameters import Connection
 from core.machines.winding_frame import terminal_winding
 from core.signals.sequence import PhaseSequence
-from tests.core.condition.simulated import PARAMETERS, Plant, follow, motor_of
+from tests.core.condition.simulated import HOUR_NS, PARAMETERS, Plant, follow, motor_of
 
 BEFORE, AFTER = 60, 12
 FRAMES = [(c, s) for c in Connection for s in PhaseSequence]
@@ -164,3 +164,44 @@ def test_a_fault_beside_a_channel_that_was_named_is_seen_too() -> None:
     assert assessment is not None
     assert assessment.change is not None
     assert Kind.SHORTED_TURNS in assessment.change.named
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("a_record", [-0.0003, 0.0005])
+def test_the_size_of_a_drift_is_that_of_today(a_record: float, seed: int) -> None:
+    plant = Plant(seed=seed)
+    before = list(plant.voltage)
+    follower = follow(motor_of(), plant.records(BEFORE))
+    sizes = []
+    for k in range(1, 64):
+        plant.voltage = [before[0], before[1] * (1.0 + k * a_record), before[2]]
+        follower.fold(plant.record())
+        seen = follower.assessment()
+        assert seen is not None
+        if seen.change is None or not seen.change.named:
+            continue
+        assert seen.change.named == (Kind.VOLTAGE_CHANNEL,)
+        assert seen.change.size is not None
+        assert seen.change.size_ci95 is not None
+        low, high = seen.change.size_ci95
+        assert low < k * a_record < high
+        assert high - low < 0.004 + 0.6 * abs(k * a_record)
+        sizes.append(abs(seen.change.size))
+    assert len(sizes) > 20
+    assert sizes[-1] == pytest.approx(63 * abs(a_record), rel=0.15)
+    assert sizes[-1] > 1.5 * sizes[len(sizes) // 3]
+
+
+def test_a_drift_that_goes_on_after_it_has_been_learnt_is_told_as_one() -> None:
+    plant = Plant()
+    before = list(plant.voltage)
+    follower = follow(motor_of(), plant.records(BEFORE))
+    for k in range(1, 145):
+        plant.voltage = [before[0], before[1] * (1.0 - 0.0006 * k), before[2]]
+        follower.fold(plant.record())
+    seen = follower.assessment()
+    assert seen is not None
+    assert seen.change is not None
+    assert seen.change.named == (Kind.VOLTAGE_CHANNEL,)
+    assert seen.change.since_ns < (BEFORE + 10) * HOUR_NS
+    assert seen.change.size == pytest.approx(-0.0006 * 144, rel=0.1)
