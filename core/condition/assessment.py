@@ -92,6 +92,25 @@ class Change:
 
 
 @dataclass(frozen=True, slots=True)
+class Declared:
+    """Shorted turns that the records showed when a person declared the motor healthy as it is.
+
+    Parameters
+    ----------
+    level : float
+        Fault level in all, a fraction of the phase turns.
+    ci95 : tuple of float
+        Its 95 % interval.
+    phase : {"a", "b", "c"}
+        Phase at the terminals.
+    """
+
+    level: float
+    ci95: tuple[float, float]
+    phase: Phase
+
+
+@dataclass(frozen=True, slots=True)
 class Reference:
     """What the motor was like before any change, as learnt.
 
@@ -114,6 +133,8 @@ class Reference:
         Whether other motors of the bus took part in judging it.
     accepted : bool
         Whether a person has declared the standing asymmetry healthy.
+    declared : Declared or None
+        What speaks against that: shorted turns that the records showed before.
     """
 
     records: int
@@ -124,6 +145,7 @@ class Reference:
     standing_score: float
     from_bus: bool
     accepted: bool = False
+    declared: Declared | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Final
 
 
 class EventKind(StrEnum):
@@ -19,6 +20,17 @@ class EventKind(StrEnum):
     """A person declares the motor healthy as it is: the standing asymmetry is learnt anew."""
     NOTE = "note"
     """A remark of a person, for people: it resets nothing."""
+
+
+ENDING: Final = frozenset(
+    (
+        EventKind.RECORDER_CHANGED,
+        EventKind.REWOUND,
+        EventKind.MAINTENANCE,
+        EventKind.REFERENCE_RESTARTED,
+    )
+)
+"""Events that end the reference. Maintenance does not where shorted turns were named."""
 
 
 @dataclass(frozen=True, slots=True)

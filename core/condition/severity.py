@@ -167,7 +167,7 @@ def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
     """
     change, standing = assessment.change, assessment.reference.standing
     level = level_of(change)
-    if assessment.reference.accepted or (level is not None and level.winding != standing.winding):
+    if level is not None and level.winding != standing.winding:
         # Turns of another winding do not add to the level of this one.
         standing = replace(standing, value=0.0, interval=None)
     share = (
@@ -175,6 +175,9 @@ def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
         if assessment.standing_fault
         else _probability_of_standing_fault(assessment.reference.standing_score)
     )
+    if assessment.reference.accepted:
+        # A person's word takes it off the level. The interval holds what the records say all the same.
+        share = 0.0
     value = share * max(0.0, standing.value)
     low = standing.ci95[0] if assessment.standing_fault else 0.0
     high = standing.ci95[1]

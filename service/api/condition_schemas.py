@@ -30,7 +30,8 @@ class ConditionReference(Document):
     ..._score: standard deviations beyond what the sensors leave). detectable: step of the level that would be
     seen within ten records in nine of ten cases. from_bus: whether other motors of the bus took part in
     judging it.
-    accepted: whether a person said that the motor is healthy as it is.
+    accepted: whether a person said that the motor is healthy as it is; accepted_level: level of the shorted
+    turns that the records showed until then, in accepted_phase, or null.
     """
 
     records: int
@@ -45,6 +46,9 @@ class ConditionReference(Document):
     since: Time | None
     from_bus: bool
     accepted: bool
+    accepted_level: float | None = None
+    accepted_level_ci95: Interval | None = None
+    accepted_phase: Phase | None = None
 
 
 class Condition(Document):
@@ -53,8 +57,8 @@ class Condition(Document):
     kind: what has changed, or stands out from the first record on; `candidates` where that is unclear.
     mu_f: fault level in all, change: since the reference, as fractions of the phase turns, each with its 95 %
     interval from noise, sensors and parameters. size: of the change in its own measure, for example the
-    relative error of a channel, with its 95 % interval. since: first record that shows the change. as_of: latest record that counts;
-    stale: whether that is too old.
+    relative error of a channel, with its 95 % interval. since: first record that shows the change.
+    as_of: latest record that counts; stale: whether that is too old.
     """
 
     motor: str
@@ -106,7 +110,7 @@ class ConditionDetails(Condition):
 
 
 class ConditionChange(_Figures):
-    """A time at which the motor's state, kind or phase changed, or a note was taken into account.
+    """A time at which the motor's state, kind, phase or candidates changed, or a note was taken into account.
 
     candidates: what an unclear kind may be, likeliest first; empty of records before they were kept.
     recording_id, note_id: what caused it; one of them is null.

@@ -33,7 +33,7 @@ log = structlog.get_logger(__name__)
 Said = dict[str, Any]
 """The fields of ConditionFigures."""
 
-TOLD_APART = ("state", "kind", "phase")
+TOLD_APART = ("state", "kind", "phase", "candidates")
 """Where one of these is another than before, the history has it."""
 
 
@@ -124,7 +124,7 @@ class _Folding:
         self._points.append(
             ConditionPoint(recording_id=one.recording_id, time_ns=observation.time_ns, **said)
         )
-        if self._said is None or any(self._said[name] != said[name] for name in TOLD_APART):
+        if self._said is None or _differs(self._said, said):
             self._note(said, observation.time_ns, recording_id=one.recording_id)
 
     def _apply(self, event: ConditionEvent) -> None:
@@ -150,7 +150,7 @@ class _Folding:
         """Return the motor's condition, as it was said of it with its latest record."""
         assessment = self._follower.assessment(self._bus.standings)
         now_ns = 0 if assessment is None else assessment.as_of_ns
-        condition = condition_of(self._motor, assessment, now_ns)
+        condition = condition_of(self._motor, assessment, now_ns, ended_by=self._follower.ended_by)
         return ConditionEntry(
             motor=self._due.motor,
             version=self._due.version + 1,
@@ -180,6 +180,14 @@ class _Bus:
     def neighbours(self, time_ns: int) -> list[Neighbour]:
         """Return what each other motor saw within a minute."""
         return self._records.neighbours(time_ns)
+
+
+def _differs(before: Said, said: Said) -> bool:
+    """Return whether something else is said. The order of the candidates may turn from record to record."""
+    return any(
+        set(before[name]) != set(said[name]) if name == "candidates" else before[name] != said[name]
+        for name in TOLD_APART
+    )
 
 
 def _first_ns(due: FoldInput) -> int:

@@ -6,7 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from core.condition.assessment import Assessment, Change, Level, Reference
+from core.condition.assessment import Assessment, Change, Declared, Level, Reference
 from core.condition.bus.differences import COMMON_RECORDS
 from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
 from core.condition.changes.alarm import Alarm, Weighing, confirm, taken_up, weigh
@@ -52,7 +52,7 @@ from core.condition.kinds import Kind
 from core.condition.measuring.measurement import measure, negative_impedance
 from core.condition.measuring.signatures import terminal_turn
 from core.condition.observation import Observation
-from core.condition.severity import is_shorted_turns
+from core.condition.severity import is_shorted_turns, level_in_all, level_of, of_one_fault, stands_out
 from core.machines.parameters import Motor
 from core.machines.winding_frame import terminal_winding
 from core.signals.sequence import PhaseSequence
@@ -214,8 +214,9 @@ class Direction:
         elif event.kind is EventKind.MAINTENANCE:
             self._maintain()
         elif event.kind is EventKind.REFERENCE_RESTARTED:
+            declared = self._shown(motor)
             self._restart(keep_impedance=True)
-            self._header.accepted = True
+            self._header.accepted, self._header.declared = True, declared
 
     def assessment(self, motor: Motor, bus: Sequence[StandingEstimate]) -> Assessment:
         """Return what the records so far tell.
@@ -251,6 +252,7 @@ class Direction:
                 standing_score=standing.score,
                 from_bus=standing.from_bus,
                 accepted=header.accepted,
+                declared=header.declared,
             ),
             change=change,
             standing_fault=standing.score >= STANDING_SCORE and not header.accepted,
@@ -405,6 +407,18 @@ class Direction:
         self._restart(keep_impedance=Kind.PARAMETERS not in alarm.named)
         header.kept, header.standing = kept, standing
 
+    def _shown(self, motor: Motor) -> Declared | None:
+        """Return the shorted turns that the records show; None where there are none."""
+        if not self.is_known:
+            return self._header.declared
+        limit = motor.limits.fault_level
+        found = of_one_fault(self.assessment(motor, ()), limit)
+        level, interval = level_in_all(found)
+        changed = level_of(found.change)
+        if found.standing_fault or (changed is None and stands_out(found, limit)):
+            return Declared(level, interval, found.reference.standing.phase)
+        return None if changed is None else Declared(level, interval, changed.phase)
+
     def _maintain(self) -> None:
         """Close a change; one that may be shorted turns is looked for again: few works mend a winding.
 
@@ -511,7 +525,7 @@ class Direction:
         state.nominal = self._nominal
         restart(state, self._sides)
         header.start.clear()
-        header.accepted = False
+        header.accepted, header.declared = False, None
         header.alarm = header.standing = header.kept = header.called = None
         header.held_score = 0.0
         header.bus.restart()

@@ -5,7 +5,7 @@ from typing import Final
 
 from core.condition.assessment import Assessment
 from core.condition.bus.neighbours import Neighbour, StandingEstimate
-from core.condition.events import Event, EventKind
+from core.condition.events import ENDING, Event, EventKind
 from core.condition.following.direction import Direction
 from core.condition.following.saving import pack, unpack
 from core.condition.kinds import State
@@ -40,6 +40,7 @@ class Follower:
         self._motor = motor
         self._directions: list[Direction] = []
         """In the order of their latest records."""
+        self._ended_by: Event | None = None
 
     @property
     def motor(self) -> Motor:
@@ -50,6 +51,11 @@ class Follower:
     def as_of_ns(self) -> int | None:
         """Time of the latest record, UTC [ns]; None before the first."""
         return self._directions[-1].as_of_ns if self._directions else None
+
+    @property
+    def ended_by(self) -> Event | None:
+        """The latest event that ended the reference; None where there is a record since then."""
+        return self._ended_by
 
     def fold(self, observation: Observation, neighbours: Sequence[Neighbour] = ()) -> None:
         """Take one record in.
@@ -78,6 +84,7 @@ class Follower:
         known = next((one for one in self._directions if one.is_of(observation)), None)
         direction = self._begun(observation.sequence) if known is None else known
         direction.fold(self._motor, observation, neighbours)
+        self._ended_by = None
         self._directions = [*(one for one in self._directions if one is not known), direction]
         if len(self._directions) > MOST_REFERENCES:
             self._drop_one()
@@ -93,6 +100,8 @@ class Follower:
             The motor as it is from then on; None where its file stays as it was.
         """
         edited = self._motor if motor is None else motor
+        if event.kind in ENDING:
+            self._ended_by = event
         if event.kind is EventKind.REWOUND:
             self._directions.clear()
         for direction in self._directions:
@@ -170,7 +179,7 @@ class Follower:
         bytes
             What `restore` reads.
         """
-        return pack(self._directions)
+        return pack(self._directions, self._ended_by)
 
     @classmethod
     def restore(cls, motor: Motor, state: bytes) -> "Follower":
@@ -194,5 +203,5 @@ class Follower:
             If it is no state of this version: fold the records again.
         """
         follower = cls(motor)
-        follower._directions = unpack(motor, state)
+        follower._directions, follower._ended_by = unpack(motor, state)
         return follower

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from core.condition.assessment import Change, Level
+from core.condition.assessment import Change, Declared, Level
 from core.condition.bus.differences import BusDifferences, Pair
 from core.condition.changes.alarm import Alarm
 from core.condition.following.standing import Called, StandingErrors
@@ -30,6 +30,8 @@ class Header:
         move it.
     accepted : bool
         Whether a person has declared the standing asymmetry healthy.
+    declared : Declared or None
+        Shorted turns that the records showed before that.
     alarm : Alarm or None
         The change that is seen.
     kept : Change or None
@@ -52,6 +54,7 @@ class Header:
     since_ns: int = 0
     scale_ohm: float = 0.0
     accepted: bool = False
+    declared: Declared | None = None
     alarm: Alarm | None = None
     kept: Change | None = None
     standing: StandingErrors | None = None
@@ -91,6 +94,7 @@ class Header:
             "since_ns": self.since_ns,
             "scale_ohm": self.scale_ohm,
             "accepted": self.accepted,
+            "declared": None if self.declared is None else asdict(self.declared),
             "alarm": None if self.alarm is None else asdict(self.alarm),
             "kept": None if self.kept is None else asdict(self.kept),
             "standing": None if self.standing is None else asdict(self.standing),
@@ -128,6 +132,7 @@ class Header:
             since_ns=words["since_ns"],
             scale_ohm=words["scale_ohm"],
             accepted=words["accepted"],
+            declared=None if words["declared"] is None else _declared(words["declared"]),
             alarm=alarm,
             kept=None if words["kept"] is None else _change(words["kept"]),
             standing=None if words["standing"] is None else StandingErrors(**words["standing"]),
@@ -141,6 +146,11 @@ class Header:
             ),
             start=[_from_list(values) for values in words["start"]],
         )
+
+
+def _declared(words: Mapping[str, Any]) -> Declared:
+    low, high = words["ci95"]
+    return Declared(words["level"], (low, high), words["phase"])
 
 
 def _change(words: Mapping[str, Any]) -> Change:

@@ -2,25 +2,29 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Final
 from zlib import compress, decompress
 from zlib import error as zlib_error
 
+from core.condition.events import Event, EventKind
 from core.condition.following.direction import Direction
 from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
 
-MAGIC: Final = b"StatorWatch follower 4\n"
+MAGIC: Final = b"StatorWatch follower 5\n"
 """Name and version; another layout gets another number."""
 
 
-def pack(directions: Sequence[Direction]) -> bytes:
+def pack(directions: Sequence[Direction], ended_by: Event | None) -> bytes:
     """Write a state.
 
     Parameters
     ----------
     directions : sequence of Direction
         What was learnt in each direction by each recorder.
+    ended_by : Event or None
+        The latest event that ended the reference, where there is no record since.
 
     Returns
     -------
@@ -33,10 +37,11 @@ def pack(directions: Sequence[Direction]) -> bytes:
         body = compress(numbers, level=1)
         headers.append({"sequence": str(direction.sequence), "bytes": len(body)} | header)
         bodies.append(body)
-    return MAGIC + json.dumps({"directions": headers}).encode() + b"\n" + b"".join(bodies)
+    document = {"directions": headers, "ended_by": None if ended_by is None else asdict(ended_by)}
+    return MAGIC + json.dumps(document).encode() + b"\n" + b"".join(bodies)
 
 
-def unpack(motor: Motor, state: bytes) -> list[Direction]:
+def unpack(motor: Motor, state: bytes) -> tuple[list[Direction], Event | None]:
     """Read a state.
 
     Parameters
@@ -48,8 +53,10 @@ def unpack(motor: Motor, state: bytes) -> list[Direction]:
 
     Returns
     -------
-    list of Direction
+    directions : list of Direction
         What was learnt in each direction by each recorder.
+    ended_by : Event or None
+        The latest event that ended the reference, where there is no record since.
 
     Raises
     ------
@@ -76,4 +83,7 @@ def unpack(motor: Motor, state: bytes) -> list[Direction]:
             raise ValueError(f"the saved state is damaged ({error}): fold the records again") from error
         directions.append(Direction.unpacked(motor, sequence, header, numbers))
         start += len(body)
-    return directions
+    ended_by = document["ended_by"]
+    if ended_by is not None:
+        ended_by = Event(ended_by["time_ns"], EventKind(ended_by["kind"]), ended_by["reason"])
+    return directions, ended_by

@@ -8,15 +8,17 @@ from core.condition.assessment import (
     PHASES,
     STALE_AFTER_NS,
     Assessment,
+    Declared,
     Level,
     Phase,
     Reference,
 )
+from core.condition.events import Event
 from core.condition.forecast.forecast import Forecast, forecast, limit_ahead
 from core.condition.kinds import Kind, State
 from core.condition.severity import Interval, level_of, of_one_fault, stands_out
 from core.condition.verdict.advice import advice
-from core.condition.verdict.reasons import reasons_of
+from core.condition.verdict.reasons import reason_of_unknown, reasons_of
 from core.condition.verdict.verdict import Verdict, verdict_of
 from core.machines.parameters import Motor
 from core.machines.winding_frame import Winding
@@ -143,7 +145,7 @@ class Condition:
         ----------
         document : mapping
             What `as_dict` returned; further keys are left out. Those of earlier versions have no
-            `size_ci95`.
+            `size_ci95` and no `accepted_level`.
 
         Returns
         -------
@@ -184,7 +186,12 @@ class Condition:
 
 
 def condition_of(
-    motor: Motor, assessment: Assessment | None, now_ns: int, stale_after_ns: int = STALE_AFTER_NS
+    motor: Motor,
+    assessment: Assessment | None,
+    now_ns: int,
+    stale_after_ns: int = STALE_AFTER_NS,
+    *,
+    ended_by: Event | None = None,
 ) -> Condition:
     """Judge a motor from what its records tell.
 
@@ -198,6 +205,8 @@ def condition_of(
         Time at which the condition is looked at, UTC [ns].
     stale_after_ns : int, optional
         Longest age of the latest record [ns].
+    ended_by : Event or None, optional
+        The event that ended the reference, where there is no record since.
 
     Returns
     -------
@@ -207,7 +216,7 @@ def condition_of(
     limit = motor.limits.fault_level
     verdict = verdict_of(assessment, limit)
     if assessment is None or verdict.mu_f is None:
-        return _unknown(motor)
+        return _unknown(motor, ended_by)
     fault = of_one_fault(assessment, limit)
     state, kind = verdict.state, verdict.kind
     size, size_ci95 = _size(fault, verdict)
@@ -234,7 +243,7 @@ def condition_of(
     )
 
 
-def _unknown(motor: Motor) -> Condition:
+def _unknown(motor: Motor, ended_by: Event | None) -> Condition:
     return Condition(
         motor=motor.name,
         state=State.UNKNOWN,
@@ -253,7 +262,7 @@ def _unknown(motor: Motor) -> Condition:
         as_of_ns=None,
         stale=True,
         advice=advice(State.UNKNOWN, Kind.NONE),
-        reasons=("there is no valid record yet, or none since the reference was ended by an event",),
+        reasons=(reason_of_unknown(ended_by),),
     )
 
 
@@ -303,7 +312,7 @@ def _interval(figures: list[float] | None) -> Interval | None:
 def _reference_document(reference: Reference | None) -> dict[str, object]:
     if reference is None:
         return {"records": 0, "complete": False, "standing": None}
-    standing = reference.standing
+    standing, before = reference.standing, reference.declared
     return {
         "records": reference.records,
         "complete": reference.complete,
@@ -317,6 +326,9 @@ def _reference_document(reference: Reference | None) -> dict[str, object]:
         "since": _time(reference.since_ns),
         "from_bus": reference.from_bus,
         "accepted": reference.accepted,
+        "accepted_level": None if before is None else before.level,
+        "accepted_level_ci95": None if before is None else _listed(before.ci95),
+        "accepted_phase": None if before is None else before.phase,
     }
 
 
@@ -338,4 +350,12 @@ def _reference(document: Mapping[str, Any]) -> Reference | None:
         standing_score=document["standing_score"],
         from_bus=document["from_bus"],
         accepted=document["accepted"],
+        declared=_declared(document),
     )
+
+
+def _declared(document: Mapping[str, Any]) -> Declared | None:
+    interval = _interval(document.get("accepted_level_ci95"))
+    if interval is None:
+        return None
+    return Declared(document["accepted_level"], interval, document["accepted_phase"])

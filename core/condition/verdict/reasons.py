@@ -1,9 +1,11 @@
 """Why a motor is judged as it is, in words."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Final
 
 from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
+from core.condition.events import Event
 from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
 from core.condition.severity import FEW, Interval, standing_stays_a_fault, stands_out, stays_a_fault
@@ -58,6 +60,28 @@ def reasons_of(assessment: Assessment, limit: float, forecast: Forecast) -> tupl
     return tuple(found)
 
 
+def reason_of_unknown(ended_by: Event | None) -> str:
+    """Return why nothing is known of a motor.
+
+    Parameters
+    ----------
+    ended_by : Event or None
+        The event that ended the reference, where there is no record since.
+
+    Returns
+    -------
+    str
+        The reason.
+    """
+    if ended_by is None:
+        return "there is no valid record yet"
+    said = f" ({ended_by.reason})" if ended_by.reason else ""
+    return (
+        f"there is no valid record since the event {ended_by.kind}{said} of {_seconds(ended_by.time_ns)}, "
+        "which ended the reference"
+    )
+
+
 def _of_change(change: Change, limit: float) -> Iterator[str]:
     since = _seconds(change.since_ns)
     level = change.level
@@ -81,7 +105,8 @@ def _of_change(change: Change, limit: float) -> Iterator[str]:
         yield f"if it is shorted turns, they are in phase {level.phase}: {_interval(level)}"
     if Kind.SHORTED_TURNS in change.named:
         above = level.ci95[0] > limit
-        yield f"the interval {'lies above' if above else 'reaches below'} the motor's limit of {_percent(limit)}"
+        lies = "lies above" if above else "reaches below"
+        yield f"the interval {lies} the motor's limit of {_percent(limit)}"
         if not above and stays_a_fault(change, limit):
             yield "it lay above the limit before; shorted turns do not heal, so it stays a fault"
 
@@ -95,8 +120,8 @@ def _of_forecast(forecast: Forecast) -> Iterator[str]:
     else:
         low, mid, high = (_days(days) for days in forecast.days)
         yield (
-            f"the level grows by {100.0 * growth:.3f} % a day; it reaches {_percent(forecast.limit)} in about {mid}, between "
-            f"{low} and {high} with 80 %"
+            f"the level grows by {100.0 * growth:.3f} % a day; it reaches {_percent(forecast.limit)} in "
+            f"about {mid}, in eight of ten cases between {low} and {high}"
         )
 
 
@@ -114,7 +139,17 @@ def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
         if standing.value <= limit and standing_stays_a_fault(assessment, limit):
             yield "it lay above the limit before; shorted turns do not heal, so it stays a fault"
     elif reference.accepted:
-        yield "a person has declared the asymmetry that stands from the first record on healthy"
+        yield "a person has declared the motor healthy as it was when the reference was restarted"
+        before = reference.declared
+        if before is not None:
+            yield (
+                f"until then the records showed shorted turns in phase {before.phase}: "
+                f"{_with_interval(before.level, before.ci95)}"
+            )
+        if stands_out(replace(assessment, reference=replace(reference, accepted=False)), limit):
+            yield f"{beyond}; shorted turns would be in phase {standing.phase}: {_interval(standing)}"
+        else:
+            yield f"the records since then leave room for shorted turns up to {_percent(standing.ci95[1])}"
     elif stands_out(assessment, limit):
         yield f"{beyond}; shorted turns would be in phase {standing.phase}: {_interval(standing)}"
     else:
@@ -129,8 +164,8 @@ def _of_reference(reference: Reference) -> Iterator[str]:
         yield f"the reference is still being learnt ({reference.records} records): no change can be seen yet"
     elif reference.detectable is not None:
         yield (
-            f"the reference holds {reference.records} records; a step of {_percent(reference.detectable)} of the "
-            "turns would be seen within ten records in nine of ten cases"
+            f"the reference holds {reference.records} records; a step of {_percent(reference.detectable)} of "
+            "the turns would be seen within ten records in nine of ten cases"
         )
 
 

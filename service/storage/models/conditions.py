@@ -89,7 +89,9 @@ class ConditionRow(Figures, Base):
 
 
 class ConditionChangeRow(Figures, Base):
-    """A time at which a motor's state, kind or phase changed, or an event happened; with what is said then.
+    """A time at which a motor's state, kind, phase or candidates changed, or an event happened.
+
+    It has what is said then.
 
     id: that of the recording or the event that caused it.
     """

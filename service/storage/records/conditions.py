@@ -68,7 +68,7 @@ class ConditionPoint(ConditionFigures):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConditionChange(ConditionFigures):
-    """A time at which a motor's state, kind or phase changed, or an event happened.
+    """A time at which a motor's state, kind, phase or candidates changed, or an event happened.
 
     recording_id, event_id: what caused it; one of them is None.
     """

@@ -71,8 +71,11 @@ def test_records_in_any_order_of_arrival_give_the_condition_of_all_at_once(
     points = repository.condition_trend(PUMP, limit=100).items
     assert [point.time_ns for point in points] == [record.time_ns for record in RECORDS]
     changes = repository.condition_history(PUMP, limit=100).items[::-1]
-    said = {point.time_ns: (point.state, point.kind, point.phase) for point in points}
-    assert [(one.time_ns, (one.state, one.kind, one.phase)) for one in changes] == [
+    said = {p.time_ns: (p.state, p.kind, p.phase, frozenset(p.candidates)) for p in points}
+    assert len({kinds for *_, kinds in said.values()}) > 1
+    assert [
+        (one.time_ns, (one.state, one.kind, one.phase, frozenset(one.candidates))) for one in changes
+    ] == [
         (time_ns, now)
         for (time_ns, now), before in zip(said.items(), [None, *said.values()], strict=False)
         if now != before

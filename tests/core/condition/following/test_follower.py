@@ -123,3 +123,23 @@ def test_an_event_after_the_latest_record_leaves_a_condition_that_can_be_told(
     follower = Follower.restore(MOTOR, follower.save())
     follower.fold(records[count])
     assert condition_of(MOTOR, follower.assessment(), count * HOUR_NS).state is State.HEALTHY
+
+
+ENDING = [
+    EventKind.REWOUND, EventKind.MAINTENANCE, EventKind.RECORDER_CHANGED, EventKind.REFERENCE_RESTARTED,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", ENDING)
+def test_what_ended_the_reference_is_known_until_the_next_record(kind: EventKind) -> None:
+    *records, latest = healthy_records(21)
+    follower = follow(records)
+    follower.apply(Event(records[-1].time_ns + 1, EventKind.NOTE, "hums"))
+    assert follower.ended_by is None
+    event = Event(records[-1].time_ns + 2, kind, "told by a person")
+    follower.apply(event)
+    assert follower.assessment() is None
+    restored = Follower.restore(MOTOR, follower.save())
+    assert restored.ended_by == event
+    restored.fold(latest)
+    assert restored.ended_by is None

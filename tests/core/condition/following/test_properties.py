@@ -155,6 +155,32 @@ def test_an_event_closes_a_change_and_the_reference_is_learnt_anew(kind: EventKi
     assert assessment.reference.accepted == (kind is EventKind.REFERENCE_RESTARTED)
 
 
+@pytest.mark.parametrize("level", [0.0, 0.03])
+def test_a_motor_that_is_declared_healthy_keeps_what_speaks_against_it(level: float) -> None:
+    motor, plant = motor_of(), Plant()
+    follower = follow(motor, plant.records(60))
+    plant.level = level
+    for record in plant.records(20):
+        follower.fold(record)
+    before = condition_of(motor, assessed(follower), plant.time_ns)
+    follower.apply(Event(plant.time_ns, EventKind.REFERENCE_RESTARTED, "surge test passed"))
+    for record in plant.records(12):
+        follower.fold(record)
+    follower = Follower.restore(motor, follower.save())
+    after = condition_of(motor, assessed(follower), plant.time_ns)
+    assert (after.state, after.mu_f) == (State.HEALTHY, 0.0)
+    assert after.reference is not None
+    assert after.mu_f_ci95 is not None
+    assert after.mu_f_ci95[1] > level, "the interval holds what a person took for healthy"
+    declared = after.reference.declared
+    if level == 0.0:
+        assert declared is None
+        return
+    assert declared is not None
+    assert (declared.level, declared.ci95, declared.phase) == (before.mu_f, before.mu_f_ci95, "a")
+    assert any(f"{100.0 * declared.level:.2f} %" in reason for reason in after.reasons)
+
+
 @pytest.mark.parametrize("after", [8, 60, 200])
 def test_maintenance_that_mends_no_winding_takes_no_fault_back(after: int) -> None:
     motor, plant = motor_of(), Plant()

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.condition.assessment import STALE_AFTER_NS, Assessment, Change, Level, Reference
+from core.condition.assessment import STALE_AFTER_NS, Assessment, Change, Declared, Level, Reference
+from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
 from core.condition.verdict.condition import Condition, condition_of
 from core.machines.winding_frame import Winding
@@ -77,6 +78,33 @@ def test_no_valid_record_is_unknown_and_stale() -> None:
     condition = judged(None)
     assert (condition.state, condition.kind, condition.stale) == (State.UNKNOWN, Kind.NONE, True)
     assert condition.as_dict()["reference"] == {"records": 0, "complete": False, "standing": None}
+
+
+def test_an_event_after_the_latest_record_is_the_reason_of_not_knowing() -> None:
+    event = Event(AS_OF_NS, EventKind.MAINTENANCE, "terminals tightened")
+    (reason,) = condition_of(MOTOR, None, AS_OF_NS, ended_by=event).reasons
+    assert "since the event maintenance (terminals tightened) of 2027-01-15T08:00:00Z" in reason
+
+
+@pytest.mark.parametrize(
+    ("probability", "words"),
+    [(1.0, "more than 99 %"), (0.9901, "more than 99 %"), (0.985, "probability 98 %")],
+)
+def test_nothing_is_told_as_certain(probability: float, words: str) -> None:
+    seen = change(Kind.VOLTAGE_CHANNEL, probabilities={Kind.VOLTAGE_CHANNEL: probability})
+    (told, *_) = judged(assessment(replace(seen, size_ci95=(0.015, 0.025)))).reasons
+    assert told.endswith(words)
+    assert "by 2.00 % (95 % interval 1.50 % to 2.50 %) since" in told
+    (told, *_) = judged(assessment(change(probabilities={Kind.CONNECTION: probability}))).reasons
+    assert words.removeprefix("probability ") in told
+
+
+def test_a_growth_that_is_not_certain_has_no_time() -> None:
+    flat = tuple((AS_OF_NS - (99 - k) * NANOSECONDS_PER_DAY // 24, 0.003) for k in range(100))
+    condition = judged(assessment(change(Kind.SHORTED_TURNS, size=level(0.003, 0.0002)), levels=flat))
+    assert condition.forecast.days is None
+    assert any("may never reach 0.50 %" in reason for reason in condition.reasons)
+    assert not any("grows by" in reason for reason in condition.reasons)
 
 
 def test_no_change_is_healthy_from_the_first_record_on() -> None:
@@ -176,6 +204,12 @@ def test_a_standing_asymmetry_that_a_person_declared_healthy_is_left() -> None:
     accepted = replace(reference(standing=level(0.012, 0.004), score=3.8), accepted=True)
     condition = judged(assessment(reference=accepted))
     assert (condition.state, condition.mu_f) == (State.HEALTHY, 0.0)
+    assert condition.mu_f_ci95 == (0.0, accepted.standing.ci95[1])
+    assert any("would be in phase b: 1.20 %" in reason for reason in condition.reasons)
+    declared = replace(accepted, declared=Declared(0.032, (0.02, 0.04), "c"))
+    told = judged(assessment(reference=declared))
+    assert any("until then" in reason and "phase c: 3.20 %" in reason for reason in told.reasons)
+    assert told.as_dict()["reference"]["accepted_level"] == 0.032  # type: ignore[index]  # a document
 
 
 def test_a_standing_fault_that_grows_adds_up_where_it_is_one_winding() -> None:
@@ -312,6 +346,7 @@ CHANGES = st.builds(
     channel=st.none() | st.sampled_from([0, 1, 2]),
     size=st.none() | st.floats(-0.1, 0.1),
     surely_above=st.floats(0.0, 0.1),
+    size_ci95=st.none() | st.tuples(st.floats(-0.2, 0.0), st.floats(0.0, 0.2)),
 )
 STANDING = st.builds(
     lambda found, low, high: replace(found, interval=(low, low + high)),
@@ -327,6 +362,13 @@ REFERENCES = st.builds(
     standing_score=st.floats(0, 50),
     from_bus=st.booleans(),
     accepted=st.booleans(),
+    declared=st.none()
+    | st.builds(
+        Declared,
+        st.floats(0.0, 0.3),
+        st.tuples(st.floats(0.0, 0.1), st.floats(0.1, 0.5)),
+        st.sampled_from(["a", "b", "c"]),
+    ),
 )
 ASSESSMENTS = st.builds(
     Assessment,
