@@ -8,6 +8,15 @@ from pathlib import Path
 from time import perf_counter
 from typing import TypeVar
 
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 from scipy.stats import beta
 
 Task = TypeVar("Task")
@@ -40,15 +49,26 @@ class Section:
 def spread(
     work: Callable[[Task], Result], tasks: Sequence[Task], label: str, pool: Executor
 ) -> Iterator[Result]:
-    """Results of `work` in the order of the tasks; progress on stderr."""
+    """Results of `work` in the order of the tasks; progress on stderr, as a bar on a terminal."""
     begun = said = perf_counter()
     chunk = max(1, min(MOST_AT_A_TIME, len(tasks) // FEWEST_TURNS))
-    for done, result in enumerate(pool.map(work, tasks, chunksize=chunk), start=1):
-        now = perf_counter()
-        if now - said > PROGRESS_S or done == len(tasks):
-            said = now
-            print(f"{label}: {done} of {len(tasks)}, {now - begun:.0f} s", file=sys.stderr, flush=True)
-        yield result
+    console = Console(stderr=True)
+    columns = (
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        shown = bar.add_task(label, total=len(tasks))
+        for done, result in enumerate(pool.map(work, tasks, chunksize=chunk), start=1):
+            bar.update(shown, completed=done)
+            now = perf_counter()
+            if (now - said > PROGRESS_S and not console.is_terminal) or done == len(tasks):
+                said = now
+                print(f"{label}: {done} of {len(tasks)}, {now - begun:.0f} s", file=sys.stderr, flush=True)
+            yield result
 
 
 def rate_interval(count: int, of: int) -> tuple[float, float]:

@@ -1,7 +1,7 @@
 """Five motors on one bus: channels judged against each other, and motors faulty from the beginning."""
 
 from collections import Counter
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -10,15 +10,19 @@ import numpy as np
 
 from benchmarks.condition.courses import Course, healthy, shape, with_fault, with_unbalance
 from benchmarks.condition.disturbances import Disturbance, disturbed, outcome_row
-from benchmarks.condition.following import Outcome, Said, judged_around, outcome, quantile_text, said_of
+from benchmarks.condition.following import (
+    Outcome,
+    follow_together,
+    judged_around,
+    outcome,
+    quantile_text,
+)
+from benchmarks.condition.marks import Mark, at_least, at_most, median_at_most, percent
 from benchmarks.condition.operation import Operation, draw_operation
 from benchmarks.condition.population import SENSOR_CLASSES, SimulatedMotor, draw_motor, draw_site
 from benchmarks.condition.records import REAL_NOISE, measure
-from benchmarks.reporting import mark, rate_text, spread, table
-from core.condition.bus.neighbours import neighbour_of
-from core.condition.following.follower import Follower
-from core.condition.kinds import State
-from core.condition.observation import Observation
+from benchmarks.reporting import rate_text, spread, table
+from core.condition.kinds import Kind, State
 from core.machines.sensors import SensorClass
 
 MOTORS = 5
@@ -31,6 +35,9 @@ STANDING_LEVELS = (0.005, 0.0075, 0.01, 0.02)
 STANDING_RECORDS = 100
 COARSE = SensorClass(0.01, 0.01, 50e-6, 50e-6)
 MOST_CALLED = 0.01
+"""Of each disturbance."""
+MEDIAN_GROWTH = 59.0
+LEAST_PHASE = 0.995
 
 
 class Case(StrEnum):
@@ -76,11 +83,18 @@ class Task:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What came of the first motor, whether its phase is right, and how many others were called a fault."""
+    """What came of the first motor, its level if it stands, whether its phase is right, how many others there
+    are and how many of them were called a fault."""
 
     outcome: Outcome
+    level: float
     right: bool
+    others: int
     others_called: int
+
+
+Part = tuple[list[Result], list[Mark], list[str]]
+"""A part of the section: all results, its marks, the lines of its table."""
 
 
 def follow_bus(task: Task) -> Result:
@@ -112,12 +126,16 @@ def follow_bus(task: Task) -> Result:
         measure(random, one, _at_the_bus(random, supply, records), course, REAL_NOISE).observations()
         for one, course in zip(motors, courses, strict=True)
     ]
-    said, others_called = _follow_together(
-        motors, every, judged_around(first, records), compared=task.transformers is not Transformers.COMMON
+    said, others = follow_together(
+        [one.motor for one in motors],
+        every,
+        judged_around(first, records),
+        compared=task.transformers is not Transformers.COMMON,
     )
+    others_called = sum(one.condition.state is State.FAULT for one in others)
     found = outcome(said, first)
     place = "abc"[motors[0].terminal(winding)]
-    return Result(found, found.phase == place, others_called)
+    return Result(found, task.level, found.phase == place, task.motors - 1, others_called)
 
 
 def _courses(
@@ -148,74 +166,59 @@ def _at_the_bus(random: np.random.Generator, supply: Operation, records: int) ->
     return replace(own, time_ns=supply.time_ns, unbalance=own.unbalance + APART / np.sqrt(2) * apart)
 
 
-def _follow_together(
-    motors: Sequence[SimulatedMotor],
-    every: Sequence[Sequence[Observation]],
-    judged: Container[int],
-    *,
-    compared: bool,
-) -> tuple[list[Said], int]:
-    """What is said of the first motor after each record; how many others were a fault at their last.
-
-    compared: with each other, as the service does it unless it is told of a common transformer.
-    """
-    followers = [Follower(one.motor) for one in motors]
-    said = []
-    for number, records in enumerate(zip(*every, strict=True)):
-        seen = [neighbour_of(one.motor, record) for one, record in zip(motors, records, strict=True)]
-        for k, (follower, record) in enumerate(zip(followers, records, strict=True)):
-            follower.fold(record, [*seen[:k], *seen[k + 1 :]] if compared else [])
-        if number in judged:
-            said.append(_said(followers, motors, 0, number, compared))
-    others = [_said(followers, motors, k, number, compared) for k in range(1, len(motors))]
-    return said, sum(one.condition.state is State.FAULT for one in others)
+def bus(buses: int, pool: Executor) -> Iterator[str | Mark]:
+    """Marks and tables of what comes to a bus, and of motors that are faulty from the first record on."""
+    others: list[Result] = []
+    lines: list[str] = []
+    for part in (_disturbances, _growth, _standing):
+        found, marks, said = part(buses, pool)
+        others += found
+        lines += [*said, ""]
+        yield from marks
+    number = sum(one.others for one in others)
+    yield at_most("other motors of all buses called `fault`", _others_called(others), number, 0.0)
+    yield from lines
 
 
-def _said(
-    followers: Sequence[Follower], motors: Sequence[SimulatedMotor], k: int, record: int, compared: bool
-) -> Said:
-    others = [one for j, one in enumerate(followers) if j != k] if compared else []
-    estimates = [one.standing_estimate() for one in others]
-    known = [one for one in estimates if one is not None]
-    return said_of(followers[k], motors[k].motor, record, known)
-
-
-def bus(buses: int, pool: Executor) -> Iterator[str]:
-    """Tables of what comes to a bus, and of motors that are faulty from the first record on."""
-    rows = []
-    called = total = others = 0
+def _disturbances(buses: int, pool: Executor) -> Part:
+    """What comes to a bus: all results, marks, a table."""
+    rows: list[list[str]] = []
+    marks: list[Mark] = []
+    every: list[Result] = []
     for transformers in (Transformers.OWN, Transformers.COMMON):
+        by_case: dict[Case, list[Result]] = {}
         for case in (*DISTURBANCES, Case.SUPPLY):
             tasks = [Task(case, number, transformers) for number in range(buses)]
             found = list(spread(follow_bus, tasks, f"{case.value}, {transformers.value}", pool))
-            faults = sum(one.outcome.called_fault is not None for one in found)
-            called, total = called + faults, total + len(found)
-            others += sum(one.others_called for one in found)
+            by_case[case] = found
             rows.append(
                 [
-                    transformers.value, case.value, rate_text(faults, len(found)),
-                    *outcome_row([one.outcome for one in found]),
-                    f"{sum(one.others_called for one in found)}",
+                    transformers.value, case.value, rate_text(len(_called(found)), len(found)),
+                    *outcome_row([one.outcome for one in found]), f"{_others_called(found)}",
                 ]
             )  # fmt: skip
-    yield from table(
-        ["transformer", "first motor", "called `fault`", "seen", "in the end", "other motors called"], rows
-    )
-    yield ""
-    yield f"{rate_text(called, total)} called `fault`: {mark(called <= MOST_CALLED * total)} "
-    yield f"({MOST_CALLED:.0%}). Other motors called: {others}."
-    yield ""
-    yield from _growth(buses, pool)
-    yield ""
-    yield from _standing(buses, pool)
+            if transformers is Transformers.OWN and case in (Case.VOLTAGE_STEP, Case.VOLTAGE_DRIFT):
+                named = sum(one.outcome.final == (Kind.VOLTAGE_CHANNEL,) for one in found)
+                marks.append(at_least(f"{case.value}, own transformers: named so", named, len(found), 1.0))
+            every += found
+        worst = max(by_case, key=lambda case: len(_called(by_case[case])))
+        what = f"disturbances, {transformers.value} transformers: called `fault`, worst ({worst.value})"
+        marks.append(at_most(what, len(_called(by_case[worst])), len(by_case[worst]), MOST_CALLED))
+    header = ["transformer", "first motor", "called `fault`", "seen", "in the end", "other motors called"]
+    return every, marks, table(header, rows)
 
 
-def _growth(buses: int, pool: Executor) -> Iterator[str]:
-    rows = []
+def _growth(buses: int, pool: Executor) -> Part:
+    """Shorted turns that grow: all results, marks, a table."""
+    rows: list[list[str]] = []
+    marks: list[Mark] = []
+    every: list[Result] = []
     for transformers in (Transformers.OWN, Transformers.COMMON):
         tasks = [Task(Case.GROWTH, number, transformers) for number in range(buses)]
-        found = list(spread(follow_bus, tasks, "growth", pool))
-        called = [one for one in found if one.outcome.called_fault is not None]
+        found = list(spread(follow_bus, tasks, f"growth, {transformers.value}", pool))
+        every += found
+        called = _called(found)
+        right = sum(one.right for one in called)
         delays = np.array([one.outcome.called_fault for one in called], dtype=np.float64)
         named = Counter(
             " or ".join(str(kind) for kind in one.outcome.final) or "none"
@@ -225,43 +228,67 @@ def _growth(buses: int, pool: Executor) -> Iterator[str]:
         rows.append(
             [
                 transformers.value, rate_text(len(called), len(found)),
-                f"{quantile_text(delays)}, {quantile_text(delays, 0.9)}",
-                f"{sum(one.right for one in called)} of {len(called)}",
+                f"{quantile_text(delays)}, {quantile_text(delays, 0.9)}", f"{right} of {len(called)}",
                 ", ".join(f"{name} {count}" for name, count in named.most_common()) or "-",
             ]
         )  # fmt: skip
-    yield f"Growth of 0.01 % of the turns a record, for {AFTER} records:"
-    yield ""
-    yield from table(
-        ["transformer", "called `fault`", "by record: median, 90 %", "phase right", "others in the end"], rows
-    )
+        if transformers is Transformers.OWN:
+            what = "growth of 0.01 % a record, own transformers"
+            marks += [
+                at_least(f"{what}: called `fault`", len(called), len(found), 1.0),
+                median_at_most(f"{what}: median delay until `fault`", delays, MEDIAN_GROWTH),
+                at_least(f"{what}: phase right in all called", right, len(called), LEAST_PHASE),
+            ]
+    header = ["transformer", "called `fault`", "by record: median, 90 %", "phase right", "others in the end"]
+    about = f"Growth of 0.01 % of the turns a record, for {AFTER} records:"
+    return every, marks, [about, "", *table(header, rows)]
 
 
-def _standing(buses: int, pool: Executor) -> Iterator[str]:
+def _standing(buses: int, pool: Executor) -> Part:
+    """Motors that are faulty from the first record on: all results, marks, a table."""
+    own, alone = "five motors, own transformers", "alone, 1 % and 50 us"
     kinds = (
-        ("five motors, own transformers", Task(Case.STANDING, 0)),
+        (own, Task(Case.STANDING, 0)),
         ("five motors, a common one, stated", Task(Case.STANDING, 0, Transformers.COMMON)),
         ("five motors, a common one, not stated", Task(Case.STANDING, 0, Transformers.UNSTATED)),
         ("five motors, own transformers, 1 % and 50 us", Task(Case.STANDING, 0, sensors=COARSE)),
-        ("alone, 1 % and 50 us", Task(Case.STANDING, 0, sensors=COARSE, motors=1)),
+        (alone, Task(Case.STANDING, 0, sensors=COARSE, motors=1)),
     )
-    rows = []
+    floors = {(own, 0.0075): 0.90, (own, 0.01): 1.0, (alone, 0.03): 0.63}
+    rows: list[list[str]] = []
+    marks: list[Mark] = []
+    every: list[Result] = []
     for name, task in kinds:
         for level in (0.0, *STANDING_LEVELS, *((0.03,) if task.motors == 1 else ())):
             tasks = [replace(task, number=number, level=level) for number in range(buses)]
             found = list(spread(follow_bus, tasks, f"standing {level:.2%}, {name}", pool))
-            called = [one for one in found if one.outcome.called_fault is not None]
+            every += found
+            called = _called(found)
             watched = sum(one.outcome.final_state is State.WATCH for one in found)
             rows.append(
                 [
                     name, f"{level:.2%}", rate_text(len(called), len(found)),
                     f"{sum(one.right for one in called)} of {len(called)}" if level else "-", f"{watched}",
-                    f"{sum(one.others_called for one in found)}",
+                    f"{_others_called(found)}",
                 ]
             )  # fmt: skip
-    yield f"Faulty from the first record on, {STANDING_RECORDS} records, paths 0, 1 or 3:"
-    yield ""
-    yield from table(
-        ["motors", "level", "called `fault`", "phase right", "`watch` in the end", "other motors called"],
-        rows,
-    )
+            if (name, level) in floors:
+                what = f"{percent(level)} from the first record on, {name}: called `fault`"
+                marks.append(at_least(what, len(called), len(found), floors[name, level]))
+    faulty = [one for one in every if one.level and one.outcome.called_fault is not None]
+    right = sum(one.right for one in faulty)
+    marks.append(at_least("faulty from the first record on: phase right", right, len(faulty), LEAST_PHASE))
+    sound = [one for one in every if not one.level]
+    what = "sound from the first record on: called `fault`"
+    marks.append(at_most(what, len(_called(sound)), len(sound), 0.0))
+    header = ["motors", "level", "called `fault`", "phase right", "`watch` in the end", "other motors called"]
+    about = f"Faulty from the first record on, {STANDING_RECORDS} records, paths 0, 1 or 3:"
+    return every, marks, [about, "", *table(header, rows)]
+
+
+def _called(found: Sequence[Result]) -> list[Result]:
+    return [one for one in found if one.outcome.called_fault is not None]
+
+
+def _others_called(found: Sequence[Result]) -> int:
+    return sum(one.others_called for one in found)

@@ -1,60 +1,35 @@
-"""Records in time through COMTRADE files: the simulator's physics, read back, observed and followed."""
+"""Motors followed over records in time that went through COMTRADE files, alone and on a bus."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from enum import StrEnum
-from pathlib import Path
-from tempfile import TemporaryDirectory
+from typing import Final
 
 import numpy as np
 
-from benchmarks.condition.courses import shape
 from benchmarks.condition.disturbances import outcome_row
-from benchmarks.condition.following import Outcome, follow, outcome, quantile_text
-from benchmarks.condition.operation import FIRST_NS, HOUR_NS, draw_operation
-from benchmarks.condition.population import draw_channels
+from benchmarks.condition.file_records import PATHS, SENSORS, Case, Course, through_files, with_supply_step
+from benchmarks.condition.following import Outcome, follow, follow_together, outcome, quantile_text
+from benchmarks.condition.marks import Mark, at_least, at_most
+from benchmarks.condition.operation import Operation, draw_operation
 from benchmarks.reporting import spread, table
-from core.condition.kinds import State
-from core.condition.measuring.observing import observe
+from core.condition.kinds import Kind, State
+from core.condition.observation import Observation
 from core.machines.parameters import Motor
-from core.machines.sensors import SensorClass
-from core.recordings import Quantity, Recording, comtrade_writer, read
-from ied_sim.motor.plant import rated_current
-from testing.machines.disturbed_records import (
-    FULL_SCALE_CURRENT,
-    FULL_SCALE_VOLTAGE,
-    Disturbances,
-    disturbed_record,
-    random_harmonics,
-)
 from testing.machines.motors import LARGE, MEDIUM, REFERENCE, VERY_LARGE
-from testing.machines.steady_faults import Condition
 
-MOTORS = (REFERENCE, MEDIUM, LARGE, VERY_LARGE)
-SENSORS = SensorClass(0.005, 0.005, 25e-6, 25e-6)
-SAMPLE_RATES_HZ = (1_600.0, 4_000.0, 8_000.0)
-CYCLES = 25.0
-SAMPLE_NOISE = 0.002
-"""White, of rated values, beside 16-bit converters."""
-SPACING_H = 6.0
-BEFORE, AFTER = 60, 60
-ERROR = 0.01
-
-
-class Case(StrEnum):
-    """What happens to a motor half-way."""
-
-    HEALTHY = "healthy"
-    DEAD_SHORT = "1 %, dead-shorted"
-    PATH_1 = "1 %, path 1"
-    PATH_3 = "1 %, path 3"
-    VOLTAGE_STEP = "voltage channel, 1 % step"
-    VOLTAGE_DRIFT = "voltage channel, 1 % in 40 records"
-    CURRENT_STEP = "current channel, 1 % step"
-
-
-PATHS = {Case.DEAD_SHORT: 0.0, Case.PATH_1: 1.0, Case.PATH_3: 3.0}
+MOTORS: Final = (REFERENCE, MEDIUM, LARGE, VERY_LARGE)
+ON_A_BUS: Final = (MEDIUM, REFERENCE, LARGE, VERY_LARGE, MEDIUM)
+BUS_CASES: Final = (*PATHS, Case.VOLTAGE_DRIFT, Case.SUPPLY)
+BEFORE, AFTER = 60, 100
+ACB_SHARE: Final = 0.4
+APART: Final = 1e-4
+"""Of V2/V1 between records of a bus, which are made within a minute."""
+SEEN_WITHIN: Final = 10
+LEAST_SEEN = LEAST_CALLED = 0.97
+LEAST_PHASE: Final = 0.995
+MOST_CALLED, MOST_CALLED_ON_A_BUS = 0.02, 0.01
+DISTURBANCES: Final = tuple(case for case in Case if case is not Case.HEALTHY and case not in PATHS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,125 +44,188 @@ class Task:
 
 
 @dataclass(frozen=True, slots=True)
+class BusTask:
+    """One motor of a bus, by the numbers of both; the case is that of the first motor, or of the supply."""
+
+    case: Case
+    number: int
+    place: int
+    before: int = BEFORE
+    after: int = AFTER
+
+    @property
+    def motor(self) -> Motor:
+        return replace(ON_A_BUS[self.place], name=f"motor {self.place}", sensors=SENSORS)
+
+
+@dataclass(frozen=True, slots=True)
 class Result:
-    """What came of a motor: refused records, others than healthy, and whether the phase is right."""
+    """What came of a motor, alone or first on its bus.
+
+    right: whether the phase is.  refused, unhealthy: records that were, and that left the motor other than
+    healthy.  others_called: motors of the same bus that were a fault at their last.
+    """
 
     outcome: Outcome
     right: bool
     records: int
     refused: int
     unhealthy: int
+    others: int = 0
+    others_called: int = 0
 
 
 def follow_files(task: Task) -> Result:
-    """Write the records as COMTRADE files, read them back and follow the motor."""
+    """Send the records of a motor through files and follow it."""
     random = np.random.default_rng([task.number, 7, list(Case).index(task.case), MOTORS.index(task.motor)])
     motor = replace(task.motor, sensors=SENSORS)
-    records = task.before + task.after
+    operation = draw_operation(random, task.before + task.after)
+    if task.case is Case.SUPPLY:
+        operation = with_supply_step(random, operation, task.before)
     winding = int(random.integers(3))
-    observations = []
-    with TemporaryDirectory() as folder:
-        for k, recording in enumerate(_recordings(task, random, winding, records)):
-            path = comtrade_writer.write(Path(folder) / f"{k:05d}.cfg", recording)
-            observations.append(observe(read(path), motor))
+    reverse = bool(random.uniform() < ACB_SHARE)
+    course = Course(motor, task.case, task.before, winding, operation, reverse, task.number)
+    observations = through_files(course, random)
     kept = [one for one in observations if one is not None]
-    first = sum(one is not None for one in observations[: task.before])
     said = list(follow(motor, kept))
-    found = outcome(said, first)
+    found = outcome(said, sum(one is not None for one in observations[: task.before]))
     return Result(
         outcome=found,
         right=found.phase == "abc"[winding],
-        records=records,
-        refused=records - len(kept),
+        records=len(observations),
+        refused=len(observations) - len(kept),
         unhealthy=sum(one.condition.state is not State.HEALTHY for one in said),
     )
 
 
-def _recordings(task: Task, random: np.random.Generator, winding: int, records: int) -> Iterator[Recording]:
-    """Every record with its own load, warmth, supply, harmonics and noise; channels that stay as they are."""
-    nameplate = task.motor.nameplate
-    operation = draw_operation(random, records)
-    channels = draw_channels(random, SENSORS, nameplate.rated_frequency_Hz)
-    ratios = np.concatenate([channels.current, channels.voltage])
-    w = nameplate.rated_angular_frequency
-    # The delays of a relay are positive: what all channels have in common is no error.
-    delays = -np.angle(ratios) / w + 30e-6
-    parameters = random.uniform(0.9, 1.1, 5)
-    rate = float(random.choice(SAMPLE_RATES_HZ))
-    harmonics = random_harmonics(random, random.uniform(0.0, 0.04), rate)
-    reverse = bool(random.uniform() < 0.4)
-    since = shape(records, task.before, 40 if task.case is Case.VOLTAGE_DRIFT else 0)
-    channel = {Case.VOLTAGE_STEP: 3, Case.VOLTAGE_DRIFT: 3, Case.CURRENT_STEP: 0}.get(task.case)
-    place = int(random.integers(3))
-    sign = float(random.choice([-1.0, 1.0]))
-    for k in range(records):
-        gains = np.abs(ratios) - 1.0
-        if channel is not None:
-            gains[channel + place] += sign * ERROR * since[k]
-        path = PATHS.get(task.case)
-        level = 0.0 if path is None else 0.01 * (1.0 + path) * since[k]
-        warm = operation.warming[k]
-        condition = Condition(
-            load_level=float(operation.load[k]),
-            unbalance=complex(operation.unbalance[k]),
-            level=float(level),
-            winding=winding,
-            path_ratio=path or 0.0,
-            reverse=reverse,
-        )
-        disturbances = Disturbances(
-            gain_errors=tuple(gains.tolist()),
-            delays_s=tuple(delays.tolist()),
-            harmonics=harmonics,
-            frequency_hz=float(nameplate.rated_frequency_Hz * operation.frequency_ratio[k]),
-            swing=float(random.uniform(0.0, 0.03)),
-            swing_frequency_hz=float(random.uniform(0.5, 10.0)),
-            parameter_factors=tuple((parameters * np.array([warm, warm, 1.0, 1.0, 1.0])).tolist()),
-            noise=SAMPLE_NOISE,
-        )
-        made = disturbed_record(
-            task.motor, condition, disturbances, start_s=float(random.uniform(0.0, 100.0)),
-            cycles=CYCLES, sample_rate_hz=rate, seed=1_000_000 * task.number + k,
-        )  # fmt: skip
-        yield _as_recorded(made, task.motor, FIRST_NS + round(k * SPACING_H * HOUR_NS))
+def observe_on_bus(task: BusTask) -> list[Observation | None]:
+    """Send the records of one motor of a bus through files."""
+    supply, winding, reverse = _bus(task)
+    random = np.random.default_rng([task.number, 9, list(Case).index(task.case), task.place])
+    records = len(supply)
+    own = draw_operation(random, records).on_supply(supply)
+    apart = random.standard_normal(records) + 1j * random.standard_normal(records)
+    operation = replace(own, unbalance=own.unbalance + APART / np.sqrt(2) * apart)
+    happens = task.place == 0 or task.case is Case.SUPPLY
+    case = task.case if happens else Case.HEALTHY
+    seed = 1_000 * (task.number + 1) + task.place
+    return through_files(Course(task.motor, case, task.before, winding, operation, reverse, seed), random)
 
 
-def _as_recorded(made: Recording, motor: Motor, time_ns: int) -> Recording:
-    """The record with its time, its relay and the range of its converters."""
-    scales = {
-        Quantity.CURRENT: FULL_SCALE_CURRENT * rated_current(motor),
-        Quantity.PHASE_VOLTAGE: FULL_SCALE_VOLTAGE * motor.nameplate.rated_voltage_V,
-    }
-    channels = tuple(replace(one, full_scale=scales[one.quantity]) for one in made.channels)
-    return Recording(
-        made.samples, made.sample_rate_hz, time_ns, channels, trigger_index=0,
-        nominal_frequency_hz=motor.nameplate.rated_frequency_Hz, station="plant", device="relay",
-    )  # fmt: skip
+def _bus(task: BusTask) -> tuple[Operation, int, bool]:
+    """The supply of a bus, the winding of its first motor's fault, and whether it turns a-c-b."""
+    random = np.random.default_rng([task.number, 8, list(Case).index(task.case)])
+    supply = draw_operation(random, task.before + task.after)
+    if task.case is Case.SUPPLY:
+        supply = with_supply_step(random, supply, task.before)
+    return supply, int(random.integers(3)), bool(random.uniform() < ACB_SHARE)
 
 
-def end_to_end(each: int, pool: Executor, *, before: int = BEFORE, after: int = AFTER) -> Iterator[str]:
-    """A table of the cases over all motors."""
-    rows = []
+def _followed_bus(tasks: Sequence[BusTask], every: Sequence[list[Observation | None]]) -> Result:
+    first, observations = tasks[0], every[0]
+    records = len(observations)
+    said, others = follow_together([one.motor for one in tasks], every, range(records), compared=True)
+    found = outcome(said, first.before)
+    _, winding, _ = _bus(first)
+    return Result(
+        outcome=found,
+        right=found.phase == "abc"[winding],
+        records=sum(len(one) for one in every),
+        refused=sum(record is None for one in every for record in one),
+        unhealthy=sum(one.condition.state is not State.HEALTHY for one in said),
+        others=len(others),
+        others_called=sum(one.condition.state is State.FAULT for one in others),
+    )
+
+
+def end_to_end(
+    each: int, pool: Executor, *, before: int = BEFORE, after: int = AFTER
+) -> Iterator[str | Mark]:
+    """Marks, and tables of the cases over all motors and of buses."""
+    alone = {}
     for case in Case:
         tasks = [Task(motor, case, number, before, after) for motor in MOTORS for number in range(each)]
-        found = list(spread(follow_files, tasks, f"files, {case.value}", pool))
-        outcomes = [one.outcome for one in found]
-        called = [one for one in found if one.outcome.called_fault is not None]
-        seen = np.array([one.seen for one in outcomes if one.seen is not None], dtype=np.float64)
-        delays = np.array([one.outcome.called_fault for one in called], dtype=np.float64)
-        rows.append(
-            [
-                case.value, f"{len(found)}", f"{sum(one.records for one in found)}",
-                f"{sum(one.refused for one in found)}", f"{len(seen)}", quantile_text(seen),
-                f"{len(called)}", quantile_text(delays),
-                f"{sum(one.right for one in called)} of {len(called)}" if case in PATHS else "-",
-                outcome_row(outcomes)[1], f"{sum(one.unhealthy for one in found)}",
-            ]
-        )  # fmt: skip
-    yield from table(
-        [
-            "case", "motors", "records", "refused", "seen", "by record, median", "called `fault`",
-            "by record, median", "phase right", "in the end", "records other than healthy",
-        ],
-        rows,
-    )  # fmt: skip
+        alone[case] = list(spread(follow_files, tasks, f"files, {case.value}", pool))
+    on_a_bus = {}
+    for case in BUS_CASES:
+        buses = [
+            [BusTask(case, number, place, before, after) for place in range(len(ON_A_BUS))]
+            for number in range(each)
+        ]
+        tasks_of_all = [task for one in buses for task in one]
+        found = list(spread(observe_on_bus, tasks_of_all, f"files of a bus, {case.value}", pool))
+        of_each = [found[k : k + len(ON_A_BUS)] for k in range(0, len(found), len(ON_A_BUS))]
+        on_a_bus[case] = [_followed_bus(one, every) for one, every in zip(buses, of_each, strict=True)]
+    yield from _marks(alone, "alone", MOST_CALLED)
+    yield from _marks(on_a_bus, "on a bus", MOST_CALLED_ON_A_BUS)
+    drifts = [one.outcome.final == (Kind.VOLTAGE_CHANNEL,) for one in on_a_bus[Case.VOLTAGE_DRIFT]]
+    yield at_least(f"on a bus, {Case.VOLTAGE_DRIFT.value}: named so", sum(drifts), len(drifts), 1.0)
+    every_bus = [one for found in on_a_bus.values() for one in found]
+    others = sum(one.others for one in every_bus)
+    called = sum(one.others_called for one in every_bus)
+    yield at_most("on a bus: other motors called `fault`", called, others, 0.0)
+    yield "Each motor alone:"
+    yield ""
+    yield from _table(alone)
+    yield ""
+    yield f"Buses of {len(ON_A_BUS)} motors that are recorded together. Supply steps happen to all of them,"
+    yield "the other cases to the first one, of which this tells:"
+    yield ""
+    yield from _table(on_a_bus)
+
+
+Found = dict[Case, list[Result]]
+
+
+def _marks(found: Found, where: str, most_called: float) -> Iterator[Mark]:
+    faults = [one for case in PATHS for one in found[case]]
+    seen = sum(one.outcome.seen is not None and one.outcome.seen < SEEN_WITHIN for one in faults)
+    called = _called(faults)
+    yield at_least(f"1 %, {where}: seen within {SEEN_WITHIN}", seen, len(faults), LEAST_SEEN)
+    yield at_least(f"1 %, {where}: `fault` within {AFTER}", len(called), len(faults), LEAST_CALLED)
+    right = sum(one.right for one in called)
+    yield at_least(f"1 %, {where}: phase right in all called", right, len(called), LEAST_PHASE)
+    every = [one for some in found.values() for one in some]
+    before = sum(one.outcome.alarmed_before for one in every)
+    yield at_most(f"{where}: an alarm before the case", before, len(every), 0.0)
+    if Case.HEALTHY in found:
+        healthy = found[Case.HEALTHY]
+        alarms = sum(_alarmed(one) for one in healthy)
+        yield at_most(f"{where}, healthy: any alarm", alarms, len(healthy), 0.0)
+    for case in DISTURBANCES:
+        if case in found:
+            what = f"{where}, {case.value}: called `fault`"
+            yield at_most(what, len(_called(found[case])), len(found[case]), most_called)
+    supply = found[Case.SUPPLY]
+    alarms = sum(_alarmed(one) for one in supply)
+    yield at_most(f"{where}, {Case.SUPPLY.value}: any alarm", alarms, len(supply), 0.0)
+
+
+def _called(found: Sequence[Result]) -> list[Result]:
+    return [one for one in found if one.outcome.called_fault is not None]
+
+
+def _alarmed(one: Result) -> bool:
+    found = one.outcome
+    return found.seen is not None or found.alarmed_before or found.called_fault is not None
+
+
+def _table(found: Found) -> list[str]:
+    header = [
+        "case", "motors", "records", "refused", "seen", "by record, median", "called `fault`",
+        "by record, median", "phase right", "in the end", "records other than healthy",
+    ]  # fmt: skip
+    return table(header, [[case.value, *_row(case, every)] for case, every in found.items()])
+
+
+def _row(case: Case, found: Sequence[Result]) -> list[str]:
+    outcomes = [one.outcome for one in found]
+    called = _called(found)
+    seen = np.array([one.seen for one in outcomes if one.seen is not None], dtype=np.float64)
+    delays = np.array([one.outcome.called_fault for one in called], dtype=np.float64)
+    return [
+        f"{len(found)}", f"{sum(one.records for one in found):,}", f"{sum(one.refused for one in found)}",
+        f"{len(seen)}", quantile_text(seen), f"{len(called)}", quantile_text(delays),
+        f"{sum(one.right for one in called)} of {len(called)}" if case in PATHS else "-",
+        outcome_row(outcomes)[1], f"{sum(one.unhealthy for one in found)}",
+    ]  # fmt: skip

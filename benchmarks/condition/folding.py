@@ -16,10 +16,11 @@ from sqlalchemy import Engine, insert
 
 from benchmarks.condition.cost import MOST_MICROSECONDS, PLANT_MOTORS, PLANT_RECORDS
 from benchmarks.condition.courses import healthy, shape, with_fault
+from benchmarks.condition.marks import Mark, figure_at_most
 from benchmarks.condition.operation import draw_operation
 from benchmarks.condition.population import draw_motor
 from benchmarks.condition.records import REAL_NOISE, measure
-from benchmarks.reporting import mark, spread, table
+from benchmarks.reporting import spread, table
 from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from service.condition.motor_data import document_of
@@ -34,6 +35,10 @@ from testing.service.postgresql import binaries, serving_postgresql
 
 SITE = "PLANT"
 CORES = 2
+REFOLDED = (
+    f"{PLANT_MOTORS} motors with ten years of hourly records ({PLANT_MOTORS * PLANT_RECORDS:,}) folded again"
+    f" by {CORES} workers"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,9 +81,9 @@ def fold(task: Fold) -> float:
     return seconds
 
 
-def folding(motors: int, records: int, pool: Executor) -> Iterator[str]:
-    """A table of databases and kinds of motors, and the time of the plant."""
-    rows, plants = [], []
+def folding(motors: int, records: int, pool: Executor) -> Iterator[str | Mark]:
+    """Marks, a table of databases and kinds of motors, and the time of the plant."""
+    rows = []
     for faulty in (False, True):
         kind = "1 % from the middle on" if faulty else "healthy"
         tasks = [Task(number, records, faulty) for number in range(motors)]
@@ -101,13 +106,10 @@ def folding(motors: int, records: int, pool: Executor) -> Iterator[str]:
             )  # fmt: skip
             if not faulty:
                 minutes = PLANT_MOTORS * PLANT_RECORDS * elapsed_s / number / 60
-                plants += [
-                    f"- {name}: a record of a healthy motor takes {us:.0f} us of a worker:"
-                    f" {mark(us <= MOST_MICROSECONDS)} ({MOST_MICROSECONDS:.0f} us).",
-                    f"  {PLANT_MOTORS} such motors with ten years of hourly records"
-                    f" ({PLANT_MOTORS * PLANT_RECORDS:,}), by {CORES} workers:",
-                    f"  {minutes:.0f} minutes, **extrapolated** from {number:,} records.",
-                ]
+                what = f"{name}: processor time of a worker a record, healthy motor"
+                yield figure_at_most(what, us, MOST_MICROSECONDS, "us")
+                told = f"{minutes:.0f} minutes, extrapolated from {number:,} records"
+                yield Mark(f"{name}: {REFOLDED}", "a stated time", told, met=True)
     yield from table(
         [
             "database", "motors", "number", "records each", "us of a worker a record",
@@ -115,8 +117,6 @@ def folding(motors: int, records: int, pool: Executor) -> Iterator[str]:
         ],
         rows,
     )  # fmt: skip
-    yield ""
-    yield from plants
 
 
 @cache

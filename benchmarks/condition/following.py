@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.condition.circuit import Array
-from core.condition.bus.neighbours import StandingEstimate
+from core.condition.bus.neighbours import StandingEstimate, neighbour_of
 from core.condition.following.follower import Follower
 from core.condition.kinds import Kind, State
 from core.condition.observation import Observation
@@ -56,6 +56,41 @@ def judged_around(first: int, records: int) -> frozenset[int]:
     )
 
 
+def follow_together(
+    motors: Sequence[Motor],
+    every: Sequence[Sequence[Observation | None]],
+    judged: Container[int],
+    *,
+    compared: bool,
+) -> tuple[list[Said], list[Said]]:
+    """Fold the records of a bus, one of each motor at a time; return what is said of the first motor after
+    the judged ones, and of the others after the last.
+
+    None is a record that was refused.  compared: with each other, as the service does it unless it is told of
+    a common transformer.
+    """
+    followers = [Follower(one) for one in motors]
+    said = []
+    for number, records in enumerate(zip(*every, strict=True)):
+        seen = {k: neighbour_of(motors[k], record) for k, record in enumerate(records) if record is not None}
+        for k, record in enumerate(records):
+            if record is not None:
+                others = [one for j, one in seen.items() if j != k] if compared else []
+                followers[k].fold(record, others)
+        if number in judged:
+            said.append(_said_beside(followers, 0, number, compared=compared))
+    last = len(every[0]) - 1
+    return said, [_said_beside(followers, k, last, compared=compared) for k in range(1, len(motors))]
+
+
+def _said_beside(followers: Sequence[Follower], k: int, record: int, *, compared: bool) -> Said:
+    """What is said of one motor of a bus."""
+    others = [one for j, one in enumerate(followers) if j != k] if compared else []
+    estimates = [one.standing_estimate() for one in others]
+    known = [one for one in estimates if one is not None]
+    return said_of(followers[k], followers[k].motor, record, known)
+
+
 def said_of(follower: Follower, motor: Motor, record: int, bus: Sequence[StandingEstimate] = ()) -> Said:
     """What is said of a motor now, beside the standing asymmetries of its bus."""
     assessment = follower.assessment(bus)
@@ -69,8 +104,8 @@ def said_of(follower: Follower, motor: Motor, record: int, bus: Sequence[Standin
 class Outcome:
     """What came of an event at a record: delays in records from it on, None where it never was.
 
-    seen: a change was found.  called_fault: the state was fault.  phase: the one that was named with the
-    fault.  final: the kinds that were named last, empty where no change was open.
+    seen: a change was found, and none before the event.  called_fault: the state was fault.  phase: the one
+    that was named with the fault.  final: the kinds that were named last, empty where no change was open.
     alarmed_before: whether a change was found before the event.
     """
 
@@ -86,9 +121,10 @@ def outcome(said: Sequence[Said], first: int) -> Outcome:
     """Read the outcome of an event at record `first` (from 0)."""
     seen = called = None
     phase = None
+    alarmed_before = any(one.changed for one in said if one.record < first)
     for one in (one for one in said if one.record >= first):
         k = one.record - first
-        if seen is None and (one.changed or one.condition.state is State.FAULT):
+        if seen is None and not alarmed_before and (one.changed or one.condition.state is State.FAULT):
             seen = k
         if one.condition.state is State.FAULT:
             called, phase = k, one.condition.phase
@@ -98,7 +134,7 @@ def outcome(said: Sequence[Said], first: int) -> Outcome:
         seen, called, phase,
         last.kinds if last.changed or last.condition.state is State.FAULT else (),
         last.condition.state,
-        any(one.changed for one in said if one.record < first),
+        alarmed_before,
     )  # fmt: skip
 
 

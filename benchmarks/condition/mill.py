@@ -22,8 +22,9 @@ from benchmarks.accuracy.measured_records import (
 )
 from benchmarks.condition.circuit import Array
 from benchmarks.condition.following import Said, follow, outcome
+from benchmarks.condition.marks import Mark, at_least, at_most, percent
 from benchmarks.condition.operation import FIRST_NS, HOUR_NS
-from benchmarks.reporting import mark, spread, table
+from benchmarks.reporting import spread, table
 from core.condition.kinds import Kind, State
 from core.condition.measuring.observing import observe
 from core.condition.observation import Observation
@@ -55,6 +56,35 @@ class Task:
     folder: Path
     window_s: float
     shunt: Shunt | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """Windows without a shunt, then with it: what is said after each, and the first accepted with it."""
+
+    task: Task
+    said: list[Said]
+    first: int
+
+    @property
+    def seen(self) -> int | None:
+        """Windows with the shunt until a change was found, where there was none before."""
+        return _counted(outcome(self.said, self.first).seen)
+
+    @property
+    def called(self) -> int | None:
+        """Windows with the shunt until the state was fault."""
+        return _counted(outcome(self.said, self.first).called_fault)
+
+    @property
+    def right(self) -> bool:
+        """Whether the phase in the end is that of the shunt."""
+        shunt = self.task.shunt
+        return shunt is not None and self.said[-1].condition.phase == "abc"[shunt.phase]
+
+
+def _counted(delay: int | None) -> int | None:
+    return None if delay is None else delay + 1
 
 
 def shunted(samples: Array, shunt: Shunt) -> Array:
@@ -93,38 +123,50 @@ def observations_of(task: Task) -> list[Observation | None]:
     return found
 
 
-def mill(folder: Path, pool: Executor, *, every: bool = True) -> Iterator[str]:
-    """Tables of the recordings as they are, and with a shunt; `every` False leaves most of it out."""
+def mill(folder: Path, pool: Executor, *, every: bool = True) -> Iterator[str | Mark]:
+    """Marks and tables of the recordings as they are, and with a shunt; `every` False: a part of them."""
     windows = WINDOWS_S if every else WINDOWS_S[1:2]
     paths = PATHS if every else PATHS[:1]
     plain_tasks = [Task(folder, window) for window in windows]
     plain = dict(zip(windows, spread(observations_of, plain_tasks, "mill, as it is", pool), strict=True))
-    yield from _as_it_is(plain)
-    yield ""
     shunts = [Shunt(level, phase, path) for level in LEVELS for path in paths for phase in range(3)]
     tasks = [Task(folder, window, shunt) for window in windows for shunt in shunts]
     found = dict(zip(tasks, spread(observations_of, tasks, "mill, with a shunt", pool), strict=True))
-    rows = []
-    for window in windows:
-        for before in REFERENCES:
-            for level in LEVELS:
-                ours = [task for task in tasks if task.window_s == window and _level(task) == level]
-                each = [(task, _switched(plain[window], found[task], before)) for task in ours]
-                rows.append([f"{window:g} s", f"{before}", f"{level:.1%}", *_row(each)])
+    cases = {
+        (window, before, level): [
+            Case(task, *_switched(plain[window], found[task], before))
+            for task in tasks
+            if task.window_s == window and _level(task) == level
+        ]
+        for window in windows
+        for before in REFERENCES
+        for level in LEVELS
+    }
+    mark_of_plain, lines = _as_it_is(plain)
+    yield mark_of_plain
+    for level in LEVELS:
+        of_level = [case for (_, _, one), some in cases.items() if one == level for case in some]
+        right = sum(case.seen is not None and case.right for case in of_level)
+        yield at_least(f"shunt of {percent(level)}: seen, with the right phase", right, len(of_level), 1.0)
+    yield from lines
+    yield ""
     yield f"With a shunt in each phase, of paths {', '.join(f'{path:g}' for path in paths)}. Delays are"
     yield "windows; the first with the shunt counts as 1."
     yield ""
-    yield from table(
-        [
-            "windows", "before", "level", "seen", "by window", "shorted turns named", "`fault`", "by window",
-            "phase right", "change in the end",
-        ],
-        rows,
-    )  # fmt: skip
+    header = [
+        "windows", "before", "level", "seen", "by window", "shorted turns named", "`fault`", "by window",
+        "seen, phase right", "change in the end",
+    ]  # fmt: skip
+    rows = [
+        [f"{window:g} s", f"{before}", f"{level:.1%}", *_row(some)]
+        for (window, before, level), some in cases.items()
+    ]
+    yield from table(header, rows)
 
 
-def _as_it_is(plain: dict[float, list[Observation | None]]) -> Iterator[str]:
-    rows, alarms = [], 0
+def _as_it_is(plain: dict[float, list[Observation | None]]) -> tuple[Mark, list[str]]:
+    rows: list[list[str]] = []
+    alarms = 0
     for window, observations in plain.items():
         kept = [one for one in observations if one is not None]
         for spacing_h in SPACINGS_H:
@@ -132,7 +174,7 @@ def _as_it_is(plain: dict[float, list[Observation | None]]) -> Iterator[str]:
             changed = sum(one.changed for one in said)
             faults = sum(one.condition.state is State.FAULT for one in said)
             unhealthy = sum(one.condition.state is not State.HEALTHY for one in said)
-            alarms += changed + faults
+            alarms += changed + faults > 0
             reference = said[-1].condition.reference
             rows.append(
                 [
@@ -141,15 +183,13 @@ def _as_it_is(plain: dict[float, list[Observation | None]]) -> Iterator[str]:
                     "-" if reference is None else f"{reference.standing.value:.2%}",
                 ]
             )  # fmt: skip
-    yield from table(
-        [
-            "windows", "apart", "records accepted", "with a change", "`fault`", "not healthy",
-            "greatest statistic", "standing level",
-        ],
-        rows,
-    )  # fmt: skip
-    yield ""
-    yield f"Never an alarm: {mark(alarms == 0)}."
+    header = [
+        "windows", "apart", "records accepted", "with a change", "`fault`", "not healthy",
+        "greatest statistic", "standing level",
+    ]  # fmt: skip
+    return at_most("recordings as they are, cut in any way: an alarm", alarms, len(rows), 0.0), table(
+        header, rows
+    )
 
 
 def _apart(observations: list[Observation], spacing_h: float) -> list[Observation]:
@@ -171,21 +211,14 @@ def _switched(
     return list(follow(MILL, healthy + later)), len(healthy)
 
 
-def _row(each: list[tuple[Task, tuple[list[Said], int]]]) -> list[str]:
-    seen, called, changes = [], [], []
-    named = right = 0
-    for task, (said, first) in each:
-        came, last = outcome(said, first), said[-1]
-        if came.seen is not None and not came.alarmed_before:
-            seen.append(came.seen + 1)
-        if came.called_fault is not None:
-            called.append(came.called_fault + 1)
-        named += Kind.SHORTED_TURNS in last.kinds
-        right += task.shunt is not None and last.condition.phase == "abc"[task.shunt.phase]
-        if last.condition.change is not None:
-            changes.append(last.condition.change)
+def _row(cases: list[Case]) -> list[str]:
+    seen = [case.seen for case in cases if case.seen is not None]
+    called = [case.called for case in cases if case.called is not None]
+    changes = [one.condition.change for case in cases if (one := case.said[-1]).condition.change is not None]
+    named = sum(Kind.SHORTED_TURNS in case.said[-1].kinds for case in cases)
+    right = sum(case.seen is not None and case.right for case in cases)
     return [
-        f"{len(seen)} of {len(each)}", _span(seen), f"{named}", f"{len(called)}", _span(called), f"{right}",
+        f"{len(seen)} of {len(cases)}", _span(seen), f"{named}", f"{len(called)}", _span(called), f"{right}",
         f"{min(changes):.2%} to {max(changes):.2%}" if changes else "-",
     ]  # fmt: skip
 

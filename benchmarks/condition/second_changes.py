@@ -134,7 +134,6 @@ def second_changes(motors: int, pool: Executor) -> Iterator[str]:
         ],
         rows,
     )
-    yield ""
 
 
 def _row(found: list[Result]) -> list[str]:

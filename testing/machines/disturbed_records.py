@@ -149,12 +149,13 @@ def disturbed_record(
     cycles: float,
     sample_rate_hz: float,
     seed: int,
+    step_rate_hz: float = STEP_RATE_HZ,
 ) -> Recording:
     """What a relay records of a motor (split winding where faulty), `cycles` of its rated frequency long.
 
     Channels that sample late see the waveforms as they were earlier: voltages are evaluated there, currents
-    interpolated from 20 kHz. Harmonics above a rate's reach are to be left out by the caller, as the relay's
-    filter would.
+    interpolated from the steps of the integration. Harmonics above a rate's reach are to be left out by the
+    caller, as the relay's filter would.
     """
     true_motor = replace(motor, parameters=_true_parameters(motor.parameters, disturbances))
     supply = Supply(
@@ -170,10 +171,10 @@ def disturbed_record(
 
     samples = round(cycles / motor.nameplate.rated_frequency_Hz * sample_rate_hz)
     times = start_s + np.arange(samples) / sample_rate_hz
-    margin = max(disturbances.delays_s) + CUBIC_MARGIN / STEP_RATE_HZ
+    margin = max(disturbances.delays_s) + CUBIC_MARGIN / step_rate_hz
     first = start_s - margin
-    true = plant.operation(first, times[-1] - first + 2 * margin, STEP_RATE_HZ)
-    grid = first + np.arange(true.currents_A.shape[1]) / STEP_RATE_HZ
+    true = plant.operation(first, times[-1] - first + 2 * margin, step_rate_hz, step_rate_hz=step_rate_hz)
+    grid = first + np.arange(true.currents_A.shape[1]) / step_rate_hz
     seen = np.empty((6, samples))
     for channel, delay in enumerate(disturbances.delays_s):
         if channel < 3:
