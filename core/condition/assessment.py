@@ -78,6 +78,9 @@ class Change:
         was never looked at.
     size_ci95 : tuple of float or None
         95 % interval of the size; None where there is none.
+    until_ns : int or None
+        Time of the latest record that showed it, UTC [ns], where shorted turns have vanished; None while the
+        change lasts.
     """
 
     since_ns: int
@@ -89,6 +92,7 @@ class Change:
     size: float | None
     surely_above: float = 0.0
     size_ci95: tuple[float, float] | None = None
+    until_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True)

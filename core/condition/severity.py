@@ -190,7 +190,7 @@ def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
 
 
 def level_of(change: Change | None) -> Level | None:
-    """Return by how much a change adds to the fault level, or None where it is no shorted turns.
+    """Return by how much a change adds to the fault level, or None where it is no shorted turns or gone.
 
     Parameters
     ----------
@@ -202,7 +202,7 @@ def level_of(change: Change | None) -> Level | None:
     Level or None
         Its level where it may be shorted turns.
     """
-    if change is None:
+    if change is None or change.until_ns is not None:
         return None
     if change.named:
         return change.level if Kind.SHORTED_TURNS in change.named else None
@@ -210,7 +210,7 @@ def level_of(change: Change | None) -> Level | None:
 
 
 def is_shorted_turns(change: Change | None) -> bool:
-    """Return whether a change is named as shorted turns, or as these or a joint.
+    """Return whether a change that lasts is named as shorted turns, or as these or a joint.
 
     Parameters
     ----------
@@ -224,6 +224,7 @@ def is_shorted_turns(change: Change | None) -> bool:
     """
     return (
         change is not None
+        and change.until_ns is None
         and Kind.SHORTED_TURNS in change.named
         and frozenset(change.named) <= TURNS_OR_JOINT
     )

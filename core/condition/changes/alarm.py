@@ -8,6 +8,7 @@ import numpy as np
 
 from core.condition.changes.hypotheses import CAUSES, Cause, Hypotheses
 from core.condition.changes.naming import name, probabilities
+from core.condition.changes.vanishing import Vanishing
 from core.condition.kinds import Kind
 from core.machines.base import Array
 
@@ -56,6 +57,8 @@ class Alarm:
     surely_above : float
         What the level lay above for certain, once, while it was named as shorted turns. It is looked at until
         it exceeds the motor's limit.
+    vanishing : Vanishing or None
+        Whether shorted turns that were named have vanished; None while none were.
     """
 
     detected_ns: int
@@ -64,6 +67,7 @@ class Alarm:
     pending: Names = ()
     running: int = 0
     surely_above: float = 0.0
+    vanishing: Vanishing | None = None
 
     @property
     def is_to_be_weighed(self) -> bool:

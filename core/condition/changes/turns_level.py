@@ -23,7 +23,7 @@ APART: Final = 2.0
 DRIFT_SHAPE: Final = 0.12
 """Relative standard deviation of the level of a change that drifts: no growth is a straight line, and what
 the filter takes up of it before the alarm depends on its course."""
-OF_A_PATH: Final = 8
+OF_A_PATH: Final = 10
 """Numbers that `_weigh_windings` finds of a path."""
 
 Indices = NDArray[np.int64]
@@ -47,6 +47,10 @@ class TurnsLevel:
         Time of the first record that likeliest shows it, UTC [ns].
     levels : tuple of tuple of int and float
         Time [ns] and level of each record since then, or of means of several.
+    shown : complex
+        What it adds to y.
+    reference : list of float
+        State of the filter before the change.
     """
 
     value: float
@@ -56,6 +60,8 @@ class TurnsLevel:
     path_ratio: float
     onset_ns: int
     levels: tuple[tuple[int, float], ...]
+    shown: complex
+    reference: list[float]
 
 
 def turns_level(
@@ -107,6 +113,7 @@ def turns_level(
         if apart > APART * hypot(other.deviation, found.deviation):
             found = other
     times = recent["time_ns"][first : first + taken].tolist()
+    u_real, u_imaginary = table[found.winding, paths[found.winding], 8:].tolist()
     return TurnsLevel(
         value=found.value,
         deviation=found.deviation,
@@ -115,6 +122,8 @@ def turns_level(
         path_ratio=PATHS[int(paths[found.winding])],
         onset_ns=int(bank["time_ns"][onset]),
         levels=tuple(zip(times, levels[found.winding, :taken].tolist(), strict=True)),
+        shown=found.value * complex(u_real, u_imaginary),
+        reference=reference.tolist(),
     )
 
 
@@ -137,7 +146,7 @@ def _level_in(winding: int, table: Array, direction_of_Z2: float, shape: float) 
     """Return the change of the fault level if it is in one winding, from what `_weigh_windings` found."""
     found = table[winding]
     spreads = []
-    for value, wandering, a, b, c, direction, relative, _ in found.tolist():
+    for value, wandering, a, b, c, direction, relative, _ in found[:, :8].tolist():
         information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
         scale = relative**2 + direction_of_Z2**2 + shape**2
         spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
@@ -170,7 +179,7 @@ def _weigh_windings(
 
     Fills `table` by winding and path with the level, what wandering adds to its variance, the information
     on it as a step (a, b, c), the deviation of its direction and, relatively, of its size, and the log of the
-    path's weight; and `levels` with those of each record by the winding's likeliest path. Returns the place
+    path's weight, and what it shows in y; and `levels` with those of each record by the winding's likeliest path. Returns the place
     of the first of these records, and their number.
     """
     state, one = filters[0], bank[onset]
@@ -189,7 +198,7 @@ def _weigh_windings(
             row[7] = _evidence(out, direction, it.share, drifts)
             along(one, 0, False, u, out)  # noqa: FBT003
             row[2], row[3], row[4] = out[0], out[1], out[2]
-            row[5], row[6] = direction, it.scale
+            row[5], row[6], row[8], row[9] = direction, it.scale, u.real, u.imag
     return first, taken
 
 

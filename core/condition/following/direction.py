@@ -1,6 +1,7 @@
 """A motor's records in one direction of rotation: its standing errors, and what changes."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import sqrt
 from typing import Any, cast
 
@@ -15,6 +16,7 @@ from core.condition.changes.change import change_of, continued
 from core.condition.changes.detectability import detectable
 from core.condition.changes.hypotheses import Hypotheses, hypotheses_of
 from core.condition.changes.turns_level import TurnsLevel, turns_level
+from core.condition.changes.vanishing import Vanishing
 from core.condition.complex_parts import rotated, symmetric, turned
 from core.condition.events import Event, EventKind
 from core.condition.filter.impedance import impedance_alone, move_impedance
@@ -49,7 +51,7 @@ from core.condition.following.standing import (
 )
 from core.condition.following.start import fold_start
 from core.condition.kinds import Kind
-from core.condition.measuring.measurement import measure, negative_impedance
+from core.condition.measuring.measurement import Measurement, measure, negative_impedance
 from core.condition.measuring.signatures import terminal_turn
 from core.condition.observation import Observation
 from core.condition.severity import is_shorted_turns, level_in_all, level_of, of_one_fault, stands_out
@@ -192,7 +194,7 @@ class Direction:
             if score_of(motor, header.standing) < USUAL_SCORE:
                 header.called = None  # it was the beginning of this change
         if alarm is not None:
-            self._follow_up(alarm, motor)
+            self._follow_up(alarm, motor, record)
         elif self._figures["records"] % LOOKED_AT == 0.0:
             self._look_at_standing(motor)
 
@@ -238,7 +240,7 @@ class Direction:
         records, alarm = int(figures["records"]), header.alarm
         connection = motor.nameplate.connection
         winding = terminal_winding(standing.winding, self._sequence, connection)
-        change, levels = (header.kept, ()) if alarm is None else self._change(alarm, motor)
+        change, levels = (header.gone or header.kept, ()) if alarm is None else self._told(alarm, motor)
         return Assessment(
             as_of_ns=header.as_of_ns,
             reference=Reference(
@@ -383,14 +385,20 @@ class Direction:
         self._weighed = None
         self._turns_level = None
 
-    def _follow_up(self, alarm: Alarm, motor: Motor) -> None:
+    def _follow_up(self, alarm: Alarm, motor: Motor, record: Measurement) -> None:
         alarm.records += 1
+        if alarm.vanishing is not None:
+            alarm.vanishing.look(self._state, record.y, record.j1, self._header.as_of_ns)
+            if alarm.vanishing.is_certain:
+                self._vanish(alarm.vanishing)
+                return
         if alarm.is_to_be_weighed:
             confirm(alarm, self._weighing())
         if alarm.may_be_called:
             change = self._change(alarm, motor)[0]
             if is_shorted_turns(change):
                 alarm.surely_above = max(alarm.surely_above, change.level.ci95[0])
+            self._keep_what_is_shown(alarm, change)
         if self._figures["statistic"] < CLEARED:
             self._close_alarm()
         elif alarm.is_to_be_lived_with:
@@ -399,13 +407,31 @@ class Direction:
     def _live_with(self, alarm: Alarm, motor: Motor) -> None:
         """Learn a reference with the change, so that another one is seen; the change stays told."""
         header = self._header
-        kept, standing = self._change(alarm, motor)[0], header.standing
+        kept, gone, standing = self._change(alarm, motor)[0], header.gone, header.standing
         # The impedance has taken up some of the change.
         taken, spread = taken_up(self._weighing(), self._bank, self._hypotheses)
         self._state.x -= taken
         self._state.P += spread
         self._restart(keep_impedance=Kind.PARAMETERS not in alarm.named)
-        header.kept, header.standing = kept, standing
+        header.kept, header.gone, header.standing = kept, gone, standing
+
+    def _keep_what_is_shown(self, alarm: Alarm, change: Change) -> None:
+        """Keep what shorted turns show, so that it is seen when they show it no more."""
+        if alarm.vanishing is not None and alarm.vanishing.is_open:
+            return
+        shown = is_shorted_turns(change) and change.level.ci95[0] > 0.0
+        level = self._level(alarm)
+        alarm.vanishing = (
+            Vanishing.of(change, level.shown, level.reference, self._header.as_of_ns) if shown else None
+        )
+
+    def _vanish(self, vanishing: Vanishing) -> None:
+        """Go back to the reference of before shorted turns that have vanished; that they were there is told.
+
+        Shorted turns do not heal: they were repaired, or a contact comes and goes.
+        """
+        self._header.gone = replace(vanishing.change, until_ns=vanishing.last_ns)
+        self._take_back()
 
     def _shown(self, motor: Motor) -> Declared | None:
         """Return the shorted turns that the records show; None where there are none."""
@@ -425,10 +451,15 @@ class Direction:
         Against the reference of before it the next records show within a few whether it is still there. Any
         other change may have been mended where it was learnt, so that the channels are learnt anew.
         """
-        alarm, state = self._header.alarm, self._state
+        alarm = self._header.alarm
         if alarm is None or Kind.SHORTED_TURNS not in alarm.named:
             self._restart(keep_impedance=True)
             return
+        self._take_back()
+
+    def _take_back(self) -> None:
+        """Go back to the reference as it was before the change."""
+        state = self._state
         state.x[:], state.P[:] = before_change(state, self._bank)
         state.recent, state.block = 0.0, 1.0
         self._close_alarm()
@@ -447,6 +478,14 @@ class Direction:
             motor.nameplate.connection, self._sequence, self._header.voltage_channels,
         )  # fmt: skip
         return continued(change, self._header.kept), level.levels
+
+    def _told(self, alarm: Alarm, motor: Motor) -> tuple[Change, tuple[tuple[int, float], ...]]:
+        """Return the change and its levels; shorted turns are told until they have vanished for certain."""
+        change, levels = self._change(alarm, motor)
+        vanishing = alarm.vanishing
+        if vanishing is None or not vanishing.is_open:
+            return change, levels
+        return vanishing.change, tuple(one for one in levels if one[0] <= vanishing.last_ns)
 
     def _errors(self) -> StandingErrors:
         (real, imaginary), spread, prior = of_records(self._filter, self._bank, self._voltage)
@@ -526,6 +565,6 @@ class Direction:
         restart(state, self._sides)
         header.start.clear()
         header.accepted, header.declared = False, None
-        header.alarm = header.standing = header.kept = header.called = None
+        header.alarm = header.standing = header.kept = header.gone = header.called = None
         header.held_score = 0.0
         header.bus.restart()

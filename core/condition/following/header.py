@@ -7,6 +7,7 @@ from typing import Any
 from core.condition.assessment import Change, Declared, Level
 from core.condition.bus.differences import BusDifferences, Pair
 from core.condition.changes.alarm import Alarm
+from core.condition.changes.vanishing import Vanishing
 from core.condition.following.standing import Called, StandingErrors
 from core.condition.kinds import Kind
 from core.condition.measuring.measurement import Measurement
@@ -36,6 +37,8 @@ class Header:
         The change that is seen.
     kept : Change or None
         An earlier change of the channels or the impedance, with which the reference has been learnt.
+    gone : Change or None
+        Shorted turns that have vanished, without anybody telling why.
     standing : StandingErrors or None
         The standing errors as they were when the change was detected.
     called : Called or None
@@ -57,6 +60,7 @@ class Header:
     declared: Declared | None = None
     alarm: Alarm | None = None
     kept: Change | None = None
+    gone: Change | None = None
     standing: StandingErrors | None = None
     called: Called | None = None
     held_score: float = 0.0
@@ -97,6 +101,7 @@ class Header:
             "declared": None if self.declared is None else asdict(self.declared),
             "alarm": None if self.alarm is None else asdict(self.alarm),
             "kept": None if self.kept is None else asdict(self.kept),
+            "gone": None if self.gone is None else asdict(self.gone),
             "standing": None if self.standing is None else asdict(self.standing),
             "called": None if self.called is None else asdict(self.called),
             "held_score": self.held_score,
@@ -124,6 +129,9 @@ class Header:
         if alarm is not None:
             alarm = Alarm(**alarm)
             alarm.named = tuple(Kind(kind) for kind in alarm.named)
+            if alarm.vanishing is not None:
+                vanishing = words["alarm"]["vanishing"]
+                alarm.vanishing = Vanishing(**{**vanishing, "change": _change(vanishing["change"])})
             alarm.pending = tuple(Kind(kind) for kind in alarm.pending)
         return cls(
             recorder=words["recorder"],
@@ -135,6 +143,7 @@ class Header:
             declared=None if words["declared"] is None else _declared(words["declared"]),
             alarm=alarm,
             kept=None if words["kept"] is None else _change(words["kept"]),
+            gone=None if words["gone"] is None else _change(words["gone"]),
             standing=None if words["standing"] is None else StandingErrors(**words["standing"]),
             called=None if words["called"] is None else _called(words["called"]),
             held_score=words["held_score"],
@@ -166,6 +175,7 @@ def _change(words: Mapping[str, Any]) -> Change:
         size=words["size"],
         surely_above=words["surely_above"],
         size_ci95=_interval(words["size_ci95"]),
+        until_ns=words["until_ns"],
     )
 
 

@@ -96,6 +96,14 @@ _UNCONFIRMED = _Task(
     "If the next record agrees with those before, nothing needs to be done.",
 )
 
+_GONE = _Task(
+    "Ask whether the winding or a joint was repaired, and enter that as a note: `rewound` for the winding, "
+    "`maintenance` for a joint. If nobody worked there, check the joints and the winding{where}: shorted "
+    "turns do not heal, but a contact that comes and goes can look so.",
+    "Check within days if nobody repaired it.",
+    "If it comes back, the next records show it.",
+)
+
 _TELLING = {
     frozenset((Kind.SHORTED_TURNS, Kind.CONNECTION)): _Task(
         "Check the joints from the contactor to the terminal box first (thermal image, voltage drop of each "
@@ -121,7 +129,14 @@ _TELLING = {
 }
 
 
-def advice(state: State, kind: Kind, *, phase: str | None = None, candidates: Iterable[Kind] = ()) -> str:
+def advice(
+    state: State,
+    kind: Kind,
+    *,
+    phase: str | None = None,
+    candidates: Iterable[Kind] = (),
+    is_gone: bool = False,
+) -> str:
     """Say what to check first, how urgent it is, and what would make it surer.
 
     Parameters
@@ -134,6 +149,8 @@ def advice(state: State, kind: Kind, *, phase: str | None = None, candidates: It
         Phase that it is seen in.
     candidates : iterable of Kind, optional
         What it may be, likeliest first, where the kind is unclear; none where a single record differs.
+    is_gone : bool, optional
+        Whether it has vanished.
 
     Returns
     -------
@@ -148,6 +165,8 @@ def advice(state: State, kind: Kind, *, phase: str | None = None, candidates: It
     if kind is Kind.UNCLEAR:
         likeliest = frozenset(tuple(candidates)[:2])
         task = _TELLING.get(likeliest, task) if likeliest else _UNCONFIRMED
+    if is_gone:
+        task = _GONE
     urgency = task.urgency
     if state is State.FAULT:
         urgency = FAULT_OR_JOINT_URGENCY if kind is Kind.UNCLEAR else FAULT_URGENCY

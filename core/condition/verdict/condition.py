@@ -220,6 +220,7 @@ def condition_of(
     fault = of_one_fault(assessment, limit)
     state, kind = verdict.state, verdict.kind
     size, size_ci95 = _size(fault, verdict)
+    is_gone = state is State.WATCH and fault.change is not None and fault.change.until_ns is not None
     ahead = _forecast(fault, level_of(fault.change), verdict.mu_f, limit)
     return Condition(
         motor=motor.name,
@@ -238,7 +239,7 @@ def condition_of(
         reference=assessment.reference,
         as_of_ns=assessment.as_of_ns,
         stale=_is_stale(assessment.as_of_ns, now_ns, stale_after_ns),
-        advice=advice(state, kind, phase=verdict.phase, candidates=verdict.candidates),
+        advice=advice(state, kind, phase=verdict.phase, candidates=verdict.candidates, is_gone=is_gone),
         reasons=reasons_of(assessment, limit, ahead),
     )
 
@@ -278,7 +279,7 @@ def _size(assessment: Assessment, verdict: Verdict) -> tuple[float | None, Inter
     if assessment.standing_fault:
         return verdict.mu_f, verdict.mu_f_ci95
     change = assessment.change
-    return (None, None) if change is None else (change.size, change.size_ci95)
+    return (None, None) if change is None or change.until_ns is not None else (change.size, change.size_ci95)
 
 
 def _forecast(assessment: Assessment, level: Level | None, mu_f: float, limit: float) -> Forecast:

@@ -85,6 +85,15 @@ def reason_of_unknown(ended_by: Event | None) -> str:
 def _of_change(change: Change, limit: float) -> Iterator[str]:
     since = _seconds(change.since_ns)
     level = change.level
+    if change.until_ns is not None:
+        either = " or ".join(WORDS[kind] for kind in change.named)
+        until = _seconds(change.until_ns)
+        yield (
+            f"{either} in phase {level.phase} from {since} to {until}: gone; was it repaired? "
+            "Tell it with a note"
+        )
+        yield f"their level was {_interval(level)}"
+        return
     if not change.named:
         likely = sorted(change.probabilities.items(), key=lambda one: -one[1])
         yield f"something has changed since {since}; it may be " + ", ".join(
