@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 from core.condition.kinds import Kind, State
 from core.condition.verdict.advice import advice
+from core.condition.verdict.latest_record import why_milder
 from service.api.condition_schemas import Condition, ConditionReference
-from service.storage.records import ConditionEntry
+from service.storage.records import ConditionEntry, LatestDiagnosis
 
 NOT_JUDGED = "no valid record of the motor has been judged yet"
 
@@ -33,19 +34,32 @@ _NOTHING: Mapping[str, object] = {
 }
 
 
-def condition_document(entry: ConditionEntry, now_ns: int, stale_after_ns: int) -> Condition:
-    """Return a motor's condition as it is seen now: a condition gets stale without any record."""
+def condition_document(
+    entry: ConditionEntry, now_ns: int, stale_after_ns: int, latest: LatestDiagnosis | None = None
+) -> Condition:
+    """Return a motor's condition as it is seen now: a condition gets stale without any record.
+
+    latest: of the motor's records. Where the condition is milder, a reason says why.
+    """
     document = {**_NOTHING, **(entry.document or {})}
     reference = document["reference"]
     known = reference if isinstance(reference, Mapping) else {}
     stale = is_stale(entry, now_ns, stale_after_ns)
+    told = document["reasons"]
+    reasons = told if isinstance(told, list) and entry.document is not None else []
+    milder = None if latest is None else _why_milder(entry, latest)
     if entry.problem is not None:
-        told = document["reasons"]
-        known_reasons = told if isinstance(told, list) and entry.document is not None else []
-        document["reasons"] = [NOT_FOLDED.format(entry.problem), *known_reasons]
+        document["reasons"] = [NOT_FOLDED.format(entry.problem), *reasons]
+    elif milder is not None:
+        document["reasons"] = [milder, *reasons]
     return Condition.model_validate(
         {**document, "motor": entry.motor, "stale": stale, "reference": {**_NO_REFERENCE, **known}}
     )
+
+
+def _why_milder(entry: ConditionEntry, latest: LatestDiagnosis) -> str | None:
+    is_later = entry.as_of_ns is None or latest.recorded_ns > entry.as_of_ns
+    return why_milder(entry.state, latest.verdict, latest.mu_f, latest.phase, is_later=is_later)
 
 
 def is_stale(entry: ConditionEntry, now_ns: int, stale_after_ns: int) -> bool:

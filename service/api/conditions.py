@@ -49,8 +49,9 @@ def get_condition(
 ) -> ConditionDetails:
     """Return the condition of a motor over time, with what was said from each of its latest records on."""
     now_ns = time.time_ns()
-    oldest_ns = stale_after_ns(context.repository.motor(name).schedule, context.settings.stale_after_days)
-    condition = condition_document(context.repository.condition(name), now_ns, oldest_ns)
+    health = context.repository.health(name)
+    oldest_ns = stale_after_ns(health.motor.schedule, context.settings.stale_after_days)
+    condition = condition_document(health.condition, now_ns, oldest_ns, health.diagnosis)
     points = context.repository.latest_condition_points(name, limit=history)
     return ConditionDetails(
         **dict(condition), history=[ConditionPoint.model_validate(point) for point in points]

@@ -1,11 +1,10 @@
 """The condition of motors over time, by REST, on both databases."""
 
 import time
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from threading import Barrier
-from typing import Any
+from typing import Any, Protocol
 
 import httpx
 import pytest
@@ -13,6 +12,7 @@ import pytest
 from core.condition.events import Event, EventKind
 from core.condition.observation import Observation
 from core.condition.verdict.condition import Condition
+from core.diagnosis.verdict import Diagnosis
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
 from service.plant import Schedule
@@ -23,7 +23,7 @@ from service.storage.repository.motor_versions import MOTORS_FILE
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
 from testing.service.observations import HOUR_NS, observation
-from testing.service.plants import NOW_NS, healthy, two_motor_plant
+from testing.service.plants import NOW_NS, fault, healthy, two_motor_plant
 from tests.service.fixtures import database_url as sqlite_database_url
 
 __all__ = ["sqlite_database_url"]
@@ -32,7 +32,11 @@ MOTOR = "/api/v1/motors/PUMP-A1"
 NOTE = {"kind": "maintenance", "text": "terminals cleaned", "by": "A. Miller"}
 FIGURES = ("state", "kind", "candidates", "phase", "mu_f", "mu_f_ci95", "change", "change_ci95")
 
-Record = Callable[[float], str]
+
+class Record(Protocol):
+    """Add a diagnosed recording of PUMP-A1, so many hours after NOW_NS; return its id."""
+
+    def __call__(self, hour: float, diagnosis: Diagnosis | None = None, /) -> str: ...
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
@@ -46,7 +50,7 @@ def database_url(request: pytest.FixtureRequest) -> str:
 def record(repository: Repository, store: RecordingStore) -> Record:
     """Add a diagnosed recording of PUMP-A1, so many hours after NOW_NS; returns its id."""
 
-    def add(hour: float) -> str:
+    def add(hour: float, diagnosis: Diagnosis | None = None, /) -> str:
         observed: Observation = observation(hour)
         stored = store.store({"E.CFF": b"record of hour %f" % hour})
         added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS)
@@ -54,7 +58,7 @@ def record(repository: Repository, store: RecordingStore) -> Record:
         assert claimed is not None
         assert repository.finish_job(
             claimed.job.id,
-            healthy(),
+            diagnosis or healthy(),
             recorded_ns=observed.time_ns,
             now_ns=NOW_NS,
             runner=RUNNER,
@@ -157,6 +161,19 @@ def test_health_leads_with_the_condition(
     listed = client.get("/api/v1/motors", params={"health": "true"}).json()["items"]
     assert [one["health"]["condition"]["state"] for one in listed] == ["unknown", "fault"]
     assert listed[1]["health"] == health
+
+
+def test_a_condition_that_is_milder_than_the_latest_record_says_why(
+    client: httpx.Client, repository: Repository, record: Record
+) -> None:
+    record(0, healthy())
+    tell(repository, HEALTHY)
+    assert client.get(f"{MOTOR}/condition").json()["reasons"] == list(HEALTHY.reasons)
+    record(1, fault())
+    for found in (client.get(f"{MOTOR}/condition").json(), client.get(f"{MOTOR}/health").json()["condition"]):
+        first, *others = found["reasons"]
+        assert first.startswith("the latest record by itself says fault, ")
+        assert others == list(HEALTHY.reasons)
 
 
 def test_the_trend_of_the_condition_has_a_point_for_each_record(
