@@ -504,10 +504,11 @@ class Direction:
         """Call a standing fault, and keep the errors that tell it surest: shorted turns do not heal.
 
         A second change beside it, before it is detected, and a supply that stays constant both have the
-        filter take up some of it. While a change is suspected nothing is called: it may be of that change.
+        filter take up some of it. While a change is suspected nothing is called, nor after one that is lived
+        with: it may be of that change.
         """
         header = self._header
-        if self._figures["statistic"] > SUSPECTED:
+        if self._figures["statistic"] > SUSPECTED or header.standing is not None:
             return
         errors = self._errors()
         score = score_of(motor, errors)
