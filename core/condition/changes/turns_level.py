@@ -178,9 +178,9 @@ def _weigh_windings(
     """Find what each path makes of a change in each of some windings.
 
     Fills `table` by winding and path with the level, what wandering adds to its variance, the information
-    on it as a step (a, b, c), the deviation of its direction and, relatively, of its size, and the log of the
-    path's weight, and what it shows in y; and `levels` with those of each record by the winding's likeliest path. Returns the place
-    of the first of these records, and their number.
+    on it as a step (a, b, c), the deviation of its direction and, relatively, of its size, the log of the
+    path's weight, and what it shows in y; and `levels` with those of each record by the winding's likeliest
+    path. Returns the place of the first of these records, and their number.
     """
     state, one = filters[0], bank[onset]
     found, out = np.zeros((RECENT, 3)), np.zeros(5)

@@ -12,7 +12,7 @@ from core.condition.following.direction import Direction
 from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
 
-MAGIC: Final = b"StatorWatch follower 5\n"
+MAGIC: Final = b"StatorWatch follower 6\n"
 """Name and version; another layout gets another number."""
 
 
