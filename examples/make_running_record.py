@@ -58,6 +58,8 @@ def running_record() -> Recording:
 
 
 def main() -> None:
+    if any(word.startswith("-") for word in sys.argv[1:]):
+        sys.exit(__doc__)
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
     print(comtrade.write(folder / "RUNNING.CFG", running_record()))
 

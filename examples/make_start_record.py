@@ -73,6 +73,8 @@ def _channels() -> tuple[Channel, ...]:
 
 
 def main() -> None:
+    if any(word.startswith("-") for word in sys.argv[1:]):
+        sys.exit(__doc__)
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
     print(comtrade.write(folder / "START.CFG", start_record()))
 

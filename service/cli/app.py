@@ -97,7 +97,7 @@ def demo(
 
 @app.command("demo-status")
 def demo_status(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
-    """Show each motor's condition and verdict beside the truth, where a demo plant runs."""
+    """Show each motor's condition beside the truth at its latest record, where a demo plant runs."""
     from service.cli.demo_status import show_demo
 
     show_demo(url, as_json=as_json)

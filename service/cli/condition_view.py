@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from service.cli.output import one_line, results
+from service.cli.output import facts_table, one_line, results
 from service.client.conditions import cause, condition_lines, state_text
 from service.client.verdicts import percent, to_the_second
 
@@ -37,11 +37,8 @@ def print_condition(
     console = results()
     console.print(Text(f"{one_line(str(condition['motor']))}: ", style="bold") + state_text(condition))
     console.print(Text(str(condition["advice"])), soft_wrap=True)
-    table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
-    for name, text in condition_lines(condition)[SAID_FIRST:]:
-        table.add_row(name, text)
     console.print()
-    console.print(table)
+    console.print(facts_table(condition_lines(condition)[SAID_FIRST:]))
     _print_course(console, history)
     _print_skipped(console, skipped)
 

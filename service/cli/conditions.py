@@ -7,7 +7,15 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
-from service.cli.output import CommandError, failing_clearly, one_line, print_document, results
+from service.cli.output import (
+    READABLE_WIDTH,
+    CommandError,
+    facts_table,
+    failing_clearly,
+    one_line,
+    print_document,
+    results,
+)
 from service.client.conditions import condition_lines, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import level, to_the_second
@@ -26,11 +34,8 @@ def show_condition(url: str, motor: str, *, history: bool, as_json: bool) -> Non
     if as_json:
         print_document({**condition, "changes": changes} if history else condition)
         return
-    table = Table(title=Text(motor), title_justify="left", show_header=False)
-    for name, value in condition_lines(condition):
-        table.add_row(name, value)
     console = results()
-    console.print(table)
+    console.print(facts_table(condition_lines(condition), title=motor))
     if history:
         console.print(_history_table(changes, notes))
 
@@ -54,8 +59,9 @@ def list_notes(url: str, motor: str, *, as_json: bool) -> None:
         print_document({"notes": notes})
         return
     table = Table(box=SIMPLE_HEAD, collapse_padding=True)
-    for heading in ("time", "kind", "by", "text"):
+    for heading in ("time", "kind", "by"):
         table.add_column(heading)
+    table.add_column("text", max_width=READABLE_WIDTH)
     table.add_column("id", no_wrap=True)
     for note in notes:
         text = one_line(str(note["text"]))
@@ -103,7 +109,7 @@ def _history_table(changes: list[Document], notes: dict[object, Document]) -> Ta
     table.add_column("time", no_wrap=True)
     table.add_column("condition")
     table.add_column("level", no_wrap=True)
-    table.add_column("because of")
+    table.add_column("because of", max_width=READABLE_WIDTH)
     for change in changes:
         note = notes.get(change["note_id"])
         if note is not None:

@@ -1,4 +1,4 @@
-"""`mcc demo-status`: conditions and latest verdicts of a demo plant, and whether they are right."""
+"""`mcc demo-status`: the conditions of a demo plant beside the truth, and whether they are right."""
 
 from rich.box import SIMPLE_HEAD
 from rich.table import Table
@@ -7,14 +7,14 @@ from rich.text import Text
 from service.cli.output import failing_clearly, one_line, print_document, results
 from service.client.conditions import state_text
 from service.client.rest_client import ServiceClient, ServiceError
-from service.client.verdicts import level, percent, verdict_text
+from service.client.verdicts import level, verdict_text
 from service.demo.results import truth_text
 from service.demo.status import MotorStatus, ask_plant
 from service.demo.truth import TruthError
 
 
 def show_demo(url: str, *, as_json: bool) -> None:
-    """Print each motor's verdict and truth. Raises CommandError."""
+    """Print each motor's condition and truth. Raises CommandError."""
     with failing_clearly(ServiceError, TruthError), ServiceClient(url) as service:
         motors = ask_plant(service)
     right = sum(motor.is_right is True for motor in motors)
@@ -23,14 +23,14 @@ def show_demo(url: str, *, as_json: bool) -> None:
         print_document({"motors": [motor.as_dict() for motor in motors], "right": right, "judged": judged})
         return
     table = Table(box=SIMPLE_HEAD, collapse_padding=True)
-    for heading in ("motor", "truth", "condition", "verdict", "level", "seen from", "link"):
+    for heading in ("motor", "truth", "condition", "level", "latest verdict", "link"):
         table.add_column(heading)
     for motor in motors:
         table.add_row(*_row(motor))
     results().print(table)
     waiting = len(motors) - judged
     results().print(
-        f"{right} of {judged} verdicts are right" + (f"; {waiting} without one yet" if waiting else "")
+        f"{right} of {judged} motors are judged right" + (f"; {waiting} not judged yet" if waiting else "")
     )
 
 
@@ -42,8 +42,7 @@ def _row(motor: MotorStatus) -> tuple[Text, ...]:
         Text(str(health["motor"])),
         Text(truth_text(motor.truth)),
         state_text(motor.condition),
+        Text(level(motor.condition["mu_f"], motor.condition["mu_f_ci95"])),
         Text("-") if verdict is None else verdict_text(str(verdict), health["phase"]),
-        Text(level(health["mu_f"], health["mu_f_ci95"])),
-        Text("-" if health["detection_limit"] is None else f"{percent(health['detection_limit'])} %"),
         Text(f"{health['link_state']}{reason}"),
     )

@@ -10,6 +10,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
+from core.condition.kinds import State
 from core.condition.verdict.condition import Condition, condition_of
 from core.machines.motor_file import MotorFileError, read_motor
 from core.machines.parameters import Motor
@@ -19,7 +20,14 @@ from service.cli.condition_view import print_condition
 from service.cli.followed_bus import Bus, Member, bus_of, read_neighbours
 from service.cli.followed_records import Seen, find_records, observe_all
 from service.cli.given_events import GivenEvent, given_events
-from service.cli.output import CommandError, failing_clearly, one_line, print_document, progress
+from service.cli.output import (
+    CommandError,
+    failing_clearly,
+    one_line,
+    print_document,
+    print_warning,
+    progress,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +93,11 @@ def follow_records(
     followed = follow(own, bus, given, round(stale_after_days * NANOSECONDS_PER_DAY))
     if not followed.steps:
         raise _none_usable(records, followed.skipped)
+    if followed.condition.state is State.UNKNOWN:
+        latest = _time(followed.steps[-1].seen)
+        print_warning(
+            f"there is no record after the latest event, only until {latest}: the condition is unknown"
+        )
     if as_json:
         print_document(_document(motor_file, followed, given, bus))
     else:
@@ -119,7 +132,13 @@ def follow(own: Member, bus: Bus, events: Sequence[GivenEvent], stale_after_ns: 
         steps.append(Step(one, _brief(follower, bus, one.observation.time_ns)))
     for event in waiting:
         _apply(follower, event)
-    condition = condition_of(follower.motor, follower.assessment(bus.standings), now_ns, stale_after_ns)
+    condition = condition_of(
+        follower.motor,
+        follower.assessment(bus.standings),
+        now_ns,
+        stale_after_ns,
+        ended_by=follower.ended_by,
+    )
     return Followed(condition, tuple(steps), tuple(skipped))
 
 
@@ -131,7 +150,9 @@ def _brief(follower: Follower, bus: Bus, now_ns: int) -> Condition:
 
 
 def _apply(follower: Follower, given: GivenEvent) -> None:
-    follower.apply(given.event, given.motor)
+    # The file of an edited motor may have another name; it is the same motor.
+    name = follower.motor.name
+    follower.apply(given.event, None if given.motor is None else replace(given.motor, name=name))
 
 
 def _document(

@@ -119,6 +119,9 @@ def _each(look: Callable[[Path], Seen], paths: Sequence[Path]) -> Iterator[Seen]
 
 def observe_record(path: Path, motor: Motor, *, lenient: bool) -> Seen:
     """Read one record and observe the motor in it; whatever is wrong with it is told in the answer."""
+    if not path.exists():
+        is_pattern = GLOB_CHARACTERS.intersection(str(path))
+        return Seen(path, None, None, "no file matches" if is_pattern else "there is no such file or folder")
     try:
         recording = read(path, lenient=lenient, most_values=MOST_VALUES)
     except (RecordingError, OSError) as error:

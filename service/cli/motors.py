@@ -7,7 +7,7 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from service.cli.output import failing_clearly, one_line, print_document, results
+from service.cli.output import facts_table, failing_clearly, one_line, print_document, results
 from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import (
@@ -48,13 +48,7 @@ def show_health(url: str, motor: str, *, as_json: bool) -> None:
     if as_json:
         print_document(health)
         return
-    table = Table(title=Text(motor), title_justify="left", show_header=False)
-    for name, value in lines:
-        table.add_row(name, value)
-    table.add_section()
-    for name, shown in _latest_recording(health):
-        table.add_row(name, shown)
-    results().print(table)
+    results().print(facts_table(lines, _latest_recording(health), title=motor))
 
 
 def motors_table(healths: Sequence[Document]) -> Table:

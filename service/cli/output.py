@@ -2,15 +2,20 @@
 
 import json
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 
-from rich.console import Console
+from rich.console import Console, RenderableType
+from rich.table import Table
+from rich.text import Text
 
 DONE, FAILED, WRONG_USE = 0, 1, 2
 
 UNLIMITED_WIDTH = 10_000
 """A file has this many columns; tables use only what they need."""
+
+READABLE_WIDTH = 100
+"""Longer texts in a table are wrapped, also in a file."""
 
 DETAILS = ("path", "source", "host", "operation", "line", "element", "field", "expected", "found")
 """These attributes of the project's errors tell a program where to look."""
@@ -59,6 +64,20 @@ def results() -> Console:
     """
     width = None if sys.stdout.isatty() else UNLIMITED_WIDTH
     return Console(file=sys.stdout, highlight=False, width=width)
+
+
+def facts_table(*parts: Iterable[tuple[str, RenderableType]], title: str | None = None) -> Table:
+    """Return a table of names with what they are; a line between the parts. With a title it has a frame."""
+    table = Table(title=None if title is None else Text(title), title_justify="left", show_header=False)
+    if title is None:
+        table.box, table.padding = None, (0, 2, 0, 0)
+    table.add_column(no_wrap=True)
+    table.add_column(max_width=READABLE_WIDTH)
+    for part in parts:
+        for name, value in part:
+            table.add_row(name, value)
+        table.add_section()
+    return table
 
 
 def progress() -> Console:

@@ -67,7 +67,8 @@ def condition_lines(condition: Document) -> list[tuple[str, Text]]:
         lines.append(("growth", Text(_growth(condition))))
     elif condition["size"] is not None and not stands(condition):
         lines.append(("size of the change", Text(level(condition["size"], condition.get("size_ci95")))))
-    lines.extend(("why", Text(reason)) for reason in _texts(condition["reasons"]))
+    for number, reason in enumerate(_texts(condition["reasons"])):
+        lines.append(("why" if number == 0 else "", Text(reason)))
     lines.append(("reference", Text(_reference(condition["reference"]))))
     when = condition["as_of"]
     if when is None:

@@ -1,14 +1,15 @@
-"""The state of a running demo plant: each motor's latest verdict beside the truth."""
+"""The state of a running demo plant: each motor's condition beside the truth."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 
 from scl import DEMO_PLANT_SCD
 from service.client.conditions import condition_of
 from service.client.rest_client import Document, ServiceClient, segment
 from service.demo import MONTH, SCENARIO
 from service.demo.month import began, latest_s
-from service.demo.truth import Truth, TruthError, ask_simulator
+from service.demo.truth import Truth, TruthError, ask_course, ask_simulator
 
 VERDICT = (
     "verdict", "phase", "mu_f", "mu_f_ci95", "mu_f_scatter95", "detection_limit", "load_level",
@@ -16,17 +17,19 @@ VERDICT = (
 )  # fmt: skip
 LINK = ("link_state", "link_reason")
 
+Truths = Mapping[str, Truth]
+"""By name of the relay."""
+
 
 @dataclass(frozen=True, slots=True)
 class MotorStatus:
     """One motor: its health as the service reports it (GET motors/{name}/health), and the truth.
 
-    develops: it is judged by its condition, because faults develop that no single record shows at first.
+    truth: at the time of the latest record.
     """
 
     health: Document
     truth: Truth
-    develops: bool = False
 
     @property
     def condition(self) -> Document:
@@ -37,16 +40,18 @@ class MotorStatus:
     def is_right(self) -> bool | None:
         """Whether what is said of the motor is true; None while nothing is said yet.
 
-        It is verdict and faulted phase of the latest record. Of a motor that develops it is whether it is
-        called faulty, and in which phase, and None while a fault has not been seen yet.
+        It is whether the condition calls it faulty, and in which phase. While its reference is being learnt,
+        verdict and phase of the latest record count too, because there is little else. A fault that the
+        condition has not seen yet is neither right nor wrong.
         """
         truth = self.truth.verdict, self.truth.phase
-        if not self.develops:
-            said = self.health["verdict"], self.health["phase"]
-            return None if said[0] is None else said == truth
         state, phase = self.condition["state"], self.condition["phase"]
         if state == "fault":
             return (state, phase) == truth
+        reference = self.condition["reference"]
+        if not (isinstance(reference, Mapping) and reference["complete"]):
+            said = self.health["verdict"], self.health["phase"]
+            return None if said[0] is None else said == truth
         return None if state == "unknown" or self.truth.verdict == "fault" else True
 
     def as_dict(self) -> dict[str, object]:
@@ -67,24 +72,29 @@ def ask_plant(service: ServiceClient) -> list[MotorStatus]:
     """
     since = began(service)
     if since is None:
-        return ask_status(service, ask_simulator(DEMO_PLANT_SCD, SCENARIO))
-    healths = [_health(service, str(motor["name"])) for motor in service.items("/motors")]
-    at_s = max((latest_s(health, since) for health in healths), default=0.0)
-    return ask_status(service, ask_simulator(DEMO_PLANT_SCD, MONTH, at_s), develops=True)
+        truths = ask_simulator(DEMO_PLANT_SCD, SCENARIO)
+        return ask_status(service, lambda healths: [truths] * len(healths))
+    return ask_status(service, lambda healths: truths_of_month(healths, since))
+
+
+def truths_of_month(healths: Sequence[Document], since: datetime) -> Sequence[Truths]:
+    """Return what was true of the month's plant at the latest record of each motor. Raises TruthError."""
+    moments_s = [latest_s(health, since) for health in healths]
+    return ask_course(DEMO_PLANT_SCD, MONTH, [*moments_s, 0.0])[:-1]  # a course has two moments at least
 
 
 def ask_status(
-    service: ServiceClient, truths: Mapping[str, Truth], *, develops: bool = False
+    service: ServiceClient, truths_at: Callable[[Sequence[Document]], Sequence[Truths]]
 ) -> list[MotorStatus]:
-    """Return the status of every motor. truths: by name of the relay.
+    """Return the status of every motor.
 
+    truths_at: takes the motors' healths, and returns for each the truths at the time of its latest record.
     Raises ServiceError, TruthError where the service watches another plant.
     """
+    healths = [_health(service, str(motor["name"])) for motor in service.items("/motors")]
     return [
-        MotorStatus(
-            _health(service, str(motor["name"])), _truth_of(str(motor["ied"]), truths), develops=develops
-        )
-        for motor in service.items("/motors")
+        MotorStatus(health, _truth_of(str(health["ied"]), truths))
+        for health, truths in zip(healths, truths_at(healths), strict=True)
     ]
 
 
@@ -92,7 +102,7 @@ def _health(service: ServiceClient, motor: str) -> Document:
     return service.get(f"/motors/{segment(motor)}/health")
 
 
-def _truth_of(relay: str, truths: Mapping[str, Truth]) -> Truth:
+def _truth_of(relay: str, truths: Truths) -> Truth:
     if relay not in truths:
         raise TruthError(f"expected a service that watches the demo plant, found one with the relay {relay}")
     return truths[relay]

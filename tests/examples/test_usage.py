@@ -23,3 +23,14 @@ def test_an_example_without_arguments_says_how_it_is_run(name: str, monkeypatch:
     monkeypatch.setattr(sys, "argv", [f"{name}.py"])
     with pytest.raises(SystemExit, match=rf"python examples/{name}\.py"):
         runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+
+
+@pytest.mark.parametrize("name", ["make_month_of_records", "make_running_record", "make_start_record"])
+def test_an_example_that_is_asked_for_help_writes_nothing(
+    name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", [f"{name}.py", "--help"])
+    with pytest.raises(SystemExit, match=rf"python examples/{name}\.py"):
+        runpy.run_path(str(EXAMPLES / f"{name}.py"), run_name="__main__")
+    assert not [*tmp_path.iterdir()]

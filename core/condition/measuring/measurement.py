@@ -8,8 +8,8 @@ from core.condition.errors import ObservationError
 from core.condition.observation import Observation
 from core.machines.parameters import Connection, MachineParameters, Motor
 
-HOT = 1.2
-"""Resistance of a warm winding over that of the data sheet."""
+WARM = 1.2
+"""Resistance of a winding at work over that of the motor's file, where it is that of a cold one."""
 RATED_SLIP = 0.02
 LARGEST_SLIP = 0.1
 LEAST_CURRENT = 1e-3
@@ -75,7 +75,7 @@ def negative_impedance(machine: MachineParameters, frequency_hz: float, slip: fl
     complex
         Z2n = 1.2 (R_s + R_r / (2 - s)) + j 2 pi f (L_ls + L_lr) [ohm].
     """
-    resistance = HOT * (machine.stator_resistance_ohm + machine.rotor_resistance_ohm / (2.0 - slip))
+    resistance = WARM * (machine.stator_resistance_ohm + machine.rotor_resistance_ohm / (2.0 - slip))
     reactance = 2.0 * pi * frequency_hz * (machine.stator_leakage_H + machine.rotor_leakage_H)
     return complex(resistance, reactance)
 
@@ -107,7 +107,7 @@ def slip_of(machine: MachineParameters, frequency_hz: float, impedance: complex)
     resistance = (1.0 / admittance).real
     if resistance <= 0.0:
         return LARGEST_SLIP
-    return min(HOT * machine.rotor_resistance_ohm / resistance, LARGEST_SLIP)
+    return min(WARM * machine.rotor_resistance_ohm / resistance, LARGEST_SLIP)
 
 
 def measure(observation: Observation, motor: Motor, scale_ohm: float, elapsed_s: float) -> Measurement:

@@ -7,8 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
-from core.condition.measuring.impedance import negative_sequence_impedance
-from core.condition.measuring.measurement import LONGEST_RECORDER
+from core.condition.measuring.measurement import LONGEST_RECORDER, negative_impedance
 from core.condition.observation import Observation, VoltageChannels
 from core.diagnosis.acceptance import Accepted, accept
 from core.diagnosis.baseline import Baseline
@@ -133,7 +132,7 @@ def observation_of(recording: Recording, accepted: Accepted) -> Observation | No
     """
     terminals, case, record = accepted.terminals, accepted.case, accepted.phasors
     voltages = _voltage_channels(accepted)
-    impedance = negative_sequence_impedance(case.motor, case.frequency_hz)
+    impedance = negative_impedance(case.motor.parameters, case.frequency_hz)
     scatter = _scatter(record, impedance)
     if voltages is None or not isfinite(scatter):
         return None

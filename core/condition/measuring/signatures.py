@@ -11,8 +11,10 @@ from core.machines.winding_frame import Winding, terminal_winding
 from core.signals.sequence import PhaseSequence
 
 A: Final = cexp(2j * pi / 3.0)
-WARM: Final = 1.1
-"""Resistance of the winding, between cold and warm, over that of the data sheet."""
+HALF_WARM: Final = 1.1
+"""R_s in what shorted turns show, over that of the motor's file. It is between that of a cold winding (1) and
+of one at work (`measurement.WARM`), because R_s scales the level that is told. The filter learns by how much
+Z2 is another, but not R_s: with a figure between, a level is as little too high as too low."""
 PATHS: Final = (0.0, 0.5, 1.0, 2.0, 4.0)
 """Resistances of the path over that of the shorted turns that are tried."""
 
@@ -35,7 +37,7 @@ def shorted_turns(motor: Motor, winding: int, path_ratio: float) -> complex:
         -Z2n (1 + p) a^x / (3 (R_s (1 + p) + j X_ls)).
     """
     machine, f = motor.parameters, motor.nameplate.rated_frequency_Hz
-    R_s, X_ls = WARM * machine.stator_resistance_ohm, 2.0 * pi * f * machine.stator_leakage_H
+    R_s, X_ls = HALF_WARM * machine.stator_resistance_ohm, 2.0 * pi * f * machine.stator_leakage_H
     Z2n = negative_impedance(machine, f)
     return complex(-Z2n * (1.0 + path_ratio) * A**winding / (3.0 * complex(R_s * (1.0 + path_ratio), X_ls)))
 
@@ -56,7 +58,7 @@ def turns_angle_slope(motor: Motor, path_ratio: float) -> float:
         Product sin phi cos phi, phi the angle of R_s (1 + p) + j X_ls [rad per relative change].
     """
     machine, f = motor.parameters, motor.nameplate.rated_frequency_Hz
-    R = WARM * machine.stator_resistance_ohm * (1.0 + path_ratio)
+    R = HALF_WARM * machine.stator_resistance_ohm * (1.0 + path_ratio)
     X = 2.0 * pi * f * machine.stator_leakage_H
     return R * X / (R * R + X * X)
 
@@ -77,7 +79,7 @@ def turns_size_slope(motor: Motor, path_ratio: float) -> float:
         Fall, cos^2 phi, phi the angle of R_s (1 + p) + j X_ls [relative change per relative change].
     """
     machine, f = motor.parameters, motor.nameplate.rated_frequency_Hz
-    R = WARM * machine.stator_resistance_ohm * (1.0 + path_ratio)
+    R = HALF_WARM * machine.stator_resistance_ohm * (1.0 + path_ratio)
     X = 2.0 * pi * f * machine.stator_leakage_H
     return R * R / (R * R + X * X)
 

@@ -12,6 +12,7 @@ import pytest
 from rich.console import Console
 
 from core.condition.events import EventKind
+from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
 from core.condition.verdict.condition import Condition
 from core.time_stamps import rfc3339
@@ -127,13 +128,38 @@ def test_a_motor_without_a_record_has_no_figures(mcc: Mcc) -> None:
 
 def test_a_change_of_a_channel_has_a_size_and_no_growth(mcc: Mcc, repository: Repository) -> None:
     named = replace(
-        DRIFTING, kind=Kind.VOLTAGE_CHANNEL, candidates=(), change=0.0, change_ci95=None, size=-0.0125
+        DRIFTING,
+        kind=Kind.VOLTAGE_CHANNEL,
+        candidates=(),
+        change=0.0,
+        change_ci95=None,
+        size=-0.0125,
+        size_ci95=(-0.015, -0.01),
     )
     tell(repository, named)
     shown = unframed(mcc("condition", "PUMP-A1"))
     assert "condition watch: voltage channel c" in shown
-    assert "size of the change -1.25 %" in shown
+    assert "size of the change -1.25 % [-1.50..-1.00]" in shown
     assert "growth" not in shown
+
+
+def test_what_stands_from_the_first_record_on_has_neither_a_beginning_nor_a_change(
+    mcc: Mcc, repository: Repository
+) -> None:
+    assert FAULT.reference is not None
+    first_ns = FAULT.reference.since_ns
+    tell(repository, replace(FAULT, since_ns=first_ns, change=0.0, change_ci95=None))
+    shown = unframed(mcc("condition", "PUMP-A1"))
+    assert "since before the first record, of 2025-08-06 08:53:20 UTC" in shown
+    assert "size of the change" not in shown
+    (row,) = [line for line in mcc("motors").splitlines() if "PUMP-A1" in line]
+    assert "2025-08-06" not in row
+
+
+def test_a_growth_that_is_not_certain_is_told_as_that(mcc: Mcc, repository: Repository) -> None:
+    tell(repository, replace(FAULT, forecast=Forecast(0.02, None, 0.0004)))
+    shown = unframed(mcc("condition", "PUMP-A1"))
+    assert "growth not certain, 0.04 % a day at best guess; it may never reach 2.00 %" in shown
 
 
 def test_a_reference_that_is_not_complete_says_so(mcc: Mcc, repository: Repository) -> None:

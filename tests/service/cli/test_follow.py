@@ -24,6 +24,8 @@ from testing.machines.phase_circuits import Fault
 from testing.machines.record_series import BEGUN_NS, HOUR_NS, write_series
 
 RECORDS = FEW + 2
+MOST_COLUMNS = 130
+"""Of what is printed into a file or a pipe."""
 
 
 @pytest.fixture(scope="module")
@@ -160,6 +162,16 @@ def test_without_a_usable_record_it_fails_with_the_reasons(
     assert "no recordings in" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("name", "words"), [("gone", "there is no such file or folder"), ("gone-*.CFG", "no file matches")]
+)
+def test_a_name_that_leads_nowhere_is_told_as_that(
+    few: Path, name: str, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["follow", str(few / name), "--motor", str(few / "PUMP.toml")]) == 1
+    assert f"{name}: {words}" in capsys.readouterr().err
+
+
 def test_events_are_taken_between_the_records_in_their_time(
     few: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -167,8 +179,22 @@ def test_events_are_taken_between_the_records_in_their_time(
     document = followed(capsys, few, str(few), "--event", f"{between}=rewound:new winding")
     assert document["events"] == [{"time": between, "kind": "rewound", "reason": "new winding"}]
     assert document["reference"]["records"] == 1
+
+
+def test_an_event_after_the_latest_record_is_warned_of_and_told(
+    few: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     after = rfc3339(BEGUN_NS + 9 * HOUR_NS)
-    assert followed(capsys, few, str(few), "--event", f"{after}=rewound")["state"] == "unknown"
+    words = ["follow", str(few), "--motor", str(few / "PUMP.toml"), "--json", "--event"]
+    assert main([*words, f"{after}=note:hums"]) == 0
+    assert "warning" not in capsys.readouterr().err
+    assert main([*words, f"{after}=rewound:new winding"]) == 0
+    answer = capsys.readouterr()
+    assert "warning: there is no record after the latest event" in answer.err
+    document = json.loads(answer.out)
+    assert document["state"] == "unknown"
+    (reason,) = document["reasons"]
+    assert "rewound (new winding) of 2026-01-05T" in reason
 
 
 def test_events_come_from_a_file_too_with_the_motor_as_it_is_then(
@@ -176,10 +202,12 @@ def test_events_come_from_a_file_too_with_the_motor_as_it_is_then(
 ) -> None:
     (few / "events.toml").write_text(
         "[[event]]\ntime = 2026-01-05T10:30:00+01:00\n"
-        'kind = "parameters-edited"\nreason = "as commissioned"\nmotor = "PUMP.toml"\n'
+        'kind = "parameters-edited"\nreason = "as commissioned"\nmotor = "PUMP-EDITED.toml"\n'
         '[[event]]\ntime = "2026-01-05T09:15:00Z"\nkind = "note"\n'
     )
+    shutil.copy(few / "PUMP.toml", few / "PUMP-EDITED.toml")
     document = followed(capsys, few, str(few), "--events", str(few / "events.toml"))
+    assert document["motor"] == "PUMP"
     assert [one["kind"] for one in document["events"]] == ["note", "parameters-edited"]
     assert document["events"][1]["time"].startswith("2026-01-05T09:30:00")
     assert document["reference"]["records"] == 3
@@ -254,6 +282,7 @@ def test_people_read_state_and_advice_first(few: Path, capsys: pytest.CaptureFix
         line for line in lines if line.strip().startswith("2026-01-05 09:00:00 UTC") and "healthy" in line
     ]
     assert row.split()[3] == "3"
+    assert max(len(line) for line in lines) <= MOST_COLUMNS
 
 
 def test_names_and_reasons_cannot_play_with_the_terminal(

@@ -15,7 +15,7 @@ from service.client.rest_client import Document
 from service.demo import MONTH, MONTH_MOTORS, MOTORS, SCENARIO
 from service.demo.month import Month, month_of
 from service.demo.results import DemoMotor
-from service.demo.status import MotorStatus
+from service.demo.status import MotorStatus, truths_of_month
 from service.demo.truth import ChannelError, Truth, ask_course
 
 BEGAN = datetime(2026, 1, 1, tzinfo=UTC)
@@ -95,11 +95,21 @@ def test_a_plant_in_real_time_has_no_month() -> None:
         ("fault", "c", FAULT_B, False),
     ],
 )
-def test_of_a_motor_that_develops_right_is_its_condition(
+def test_right_is_the_condition_whatever_the_latest_record_says(
     state: str, phase: str | None, truth: Truth, right: bool | None
 ) -> None:
-    health = {"verdict": "watch", "phase": None, "condition": {"state": state, "phase": phase}}
-    assert MotorStatus(health, truth, develops=True).is_right is right
+    reference = {"complete": state != "unknown"}
+    condition = {"state": state, "phase": phase, "reference": reference}
+    verdict = None if state == "unknown" else "fault"
+    health = {"verdict": verdict, "phase": "a", "condition": condition}
+    assert MotorStatus(health, truth).is_right is right
+
+
+def test_the_truth_is_that_at_the_latest_record_of_each_motor() -> None:
+    healths = [{"recorded_time": (BEGAN + timedelta(days=days)).isoformat()} for days in (13, 21, 30)]
+    found = truths_of_month([*healths, {"recorded_time": None}], BEGAN)
+    levels = [truths["A2_SEL710"].mu_f for truths in found]
+    assert levels == pytest.approx([0.03 / 18, 0.03 * 9 / 18, 0.03, 0.0], rel=1e-3)
 
 
 def condition(state: str, kind: str = "none", phase: str | None = None, mu_f: float = 0.0) -> Document:

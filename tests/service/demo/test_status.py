@@ -26,7 +26,8 @@ FAULT_B = Truth(mu_f=0.05, theta_f=1, load_level=0.65)
 
 
 def health(verdict: str | None, phase: str | None) -> Document:
-    return {"verdict": verdict, "phase": phase}
+    learning = {"state": "healthy", "phase": None, "reference": {"complete": False}}
+    return {"verdict": verdict, "phase": phase, "condition": learning}
 
 
 @pytest.mark.parametrize(
@@ -39,7 +40,9 @@ def health(verdict: str | None, phase: str | None) -> Document:
         (health("healthy", None), Truth(mu_f=0.0, theta_f=None, load_level=0.8), True),
     ],
 )
-def test_right_is_verdict_and_phase(found: Document, truth: Truth, right: bool | None) -> None:
+def test_right_is_verdict_and_phase_while_the_reference_is_learnt(
+    found: Document, truth: Truth, right: bool | None
+) -> None:
     assert MotorStatus(found, truth).is_right is right
 
 
@@ -52,7 +55,7 @@ def test_a_demo_elsewhere_is_played_and_told(tmp_path: Path, capsys: pytest.Capt
         assert [motor["verdict"] for motor in before["motors"]] == [None] * len(MOTOR_NAMES)
         assert (before["right"], before["judged"]) == (0, 0)
         assert main(["demo-status", "--url", service.url]) == 0
-        assert f"0 of 0 verdicts are right; {len(MOTOR_NAMES)} without one yet" in capsys.readouterr().out
+        assert f"0 of 0 motors are judged right; {len(MOTOR_NAMES)} not judged yet" in capsys.readouterr().out
         assert main(["demo", "--once", "--url", service.url]) == 0
         assert "at most" in capsys.readouterr().out
         assert main(["demo-status", "--url", service.url, "--json"]) == 0
@@ -61,7 +64,7 @@ def test_a_demo_elsewhere_is_played_and_told(tmp_path: Path, capsys: pytest.Capt
         assert {motor["motor"]: motor["phase"] for motor in after["motors"]}["FAN-A2"] == "b"
         assert main(["demo-status", "--url", service.url]) == 0
         shown = capsys.readouterr().out
-        assert "6 of 6 verdicts are right" in shown
+        assert "6 of 6 motors are judged right" in shown
         assert "5 % b" in shown
 
 
@@ -95,4 +98,4 @@ def test_the_plant_of_somebody_else_is_no_demo(repository: Repository, tmp_path:
         ServiceClient(str(client.base_url)) as service,
         pytest.raises(TruthError, match="watches the demo plant, found one with the relay A"),
     ):
-        ask_status(service, {"B1_SEL710": FAULT_B})
+        ask_status(service, lambda healths: [{"B1_SEL710": FAULT_B}] * len(healths))
