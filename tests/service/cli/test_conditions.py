@@ -17,7 +17,8 @@ from core.condition.kinds import Kind
 from core.condition.verdict.condition import Condition
 from core.time_stamps import rfc3339
 from service.api import ApiContext, create_app
-from service.cli.app import NoteKind, main
+from service.cli.app import main
+from service.cli.commands.service import NoteKind
 from service.cli.motors import motors_table
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore

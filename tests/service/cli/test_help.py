@@ -6,7 +6,8 @@ from service.cli.app import app, main
 
 COMMANDS = {
     command.name or command.callback.__name__: command.callback.__doc__ or ""
-    for command in app.registered_commands
+    for group in app.registered_groups
+    for command in (group.typer_instance.registered_commands if group.typer_instance else ())
     if command.callback is not None
 }
 

@@ -1,0 +1,40 @@
+"""Commands on the files of a plant: its settings' data, and its SCL."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.cli.commands.options import Config, Json
+
+commands = typer.Typer()
+
+
+@commands.command()
+def retention(
+    config: Config = None,
+    *,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Delete nothing: show what each rule would delete.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Delete the recordings and the like that the settings of retention call old, now instead of once a day.
+
+    Measured values are left to the service, which averages them before it deletes them.
+    """
+    from service.cli.retention import apply_retention
+
+    apply_retention(config, dry_run=dry_run, as_json=as_json)
+
+
+@commands.command("import-scl")
+def import_scl(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="An SCD, CID, IID or ICD file.")],
+    *,
+    as_json: Json = False,
+) -> None:
+    """Show what an SCL file describes: sites, motors, relays, report control blocks."""
+    from service.cli.scl_import import show_scl
+
+    show_scl(file, as_json=as_json)

@@ -1,0 +1,162 @@
+"""Commands that need recordings and a motor's file, and no service."""
+
+from enum import StrEnum
+from math import isfinite
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
+from service.cli.commands.options import Json
+from service.process.garbage_collection import collection_paused
+
+commands = typer.Typer()
+
+
+class Load(StrEnum):
+    """How the load torque grows with speed."""
+
+    AUTO = "auto"
+    CONSTANT = "constant"
+    LINEAR = "linear"
+    QUADRATIC = "quadratic"
+
+
+@commands.command()
+def diagnose(
+    record: Annotated[
+        Path,
+        typer.Argument(
+            metavar="RECORD", help="COMTRADE (.CFG beside its .DAT, or .CFF) or an SEL event report (.CEV)."
+        ),
+    ],
+    motor: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MOTOR.toml", help="The motor (default: RECORD's name with .toml, or motor.toml)."
+        ),
+    ] = None,
+    method: Method = DEFAULT_METHOD,
+    model: Model = DEFAULT_MODEL,
+    baseline: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="RECORD",
+            help="A recording of the same motor and relay known to be healthy; at least three, each with "
+            "--baseline. What they show standing is taken off.",
+        ),
+    ] = None,
+    *,
+    currents_only: Annotated[
+        bool,
+        typer.Option(
+            "--currents-only",
+            help="Accept a recording without voltages; the verdict is at best a hint (watch).",
+        ),
+    ] = False,
+    lenient: Annotated[
+        bool,
+        typer.Option("--lenient", help="Mend what can be mended in a faulty file, and say what was."),
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Tell from one recording whether a motor has shorted stator turns."""
+    with collection_paused():
+        from service.cli.diagnose import diagnose_recording
+
+        diagnose_recording(
+            record,
+            motor,
+            method=method.value,
+            model=model.value,
+            baseline=baseline or [],
+            currents_only=currents_only,
+            lenient=lenient,
+            as_json=as_json,
+        )
+
+
+@commands.command()
+def follow(
+    records: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="RECORD...",
+            help="Recordings of one motor in any order: files, folders (with all below), or patterns.",
+        ),
+    ],
+    motor: Annotated[Path, typer.Option(metavar="MOTOR.toml", help="The motor.")],
+    neighbour: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="MOTOR.toml=RECORDS",
+            help="Another motor of the same bus, with its recordings: voltage channels are judged against "
+            "each other. May be given repeatedly.",
+        ),
+    ] = None,
+    event: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="TIME=KIND[:REASON]",
+            help="What happened to the motor, such as 2026-01-31T12:00:00Z=rewound; may be given repeatedly.",
+        ),
+    ] = None,
+    events: Annotated[
+        Path | None, typer.Option(metavar="FILE", help=r"A file of events (TOML, tables [\[event]]).")
+    ] = None,
+    stale_after: Annotated[
+        float,
+        typer.Option(
+            metavar="DAYS", min=0, help="The condition is stale after so long without a valid record."
+        ),
+    ] = 7.0,
+    *,
+    lenient: Annotated[
+        bool, typer.Option("--lenient", help="Mend what can be mended in faulty files.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Tell a motor's condition from its recordings over time: what has changed, since when, how it grows."""
+    if not isfinite(stale_after):
+        raise typer.BadParameter(f"--stale-after: expected a number of days, found {stale_after}")
+    with collection_paused():
+        from service.cli.follow import follow_records
+
+    follow_records(
+        records,
+        motor,
+        neighbours=neighbour or [],
+        events=event or [],
+        events_file=events,
+        stale_after_days=stale_after,
+        lenient=lenient,
+        as_json=as_json,
+    )
+
+
+@commands.command()
+def commission(
+    records: Annotated[
+        list[Path],
+        typer.Argument(metavar="RECORD...", help="Recordings of the motor's starts, each from before it on."),
+    ],
+    nameplate: Annotated[
+        Path,
+        typer.Option(
+            metavar="MOTOR.toml", help="The motor: its nameplate table, and parameters if any are known."
+        ),
+    ],
+    output: Annotated[
+        Path, typer.Option(metavar="MOTOR.toml", help="Where to write the motor with what was found.")
+    ],
+    load: Annotated[
+        Load, typer.Option(help="How the load torque grows with speed; auto: as fits best.")
+    ] = Load.AUTO,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Estimate a motor's parameters, with intervals, from recordings of its start."""
+    from service.cli.commission import commission_motor
+
+    commission_motor(records, nameplate, output, load=load.value, as_json=as_json)

@@ -1,0 +1,183 @@
+"""Commands that ask a running service, or tell it something."""
+
+from math import isfinite
+from typing import Annotated, Literal
+
+import typer
+
+from service.cli.commands.options import DEFAULT_URL, Json, Url
+
+commands = typer.Typer()
+
+MotorName = Annotated[str, typer.Argument(metavar="MOTOR", help="The motor's name in the plant's SCD.")]
+Time = Annotated[
+    str | None,
+    typer.Option(metavar="TIME", help="When it happened, as 2026-01-31T12:00:00Z (default: now)."),
+]
+NoteKind = Literal["note", "maintenance", "recorder-changed", "rewound", "reference-restarted"]
+"""What a person may tell: all kinds of events but the one that only the motors file tells."""
+
+By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
+
+
+@commands.command()
+def release(
+    relay: Annotated[str, typer.Argument(metavar="RELAY", help="The relay's name in the plant's SCD.")],
+    url: Url = DEFAULT_URL,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Visit a relay again that was set aside for what it answered."""
+    from service.cli.remote import release_relay
+
+    release_relay(url, relay, as_json=as_json)
+
+
+@commands.command()
+def trigger(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    wait: Annotated[
+        float,
+        typer.Option(
+            metavar="SECONDS", min=0, help="Wait this long for the diagnosis, and print its verdict."
+        ),
+    ] = 0.0,
+    *,
+    key: Annotated[
+        str | None,
+        typer.Option(metavar="TEXT", help="A word of your own: the same one again triggers nothing new."),
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Request a recording of a motor from its relay."""
+    from service.cli.remote import trigger_motor
+
+    if not isfinite(wait):
+        raise typer.BadParameter(f"--wait: expected a number of seconds, found {wait}")
+    trigger_motor(url, motor, key=key, wait_s=wait, as_json=as_json)
+
+
+@commands.command()
+def motors(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
+    """Show the condition of every motor the service watches: state, cause, level, since when, as of when."""
+    from service.cli.motors import list_motors
+
+    list_motors(url, as_json=as_json)
+
+
+@commands.command()
+def health(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
+    """Show a motor's condition with what to do, and what its latest recording says by itself."""
+    from service.cli.motors import show_health
+
+    show_health(url, motor, as_json=as_json)
+
+
+@commands.command()
+def condition(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    *,
+    history: Annotated[
+        bool, typer.Option("--history", help="Also when it changed, and what changed it.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Show a motor's condition over time: state, cause, level, forecast, what to do and why."""
+    from service.cli.conditions import show_condition
+
+    show_condition(url, motor, history=history, as_json=as_json)
+
+
+@commands.command()
+def note(
+    motor: MotorName,
+    text: Annotated[str, typer.Argument(metavar="TEXT", help="What happened, in words.")],
+    url: Url = DEFAULT_URL,
+    kind: Annotated[
+        NoteKind,
+        typer.Option(help="What it is: all but a note change what the condition follows from."),
+    ] = "note",
+    time: Time = None,
+    by: By = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Tell what happened to a motor: maintenance, another winding, another relay, or just a note."""
+    from service.cli.conditions import add_note
+
+    add_note(url, motor, text, kind=kind, time=time, by=by, as_json=as_json)
+
+
+@commands.command()
+def notes(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
+    """Show what people told of a motor, latest first."""
+    from service.cli.conditions import list_notes
+
+    list_notes(url, motor, as_json=as_json)
+
+
+@commands.command("withdraw-note")
+def withdraw_note(
+    motor: MotorName,
+    note_id: Annotated[str, typer.Argument(metavar="ID", help="The note's id, as mcc notes shows it.")],
+    reason: Annotated[str, typer.Option(metavar="TEXT", help="Why the note was wrong; it is kept.")],
+    url: Url = DEFAULT_URL,
+    by: By = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Let a note that was wrong count no more: the condition follows as if nobody had told it."""
+    from service.cli.conditions import withdraw_note
+
+    withdraw_note(url, motor, note_id, reason, by=by, as_json=as_json)
+
+
+@commands.command("restart-reference")
+def restart_reference(
+    motor: MotorName,
+    reason: Annotated[
+        str, typer.Option(metavar="TEXT", help="Why the motor counts as healthy as it is; it is kept.")
+    ],
+    url: Url = DEFAULT_URL,
+    time: Time = None,
+    by: By = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Take a motor for healthy as it is: what stands out of it from the first record on is learnt anew."""
+    from service.cli.conditions import restart_reference
+
+    restart_reference(url, motor, reason, time=time, by=by, as_json=as_json)
+
+
+@commands.command()
+def relay(
+    name: Annotated[str, typer.Argument(metavar="RELAY", help="The relay's name in the plant's SCD.")],
+    url: Url = DEFAULT_URL,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Show what is used of a relay, and where it is not what its SCL says."""
+    from service.cli.relay import show_relay
+
+    show_relay(url, name, as_json=as_json)
+
+
+@commands.command()
+def delete(
+    recording: Annotated[
+        str, typer.Argument(metavar="RECORDING", help="The recording's id, as GET /recordings lists it.")
+    ],
+    reason: Annotated[
+        str, typer.Option(metavar="TEXT", help="Why, in words; the service keeps it with the time.")
+    ],
+    url: Url = DEFAULT_URL,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Delete a recording with its files and diagnoses, for good; it is not pulled from its relay again."""
+    from service.cli.remote import delete_recording
+
+    delete_recording(url, recording, reason, as_json=as_json)
