@@ -7,6 +7,8 @@ from rich.box import SIMPLE_HEAD
 from rich.table import Table
 from rich.text import Text
 
+from core.condition.events import ENDING
+from core.time_stamps import nanoseconds
 from service.cli.output import (
     READABLE_WIDTH,
     CommandError,
@@ -14,6 +16,7 @@ from service.cli.output import (
     failing_clearly,
     one_line,
     print_document,
+    print_warning,
     results,
 )
 from service.client.conditions import condition_lines, state_text
@@ -48,7 +51,8 @@ def add_note(
     note = {"kind": kind, "text": text, "by": by or _login()}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         kept = service.add_note(motor, note if time is None else {**note, "time": time})
-    _print_kept(kept, as_json=as_json)
+        waits = _waits_for_a_record(service, kept)
+    _print_kept(kept, waits=waits, as_json=as_json)
 
 
 def list_notes(url: str, motor: str, *, as_json: bool) -> None:
@@ -85,7 +89,8 @@ def restart_reference(
     restart = {"reason": reason, "by": by or _login()}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         kept = service.restart_reference(motor, restart if time is None else {**restart, "time": time})
-    _print_kept(kept, as_json=as_json)
+        waits = _waits_for_a_record(service, kept)
+    _print_kept(kept, waits=waits, as_json=as_json)
 
 
 def withdraw_note(url: str, motor: str, note_id: str, reason: str, *, by: str | None, as_json: bool) -> None:
@@ -125,12 +130,24 @@ def _history_table(changes: list[Document], notes: dict[object, Document]) -> Ta
     return table
 
 
-def _print_kept(note: Document, *, as_json: bool) -> None:
+def _waits_for_a_record(service: ServiceClient, note: Document) -> bool:
+    """Return whether a note ends the reference, and no record is later. Raises ServiceError."""
+    if note["kind"] not in ENDING:
+        return False
+    as_of = service.get(f"/motors/{segment(str(note['motor']))}/condition", history="0")["as_of"]
+    return as_of is None or nanoseconds(str(as_of)) < nanoseconds(str(note["time"]))
+
+
+def _print_kept(note: Document, *, waits: bool, as_json: bool) -> None:
     if as_json:
         print_document(note)
-        return
-    words = f"{note['motor']}: {note['kind']} of {to_the_second(note['time'])} is noted"
-    results().print(Text(one_line(words)), soft_wrap=True)
+    else:
+        words = f"{note['motor']}: {note['kind']} of {to_the_second(note['time'])} is noted"
+        results().print(Text(one_line(words)), soft_wrap=True)
+    if waits:
+        print_warning(
+            f"{note['motor']} has no record after that: its condition is judged anew from the next one on"
+        )
 
 
 def _require_words(text: str, what: str) -> None:

@@ -26,6 +26,7 @@ from service.storage import Repository
 from service.storage.states import LinkState
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
+from testing.service.observations import HOUR_NS
 from testing.service.plants import NOW_NS, fault
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository
@@ -188,6 +189,24 @@ def test_the_history_of_a_condition_tells_what_changed_it(mcc: Mcc, repository: 
 def test_what_may_have_changed_is_named(mcc: Mcc, repository: Repository) -> None:
     tell(repository, DRIFTING)
     assert "watch: voltage channel or shorted turns c" in mcc("motors")
+
+
+@pytest.mark.parametrize(
+    ("kind", "hours", "warned"), [("maintenance", 1, True), ("maintenance", -1, False), ("note", 1, False)]
+)
+def test_a_note_that_waits_for_a_record_is_warned_of(
+    client: httpx.Client,
+    repository: Repository,
+    kind: str,
+    hours: int,
+    warned: bool,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    tell(repository, HEALTHY)
+    when, url = rfc3339(NOW_NS + hours * HOUR_NS), str(client.base_url)
+    words = ["note", "PUMP-A1", "terminals tightened", "--by", "Ann", "--url", url]
+    assert main([*words, "--kind", kind, "--time", when]) == 0
+    assert ("PUMP-A1 has no record after that" in capsys.readouterr().err) == warned
 
 
 def test_notes_are_taken_and_shown(mcc: Mcc, repository: Repository) -> None:
