@@ -26,8 +26,8 @@ log = structlog.get_logger(__name__)
 ROUND_S = 0.5
 """A task ends after about so long; the next one goes on."""
 
-RECORDS_A_FOLD = 500
-"""Records that are folded before the database has them: a transaction takes a few milliseconds."""
+RECORDS_A_FOLD = 2000
+"""Records that are folded before the database has them: a transaction takes some ten milliseconds."""
 
 MOST_VALUES = 8_000_000
 """A longer recording tells nothing of the condition, as it is not diagnosed either."""

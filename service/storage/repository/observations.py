@@ -5,7 +5,7 @@ from dataclasses import fields
 from math import isfinite
 from typing import Any
 
-from sqlalchemy import Row, delete, exists, func, select
+from sqlalchemy import delete, exists, func, select
 from sqlalchemy.orm import Session
 
 from core.condition.observation import Observation
@@ -72,7 +72,7 @@ class ObservationRows(Sessions):
         """Return what a recording tells of its motor's condition; None where it tells nothing."""
         with self._read() as session:
             row = session.get(ObservationRow, recording_id)
-            return None if row is None else record_observation(row)
+            return None if row is None else _of_row(row)
 
     def condition_trend(
         self,
@@ -185,7 +185,7 @@ def keep_observation(
     before = session.get(ObservationRow, recording_id)
     row = None if observation is None else observation_row(recording_id, motor, observation)
     if before is not None:
-        if row is not None and record_observation(before) == record_observation(row):
+        if row is not None and _of_row(before) == _of_row(row):
             resume(session, FoldMarkRow.motor == motor)
             return
         forget_observation(session, recording_id)
@@ -205,30 +205,34 @@ def forget_observation(session: Session, recording_id: str) -> None:
         session.flush()
 
 
-def record_observation(row: ObservationRow | Row[Any]) -> RecordObservation:
-    """Return what is in a row of the table or of OBSERVED."""
-    zero_voltage = (
-        None
-        if row.zero_voltage_re is None or row.zero_voltage_im is None
-        else complex(row.zero_voltage_re, row.zero_voltage_im)
-    )
+def record_observation(values: Sequence[Any]) -> RecordObservation:
+    """Return what a recording tells. values: of the columns of OBSERVED, in their order."""
+    (
+        recording_id, motor, recorder,
+        time_ns, sequence, voltage_channels, frequency_hz, scatter, cycles, load_level,
+        V1_re, V1_im, V2_re, V2_im, V0_re, V0_im, I1_re, I1_im, I2_re, I2_im, I0_re, I0_im,
+    ) = values  # fmt: skip
     observation = Observation(
-        time_ns=row.time_ns,
-        recorder=row.recorder,
-        sequence=row.sequence,
-        voltage_channels=row.voltage_channels,
-        frequency_hz=row.frequency_hz,
-        positive_voltage_V=complex(row.positive_voltage_re, row.positive_voltage_im),
-        negative_voltage_V=complex(row.negative_voltage_re, row.negative_voltage_im),
-        zero_voltage_V=zero_voltage,
-        positive_current_A=complex(row.positive_current_re, row.positive_current_im),
-        negative_current_A=complex(row.negative_current_re, row.negative_current_im),
-        zero_current_A=complex(row.zero_current_re, row.zero_current_im),
-        scatter=row.scatter,
-        cycles=row.cycles,
-        load_level=row.load_level,
+        time_ns=time_ns,
+        recorder=recorder,
+        sequence=sequence,
+        voltage_channels=voltage_channels,
+        frequency_hz=frequency_hz,
+        positive_voltage_V=complex(V1_re, V1_im),
+        negative_voltage_V=complex(V2_re, V2_im),
+        zero_voltage_V=None if V0_re is None or V0_im is None else complex(V0_re, V0_im),
+        positive_current_A=complex(I1_re, I1_im),
+        negative_current_A=complex(I2_re, I2_im),
+        zero_current_A=complex(I0_re, I0_im),
+        scatter=scatter,
+        cycles=cycles,
+        load_level=load_level,
     )
-    return RecordObservation(row.recording_id, row.motor, observation)
+    return RecordObservation(recording_id, motor, observation)
+
+
+def _of_row(row: ObservationRow) -> RecordObservation:
+    return record_observation([getattr(row, column.name) for column in OBSERVED])
 
 
 def _point(*values: Any) -> ConditionPoint:
