@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import is_
 
 import numpy as np
 
@@ -117,6 +118,40 @@ def common_asymmetry(own: StandingEstimate, others: Sequence[StandingEstimate]) 
             distance = float(np.sqrt((o.asymmetry - mean) @ w @ (o.asymmetry - mean)))
             trust[i] = min(1.0, HUBER / max(distance, 1e-12))
     return mean, covariance
+
+
+class CommonAsymmetry:
+    """What the other motors of a bus share, computed anew only where it may have become another.
+
+    A motor's records come one by one, and between two of them the others' estimates mostly stay as they are.
+    """
+
+    def __init__(self) -> None:
+        self._own: tuple[object, ...] = ()
+        self._others: tuple[StandingEstimate, ...] = ()
+        self._found: tuple[Array, Array] | None = None
+
+    def of(self, own: StandingEstimate, others: Sequence[StandingEstimate]) -> tuple[Array, Array] | None:
+        """Return what `common_asymmetry` returns.
+
+        Parameters
+        ----------
+        own : StandingEstimate
+            The motor that is judged.
+        others : sequence of StandingEstimate
+            Motors of the bus.
+
+        Returns
+        -------
+        tuple of ndarray or None, shapes (2,), (2, 2)
+            Mean and covariance; None where there is nothing to compare.
+        """
+        of_own = (own.motor, own.sequence, own.others > 0, own.transformers, own.channels.tobytes())
+        are_same = len(others) == len(self._others) and all(map(is_, others, self._others))
+        if of_own != self._own or not are_same:
+            self._own, self._others = of_own, tuple(others)
+            self._found = common_asymmetry(own, others)
+        return self._found
 
 
 HUBER = 1.5

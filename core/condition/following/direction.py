@@ -9,7 +9,7 @@ import numpy as np
 
 from core.condition.assessment import Assessment, Change, Declared, Level, Reference
 from core.condition.bus.differences import COMMON_RECORDS
-from core.condition.bus.neighbours import Neighbour, StandingEstimate, common_asymmetry
+from core.condition.bus.neighbours import CommonAsymmetry, Neighbour, StandingEstimate
 from core.condition.changes.alarm import Alarm, Weighing, confirm, taken_up, weigh
 from core.condition.changes.before_change import before_change
 from core.condition.changes.change import change_of, continued
@@ -93,6 +93,7 @@ class Direction:
         rated = negative_impedance(motor.parameters, motor.nameplate.rated_frequency_Hz)
         self._header.scale_ohm = abs(rated)
         self._nominal = rated / abs(rated)
+        self._common = CommonAsymmetry()
         self._weighed: Weighing | None = None
         self._turns_level: TurnsLevel | None = None
         self._see(motor)
@@ -529,7 +530,7 @@ class Direction:
 
     def _standing(self, motor: Motor, bus: Sequence[StandingEstimate], errors: StandingErrors) -> Standing:
         own = self._estimate(motor, errors) if bus else None
-        common = common_asymmetry(own, bus) if own else None
+        common = self._common.of(own, bus) if own else None
         if own is None or common is None:
             asymmetry = np.array([errors.real, errors.imaginary])
             return standing_of(motor, asymmetry, symmetric(errors.spread), from_bus=False)
