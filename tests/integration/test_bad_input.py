@@ -64,7 +64,9 @@ class Bench:
         """What the service keeps of a rejected record, by file name."""
         row = self.recording(name)
         assert row is not None
-        answer = httpx.get(f"{self.service.url}/api/v1/recordings/{row['id']}/file", trust_env=False)
+        answer = httpx.get(
+            f"{self.service.url}/api/v1/recordings/{row['id']}/file", trust_env=False, timeout=30
+        )
         answer.raise_for_status()
         with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
             return {file: archive.read(file) for file in archive.namelist()}

@@ -67,7 +67,7 @@ def relays_setting(pki: Pki, password: Path) -> str:
 
 def answers(service: Service) -> list[str]:
     """Everything the API tells at paths without an argument, and at those of A1_SEL710."""
-    with httpx.Client(base_url=service.url, trust_env=False) as http:
+    with httpx.Client(base_url=service.url, trust_env=False, timeout=30) as http:
         paths = http.get("/api/v1/openapi.json").raise_for_status().json()["paths"]
         asked = [path for path, methods in paths.items() if "get" in methods]
         named = [re.sub(r"\{\w+\}", "A1_SEL710", path) for path in asked]

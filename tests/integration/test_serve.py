@@ -35,7 +35,7 @@ def test_every_part_is_documented_and_ready_and_sigterm_ends_every_process(tmp_p
     page = API_PAGE.read_text(encoding="utf-8")
     documented = re.findall(r"^\| `(\w+)` \|", page.partition("| Part of `/readyz` |")[2], re.MULTILINE)
     with running_service(tmp_path, switched_off_plant(tmp_path)) as service:
-        parts = httpx.get(f"{service.url}/readyz", trust_env=False).json()["parts"]
+        parts = httpx.get(f"{service.url}/readyz", trust_env=False, timeout=30).json()["parts"]
         assert parts == dict.fromkeys(documented, "ready")
         below = descendants(service.process_id)
         assert len(below) >= 3, "a collector and two workers"
