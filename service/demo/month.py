@@ -45,6 +45,19 @@ class Month:
         """Time until that leap [s], negative after it."""
         return (self._started - now).total_seconds() + leap * self.leap_every_s
 
+    @classmethod
+    def with_record(cls, clock: Mapping[str, float], recorded: datetime, announced: datetime) -> "Month":
+        """Return the month of a plant with that clock, one record of which is known.
+
+        recorded: in the plant's time.  announced: when the service came to know of it, in real time. By how
+        much the two differ tells how many leaps there had been.
+        """
+        days, speed_up, leap_every_s = clock["start_days_ago"], clock["speed_up"], clock["leap_every_s"]
+        left_s = (announced - recorded).total_seconds()
+        leaps = round((days * 86_400 - left_s) / ((speed_up - 1) * leap_every_s))
+        began = recorded - timedelta(seconds=leaps * leap_every_s * speed_up)
+        return cls(began, days, speed_up, leap_every_s)
+
     @property
     def _started(self) -> datetime:
         return self.began + timedelta(days=self.days)
@@ -52,7 +65,7 @@ class Month:
 
 def month_of(scenario: Path, log: str) -> Month | None:
     """The month of a scenario, with its beginning from the simulator's log; None where it has no [clock]."""
-    clock = tomllib.loads(scenario.read_text(encoding="utf-8")).get("clock")
+    clock = _clock(scenario)
     found = re.search(r"^began (\S+)$", log, re.MULTILINE)
     if clock is None or found is None:
         return None
@@ -61,18 +74,28 @@ def month_of(scenario: Path, log: str) -> Month | None:
     )
 
 
-def began(service: ServiceClient) -> datetime | None:
-    """When the month began that a running plant lives through, by its first record.
+def began(service: ServiceClient, scenario: Path) -> datetime | None:
+    """When the month of a scenario began that a running plant lives through, by its oldest record.
 
-    It is None where the plant's time is the real one, or no record tells. Raises ServiceError.
+    That need not be of the month's beginning: a plant that starts slowly misses some leaps. It is None where
+    the plant's time is the real one, or no record tells. Raises ServiceError.
     """
+    clock = _clock(scenario)
     for motor in service.items("/motors"):
         points = service.get(f"/motors/{segment(str(motor['name']))}/trend", limit="1")["items"]
         if isinstance(points, list) and points:
             first = service.get(f"/recordings/{segment(str(points[0]['recording_id']))}")
-            recorded = _time(first, "recorded_time")
-            return recorded if _time(first, "announced_time") - recorded > BELATED else None
+            recorded, announced = _time(first, "recorded_time"), _time(first, "announced_time")
+            if clock is None or announced - recorded <= BELATED:
+                return None
+            return Month.with_record(clock, recorded, announced).began
     return None
+
+
+def _clock(scenario: Path) -> Mapping[str, float] | None:
+    """Return how the plant's time runs in a scenario; None where it is the real one."""
+    clock: Mapping[str, float] | None = tomllib.loads(scenario.read_text(encoding="utf-8")).get("clock")
+    return clock
 
 
 def latest_s(health: Document, since: datetime) -> float:

@@ -70,7 +70,7 @@ def ask_plant(service: ServiceClient) -> list[MotorStatus]:
 
     Raises ServiceError, TruthError.
     """
-    since = began(service)
+    since = began(service, MONTH)
     if since is None:
         truths = ask_simulator(DEMO_PLANT_SCD, SCENARIO)
         return ask_status(service, lambda healths: [truths] * len(healths))

@@ -77,6 +77,17 @@ def test_the_demo_counts_the_leaps_as_the_simulator_makes_them() -> None:
     assert month.leaps * settings.leap_every_s == pytest.approx(300.0)
 
 
+@pytest.mark.parametrize("leap", [1, 14, 59])
+@pytest.mark.parametrize("late_s", [0.5, 90.0])
+def test_any_record_tells_when_the_month_began(leap: int, late_s: float) -> None:
+    clock = {"start_days_ago": 30.0, "speed_up": 8641.0, "leap_every_s": 5.0}
+    recorded = BEGAN + timedelta(seconds=OF_FIVE_MINUTES.moments_s()[leap] + 2.0)
+    announced = BEGAN + timedelta(days=30, seconds=leap * 5.0 + 2.0 + late_s)
+    month = Month.with_record(clock, recorded, announced)
+    assert month.began - BEGAN == timedelta(seconds=2.0)
+    assert month.moments_s() == OF_FIVE_MINUTES.moments_s()
+
+
 def test_a_plant_in_real_time_has_no_month() -> None:
     assert month_of(SCENARIO, "ready\n") is None
     late = OF_FIVE_MINUTES.began + timedelta(days=300)
