@@ -10,6 +10,7 @@ from core.condition.bus.bus_records import BusRecords
 from core.condition.bus.neighbours import Neighbour, StandingEstimate
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
+from core.condition.rules import RULES
 from core.condition.verdict.condition import Condition, condition_of
 from core.condition.verdict.verdict import Verdict, verdict_of
 from core.machines.parameters import Motor
@@ -101,6 +102,7 @@ class _Folding:
             ],
             condition=self._entry() if ended else None,
             standing=None if estimate is None else standing_document(estimate),
+            rules=RULES,
         )
 
     def _begun(self) -> Follower:

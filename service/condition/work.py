@@ -10,6 +10,7 @@ import structlog
 from pebble import ProcessExpired
 from structlog.typing import FilteringBoundLogger
 
+from core.condition.rules import RULES
 from core.machines.parameters import Motor
 from service.condition.errors import RecordFoldError
 from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_recordings
@@ -34,6 +35,10 @@ A motor whose fold fails otherwise, or brings its worker down, is set aside unti
 
 HELD_S = 600.0
 """Time between two folds of a motor while recordings of its bus are yet to be observed."""
+
+LEFT_OUT = (
+    "left out of the condition: {}; it is tried again with another diagnosis, and when the service starts"
+)
 
 MOST_CHARACTERS = 300
 """Of what is told of a failure."""
@@ -102,8 +107,14 @@ class ConditionWork:
         self._progress = _Progress()
 
     def begin(self) -> None:
-        """Have motors tried again that were set aside. Raises SQLAlchemyError."""
+        """Have tried again what was set aside or left out, and judged again what other rules judged.
+
+        Raises SQLAlchemyError.
+        """
         self._repository.resume_folds()
+        number = self._repository.judge_anew(RULES)
+        if number:
+            log.info("motors are judged again by the rules of this version", motors=number)
 
     def next_task(self) -> ConditionTask | None:
         """Return the next task, which is under way from now on; None where there is nothing to do.
@@ -194,7 +205,7 @@ class ConditionWork:
             del self._trouble[task.motor]
         elif isinstance(error, RecordFoldError) and trouble.failures >= MOST_FAILURES:
             log.error("record left out of the condition", recording=error.recording_id, reason=error.reason)
-            self._repository.leave_out(error.recording_id, f"left out of the condition: {error.reason}")
+            self._repository.leave_out(error.recording_id, LEFT_OUT.format(error.reason))
             del self._trouble[task.motor]
         elif (
             isinstance(task.argument, FoldTask)

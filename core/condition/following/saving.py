@@ -9,11 +9,11 @@ from zlib import error as zlib_error
 
 from core.condition.events import Event, EventKind
 from core.condition.following.direction import Direction
+from core.condition.rules import LAYOUT
 from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
 
-MAGIC: Final = b"StatorWatch follower 6\n"
-"""Name and version; another layout gets another number."""
+MAGIC: Final = b"StatorWatch follower %d\n" % LAYOUT
 
 
 def pack(directions: Sequence[Direction], ended_by: Event | None) -> bytes:

@@ -33,6 +33,7 @@ class ObservationRow(Figures, Base):
 
     It outlives a recording that a rule of retention deletes, because the motor's reference rests on it.
     Phasors are peak values in volts and amperes. state and the figures: null until it is folded.
+    left_out: why it is not folded, because that failed; null where it is, or is to be.
     """
 
     __tablename__ = "observations"
@@ -59,6 +60,7 @@ class ObservationRow(Figures, Base):
     scatter: Mapped[float] = mapped_column(Double)
     cycles: Mapped[int]
     load_level: Mapped[float | None] = mapped_column(Double)
+    left_out: Mapped[str | None]
     state: Mapped[State | None]
     kind: Mapped[Kind | None]
 
@@ -73,6 +75,7 @@ class ConditionRow(Figures, Base):
     version: counts the folds; who folded from an older version writes nothing.  document: what
     `Condition.as_dict()` gave; null before the first fold, as is as_of_ns.  standing: its standing asymmetry,
     for the other motors of its bus.  problem: why what came since is not folded; null while it is.
+    rules: version of the rules by which all of it was judged; null before the first fold.
     """
 
     __tablename__ = "conditions"
@@ -86,6 +89,7 @@ class ConditionRow(Figures, Base):
     document: Mapped[Mapping[str, object] | None]
     standing: Mapped[Mapping[str, object] | None]
     problem: Mapped[str | None]
+    rules: Mapped[str | None]
 
 
 class ConditionChangeRow(Figures, Base):

@@ -178,7 +178,7 @@ class FoldResult:
 
     checkpoints: new ones.  kept_checkpoints: times of the earlier ones that are kept; the others go.
     condition, standing: what is said of the motor, and its standing asymmetry; None where more is to be
-    folded.
+    folded.  rules: version of the rules by which it was judged.
     """
 
     points: Sequence[ConditionPoint]
@@ -187,6 +187,7 @@ class FoldResult:
     kept_checkpoints: Sequence[int]
     condition: ConditionEntry | None
     standing: Mapping[str, object] | None = None
+    rules: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -37,7 +37,7 @@ from service.storage.records import (
 )
 from service.storage.repository.condition_alarms import settle_alarm
 from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
-from service.storage.repository.observations import OBSERVED, record_observation
+from service.storage.repository.observations import OBSERVED, record_observation, take_in_again
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.repository.standing_changes import TOLD, is_material
 from service.storage.texts import storable
@@ -74,9 +74,27 @@ class FoldingRows(Sessions):
                 session.execute(update(FoldMarkRow).where(FoldMarkRow.id.in_(some)).values(set_aside=True))
 
     def resume_folds(self) -> None:
-        """Have the motors folded that were set aside: the service that starts may be a mended one."""
+        """Have folded what was set aside or left out: the service that starts may be a mended one."""
         with self._write() as session:
             resume(session)
+            left_out = select(ObservationRow).where(ObservationRow.left_out.is_not(None))
+            for row in session.scalars(left_out).all():
+                take_in_again(session, row)
+
+    def judge_anew(self, rules: str) -> int:
+        """Have all motors folded from the first record on that were judged by other rules; return how many.
+
+        Their conditions stay as they are until that is done.
+        """
+        others = select(ConditionRow.motor).where(
+            ConditionRow.as_of_ns.is_not(None), ConditionRow.rules.is_distinct_from(rules)
+        )
+        marked = select(FoldMarkRow.motor).where(FoldMarkRow.from_ns == EARLIEST_NS)
+        with self._write() as session:
+            motors = session.scalars(others.order_by(ConditionRow.motor)).all()
+            for motor in set(motors).difference(session.scalars(marked)):
+                mark(session, motor, EARLIEST_NS)
+            return len(motors)
 
     def begin_fold(self, motor: str, most_records: int) -> FoldInput | None:
         """Return what a fold of a motor needs, with about so many observations; None where none is due.
@@ -122,6 +140,8 @@ class FoldingRows(Sessions):
                 return False
             row.version += 1
             row.problem = None
+            if fold.checkpoint is None:
+                row.rules = result.rules
             for some in _in_parts(fold.marks):
                 session.execute(delete(FoldMarkRow).where(FoldMarkRow.id.in_(some)))
             if fold.next_ns is not None:
@@ -184,7 +204,9 @@ def _observations(
     """Return the next observations of a motor, whole times only, and the time of the first one beyond."""
     following = (
         select(*OBSERVED)
-        .where(ObservationRow.motor == motor, ObservationRow.time_ns > done_ns)
+        .where(
+            ObservationRow.motor == motor, ObservationRow.time_ns > done_ns, ObservationRow.left_out.is_(None)
+        )
         .order_by(ObservationRow.time_ns, ObservationRow.recording_id)
     )
     rows = session.execute(following.limit(most + 1)).all()
@@ -196,7 +218,9 @@ def _observations(
             rows = session.execute(following.where(ObservationRow.time_ns == next_ns)).all()
             next_ns = session.scalar(
                 select(func.min(ObservationRow.time_ns)).where(
-                    ObservationRow.motor == motor, ObservationRow.time_ns > rows[0].time_ns
+                    ObservationRow.motor == motor,
+                    ObservationRow.time_ns > rows[0].time_ns,
+                    ObservationRow.left_out.is_(None),
                 )
             )
     return tuple(record_observation(row) for row in rows), next_ns
@@ -227,6 +251,7 @@ def _neighbours(
         select(*OBSERVED)
         .where(
             ObservationRow.motor.in_(others_of_bus(motor)),
+            ObservationRow.left_out.is_(None),
             ObservationRow.time_ns.between(first_ns - SAME_SUPPLY_WITHIN_NS, last_ns + SAME_SUPPLY_WITHIN_NS),
         )
         .order_by(ObservationRow.time_ns, ObservationRow.recording_id)

@@ -158,9 +158,16 @@ class ObservationRows(Sessions):
         return number
 
     def leave_out(self, recording_id: str, reason: str) -> None:
-        """Have a motor's condition follow without one of its recordings, which is kept with the reason."""
+        """Have a motor's condition follow without one of its recordings, which is kept with the reason.
+
+        It is taken in again when a service starts, and with another diagnosis.
+        """
         with self._write() as session:
-            forget_observation(session, recording_id)
+            row = session.get(ObservationRow, recording_id)
+            if row is None:
+                return
+            row.left_out, row.state, row.kind = storable(reason), None, None
+            mark_with_bus(session, row.motor, row.time_ns)
             recording = session.get(RecordingRow, recording_id)
             if recording is not None:
                 recording.reason = storable(reason)
@@ -186,6 +193,8 @@ def keep_observation(
     row = None if observation is None else observation_row(recording_id, motor, observation)
     if before is not None:
         if row is not None and _of_row(before) == _of_row(row):
+            if before.left_out is not None:
+                take_in_again(session, before)
             resume(session, FoldMarkRow.motor == motor)
             return
         forget_observation(session, recording_id)
@@ -193,6 +202,15 @@ def keep_observation(
         session.add(row)
         session.flush()
         mark_with_bus(session, motor, row.time_ns)
+
+
+def take_in_again(session: Session, row: ObservationRow) -> None:
+    """Have a record folded that was left out."""
+    row.left_out = None
+    recording = session.get(RecordingRow, row.recording_id)
+    if recording is not None:
+        recording.reason = None
+    mark_with_bus(session, row.motor, row.time_ns)
 
 
 def forget_observation(session: Session, recording_id: str) -> None:

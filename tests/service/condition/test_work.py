@@ -26,7 +26,7 @@ from core.machines.parameters import Motor
 from core.recordings.comtrade_writer import write
 from core.time_stamps import nanoseconds
 from service.api.condition_documents import condition_document
-from service.condition import work, worker
+from service.condition import folding, work, worker
 from service.condition.errors import RecordFoldError
 from service.condition.work import ConditionWork
 from service.condition.worker import FoldTask, ObserveTask, fold_due
@@ -371,7 +371,55 @@ def test_a_record_that_cannot_be_folded_is_left_out_at_last_and_the_others_count
     points = repository.condition_trend(PUMP, limit=10).items
     assert [point.recording_id for point in points] == [*ids[:3], ids[4]]
     reason = repository.recording(ids[3]).reason
-    assert reason == "left out of the condition: OverflowError: too large"
+    assert reason is not None
+    assert reason.startswith("left out of the condition: OverflowError: too large; it is tried again")
+
+    monkeypatch.setattr(Follower, "fold", fold)
+    conditions.begin()
+    fold_all(repository)
+    points = repository.condition_trend(PUMP, limit=10).items
+    assert [point.recording_id for point in points] == ids, "nothing is lost once the service is mended"
+    assert repository.recording(ids[3]).reason is None
+
+
+def test_another_diagnosis_takes_a_record_in_again_that_was_left_out(
+    repository: Repository, store: RecordingStore
+) -> None:
+    recorder = Recorder(repository, store)
+    ids = recorder.record_all(RECORDS[:3])
+    fold_all(repository)
+    repository.leave_out(ids[1], "left out")
+    fold_all(repository)
+    assert [one.recording_id for one in repository.condition_trend(PUMP, limit=9).items] == [ids[0], ids[2]]
+    recorder.diagnose_again(ids[1], RECORDS[1])
+    fold_all(repository)
+    assert [one.recording_id for one in repository.condition_trend(PUMP, limit=9).items] == ids
+
+
+def test_motors_that_other_rules_judged_are_judged_again_in_the_background(
+    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recorder = Recorder(repository, store)
+    recorder.record_all(RECORDS[:12])
+    fold_all(repository)
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    conditions.begin()
+    assert conditions.next_task() is None, "the same rules"
+    before = repository.condition(PUMP)
+    monkeypatch.setattr(work, "RULES", "another")
+    monkeypatch.setattr(folding, "RULES", "another")
+    for _ in range(2):
+        conditions.begin()
+    assert repository.motors_to_fold() == (PUMP,)
+    assert len(repository.fold_marks(PUMP)) == 1
+    assert repository.condition(PUMP) == before, "it stays until it is judged again"
+    due = repository.begin_fold(PUMP, 500)
+    assert due is not None
+    assert len(due.observations) == 12, "from the first record on"
+    fold_all(repository)
+    assert repository.condition(PUMP).as_of_ns == before.as_of_ns
+    conditions.begin()
+    assert repository.motors_to_fold() == ()
 
 
 def test_motors_of_a_bus_are_folded_once_all_its_recordings_are_observed(
