@@ -1,4 +1,4 @@
-"""How bad it is what a motor's records tell: its state and its fault level in all."""
+"""The state of a motor and its fault level in all, from what its records tell."""
 
 from dataclasses import replace
 from math import exp, hypot
@@ -21,9 +21,10 @@ WATCHED_SCORE: Final = 3.2
 def state_of(assessment: Assessment, limit: float) -> State:
     """Return the state of a motor.
 
-    A change is a fault where its whole interval lies above the limit. A standing fault is one already where
-    its likeliest level does: it is certain that sensors do not leave so much, and the interval is wide only
-    because the path may be another one. Either stays one until its whole interval lies below the limit.
+    A change makes it a fault if the whole interval of its level lies above the limit. For a standing fault it
+    is enough that the likeliest level lies above the limit: sensors certainly do not explain the asymmetry,
+    and the interval is wide only because the path is not known. The state stays fault until the whole
+    interval lies below the limit.
 
     Parameters
     ----------
@@ -45,7 +46,7 @@ def state_of(assessment: Assessment, limit: float) -> State:
 
 
 def _is_fault(assessment: Assessment, limit: float) -> bool:
-    """Return whether what is seen of one winding is a fault."""
+    """Return whether the assessment of one winding is that of a fault."""
     change = assessment.change
     if level_in_all(assessment)[1][0] > limit or stays_a_fault(change, limit):
         return True
@@ -58,10 +59,10 @@ def _is_fault(assessment: Assessment, limit: float) -> bool:
 
 
 def stays_a_fault(change: Change | None, limit: float) -> bool:
-    """Return whether a change that was called a fault once is one still.
+    """Return whether a change keeps the state at fault after its level lay above the limit once.
 
-    Shorted turns do not heal. So the state does not turn back because the interval of a level at the limit
-    reaches below it again, but only where all of the interval lies below.
+    Shorted turns do not heal. If the level is near the limit, the interval may reach below the limit again by
+    chance. So the state changes back only once the whole interval lies below the limit.
 
     Parameters
     ----------
@@ -81,7 +82,7 @@ def stays_a_fault(change: Change | None, limit: float) -> bool:
 
 
 def standing_stays_a_fault(assessment: Assessment, limit: float) -> bool:
-    """Return whether a standing fault that was called once is one still, as `stays_a_fault` of a change.
+    """Return whether a standing fault keeps the state at fault; the same rule as `stays_a_fault`.
 
     Parameters
     ----------
@@ -99,7 +100,7 @@ def standing_stays_a_fault(assessment: Assessment, limit: float) -> bool:
 
 
 def of_one_fault(assessment: Assessment, limit: float) -> Assessment:
-    """Return the assessment with the worse of two faults, where the motor has them in two windings.
+    """Return the assessment reduced to the worse of two faults, if they are in two windings.
 
     Parameters
     ----------
@@ -111,8 +112,8 @@ def of_one_fault(assessment: Assessment, limit: float) -> Assessment:
     Returns
     -------
     Assessment
-        The assessment, without the standing fault or without the change where both are seen and are not in
-        one winding. What is a fault by itself goes first, then what is larger.
+        The assessment. If a standing fault and a change are in two windings, one of them is left out: that
+        which is no fault by itself, or else the smaller one.
     """
     standing, level = assessment.reference.standing, level_of(assessment.change)
     if not assessment.standing_fault or level is None or level.winding == standing.winding:
@@ -125,7 +126,7 @@ def of_one_fault(assessment: Assessment, limit: float) -> Assessment:
 
 
 def stands_out(assessment: Assessment, limit: float) -> bool:
-    """Return whether the asymmetry that stands from the first record on asks for being watched.
+    """Return whether the standing asymmetry is so large that the motor is to be watched.
 
     Parameters
     ----------
@@ -137,7 +138,8 @@ def stands_out(assessment: Assessment, limit: float) -> bool:
     Returns
     -------
     bool
-        Whether sensors hardly leave so much, or the level that it likely means lies above the limit.
+        Whether sensors hardly explain it, or its level times the probability that it is shorted turns lies
+        above the limit.
     """
     reference = assessment.reference
     if assessment.standing_fault or reference.accepted:
@@ -150,8 +152,9 @@ def stands_out(assessment: Assessment, limit: float) -> bool:
 def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
     """Return the level in all, and its interval.
 
-    Most of what stands is errors of sensors: it counts with its probability to be shorted turns, and the
-    interval holds it whole. Neither part is below zero, because shorted turns do not heal.
+    It is the sum of the change and of the standing asymmetry. The latter comes mostly from sensors, so it
+    counts with the probability that it is shorted turns; the upper end of the interval contains all of it.
+    Neither part is below zero.
 
     Parameters
     ----------
@@ -163,7 +166,7 @@ def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
     level : float
         Level, a fraction of the phase turns.
     interval : tuple of float
-        Its 95 % interval. It begins above zero only where shorted turns are certain.
+        Its 95 % interval. The lower end is above zero only if shorted turns are certain.
     """
     change, standing = assessment.change, assessment.reference.standing
     level = level_of(change)
@@ -176,7 +179,7 @@ def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
         else _probability_of_standing_fault(assessment.reference.standing_score)
     )
     if assessment.reference.accepted:
-        # A person's word takes it off the level. The interval holds what the records say all the same.
+        # A person declared it healthy, so the level is without it. The interval still contains it.
         share = 0.0
     value = share * max(0.0, standing.value)
     low = standing.ci95[0] if assessment.standing_fault else 0.0
@@ -190,7 +193,7 @@ def level_in_all(assessment: Assessment) -> tuple[float, Interval]:
 
 
 def level_of(change: Change | None) -> Level | None:
-    """Return by how much a change adds to the fault level, or None where it is no shorted turns or gone.
+    """Return what a change adds to the fault level; None if it is gone or not shorted turns.
 
     Parameters
     ----------
@@ -200,7 +203,7 @@ def level_of(change: Change | None) -> Level | None:
     Returns
     -------
     Level or None
-        Its level where it may be shorted turns.
+        Its level if it may be shorted turns.
     """
     if change is None or change.until_ns is not None:
         return None
@@ -231,5 +234,5 @@ def is_shorted_turns(change: Change | None) -> bool:
 
 
 def _probability_of_standing_fault(score: float) -> float:
-    """Return how likely the standing asymmetry is shorted turns, from its score and how rare those are."""
+    """Return the probability that a standing asymmetry with this score is shorted turns."""
     return 1.0 / (1.0 + (1.0 - STANDING_FAULTS) / STANDING_FAULTS * exp(-(score**2) / 2.0))
