@@ -28,6 +28,8 @@ C_NOISE = 0.14
 """Share of C that temperature makes uncertain, for it acts through Z2."""
 Z_NOISE = 0.003
 """Share of j2 that speed and frequency leave uncertain."""
+MOST_Z = 0.6
+"""Largest error of Z2 over |Z2| that explains a surprising record: four standard deviations before."""
 OUTLIER = 12.25
 """Largest squared innovation over its variance: a record counts 6 nats at most."""
 LEARNING_CLIP, LEARNING_MEAN = 6.0, 1.85
@@ -162,7 +164,7 @@ def rebalance(state: FilterState, balance: float) -> None:
 
 
 @compiled
-def update(state: FilterState, y: complex, j1: complex, j2: complex) -> None:
+def update(state: FilterState, y: complex, j1: complex, j2: complex, bounded: bool) -> None:
     """Take one record in; leave H, K, S_inverse and nu in the state.
 
     Parameters
@@ -171,17 +173,17 @@ def update(state: FilterState, y: complex, j1: complex, j2: complex) -> None:
         The filter, after `predict`.
     y, j1, j2 : complex
         The record.
+    bounded : bool
+        Whether the record teaches no error of Z2 that is larger than a file's can be. After a change it may:
+        what then remains unexplained is of a second one.
     """
     x, H, K, Si, nu = state.x, state.H, state.K, state.S_inverse, state.nu
     _rows(j1, j2, H)
     PH = np.zeros((STATES, 2))
     _times_transposed(state.P, H, PH)
-    a = b = c = 0.0
+    a, b, c = _predicted(H, PH)
     nu[0], nu[1] = y.real, y.imag
     for j in range(STATES):
-        a += H[0, j] * PH[j, 0]
-        b += H[0, j] * PH[j, 1]
-        c += H[1, j] * PH[j, 1]
         nu[0] -= H[0, j] * x[j]
         nu[1] -= H[1, j] * x[j]
     nominal = 0.5 * (
@@ -192,16 +194,62 @@ def update(state: FilterState, y: complex, j1: complex, j2: complex) -> None:
     state.surprise = _chi_square(nominal, a, b, c, nu[0], nu[1])
     state.share = 2.0 * nominal / (a + c + 2.0 * nominal)
     _tell_noise(state, nominal, a, b, c)
+    taught = PH
+    if bounded and state.surprise > OUTLIER and _is_no_impedance(state, PH, nominal, a, b, c):
+        taught = _of_known_impedance(state.P, PH)
+        a, b, c = _predicted(H, taught)
     R = _bounded_noise(nominal, a, b, c, nu[0], nu[1])
     determinant = (a + R) * (c + R) - b * b
     Si[0, 0], Si[1, 1] = (c + R) / determinant, (a + R) / determinant
     Si[0, 1] = Si[1, 0] = -b / determinant
     state.log_likelihood = -0.5 * (_chi_square(R, a, b, c, nu[0], nu[1]) + np.log(determinant))
     for i in range(STATES):
-        K[i, 0] = PH[i, 0] * Si[0, 0] + PH[i, 1] * Si[1, 0]
-        K[i, 1] = PH[i, 0] * Si[0, 1] + PH[i, 1] * Si[1, 1]
+        K[i, 0] = taught[i, 0] * Si[0, 0] + taught[i, 1] * Si[1, 0]
+        K[i, 1] = taught[i, 0] * Si[0, 1] + taught[i, 1] * Si[1, 1]
         x[i] += K[i, 0] * nu[0] + K[i, 1] * nu[1]
     _reduce(state.P, PH, H, K, R)
+
+
+@compiled
+def _predicted(H: Array, PH: Array) -> tuple[float, float, float]:
+    """Return the elements 00, 01, 11 of H P H'."""
+    a = b = c = 0.0
+    for j in range(STATES):
+        a += H[0, j] * PH[j, 0]
+        b += H[0, j] * PH[j, 1]
+        c += H[1, j] * PH[j, 1]
+    return a, b, c
+
+
+@compiled
+def _is_no_impedance(state: FilterState, PH: Array, R: float, a: float, b: float, c: float) -> bool:
+    """Return whether the error of Z2 that would explain a record is larger than a file's can be.
+
+    On a supply whose V2/V1 is constant nothing tells Z2 from E. A step of the currents alone, as of shorted
+    turns, then looks like Z2 = 0, and one of the voltages alone like a Z2 without bounds.
+    """
+    nu = state.nu
+    determinant = (a + R) * (c + R) - b * b
+    u = ((c + R) * nu[0] - b * nu[1]) / determinant
+    v = ((a + R) * nu[1] - b * nu[0]) / determinant
+    r, x = state.x[4] + PH[4, 0] * u + PH[4, 1] * v, state.x[5] + PH[5, 0] * u + PH[5, 1] * v
+    found = complex(r, x) / state.nominal
+    return abs(found) > MOST_Z * abs(1.0 - state.balance * found)
+
+
+@compiled
+def _of_known_impedance(P: Array, PH: Array) -> Array:
+    """Return P H' of a filter to which Z2 is known: a record then teaches nothing of it."""
+    p, q, s = P[4, 4], P[4, 5], P[5, 5]
+    determinant = p * s - q * q
+    out = PH.copy()
+    for r in range(2):
+        u = (s * PH[4, r] - q * PH[5, r]) / determinant
+        v = (p * PH[5, r] - q * PH[4, r]) / determinant
+        for i in range(STATES):
+            out[i, r] -= P[i, 4] * u + P[i, 5] * v
+        out[4, r] = out[5, r] = 0.0
+    return out
 
 
 @compiled

@@ -60,7 +60,7 @@ def fold_record(
     count = int(state.recent)
     earlier = recent[max(count - APART, 0)].j2 if count > 0 else state.w
     smooth(state, regressor(state, record.y, record.j2), earlier)
-    update(state, record.y, record.j1, state.w)
+    update(state, record.y, record.j1, state.w, bounded=not changed)
     for s in range(SIDES):
         fold_side(sides[s], s, record)
     fold_candidates(state, bank, sides, rho)
@@ -89,7 +89,7 @@ def fold_first(state: FilterState, sides: list[SideState], record: Measurement) 
     """
     predict(state, record.elapsed_s)
     state.w = state.w_raw = regressor(state, record.y, record.j2)
-    update(state, record.y, record.j1, state.w)
+    update(state, record.y, record.j1, state.w, bounded=False)
     for s in range(SIDES):
         fold_side(sides[s], s, record)
     learn_gap(state, record.elapsed_s)

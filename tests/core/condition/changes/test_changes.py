@@ -7,11 +7,12 @@ import pytest
 
 from core.condition.assessment import Change
 from core.condition.following.follower import Follower
-from core.condition.kinds import Kind
+from core.condition.kinds import Kind, State
+from core.condition.verdict.condition import condition_of
 from core.machines.parameters import Connection
 from core.machines.winding_frame import terminal_winding
 from core.signals.sequence import PhaseSequence
-from tests.core.condition.simulated import HOUR_NS, PARAMETERS, Plant, follow, motor_of
+from tests.core.condition.simulated import HOUR_NS, PARAMETERS, Z2, Plant, follow, motor_of
 
 BEFORE, AFTER = 60, 12
 FRAMES = [(c, s) for c in Connection for s in PhaseSequence]
@@ -108,6 +109,35 @@ def test_a_supply_that_jumps_changes_nothing() -> None:
     plant = Plant()
     follower = follow(motor_of(), plant.records(BEFORE))
     plant.unbalance = -0.03 + 0.02j
+    for record in plant.records(30):
+        follower.fold(record)
+    assert not saw(follower)
+
+
+@pytest.mark.parametrize("winding", [0, 1, 2])
+@pytest.mark.parametrize("path", [0.0, 3.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_turns_that_short_on_a_constant_supply_are_no_error_of_the_impedance(
+    seed: int, path: float, winding: int
+) -> None:
+    plant = Plant(supply_swing=0.0, path=path, winding=winding, seed=seed)
+    follower = follow(motor_of(), plant.records(BEFORE))
+    plant.level = 0.02
+    for record in plant.records(10):
+        follower.fold(record)
+    condition = condition_of(motor_of(), follower.assessment(), plant.time_ns)
+    assert (condition.state, condition.phase) == (State.FAULT, "abc"[winding])
+
+
+@pytest.mark.parametrize("error", [0.7, 1.35, 1.0 + 0.3j])
+def test_a_supply_that_jumps_for_the_first_time_teaches_an_impedance_that_is_far_off(error: complex) -> None:
+    class Other(Plant):
+        def backward_impedance(self) -> complex:
+            return Z2 * error
+
+    plant = Other(supply_swing=0.0)
+    follower = follow(motor_of(), plant.records(BEFORE))
+    plant.unbalance = -0.02 + 0.01j
     for record in plant.records(30):
         follower.fold(record)
     assert not saw(follower)
