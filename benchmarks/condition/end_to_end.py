@@ -22,6 +22,7 @@ MOTORS: Final = (REFERENCE, MEDIUM, LARGE, VERY_LARGE)
 ON_A_BUS: Final = (MEDIUM, REFERENCE, LARGE, VERY_LARGE, MEDIUM)
 BUS_CASES: Final = (*PATHS, Case.VOLTAGE_DRIFT, Case.SUPPLY)
 BEFORE, AFTER = 60, 100
+MOST_AFTER_ON_A_BUS: Final = 60
 ACB_SHARE: Final = 0.4
 APART: Final = 1e-4
 """Of V2/V1 between records of a bus, which are made within a minute."""
@@ -147,17 +148,18 @@ def end_to_end(
         tasks = [Task(motor, case, number, before, after) for motor in MOTORS for number in range(each)]
         alone[case] = list(spread(follow_files, tasks, f"files, {case.value}", pool))
     on_a_bus = {}
+    on_a_bus_after = min(after, MOST_AFTER_ON_A_BUS)
     for case in BUS_CASES:
         buses = [
-            [BusTask(case, number, place, before, after) for place in range(len(ON_A_BUS))]
+            [BusTask(case, number, place, before, on_a_bus_after) for place in range(len(ON_A_BUS))]
             for number in range(each)
         ]
         tasks_of_all = [task for one in buses for task in one]
         found = list(spread(observe_on_bus, tasks_of_all, f"files of a bus, {case.value}", pool))
         of_each = [found[k : k + len(ON_A_BUS)] for k in range(0, len(found), len(ON_A_BUS))]
         on_a_bus[case] = [_followed_bus(one, every) for one, every in zip(buses, of_each, strict=True)]
-    yield from _marks(alone, "alone", MOST_CALLED)
-    yield from _marks(on_a_bus, "on a bus", MOST_CALLED_ON_A_BUS)
+    yield from _marks(alone, "alone", after, MOST_CALLED)
+    yield from _marks(on_a_bus, "on a bus", on_a_bus_after, MOST_CALLED_ON_A_BUS)
     drifts = [one.outcome.final == (Kind.VOLTAGE_CHANNEL,) for one in on_a_bus[Case.VOLTAGE_DRIFT]]
     yield at_least(f"on a bus, {Case.VOLTAGE_DRIFT.value}: named so", sum(drifts), len(drifts), 1.0)
     every_bus = [one for found in on_a_bus.values() for one in found]
@@ -168,8 +170,8 @@ def end_to_end(
     yield ""
     yield from _table(alone)
     yield ""
-    yield f"Buses of {len(ON_A_BUS)} motors that are recorded together. Supply steps happen to all of them,"
-    yield "the other cases to the first one, of which this tells:"
+    yield f"Buses of {len(ON_A_BUS)} motors recorded together, with {on_a_bus_after} records after the case."
+    yield "Supply steps happen to all of them, the other cases to the first one, of which this tells:"
     yield ""
     yield from _table(on_a_bus)
 
@@ -177,12 +179,12 @@ def end_to_end(
 Found = dict[Case, list[Result]]
 
 
-def _marks(found: Found, where: str, most_called: float) -> Iterator[Mark]:
+def _marks(found: Found, where: str, within: int, most_called: float) -> Iterator[Mark]:
     faults = [one for case in PATHS for one in found[case]]
     seen = sum(one.outcome.seen is not None and one.outcome.seen < SEEN_WITHIN for one in faults)
     called = _called(faults)
     yield at_least(f"1 %, {where}: seen within {SEEN_WITHIN}", seen, len(faults), LEAST_SEEN)
-    yield at_least(f"1 %, {where}: `fault` within {AFTER}", len(called), len(faults), LEAST_CALLED)
+    yield at_least(f"1 %, {where}: `fault` within {within}", len(called), len(faults), LEAST_CALLED)
     right = sum(one.right for one in called)
     yield at_least(f"1 %, {where}: phase right in all called", right, len(called), LEAST_PHASE)
     every = [one for some in found.values() for one in some]

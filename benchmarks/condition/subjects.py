@@ -116,10 +116,10 @@ With whatever else the machine did at the time."""
 
 SUBJECTS: Final[Mapping[str, Subject]] = {
     "detection": Subject(
-        "Shorted turns found", _detection, lambda effort, pool: detection(effort.steps, pool), 13
+        "Shorted turns found", _detection, lambda effort, pool: detection(effort.steps, pool), 14
     ),
     "disturbances": Subject(
-        "What is no fault", _disturbances, lambda effort, pool: disturbances(effort.disturbed, pool), 5
+        "What is no fault", _disturbances, lambda effort, pool: disturbances(effort.disturbed, pool), 3
     ),
     "bus": Subject("Five motors on a bus", _bus, lambda effort, pool: bus(effort.buses, pool), 5),
     "files": Subject(
@@ -134,14 +134,14 @@ SUBJECTS: Final[Mapping[str, Subject]] = {
         "False alarms",
         _false_alarms,
         lambda effort, pool: false_alarms(effort.healthy_motors, effort.healthy_records, pool),
-        5,
+        1.5,
     ),
-    "forecasts": Subject("Forecasts", _forecasts, lambda effort, pool: forecasts(effort.growing, pool), 3),
+    "forecasts": Subject("Forecasts", _forecasts, lambda effort, pool: forecasts(effort.growing, pool), 1),
     "second-changes": Subject(
         "A second change",
         _second_changes,
         lambda effort, pool: second_changes(effort.disturbed // 2, pool),
-        2,
+        1.5,
     ),
     "cost": Subject(
         "Cost",
@@ -153,7 +153,7 @@ SUBJECTS: Final[Mapping[str, Subject]] = {
         "Cost in the service",
         _folding,
         lambda effort, pool: folding(effort.cost_motors, effort.cost_records, pool),
-        3,
+        2,
     ),
 }
 MILL: Final = "mill"
