@@ -28,6 +28,7 @@ from service.cli.output import (
     print_warning,
     progress,
 )
+from service.client.verdicts import to_the_second
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +95,7 @@ def follow_records(
     if not followed.steps:
         raise _none_usable(records, followed.skipped)
     if followed.condition.state is State.UNKNOWN:
-        latest = _time(followed.steps[-1].seen)
+        latest = to_the_second(_time(followed.steps[-1].seen))
         print_warning(
             f"there is no record after the latest event, only until {latest}: the condition is unknown"
         )
