@@ -4,8 +4,8 @@ python -m benchmarks.condition [SUBJECT]... [--quick] [--share S] [--data FOLDER
 python -m benchmarks.condition --write-page
 
 Every subject writes its own section with the command that repeats it; sections of subjects that are not
-measured stay, and the page says of which code and size they are. With --quick the sections are printed, and
-written only where a page is given. All random numbers come from fixed seeds.
+measured stay, and the page says at which size they were, and which of them on earlier code. With --quick the
+sections are printed, and written only where a page is given. All random numbers come from fixed seeds.
 """
 
 import argparse
@@ -44,7 +44,7 @@ def main() -> None:
             measured = _measure(subjects[name], _command(name, share), share, code, pool)
             _say(f"{name}: {measured.seconds:.0f} s")
             if page is None:
-                print("\n".join([*section_lines(SECTIONS[name], measured, code), ""]), flush=True)
+                print("\n".join([*section_lines(SECTIONS[name], measured, measured.code), ""]), flush=True)
             else:
                 write_page(page, SECTIONS, {name: measured})
 

@@ -112,20 +112,23 @@ def read_measured(page: Path) -> dict[str, Measured]:
     return {subject: Measured.from_dict(one) for subject, one in documents.items()}
 
 
-def write_page(
-    page: Path, sections: Mapping[str, Section], new: Mapping[str, Measured], code: str | None = None
-) -> None:
+def write_page(page: Path, sections: Mapping[str, Section], new: Mapping[str, Measured]) -> None:
     """Put what was measured beside what is there, and write the page."""
     measured = read_measured(page) | dict(new)
     kept = {subject: measured[subject] for subject in sections if subject in measured}
     documents = {subject: one.as_dict() for subject, one in kept.items()}
-    text = page_text(sections, kept, code or judged_code())
+    text = page_text(sections, kept)
     _data_of(page).write_text(json.dumps(documents, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     page.write_text(text, encoding="utf-8")
 
 
-def page_text(sections: Mapping[str, Section], measured: Mapping[str, Measured], code: str) -> str:
-    """Return the page: what is asked and found at the top, then a section each."""
+def page_text(sections: Mapping[str, Section], measured: Mapping[str, Measured]) -> str:
+    """Return the page: what is asked and found at the top, then a section each.
+
+    Sections that were measured on another code than the newest one are marked.
+    """
+    newest = max(measured.values(), key=lambda one: one.finished, default=None)
+    code = "" if newest is None else newest.code
     parts = [f"{TITLE}\n", ABOUT, "\n".join([*_overview(sections, measured, code), ""]), RECORDS]
     for subject, section in sections.items():
         parts.append("\n".join([*section_lines(section, measured.get(subject), code), ""]))
@@ -139,7 +142,7 @@ def section_lines(section: Section, measured: Measured | None, code: str) -> lis
         return [*head, "**Not measured.**"]
     head += [f"`{measured.command}`", "", f"{_when(measured)}.", ""]
     if measured.code != code:
-        head += ["**Not measured on this code**: the figures are those of earlier code.", ""]
+        head += ["**Measured on earlier code** than the newest section: its figures may be others now.", ""]
     marks = [*marks_table(measured.marks), ""] if measured.marks else ["No figure is asked for.", ""]
     return [*head, *section.about(measured.share), "", *marks, *measured.lines]
 
@@ -174,7 +177,7 @@ def _sizes(sections: Mapping[str, Section], measured: Mapping[str, Measured], co
     else:
         text = f"{every} measured, at different sizes"
     older = sum(one.code != code for one in measured.values())
-    return [f"{text}, {'all on the present code' if not older else f'**{older} of them on earlier code**'}."]
+    return [f"{text}, {'on the same code' if not older else f'**{older} of them on earlier code**'}."]
 
 
 def _when(measured: Measured) -> str:

@@ -16,7 +16,8 @@ from benchmarks.condition.marks import (
     median_at_most,
     range_reached,
 )
-from benchmarks.condition.page import Measured, Section, page_text, read_measured, write_page
+from benchmarks.condition.page import PAGE, Measured, Section, page_text, read_measured, write_page
+from benchmarks.condition.subjects import SECTIONS as SECTIONS_OF_THE_PAGE
 
 SHORT, MET = "**falls short**", "met"
 SECTIONS = {
@@ -25,10 +26,9 @@ SECTIONS = {
 }
 
 
-def measured(*marks: Mark, share: float = 1.0, code: str = "this") -> Measured:
-    return Measured(
-        "python -m benchmarks", share, "2026-01-02 03:04 UTC", 61.0, code, marks, ("| a table |",)
-    )
+def measured(*marks: Mark, share: float = 1.0, code: str = "this", at: str = "03:04") -> Measured:
+    finished = f"2026-01-02 {at} UTC"
+    return Measured("python -m benchmarks", share, finished, 61.0, code, marks, ("| a table |",))
 
 
 @pytest.mark.parametrize(
@@ -64,10 +64,10 @@ def test_a_rate_is_told_with_its_interval_and_never_rounded_up_to_all() -> None:
 
 def test_what_falls_short_is_told_first() -> None:
     short, met = at_least("1 %: seen within 10", 96, 100, 0.97), at_most("alarms", 0, 50, 0.0)
-    page = page_text(SECTIONS, {"one": measured(short, met), "two": measured(met)}, "this")
+    page = page_text(SECTIONS, {"one": measured(short, met), "two": measured(met)})
 
     top = page[: page.index("## How the records are made")]
-    assert "All sections are measured at full size, all on the present code." in top
+    assert "All sections are measured at full size, on the same code." in top
     assert "| [Shorted turns found](#shorted-turns-found) | 2 | 1 | **1** |" in top
     assert "| [False alarms](#false-alarms) | 1 | 1 | 0 |" in top
     assert f"| 1 %: seen within 10 | at least 97 % | {short.found} |" in top
@@ -76,24 +76,39 @@ def test_what_falls_short_is_told_first() -> None:
     assert "200 motors a row." in page
 
 
-def test_what_was_not_measured_or_not_on_this_code_is_visible() -> None:
-    met = at_most("alarms", 0, 50, 0.0)
-    page = page_text(SECTIONS, {"one": measured(met, share=0.5, code="other")}, "this")
+def test_what_was_not_measured_is_visible() -> None:
+    page = page_text(SECTIONS, {"one": measured(at_most("alarms", 0, 50, 0.0), share=0.5)})
 
-    assert "1 of 2 sections are measured at 50% of the full size, **1 of them on earlier code**." in page
+    assert "1 of 2 sections are measured at 50% of the full size, on the same code." in page
+    assert "| [False alarms](#false-alarms) | - | - | - | **not measured** |" in page
     assert "## False alarms\n\n**Not measured.**" in page
-    assert "**Not measured on this code**" in page
     assert "100 motors a row." in page
+
+
+def test_a_section_that_was_measured_on_earlier_code_is_visible() -> None:
+    page = page_text(SECTIONS, {"one": measured(code="old", at="01:00"), "two": measured(at="02:00")})
+
+    assert "All sections are measured at full size, **1 of them on earlier code**." in page
+    assert page.count("**Measured on earlier code**") == 1
+    assert page.index("**Measured on earlier code**") < page.index("## False alarms")
 
 
 def test_a_run_of_one_section_leaves_the_others(tmp_path: Path) -> None:
     page = tmp_path / "condition.md"
     short = at_least("seen", 1, 2, 0.97)
-    write_page(page, SECTIONS, {"one": measured(short)}, "this")
-    write_page(page, SECTIONS, {"two": replace(measured(), share=0.5)}, "this")
+    write_page(page, SECTIONS, {"one": measured(short)})
+    write_page(page, SECTIONS, {"two": replace(measured(), share=0.5)})
 
     assert read_measured(page)["one"] == measured(short)
     text = page.read_text(encoding="utf-8")
-    assert "All sections are measured, at different sizes, all on the present code." in text
+    assert "All sections are measured, at different sizes, on the same code." in text
     assert f"| seen | at least 97 % | {short.found} | {SHORT} |" in text
     assert "No figure is asked for." in text
+
+
+@pytest.mark.skipif(not PAGE.with_suffix(".json").exists(), reason="nothing was measured yet")
+def test_the_page_says_what_was_measured() -> None:
+    text = page_text(SECTIONS_OF_THE_PAGE, read_measured(PAGE))
+    assert PAGE.read_text(encoding="utf-8") == text, (
+        "docs/evidence/condition.md is written by python -m benchmarks.condition, or --write-page"
+    )
