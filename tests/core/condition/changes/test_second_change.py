@@ -138,3 +138,36 @@ def test_a_name_that_is_final_takes_no_shorted_turns_back(
     for _ in range(3):
         confirm(alarm, weighing)
     assert alarm.named == told
+
+
+@pytest.mark.parametrize(
+    ("records", "looked_at"), [(64, True), (65, False), (72, True), (264, False), (288, True), (3200, True)]
+)
+def test_a_level_that_grows_long_after_the_alarm_may_still_be_called(records: int, looked_at: bool) -> None:
+    assert Alarm(0, records=records, named=(Kind.SHORTED_TURNS,)).may_be_called is looked_at
+    assert not Alarm(0, records=records, named=(Kind.VOLTAGE_CHANNEL,)).may_be_called
+
+
+def test_a_second_change_that_is_gone_leaves_what_stood_before_the_first() -> None:
+    course = Course(Plant())
+    before = course.follower.assessment()
+    course.plant.voltage[2] *= 1.03
+    assert course.records(BETWEEN).kind is Kind.VOLTAGE_CHANNEL
+    course.plant.level = 0.01
+    assert course.records(12).state is State.FAULT
+    course.plant.level = 0.0
+    after = course.records(40)
+    assert before is not None
+    assert after.reference is not None
+    assert "gone" in after.reasons[0]
+    assert after.reference.standing_score == pytest.approx(before.reference.standing_score, abs=0.1)
+
+
+def test_living_with_a_change_keeps_what_it_leaves_uncertain() -> None:
+    """On a supply that hardly changes, the impedance has taken up some of the joint."""
+    course = Course(Plant(supply_swing=0.0005, unbalance=0.02))
+    course.plant.joint_ohm, course.plant.joint = 3.0, 1
+    told = course.records(140)
+    assert told.reference is not None
+    assert told.reference.detectable is not None
+    assert told.reference.detectable > 0.0046, "0.0044 without that"

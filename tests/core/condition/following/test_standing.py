@@ -61,6 +61,17 @@ def test_a_fault_on_a_constant_supply_does_not_come_to_stand(winding: int) -> No
     assert faulty.reference.standing_score == pytest.approx(healthy.reference.standing_score, abs=0.2)
 
 
+def test_a_fault_that_grows_on_a_constant_supply_does_not_come_to_stand() -> None:
+    plant = Plant(supply_swing=0.0, unbalance=0.02, seed=1)
+    follower = follow(motor_of(), plant.records(60))
+    for _ in range(20):
+        plant.level += 0.002
+        follower.fold(plant.record())
+        assessment = follower.assessment()
+        assert assessment is not None
+        assert assessment.reference.standing_score < 3.2
+
+
 def test_a_called_fault_does_not_fade_while_a_second_change_is_not_yet_seen() -> None:
     motor = replace(motor_of(), sensors=SensorClass(0.005, 0.005, 10e-6, 10e-6))
     plant = Plant(level=0.04, noise=5e-4)
