@@ -408,13 +408,14 @@ class Direction:
     def _live_with(self, alarm: Alarm, motor: Motor) -> None:
         """Learn a reference with the change, so that another one is seen; the change stays told."""
         header = self._header
-        kept, gone, standing = self._change(alarm, motor)[0], header.gone, header.standing
+        kept, gone = self._change(alarm, motor)[0], header.gone
+        standing, called = header.standing, header.called
         # The impedance has taken up some of the change.
         taken, spread = taken_up(self._weighing(), self._bank, self._hypotheses)
         self._state.x -= taken
         self._state.P += spread
         self._restart(keep_impedance=Kind.PARAMETERS not in alarm.named)
-        header.kept, header.gone, header.standing = kept, gone, standing
+        header.kept, header.gone, header.standing, header.called = kept, gone, standing, called
 
     def _keep_what_is_shown(self, alarm: Alarm, change: Change) -> None:
         """Keep what shorted turns show, so that it is seen when they show it no more."""

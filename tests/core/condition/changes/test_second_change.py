@@ -171,3 +171,14 @@ def test_living_with_a_change_keeps_what_it_leaves_uncertain() -> None:
     assert told.reference is not None
     assert told.reference.detectable is not None
     assert told.reference.detectable > 0.0046, "0.0044 without that"
+
+
+def test_a_channel_s_error_that_is_lived_with_is_no_standing_fault() -> None:
+    course = Course(Plant())
+    course.plant.voltage[2] *= 1.05
+    assert course.records(BETWEEN).kind is Kind.VOLTAGE_CHANNEL
+    told = course.records(60)
+    assert (told.state, told.kind) == (State.WATCH, Kind.VOLTAGE_CHANNEL)
+    assessment = course.follower.assessment()
+    assert assessment is not None
+    assert assessment.called_above == 0.0

@@ -9,13 +9,14 @@ from core.condition.events import Event, EventKind
 from core.condition.following.follower import Follower
 from core.condition.following.standing import (
     STANDING_SCORE,
+    Called,
     StandingErrors,
     held,
     score_of,
     standing_of,
     surest,
 )
-from core.condition.kinds import State
+from core.condition.kinds import Kind, State
 from core.condition.measuring.signatures import PATHS, shorted_turns
 from core.condition.verdict.condition import condition_of
 from core.machines.sensors import SensorClass
@@ -125,3 +126,23 @@ def test_a_standing_fault_is_kept_as_it_was_told_surest() -> None:
 @pytest.mark.parametrize(("score", "before", "after"), [(3.0, 3.3, 3.3), (3.0, 3.9, 3.5), (3.0, 0.0, 3.0)])
 def test_a_score_is_held_while_it_falls_by_little(score: float, before: float, after: float) -> None:
     assert held(score, before) == after
+
+
+@pytest.mark.parametrize(("level", "kept"), [(0.03, True), (0.0, False)])
+def test_a_fault_that_was_called_outlasts_a_change_unless_it_was_its_beginning(
+    level: float, kept: bool
+) -> None:
+    motor, plant = motor_of(), Plant(level=level)
+    follower = follow(motor, plant.records(60))
+    header = follower._directions[-1]._header
+    assert (header.called is not None) is kept
+    header.called = Called(follow(motor, Plant(level=0.03).records(60))._directions[-1]._errors(), 9.0, 0.03)
+    plant.voltage[2] *= 1.04
+    for record in plant.records(90):
+        follower.fold(record)
+    assessment = follower.assessment()
+    assert assessment is not None
+    assert assessment.change is not None
+    assert assessment.change.named == (Kind.VOLTAGE_CHANNEL,)
+    assert assessment.standing_fault is kept
+    assert assessment.called_above == (0.03 if kept else 0.0)
