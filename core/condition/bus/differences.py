@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from statistics import median
 from typing import Final
-
-import numpy as np
 
 from core.condition.bus.neighbours import Neighbour
 from core.signals.sequence import PhaseSequence
@@ -157,4 +156,4 @@ class BusDifferences:
         """Return where most differences moved; of two, the one that moved less: the other motor moved."""
         if len(moves) == 2:
             return min(moves, key=lambda move: abs(move - self.moved))
-        return complex(np.median([m.real for m in moves]), np.median([m.imag for m in moves]))
+        return complex(median(m.real for m in moves), median(m.imag for m in moves))
