@@ -20,6 +20,7 @@ from benchmarks.condition.marks import Mark
 from benchmarks.condition.mill import mill
 from benchmarks.condition.page import Section
 from benchmarks.condition.second_changes import second_changes
+from service.condition.worker import RECORDS_A_FOLD
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,9 +109,9 @@ def _cost(_: Effort) -> str:
 
 
 def _folding(_: Effort) -> str:
-    return """\
+    return f"""\
 As the workers of the service do it: observations read from a database of their own, followed,
-what is said from each record on and the history written back, 500 records a transaction.
+what is said from each record on and the history written back, {RECORDS_A_FOLD:,} records a transaction.
 With whatever else the machine did at the time."""
 
 

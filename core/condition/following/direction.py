@@ -161,7 +161,7 @@ class Direction:
         ObservationError
             If a number is missing, infinite or impossible, or the motor was not running.
         """
-        header, state = self._header, self._state
+        header = self._header
         elapsed_s = max(observation.time_ns - header.as_of_ns, 0) * NANOSECONDS if header.recorder else 0.0
         record = measure(observation, motor, self._header.scale_ohm, elapsed_s)
         self._forget_weights()
@@ -179,7 +179,7 @@ class Direction:
             if not header.start:
                 header.since_ns = observation.time_ns
             header.start.append(record)
-            fold_start(state, self._sides, header.start)
+            fold_start(self._filter, self._sides, header.start)
             if len(header.start) == START:
                 header.start.clear()
             return
@@ -565,7 +565,7 @@ class Direction:
         state.x0[:], state.P0[:] = x, P
         state.current_deviation = prior.current
         state.nominal = self._nominal
-        restart(state, self._sides)
+        restart(self._filter, self._sides)
         header.start.clear()
         header.accepted, header.declared = False, None
         header.alarm = header.standing = header.kept = header.gone = header.called = None

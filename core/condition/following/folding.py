@@ -75,18 +75,19 @@ def fold_record(
 
 
 @compiled
-def fold_first(state: FilterState, sides: list[SideState], record: Measurement) -> None:
+def fold_first(filters: list[FilterState], sides: list[SideState], record: Measurement) -> None:
     """Take one of the first records in, which nothing can be compared with.
 
     Parameters
     ----------
-    state : FilterState
+    filters : array of FilterState, shape (1,)
         The filter.
     sides : array of SideState
         Side channels.
     record : Measurement
         The record.
     """
+    state = filters[0]
     predict(state, record.elapsed_s)
     state.w = state.w_raw = regressor(state, record.y, record.j2)
     update(state, record.y, record.j1, state.w, bounded=False)
@@ -97,16 +98,17 @@ def fold_first(state: FilterState, sides: list[SideState], record: Measurement) 
 
 
 @compiled
-def restart(state: FilterState, sides: list[SideState]) -> None:
+def restart(filters: list[FilterState], sides: list[SideState]) -> None:
     """Begin a reference: forget all but what the filter starts from.
 
     Parameters
     ----------
-    state : FilterState
+    filters : array of FilterState, shape (1,)
         The filter; x0 and P0 are set.
     sides : array of SideState
         Side channels.
     """
+    state = filters[0]
     state.x[:] = state.x0
     state.P[:] = state.P0
     state.records = state.gap_s = state.candidates = state.recent = 0.0

@@ -5,7 +5,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from core.condition.filter.state import FilterState
 from core.condition.following.folding import fold_first, restart
 from core.condition.measuring.measurement import Measurement
 
@@ -16,12 +15,12 @@ NOISE_STEPS: Final = tuple(2.0**k for k in range(11))
 """Multiples of the records' own scatter that the first records are tried with."""
 
 
-def fold_start(state: FilterState, sides: Any, records: Sequence[Measurement]) -> None:
+def fold_start(filters: Any, sides: Any, records: Sequence[Measurement]) -> None:
     """Fold the first records in their order of ordinariness, with the noise that makes them likeliest.
 
     Parameters
     ----------
-    state : FilterState
+    filters : array of FilterState, shape (1,)
         The filter; x0 and P0 are set.
     sides : array of SideState
         Side channels.
@@ -29,29 +28,29 @@ def fold_start(state: FilterState, sides: Any, records: Sequence[Measurement]) -
         All records so far, in the order of time.
     """
     ordered = in_order(records)
-    state.balance = 0.0
-    state.balance = min(noise_of_currents(ordered) / _fold_likeliest(state, sides, ordered), 1.0)
-    _fold_likeliest(state, sides, ordered)
+    filters["balance"] = 0.0
+    filters["balance"] = min(noise_of_currents(ordered) / _fold_likeliest(filters, sides, ordered), 1.0)
+    _fold_likeliest(filters, sides, ordered)
 
 
-def _fold_likeliest(state: FilterState, sides: Any, records: Sequence[Measurement]) -> float:
+def _fold_likeliest(filters: Any, sides: Any, records: Sequence[Measurement]) -> float:
     """Fold the first records with the noise that they tell; return its variance."""
     steps = starting_noise(records) * np.array(NOISE_STEPS)
-    logs = np.array([_fold_all(state, sides, records, s2) for s2 in steps.tolist()])
+    logs = np.array([_fold_all(filters, sides, records, s2) for s2 in steps.tolist()])
     shares = np.exp(logs - logs.max())
     s2 = float(shares @ steps / shares.sum())
-    _fold_all(state, sides, records, s2)
+    _fold_all(filters, sides, records, s2)
     return s2
 
 
-def _fold_all(state: FilterState, sides: Any, records: Sequence[Measurement], s2: float) -> float:
+def _fold_all(filters: Any, sides: Any, records: Sequence[Measurement], s2: float) -> float:
     """Fold the first records with noise of a variance; return the log of their likelihood."""
-    restart(state, sides)
-    state.s2 = s2
+    restart(filters, sides)
+    filters["s2"] = s2
     total = 0.0
     for record in records:
-        fold_first(state, sides, record)
-        total += state.log_likelihood
+        fold_first(filters, sides, record)
+        total += filters["log_likelihood"].item()
     return total
 
 
