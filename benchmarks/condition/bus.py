@@ -202,9 +202,11 @@ def _disturbances(buses: int, pool: Executor) -> Part:
                 marks.append(at_least(f"{case.value}, own transformers: named so", named, len(found), 1.0))
             every += found
         worst = max(by_case, key=lambda case: len(_called(by_case[case])))
-        what = f"disturbances, {transformers.value} transformers: called `fault`, worst ({worst.value})"
-        marks.append(at_most(what, len(_called(by_case[worst])), len(by_case[worst]), MOST_CALLED))
-    header = ["transformer", "first motor", "called `fault`", "seen", "in the end", "other motors called"]
+        called = len(_called(by_case[worst]))
+        kind = f"{worst.value}, the worst" if called else "any disturbance"
+        what = f"{kind}, transformers {transformers.value}: called `fault`"
+        marks.append(at_most(what, called, len(by_case[worst]), MOST_CALLED))
+    header = ["transformers", "first motor", "called `fault`", "seen", "in the end", "other motors called"]
     return every, marks, table(header, rows)
 
 
@@ -239,7 +241,7 @@ def _growth(buses: int, pool: Executor) -> Part:
                 median_at_most(f"{what}: median delay until `fault`", delays, MEDIAN_GROWTH),
                 at_least(f"{what}: phase right in all called", right, len(called), LEAST_PHASE),
             ]
-    header = ["transformer", "called `fault`", "by record: median, 90 %", "phase right", "others in the end"]
+    header = ["transformers", "called `fault`", "by record: median, 90 %", "phase right", "others in the end"]
     about = f"Growth of 0.01 % of the turns a record, for {AFTER} records:"
     return every, marks, [about, "", *table(header, rows)]
 

@@ -188,8 +188,8 @@ def _ceilings(name: str, found: Mapping[Disturbance, Sequence[Result]]) -> Itera
     for what, kinds in (("channels", CHANNELS), ("relay", RELAYS), ("supply", SUPPLIES)):
         worst = max(kinds, key=lambda kind: _called(found[kind]) / len(found[kind]))
         every = found[worst]
-        what = f"{what}, {name}: called `fault`, worst ({worst.value})"
-        yield at_most(what, _called(every), len(every), MOST_CALLED)
+        kind = f"{worst.value}, the worst" if _called(every) else f"{what}, any change"
+        yield at_most(f"{kind}, {name}: called `fault`", _called(every), len(every), MOST_CALLED)
 
 
 def _called(found: Sequence[Result]) -> int:

@@ -168,12 +168,12 @@ def end_to_end(
     yield at_most("on a bus: other motors called `fault`", called, others, 0.0)
     yield "Each motor alone:"
     yield ""
-    yield from _table(alone)
+    yield from _table("motors", alone)
     yield ""
     yield f"Buses of {len(ON_A_BUS)} motors recorded together, with {on_a_bus_after} records after the case."
     yield "Supply steps happen to all of them, the other cases to the first one, of which this tells:"
     yield ""
-    yield from _table(on_a_bus)
+    yield from _table("buses", on_a_bus)
 
 
 Found = dict[Case, list[Result]]
@@ -212,9 +212,9 @@ def _alarmed(one: Result) -> bool:
     return found.seen is not None or found.alarmed_before or found.called_fault is not None
 
 
-def _table(found: Found) -> list[str]:
+def _table(what: str, found: Found) -> list[str]:
     header = [
-        "case", "motors", "records", "refused", "seen", "by record, median", "called `fault`",
+        "case", what, "records", "refused", "seen", "by record, median", "called `fault`",
         "by record, median", "phase right", "in the end", "records other than healthy",
     ]  # fmt: skip
     return table(header, [[case.value, *_row(case, every)] for case, every in found.items()])
