@@ -42,7 +42,7 @@ def detectable(filters: list[FilterState], hypotheses: list[Hypothesis]) -> floa
             for i in range(7):
                 for j in range(7):
                     S[r, q] += H[r, i] * P[i, j] * H[q, j]
-        S[r, r] += state.R / WITHIN
+        S[r, r] += 0.5 * state.s2 / WITHIN
     determinant = S[0, 0] * S[1, 1] - S[0, 1] * S[1, 0]
     needed = sqrt(2.0 * (state.threshold + OCCAM)) + NINE_OF_TEN
     most, known = 0.0, learnt(state)

@@ -292,6 +292,20 @@ def test_what_would_be_seen_is_seen() -> None:
     assert assessed(follower).change is not None
 
 
+def test_nine_of_ten_steps_of_what_would_be_seen_in_noise_are_seen() -> None:
+    def is_seen(seed: int) -> bool:
+        plant = Plant(path=0.0, noise=2e-3, seed=seed)
+        follower = follow(motor_of(), plant.records(60))
+        detectable = assessed(follower).reference.detectable
+        assert detectable is not None
+        plant.level = detectable
+        for record in plant.records(10):
+            follower.fold(record)
+        return assessed(follower).change is not None
+
+    assert sum(is_seen(seed) for seed in range(20)) >= 16
+
+
 def test_ten_years_of_records_leave_the_covariance_sound() -> None:
     plant = Plant()
     records = plant.records(50)
