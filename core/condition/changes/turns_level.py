@@ -150,8 +150,8 @@ def _level_in(winding: int, table: Array, direction_of_Z2: float, shape: float) 
         information = a - b * b / (c + 1.0 / max((direction * value) ** 2, 1e-12))
         scale = relative**2 + direction_of_Z2**2 + shape**2
         spreads.append(wandering + 1.0 / max(information, 1e-9) + scale * value**2)
-    values, evidence, variances = found[:, 0].copy(), found[:, 7], np.array(spreads)
-    shares = np.exp(evidence - np.max(evidence))
+    values, variances = found[:, 0].copy(), np.array(spreads)
+    shares = np.exp(found[:, 7].copy())
     shares /= shares.sum()
     mean = float(shares @ values)
     variance = float(shares @ (variances + (values - mean) ** 2))
@@ -179,8 +179,8 @@ def _weigh_windings(
 
     Fills `table` by winding and path with the level, what wandering adds to its variance, the information
     on it as a step (a, b, c), the deviation of its direction and, relatively, of its size, the log of the
-    path's weight, and what it shows in y; and `levels` with those of each record by the winding's likeliest
-    path. Returns the place of the first of these records, and their number.
+    path's weight over the winding's greatest, and what it shows in y; and `levels` with those of each record
+    by the winding's likeliest path. Returns the place of the first of these records, and their number.
     """
     state, one = filters[0], bank[onset]
     found, out = np.zeros((RECENT, 3)), np.zeros(5)
@@ -199,6 +199,7 @@ def _weigh_windings(
             along(one, 0, False, u, out)  # noqa: FBT003
             row[2], row[3], row[4] = out[0], out[1], out[2]
             row[5], row[6], row[8], row[9] = direction, it.scale, u.real, u.imag
+        table[w, :, 7] -= np.max(table[w, :, 7])
     return first, taken
 
 

@@ -211,7 +211,7 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
     best, level, deviation, score = _likeliest(asymmetry, covariance, directions)
     # Several windings and paths may explain an asymmetry as well.
     logs, sizes, deviations = _explained(asymmetry, covariance, directions, tolerances)
-    shares = np.exp(logs - logs.max())
+    shares = np.exp(logs)
     low, high = interval_of(shares / shares.sum(), sizes, deviations)
     return Standing(
         level=level,
@@ -317,7 +317,7 @@ def _shown_by(motor: Motor) -> tuple[Array, Array]:
 def _explained(
     asymmetry: Array, covariance: Array, directions: Array, tolerances: Array
 ) -> tuple[Array, Array, Array]:
-    """Return of each direction the log of its weight, the size and its standard deviation."""
+    """Return of each direction the log of its weight over the greatest, the size and its deviation."""
     W = _inverse(covariance)
     number = directions.shape[0]
     logs, sizes, deviations = np.empty(number), np.empty(number), np.empty(number)
@@ -338,4 +338,4 @@ def _explained(
             one_sided=True,
         )
         logs[n], sizes[n], deviations[n] = evidence + share, size, hypot(deviation, scale * size)
-    return logs, sizes, deviations
+    return logs - np.max(logs), sizes, deviations
