@@ -210,19 +210,19 @@ def _table(found: Found) -> list[str]:
 def _floors(found: Found) -> Iterator[Mark]:
     """What a study of the method reached after a long reference on a supply that wanders."""
     for what, floors, count in (
-        (f"seen within {SEEN_WITHIN}", SEEN_FLOORS, _seen),
-        (f"`fault` within {CALLED_WITHIN}", CALLED_FLOORS, lambda cell: len(_called(cell))),
+        (f"seen within {SEEN_WITHIN} records", SEEN_FLOORS, _seen),
+        (f"`fault` within {CALLED_WITHIN} records", CALLED_FLOORS, lambda cell: len(_called(cell))),
     ):
         for (name, level), (low, high) in floors.items():
             cells = {f"path {path:g}": found[name, level, path] for path in PATHS}
             counts = {path: (count(cell), len(cell)) for path, cell in cells.items()}
-            yield range_reached(f"{percent(level)}, {name}: {what}", counts, low, high)
+            yield range_reached(f"step of {percent(level)}, {name}: {what}", counts, low, high)
     real = [one for (name, _, _), cell in found.items() if name == "real" for one in cell]
     delays = np.array([one.outcome.seen for one in real if one.outcome.seen is not None], dtype=np.float64)
-    yield median_at_most("all levels, real: median delay until seen", delays, MEDIAN_SEEN)
+    yield median_at_most("all steps, real: median delay until seen", delays, MEDIAN_SEEN)
     for path, most in MEDIAN_CALLED.items():
         cell = found["real", SURE_LEVEL, path]
-        what = f"{percent(SURE_LEVEL)}, real, path {path:g}: median delay until `fault`"
+        what = f"step of {percent(SURE_LEVEL)}, real, path {path:g}: median delay until `fault`"
         yield median_at_most(what, _delays(_called(cell)), most)
     called = [one for cell in found.values() for one in _called(cell)]
     right = sum(one.right for one in called)
@@ -232,15 +232,14 @@ def _floors(found: Found) -> Iterator[Mark]:
 def _floors_of_a_short_reference(found: Found) -> Iterator[Mark]:
     for (name, level), least in SHORT_FLOORS.items():
         cells = [one for path in PATHS for one in found[name, level, path]]
-        what = (
-            f"{percent(level)}, {name}, reference of {SHORT_REFERENCE}: seen within {SEEN_WITHIN}, all paths"
-        )
+        after = f"{name}, all paths, after {SHORT_REFERENCE} records"
+        what = f"step of {percent(level)}, {after}: seen within {SEEN_WITHIN} records"
         yield at_least(what, _seen(cells), len(cells), least)
 
 
 def _sure(situation: Situation, found: Found) -> Iterator[Mark]:
     cells = [one for path in PATHS for one in found["real", SURE_LEVEL, path]]
-    what = f"{percent(SURE_LEVEL)}, real, all paths, after {situation}"
+    what = f"step of {percent(SURE_LEVEL)}, real, all paths, after {situation}"
     yield at_least(f"{what}: seen within {SEEN_WITHIN}", _seen(cells), len(cells), LEAST_SEEN)
     yield at_least(f"{what}: `fault` within {CALLED_WITHIN}", len(_called(cells)), len(cells), LEAST_CALLED)
 

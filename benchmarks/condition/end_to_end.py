@@ -183,10 +183,10 @@ def _marks(found: Found, where: str, within: int, most_called: float) -> Iterato
     faults = [one for case in PATHS for one in found[case]]
     seen = sum(one.outcome.seen is not None and one.outcome.seen < SEEN_WITHIN for one in faults)
     called = _called(faults)
-    yield at_least(f"1 %, {where}: seen within {SEEN_WITHIN}", seen, len(faults), LEAST_SEEN)
-    yield at_least(f"1 %, {where}: `fault` within {within}", len(called), len(faults), LEAST_CALLED)
+    yield at_least(f"{where}, 1 %: seen within {SEEN_WITHIN} records", seen, len(faults), LEAST_SEEN)
+    yield at_least(f"{where}, 1 %: `fault` within {within} records", len(called), len(faults), LEAST_CALLED)
     right = sum(one.right for one in called)
-    yield at_least(f"1 %, {where}: phase right in all called", right, len(called), LEAST_PHASE)
+    yield at_least(f"{where}, 1 %: phase right in all called", right, len(called), LEAST_PHASE)
     every = [one for some in found.values() for one in some]
     before = sum(one.outcome.alarmed_before for one in every)
     yield at_most(f"{where}: an alarm before the case", before, len(every), 0.0)
