@@ -109,7 +109,7 @@ def test_an_outlier_as_first_record_does_not_pass_for_noise_either(seed: int) ->
     records += plant.records(60)
     usual, with_outlier = (assessed(follow(motor_of(), one)).reference for one in (records[1:], records))
     assert usual.detectable is not None
-    assert with_outlier.detectable == pytest.approx(usual.detectable, rel=0.2)
+    assert with_outlier.detectable == pytest.approx(usual.detectable, rel=0.3)
 
 
 # I0 and V0 not regressed: faults are named current channel, and a supply that jumps a voltage channel.
