@@ -21,8 +21,13 @@ PAGE = ROOT / "docs" / "evidence" / "condition.md"
 TITLE = "# How well a motor is judged over time"
 
 ABOUT = """\
-This page is written by `python -m benchmarks.condition`; each section names the command that repeats it.
-Every figure is given as it was found, also where it falls short of what is asked.
+A motor's recordings are judged one after the other: is it healthy, what has changed, since when, how much,
+how soon does it reach its limit? This page tells how often the answer is right, of simulated motors, whose
+truth is known, and of measured recordings. `python -m benchmarks.condition` writes it; each section names the
+command that repeats it. Every figure is given as it was found, also where it falls short of what is asked.
+
+**Seen** means that a change was found, of whatever kind. **Called `fault`** means that the motor's state was
+`fault`: shorted turns above its limit, which is 0.5 % of a phase.
 
 **Asked** is what a study of the method reached in a simulation of its own, and beyond that what the service
 is to reach. **Found** is given with its 95 % interval after Clopper and Pearson. **Met** compares the
@@ -33,16 +38,21 @@ could turn the mark. Of a range over paths, the lowest rate is to reach its low 
 RECORDS = """\
 ## How the records are made
 
-**Records** of the sections from shorted turns to false alarms are phasors, from the machine's own equations
-and not from the filter's: three windings in phase variables with shorted turns, a path's resistance and
-joints, solved with the star point or the delta (`benchmarks/condition/circuit.py`). The tests hold them
-against the core's models and against circuits in phase variables. Each motor has a rating of its own, 0.8 to
-400 kW, star or delta, either sequence, 50 or 60 Hz; a file that is off by up to 10 % in each figure unless
-said otherwise; windings that differ by themselves; a cage with skin effect; inductance that saturates;
-windings that warm with the load; channels with gains and delays uniform in their class (four classes from 1 %
-and 50 us to 0.2 % and 10 us), which the file states; a load that is constant, steps, wanders, is random or on
-a duty cycle; a supply whose V2/V1 wanders and jumps by up to 4 %, and whose voltage and frequency wander.
-Records through files and the measured recordings are samples in time.
+**Records** are phasors in all sections but two: records through files and measured recordings are samples in
+time. The phasors come from the machine's own equations and not from the filter's: three windings in phase
+variables with shorted turns, a path's resistance and joints, solved with the star point or the delta
+(`benchmarks/condition/circuit.py`). The tests hold them against the core's models and against circuits in
+phase variables.
+
+**Motors** have a rating of their own, 0.8 to 400 kW, star or delta, either sequence, 50 or 60 Hz; a file that
+is off by up to 10 % in each figure unless said otherwise; windings that differ by themselves; a cage with
+skin effect; inductance that saturates; windings that warm with the load; a load that is constant, steps,
+wanders, is random or on a duty cycle.
+
+**Channels** have gains and delays uniform in their class, which the motor's file states: one of four classes,
+from 1 % and 50 us to 0.2 % and 10 us.
+
+**Supplies** have a V2/V1 that wanders and jumps by up to 4 %; their voltage and frequency wander.
 
 **Noise** is that of a channel's phasor from record to record over V1 (currents: over V1/|Z2|): `real` 0.02 %,
 as measured motors repeat, and `harsh` 0.2 %.

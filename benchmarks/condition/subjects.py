@@ -42,8 +42,8 @@ class Subject:
 
 def _detection(effort: Effort) -> str:
     return f"""\
-{effort.steps} motors a row, each with a step of the fault level; hourly records. The motor's limit is 0.5 %.
-Delays: the median, and the record by which 90 % of those that ever were had been seen or called."""
+{effort.steps} motors a row, each with a step of the fault level; hourly records.
+Delays: the median, and the record by which 90 % of those that ever were seen or called had been."""
 
 
 def _disturbances(effort: Effort) -> str:
@@ -72,16 +72,16 @@ def _forecasts(effort: Effort) -> str:
     return f"""\
 {effort.growing} motors a row, a fault that grows by 0.002 to 0.02 % a record (hourly), at a
 rate that wanders by a factor of two or more, or exponentially with 25 to 100 records; up to four
-forecasts of each motor from the change's detection on. The time is that until the true level
-reaches the limit of the forecast. Published are the 5, 50 and 95 % quantiles, as an interval of
-80 %."""
+forecasts of each motor after the change was found. The time is that until the true level
+reaches the limit of the forecast. The ends of the interval are the 5 and 95 % quantiles; it is
+published as one of 80 %. `Too early`, `too late`: the whole interval was."""
 
 
 def _false_alarms(effort: Effort) -> str:
     return f"""\
 Healthy motors, {effort.healthy_motors} a row, hourly unless said otherwise. A motor-day is a day
-with records after the reference is complete; it counts as `watch` if any of its records leaves
-the motor other than healthy. `In watch at the end`: without a change, for a standing asymmetry or
+with records after the reference is complete; it counts as `watch` if the motor is other than
+healthy after any of them. `In watch at the end`: without a change, for a standing asymmetry or
 for a last record that needs confirmation."""
 
 
