@@ -490,7 +490,7 @@ class Direction:
         return vanishing.change, tuple(one for one in levels if one[0] <= vanishing.last_ns)
 
     def _errors(self) -> StandingErrors:
-        (real, imaginary), spread, prior = of_records(self._filter, self._bank, self._voltage)
+        (real, imaginary), spread, prior = of_records(self._filter, self._bank, self._sides, self._voltage)
         bus = self._header.bus.mean(self._same_transformer())
         return StandingErrors(
             real, imaginary, list(spread), list(prior),

@@ -19,7 +19,8 @@ from core.condition.changes.hypotheses import (
 from core.condition.changes.mixture import interval_of
 from core.condition.complex_parts import symmetric
 from core.condition.filter.kalman import WANDER_EC
-from core.condition.filter.state import Candidate, FilterState
+from core.condition.filter.prior import IMPEDANCE
+from core.condition.filter.state import V2, Candidate, FilterState, SideState
 from core.condition.measuring.signatures import (
     PATHS,
     shorted_turns,
@@ -43,6 +44,10 @@ USUAL_SCORE: Final = 2.0
 SUSPECTED: Final = 3.0
 """Log of the detector's statistic above which a change is likely enough not to be taken for what stands."""
 WANDER_VARIANCE: Final = WANDER_EC**2
+VARIES: Final = 0.05
+"""Standard deviation by which Z2 varies with load and temperature over |Z2|, at most."""
+WANDERS_OVER: Final = 16.0
+"""Number of records over which the supply's wander is taken to add up: it does not wander off for good."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,9 +231,15 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
 
 @compiled
 def of_records(
-    filters: list[FilterState], bank: list[Candidate], voltage: Array
+    filters: list[FilterState], bank: list[Candidate], sides: list[SideState], voltage: Array
 ) -> tuple[tuple[float, float], tuple[float, float, float], tuple[float, float, float]]:
     """Return E as the records alone tell it, without the prior.
+
+    With P = P0 (P0 + N)^-1 N of E where the impedance's error is z, the records alone tell
+
+        E = P0 (P0 - P)^-1 (x + B (q - z)),  B = cov(E, z) cov(z)^-1
+
+    with the covariance N. q and its spread are what is known of z besides, see `_impedance_known`.
 
     Parameters
     ----------
@@ -236,16 +247,18 @@ def of_records(
         The filter.
     bank : array of Candidate
         Candidates. Where a change is likely, what the filter has taken up of it is not what stands.
+    sides : array of SideState
+        Side channels; v2 tells how much the supply changes.
     voltage : ndarray, shape (2, 2)
         Covariance that E started from, about zero.
 
     Returns
     -------
     estimate : tuple of float
-        Lam0^-1 d0, its real and imaginary part.
+        E, its real and imaginary part.
     spread, prior : tuple of float
-        Lam0^-1 with Lam0 = P0^-1 - P0^-1 P P0^-1, which is the covariance of what a sound motor shows, and
-        the prior's spread P0 that is part of it: their elements 00, 01, 11.
+        P0 + N, which is the covariance of what a sound motor shows, and the prior's spread P0 that is part of
+        it: their elements 00, 01, 11.
     """
     state = filters[0]
     x, P = state.x.copy(), state.P.copy()
@@ -254,20 +267,37 @@ def of_records(
     prior = voltage.copy()
     for i in range(2):
         prior[i, i] += WANDER_VARIANCE * state.records
-    # Lam0^-1 = P0 (P0 - P)^-1 P0
-    gained = _inverse(prior - P[:2, :2])
-    spread, found = np.zeros((2, 2)), np.zeros(2)
-    for i in range(2):
-        for j in range(2):
-            for k in range(2):
-                found[i] += prior[i, j] * gained[j, k] * x[k]
-                for m in range(2):
-                    spread[i, m] += prior[i, j] * gained[j, k] * prior[k, m]
+    B = P[:2, 4:6].copy() @ _inverse(P[4:6, 4:6])
+    z, Z = _impedance_known(x[4:6], P[4:6, 4:6], state.w, sides[V2].q)
+    at = x[:2] + B @ (z - x[4:6])
+    # P0 (P0 - P)^-1 takes E's prior off.
+    without = prior @ _inverse(prior - P[:2, :2] + B @ P[4:6, :2].copy())
+    found = without @ at
+    B = without @ B
+    spread = without @ prior + B @ Z @ B.T
     return (
         (found[0], found[1]),
         (spread[0, 0], spread[0, 1], spread[1, 1]),
         (prior[0, 0], prior[0, 1], prior[1, 1]),
     )
+
+
+@compiled
+def _impedance_known(x: Array, P: Array, w: complex, wander: float) -> tuple[Array, Array]:
+    """Return the error of the impedance, and its covariance, by which E is told.
+
+    Z2 varies with load and temperature. Where V2 is constant the currents vary with it, and the regression on
+    them tells Z2 = 0, an error of one, however little Z2 varies. Beside a supply that changes it tells the
+    share S_t / (S_t + S_v) of that, for the variances that Z2 and V2 make of w. How much Z2 varies is not
+    known, so that the share lies anywhere from zero to that of the most. What is learnt counts only as far as
+    that allows; where it tells less than is known of motors at first, that counts.
+    """
+    made_by_impedance = VARIES**2 * (w.real**2 + w.imag**2)
+    share = made_by_impedance / (made_by_impedance + WANDERS_OVER * wander)
+    drawn = share * share / 3.0
+    if 0.5 * (P[0, 0] + P[1, 1]) + drawn >= IMPEDANCE**2:
+        return np.zeros(2), IMPEDANCE**2 * np.eye(2)
+    return x.copy(), P + drawn * np.eye(2)
 
 
 @compiled

@@ -89,6 +89,28 @@ def test_a_called_fault_does_not_fade_while_a_second_change_is_not_yet_seen() ->
     assert assessment.change is not None, "the second change is seen by now"
 
 
+@pytest.mark.parametrize("unbalance", [0.009 + 0.008j, 0.03j])
+@pytest.mark.parametrize("supply_swing", [0.0, 3e-4, 6e-4, 1e-3])
+def test_an_impedance_that_varies_is_no_fault_on_a_supply_that_hardly_changes(
+    supply_swing: float, unbalance: complex
+) -> None:
+    """The currents vary with it, so that the filter takes Z2 for ever smaller, and E for what then remains."""
+    motor = replace(motor_of(), sensors=SensorClass(0.002, 0.005, 10e-6, 25e-6))
+    plant = Plant(
+        supply_swing=supply_swing,
+        unbalance=unbalance,
+        voltage=[1.001, 0.9995, 1.0005],
+        current=[0.999, 1.001, 1.0],
+    )
+    follower = Follower(motor)
+    for _ in range(10):
+        for record in plant.records(80):
+            follower.fold(record)
+        assessment = follower.assessment()
+        assert assessment is not None
+        assert assessment.reference.standing_score < 3.0
+
+
 def test_a_called_fault_does_not_wear_away_on_a_constant_supply() -> None:
     """The filter takes ever more of it for an error of the impedance."""
     motor, plant = motor_of(), Plant(level=0.1, supply_swing=0.0)
@@ -105,12 +127,17 @@ def test_a_called_fault_does_not_wear_away_on_a_constant_supply() -> None:
 
 def test_a_fault_that_was_called_is_one_no_more_where_all_of_it_lies_below_the_limit() -> None:
     motor = motor_of()
-    follower = follow(motor, Plant(level=0.1, supply_swing=0.0).records(60))
+    follower = follow(motor, Plant(level=0.03).records(60))
+    surer = follow(motor, Plant(level=0.1).records(60))._directions[-1]._errors()
+    follower._directions[-1]._header.called = Called(surer, 9.0, 0.1)
+    kept = follower.assessment()
     lenient = replace(motor, limits=replace(motor.limits, fault_level=0.5))
     follower.apply(Event(0, EventKind.PARAMETERS_EDITED), lenient)
-    assessment = follower.assessment()
-    assert assessment is not None
-    assert assessment.reference.standing_score < 5.0, "what the records tell now"
+    now = follower.assessment()
+    assert kept is not None
+    assert now is not None
+    assert kept.reference.standing.value == pytest.approx(0.1, rel=0.2)
+    assert now.reference.standing.value == pytest.approx(0.03, rel=0.2), "what the records tell now"
 
 
 def test_a_standing_fault_is_kept_as_it_was_told_surest() -> None:
