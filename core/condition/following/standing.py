@@ -44,8 +44,8 @@ USUAL_SCORE: Final = 2.0
 SUSPECTED: Final = 3.0
 """Log of the detector's statistic above which a change is likely enough not to be taken for what stands."""
 WANDER_VARIANCE: Final = WANDER_EC**2
-VARIES: Final = 0.05
-"""Standard deviation by which Z2 varies with load and temperature over |Z2|, at most."""
+VARIES: Final = 0.04
+"""Standard deviation by which Z2 varies with load and temperature over |Z2|."""
 WANDERS_OVER: Final = 16.0
 """Number of records over which the supply's wander is taken to add up: it does not wander off for good."""
 
@@ -235,11 +235,10 @@ def of_records(
 ) -> tuple[tuple[float, float], tuple[float, float, float], tuple[float, float, float]]:
     """Return E as the records alone tell it, without the prior.
 
-    With P = P0 (P0 + N)^-1 N of E where the impedance's error is z, the records alone tell
-
-        E = P0 (P0 - P)^-1 (x + B (q - z)),  B = cov(E, z) cov(z)^-1
-
-    with the covariance N. q and its spread are what is known of z besides, see `_impedance_known`.
+    Z2 varies with load and temperature. Where V2 is constant the currents vary with it, and the regression on
+    them tells Z2 = 0, an error of one, however little Z2 varies. Beside a supply that changes it is wrong by
+    the share S_t / (S_t + S_v), for the variances that Z2 and V2 make of w, and E by that times w. Where this
+    leaves E less certain than what is known of any motor's impedance, E is told with that.
 
     Parameters
     ----------
@@ -267,14 +266,19 @@ def of_records(
     prior = voltage.copy()
     for i in range(2):
         prior[i, i] += WANDER_VARIANCE * state.records
-    B = P[:2, 4:6].copy() @ _inverse(P[4:6, 4:6])
-    z, Z = _impedance_known(x[4:6], P[4:6, 4:6], state.w, sides[V2].q)
-    at = x[:2] + B @ (z - x[4:6])
-    # P0 (P0 - P)^-1 takes E's prior off.
-    without = prior @ _inverse(prior - P[:2, :2] + B @ P[4:6, :2].copy())
-    found = without @ at
-    B = without @ B
-    spread = without @ prior + B @ Z @ B.T
+    found, spread = _without_prior(x[:2].copy(), P[:2, :2].copy(), prior)
+    square = state.w.real**2 + state.w.imag**2
+    share = VARIES**2 * square / (VARIES**2 * square + WANDERS_OVER * sides[V2].q)
+    spread += share**2 * square * np.eye(2)
+
+    # E where the error of Z2 is zero, and how it depends on that.
+    slope = P[:2, 4:6].copy() @ _inverse(P[4:6, 4:6])
+    known = P[:2, :2] - slope @ P[4:6, :2].copy()
+    usual, usual_spread = _without_prior(x[:2] - slope @ x[4:6], known, prior)
+    slope, _ = _without_prior(slope, known, prior)
+    usual_spread += IMPEDANCE**2 * slope @ slope.T
+    if np.trace(usual_spread) < np.trace(spread):
+        found, spread = usual, usual_spread
     return (
         (found[0], found[1]),
         (spread[0, 0], spread[0, 1], spread[1, 1]),
@@ -283,21 +287,13 @@ def of_records(
 
 
 @compiled
-def _impedance_known(x: Array, P: Array, w: complex, wander: float) -> tuple[Array, Array]:
-    """Return the error of the impedance, and its covariance, by which E is told.
+def _without_prior(x: Array, P: Array, prior: Array) -> tuple[Array, Array]:
+    """Return an estimate as the records alone tell it, and the covariance of what a sound motor shows then.
 
-    Z2 varies with load and temperature. Where V2 is constant the currents vary with it, and the regression on
-    them tells Z2 = 0, an error of one, however little Z2 varies. Beside a supply that changes it tells the
-    share S_t / (S_t + S_v) of that, for the variances that Z2 and V2 make of w. How much Z2 varies is not
-    known, so that the share lies anywhere from zero to that of the most. What is learnt counts only as far as
-    that allows; where it tells less than is known of motors at first, that counts.
+    These are P0 (P0 - P)^-1 x and P0 + N = P0 (P0 - P)^-1 P0, for P = P0 (P0 + N)^-1 N.
     """
-    made_by_impedance = VARIES**2 * (w.real**2 + w.imag**2)
-    share = made_by_impedance / (made_by_impedance + WANDERS_OVER * wander)
-    drawn = share * share / 3.0
-    if 0.5 * (P[0, 0] + P[1, 1]) + drawn >= IMPEDANCE**2:
-        return np.zeros(2), IMPEDANCE**2 * np.eye(2)
-    return x.copy(), P + drawn * np.eye(2)
+    without = prior @ _inverse(prior - P)
+    return without @ x, without @ prior
 
 
 @compiled

@@ -94,7 +94,7 @@ def test_a_called_fault_does_not_fade_while_a_second_change_is_not_yet_seen() ->
 def test_an_impedance_that_varies_is_no_fault_on_a_supply_that_hardly_changes(
     supply_swing: float, unbalance: complex
 ) -> None:
-    """The currents vary with it, so that the filter takes Z2 for ever smaller, and E for what then remains."""
+    """The currents vary with it, so that the filter takes Z2 for ever smaller, and E for what remains."""
     motor = replace(motor_of(), sensors=SensorClass(0.002, 0.005, 10e-6, 25e-6))
     plant = Plant(
         supply_swing=supply_swing,
