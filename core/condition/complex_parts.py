@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.machines.base import Array
+from core.machines.compiled import compiled_as_written as compiled
 
 
 def turned(vector: Array, factor: complex) -> Array:
@@ -59,3 +60,25 @@ def symmetric(values: Sequence[float]) -> Array:
         The matrix.
     """
     return np.array([[values[0], values[1]], [values[1], values[2]]])
+
+
+@compiled
+def inverse(matrix: Array) -> Array:
+    """Return the inverse of a matrix of two rows and columns.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (2, 2)
+        The matrix.
+
+    Returns
+    -------
+    ndarray, shape (2, 2)
+        Its inverse.
+    """
+    a, b, c, d = matrix[0, 0], matrix[0, 1], matrix[1, 0], matrix[1, 1]
+    determinant = a * d - b * c
+    out = np.empty((2, 2))
+    out[0, 0], out[0, 1] = d / determinant, -b / determinant
+    out[1, 0], out[1, 1] = -c / determinant, a / determinant
+    return out

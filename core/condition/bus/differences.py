@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import sqrt
 from statistics import median
 from typing import Final
 
@@ -13,6 +14,10 @@ COMMON_RECORDS: Final = 8
 SLOWEST: Final = 1.0 / 256.0
 MOST: Final = 24
 """Other motors that are compared with; the first to come are kept."""
+SAME: Final = 0.05
+MOST_SAME: Final = 0.2
+"""Shares of what channels of their class differ by, below which two motors have one voltage transformer: at
+least, and at most where the differences are noisy."""
 
 
 @dataclass(slots=True)
@@ -157,3 +162,22 @@ class BusDifferences:
         if len(moves) == 2:
             return min(moves, key=lambda move: abs(move - self.moved))
         return complex(median(m.real for m in moves), median(m.imag for m in moves))
+
+
+def same_transformer(usual: float, variance: float) -> float:
+    """Return the difference of two motors' V2/V1 below which it is that of one transformer's noise.
+
+    Parameters
+    ----------
+    usual : float
+        What V2/V1 of two transformers of their class usually differs by.
+    variance : float
+        Variance of the difference from record to record.
+
+    Returns
+    -------
+    float
+        The difference.
+    """
+    noise = 3.0 * sqrt(variance / COMMON_RECORDS)
+    return min(max(SAME * usual, noise), MOST_SAME * usual)

@@ -7,6 +7,7 @@ from core.condition.assessment import Assessment
 from core.condition.bus.neighbours import Neighbour, StandingEstimate
 from core.condition.events import ENDING, Event, EventKind
 from core.condition.following.direction import Direction
+from core.condition.following.reference import begun
 from core.condition.following.saving import pack, unpack
 from core.condition.kinds import State
 from core.condition.observation import Observation
@@ -147,8 +148,8 @@ class Follower:
         """Return a new reference; what is known of the impedance in this direction is known to it."""
         for one in reversed(self._directions):
             if one.sequence is sequence:
-                return Direction.unpacked(self._motor, sequence, *one.packed())
-        return Direction(self._motor, sequence)
+                return Direction(self._motor, one.state.copy())
+        return Direction(self._motor, begun(self._motor, sequence))
 
     def _drop_one(self) -> None:
         """Drop the reference that was least recently used, of those that have nothing to tell."""
@@ -179,7 +180,7 @@ class Follower:
         bytes
             What `restore` reads.
         """
-        return pack(self._directions, self._ended_by)
+        return pack([one.state for one in self._directions], self._ended_by)
 
     @classmethod
     def restore(cls, motor: Motor, state: bytes) -> "Follower":
@@ -203,5 +204,6 @@ class Follower:
             If it is no state of this version: fold the records again.
         """
         follower = cls(motor)
-        follower._directions, follower._ended_by = unpack(motor, state)
+        states, follower._ended_by = unpack(state)
+        follower._directions = [Direction(motor, one) for one in states]
         return follower

@@ -8,7 +8,8 @@ from core.condition.assessment import Change, Declared, Level
 from core.condition.bus.differences import BusDifferences, Pair
 from core.condition.changes.alarm import Alarm
 from core.condition.changes.vanishing import Vanishing
-from core.condition.following.standing import Called, StandingErrors
+from core.condition.following.standing import Called
+from core.condition.following.standing_errors import StandingErrors
 from core.condition.kinds import Kind
 from core.condition.measuring.measurement import Measurement
 from core.condition.observation import Observation, VoltageChannels

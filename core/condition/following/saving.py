@@ -8,20 +8,19 @@ from zlib import compress, decompress
 from zlib import error as zlib_error
 
 from core.condition.events import Event, EventKind
-from core.condition.following.direction import Direction
+from core.condition.following.direction_state import DirectionState
 from core.condition.rules import LAYOUT
-from core.machines.parameters import Motor
 from core.signals.sequence import PhaseSequence
 
 MAGIC: Final = b"StatorWatch follower %d\n" % LAYOUT
 
 
-def pack(directions: Sequence[Direction], ended_by: Event | None) -> bytes:
+def pack(directions: Sequence[DirectionState], ended_by: Event | None) -> bytes:
     """Write a state.
 
     Parameters
     ----------
-    directions : sequence of Direction
+    directions : sequence of DirectionState
         What was learnt in each direction by each recorder.
     ended_by : Event or None
         The latest event that ended the reference, where there is no record since.
@@ -41,19 +40,17 @@ def pack(directions: Sequence[Direction], ended_by: Event | None) -> bytes:
     return MAGIC + json.dumps(document).encode() + b"\n" + b"".join(bodies)
 
 
-def unpack(motor: Motor, state: bytes) -> tuple[list[Direction], Event | None]:
+def unpack(state: bytes) -> tuple[list[DirectionState], Event | None]:
     """Read a state.
 
     Parameters
     ----------
-    motor : Motor
-        The motor.
     state : bytes
         What `pack` wrote.
 
     Returns
     -------
-    directions : list of Direction
+    directions : list of DirectionState
         What was learnt in each direction by each recorder.
     ended_by : Event or None
         The latest event that ended the reference, where there is no record since.
@@ -81,7 +78,7 @@ def unpack(motor: Motor, state: bytes) -> tuple[list[Direction], Event | None]:
             numbers = decompress(body)
         except zlib_error as error:
             raise ValueError(f"the saved state is damaged ({error}): fold the records again") from error
-        directions.append(Direction.unpacked(motor, sequence, header, numbers))
+        directions.append(DirectionState.unpacked(sequence, header, numbers))
         start += len(body)
     ended_by = document["ended_by"]
     if ended_by is not None:

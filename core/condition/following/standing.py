@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 
-from core.condition.changes.before_change import before_change
 from core.condition.changes.evidence import of_size
 from core.condition.changes.hypotheses import (
     MACHINE,
@@ -17,10 +16,8 @@ from core.condition.changes.hypotheses import (
     TURNS_DIRECTION,
 )
 from core.condition.changes.mixture import interval_of
-from core.condition.complex_parts import symmetric
-from core.condition.filter.kalman import WANDER_EC
-from core.condition.filter.prior import IMPEDANCE
-from core.condition.filter.state import V2, Candidate, FilterState, SideState
+from core.condition.complex_parts import inverse, symmetric
+from core.condition.following.standing_errors import StandingErrors
 from core.condition.measuring.signatures import (
     PATHS,
     shorted_turns,
@@ -41,43 +38,6 @@ DEAD_BAND: Final = 0.5
 """By how much a score has to fall before it counts as lower: what it wanders by says nothing."""
 USUAL_SCORE: Final = 2.0
 """Score that one sound motor in ten reaches."""
-SUSPECTED: Final = 3.0
-"""Log of the detector's statistic above which a change is likely enough not to be taken for what stands."""
-WANDER_VARIANCE: Final = WANDER_EC**2
-VARIES: Final = 0.04
-"""Standard deviation by which Z2 varies with load and temperature over |Z2|."""
-WANDERS_OVER: Final = 16.0
-"""Number of records over which the supply's wander is taken to add up: it does not wander off for good."""
-
-
-@dataclass(frozen=True, slots=True)
-class StandingErrors:
-    """E as the records alone tell it, and how the voltages differ from the bus's.
-
-    Parameters
-    ----------
-    real, imaginary : float
-        E.
-    spread : list of float
-        Covariance of what a sound motor shows: its elements 00, 01, 11.
-    prior : list of float
-        The part of it that is there before any record.
-    difference_real, difference_imaginary : float
-        By how much V2/V1 of the terminals exceeds the mean of the bus.
-    others : int
-        Number of other motors in it.
-    transformers : int
-        Number of voltage transformers that they and this motor have.
-    """
-
-    real: float
-    imaginary: float
-    spread: list[float]
-    prior: list[float]
-    difference_real: float
-    difference_imaginary: float
-    others: int
-    transformers: int
 
 
 @dataclass(slots=True)
@@ -230,86 +190,9 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
 
 
 @compiled
-def of_records(
-    filters: list[FilterState], bank: list[Candidate], sides: list[SideState], voltage: Array
-) -> tuple[tuple[float, float], tuple[float, float, float], tuple[float, float, float]]:
-    """Return E as the records alone tell it, without the prior.
-
-    Z2 varies with load and temperature. Where V2 is constant the currents vary with it, and the regression on
-    them tells Z2 = 0, an error of one, however little Z2 varies. Beside a supply that changes it is wrong by
-    the share S_t / (S_t + S_v), for the variances that Z2 and V2 make of w, and E by that times w. Where this
-    leaves E less certain than what is known of any motor's impedance, E is told with that.
-
-    Parameters
-    ----------
-    filters : array of FilterState, shape (1,)
-        The filter.
-    bank : array of Candidate
-        Candidates. Where a change is likely, what the filter has taken up of it is not what stands.
-    sides : array of SideState
-        Side channels; v2 tells how much the supply changes.
-    voltage : ndarray, shape (2, 2)
-        Covariance that E started from, about zero.
-
-    Returns
-    -------
-    estimate : tuple of float
-        E, its real and imaginary part.
-    spread, prior : tuple of float
-        P0 + N, which is the covariance of what a sound motor shows, and the prior's spread P0 that is part of
-        it: their elements 00, 01, 11.
-    """
-    state = filters[0]
-    x, P = state.x.copy(), state.P.copy()
-    if state.statistic > SUSPECTED:
-        x, P = before_change(state, bank)
-    prior = voltage.copy()
-    for i in range(2):
-        prior[i, i] += WANDER_VARIANCE * state.records
-    found, spread = _without_prior(x[:2].copy(), P[:2, :2].copy(), prior)
-    square = state.w.real**2 + state.w.imag**2
-    share = VARIES**2 * square / (VARIES**2 * square + WANDERS_OVER * sides[V2].q)
-    spread += share**2 * square * np.eye(2)
-
-    # E where the error of Z2 is zero, and how it depends on that.
-    slope = P[:2, 4:6].copy() @ _inverse(P[4:6, 4:6])
-    known = P[:2, :2] - slope @ P[4:6, :2].copy()
-    usual, usual_spread = _without_prior(x[:2] - slope @ x[4:6], known, prior)
-    slope, _ = _without_prior(slope, known, prior)
-    usual_spread += IMPEDANCE**2 * slope @ slope.T
-    if np.trace(usual_spread) < np.trace(spread):
-        found, spread = usual, usual_spread
-    return (
-        (found[0], found[1]),
-        (spread[0, 0], spread[0, 1], spread[1, 1]),
-        (prior[0, 0], prior[0, 1], prior[1, 1]),
-    )
-
-
-@compiled
-def _without_prior(x: Array, P: Array, prior: Array) -> tuple[Array, Array]:
-    """Return an estimate as the records alone tell it, and the covariance of what a sound motor shows then.
-
-    These are P0 (P0 - P)^-1 x and P0 + N = P0 (P0 - P)^-1 P0, for P = P0 (P0 + N)^-1 N.
-    """
-    without = prior @ _inverse(prior - P)
-    return without @ x, without @ prior
-
-
-@compiled
-def _inverse(matrix: Array) -> Array:
-    a, b, c, d = matrix[0, 0], matrix[0, 1], matrix[1, 0], matrix[1, 1]
-    determinant = a * d - b * c
-    out = np.empty((2, 2))
-    out[0, 0], out[0, 1] = d / determinant, -b / determinant
-    out[1, 0], out[1, 1] = -c / determinant, a / determinant
-    return out
-
-
-@compiled
 def _likeliest(asymmetry: Array, covariance: Array, directions: Array) -> tuple[int, float, float, float]:
     """Return the direction that explains an asymmetry best, with size, deviation and score."""
-    W = _inverse(covariance)
+    W = inverse(covariance)
     best, size, deviation, score = 0, 0.0, 0.0, -1e300
     for n in range(directions.shape[0]):
         x, y = directions[n]
@@ -344,7 +227,7 @@ def _explained(
     asymmetry: Array, covariance: Array, directions: Array, tolerances: Array
 ) -> tuple[Array, Array, Array]:
     """Return of each direction the log of its weight over the greatest, the size and its deviation."""
-    W = _inverse(covariance)
+    W = inverse(covariance)
     number = directions.shape[0]
     logs, sizes, deviations = np.empty(number), np.empty(number), np.empty(number)
     for n in range(directions.shape[0]):

@@ -10,12 +10,12 @@ from core.condition.following.follower import Follower
 from core.condition.following.standing import (
     STANDING_SCORE,
     Called,
-    StandingErrors,
     held,
     score_of,
     standing_of,
     surest,
 )
+from core.condition.following.standing_errors import StandingErrors
 from core.condition.kinds import Kind, State
 from core.condition.measuring.signatures import PATHS, shorted_turns
 from core.condition.verdict.condition import condition_of
@@ -129,7 +129,7 @@ def test_a_fault_that_was_called_is_one_no_more_where_all_of_it_lies_below_the_l
     motor = motor_of()
     follower = follow(motor, Plant(level=0.03).records(60))
     surer = follow(motor, Plant(level=0.1).records(60))._directions[-1]._errors()
-    follower._directions[-1]._header.called = Called(surer, 9.0, 0.1)
+    follower._directions[-1].state.header.called = Called(surer, 9.0, 0.1)
     kept = follower.assessment()
     lenient = replace(motor, limits=replace(motor.limits, fault_level=0.5))
     follower.apply(Event(0, EventKind.PARAMETERS_EDITED), lenient)
@@ -161,7 +161,7 @@ def test_a_fault_that_was_called_outlasts_a_change_unless_it_was_its_beginning(
 ) -> None:
     motor, plant = motor_of(), Plant(level=level)
     follower = follow(motor, plant.records(60))
-    header = follower._directions[-1]._header
+    header = follower._directions[-1].state.header
     assert (header.called is not None) is kept
     header.called = Called(follow(motor, Plant(level=0.03).records(60))._directions[-1]._errors(), 9.0, 0.03)
     plant.voltage[2] *= 1.04

@@ -1,0 +1,115 @@
+"""All that a follower keeps of a motor in one direction of rotation."""
+
+from collections.abc import Mapping
+from typing import Any, cast
+
+import numpy as np
+
+from core.condition.filter.state import (
+    CANDIDATE,
+    CANDIDATES,
+    FILTER,
+    RECENT,
+    RECENT_RECORD,
+    SIDE,
+    SIDES,
+    FilterState,
+)
+from core.condition.following.header import Header
+from core.signals.sequence import PhaseSequence
+
+
+class DirectionState:
+    """Words and numbers of one direction of rotation, as they are saved.
+
+    Parameters
+    ----------
+    sequence : PhaseSequence
+        Order of the supply's phases at the terminals.
+
+    Attributes
+    ----------
+    header : Header
+        Words and whole numbers.
+    filters : array of FilterState, shape (1,)
+        The filter, as compiled code takes it.
+    filter : FilterState
+        The same memory, with its fields as attributes.
+    figures : FilterState
+        The same memory: a number is read faster by its name, `figures["records"]`.
+    bank : array of Candidate
+        Candidates.
+    sides : array of SideState
+        Side channels.
+    recent : array of Recent
+        Latest records.
+    """
+
+    def __init__(self, sequence: PhaseSequence) -> None:
+        self.sequence = sequence
+        self.header = Header()
+        self.filters: Any = np.zeros(1, FILTER)
+        self.filter = cast(FilterState, self.filters.view(np.recarray)[0])
+        self.figures: Any = self.filters[0]
+        self.bank: Any = np.zeros(CANDIDATES, CANDIDATE)
+        self.sides: Any = np.zeros(SIDES, SIDE)
+        self.recent: Any = np.zeros(RECENT, RECENT_RECORD)
+
+    def packed(self) -> tuple[dict[str, Any], bytes]:
+        """Return the state as a header of text and numbers as they lie in memory.
+
+        Returns
+        -------
+        header : dict of str to object
+            Words and whole numbers.
+        body : bytes
+            Numbers.
+        """
+        return self.header.as_dict(), b"".join(array.tobytes() for array in self._arrays)
+
+    @classmethod
+    def unpacked(cls, sequence: PhaseSequence, words: Mapping[str, Any], body: bytes) -> "DirectionState":
+        """Return the state that was packed.
+
+        Parameters
+        ----------
+        sequence : PhaseSequence
+            Order of the supply's phases at the terminals.
+        words : mapping
+            Header of `packed`.
+        body : bytes
+            Body of `packed`.
+
+        Returns
+        -------
+        DirectionState
+            The same state.
+
+        Raises
+        ------
+        ValueError
+            If the body is of another length.
+        """
+        state = cls(sequence)
+        if len(body) != sum(array.nbytes for array in state._arrays):
+            raise ValueError("the saved state has another layout: fold the records again")
+        start = 0
+        for array in state._arrays:
+            array[:] = np.frombuffer(body, array.dtype, count=array.size, offset=start)
+            start += array.nbytes
+        state.header = Header.from_dict(words)
+        return state
+
+    def copy(self) -> "DirectionState":
+        """Return another state with the same words and numbers.
+
+        Returns
+        -------
+        DirectionState
+            The copy.
+        """
+        return DirectionState.unpacked(self.sequence, *self.packed())
+
+    @property
+    def _arrays(self) -> tuple[Any, ...]:
+        return self.filters, self.sides, self.bank, self.recent

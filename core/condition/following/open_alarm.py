@@ -1,0 +1,123 @@
+"""What becomes of an open alarm: it is named, lived with, taken back or closed."""
+
+from dataclasses import replace
+
+from core.condition.assessment import Change
+from core.condition.changes.alarm import Alarm, confirm, taken_up
+from core.condition.changes.before_change import before_change
+from core.condition.changes.vanishing import Vanishing
+from core.condition.filter.prior import Prior
+from core.condition.following.direction_state import DirectionState
+from core.condition.following.expectations import Expectations
+from core.condition.following.explanation import Explanation
+from core.condition.following.reference import restart_reference
+from core.condition.kinds import Kind
+from core.condition.measuring.measurement import Measurement
+from core.condition.severity import is_shorted_turns
+from core.machines.parameters import Motor
+
+CLEARED = 3.0
+"""Log of the detector's statistic below which a change has gone again."""
+
+
+def follow_up(
+    alarm: Alarm, state: DirectionState, explanation: Explanation, expectations: Expectations,
+    motor: Motor, record: Measurement,
+) -> None:  # fmt: skip
+    """See what a record makes of an open alarm.
+
+    Parameters
+    ----------
+    alarm : Alarm
+        The alarm; it changes.
+    state : DirectionState
+        The state after the record; it changes.
+    explanation : Explanation
+        What explains the change after the record.
+    expectations : Expectations
+        What changes of the motor look like.
+    motor : Motor
+        The motor as it is.
+    record : Measurement
+        The record.
+    """
+    alarm.records += 1
+    vanishing = alarm.vanishing
+    if vanishing is not None:
+        vanishing.look(state.filter, record.y, record.j1, state.header.as_of_ns)
+        if vanishing.is_certain:
+            # Shorted turns do not heal: they were repaired, or a contact comes and goes.
+            state.header.gone = replace(vanishing.change, until_ns=vanishing.last_ns)
+            _take_back(state)
+            return
+    if alarm.is_to_be_weighed:
+        confirm(alarm, explanation.weighing)
+    if alarm.may_be_called:
+        change = explanation.change(alarm, motor)
+        if is_shorted_turns(change):
+            alarm.surely_above = max(alarm.surely_above, change.level.ci95[0])
+        _keep_what_is_shown(alarm, change, explanation, state.header.as_of_ns)
+    if state.figures["statistic"] < CLEARED:
+        _close(state)
+    elif alarm.is_to_be_lived_with:
+        _live_with(alarm, state, explanation, expectations, motor)
+
+
+def maintain(state: DirectionState, prior: Prior) -> None:
+    """Close a change; one that may be shorted turns is looked for again: few works mend a winding.
+
+    Against the reference of before it the next records show within a few whether it is still there. Any
+    other change may have been mended where it was learnt, so that the channels are learnt anew.
+
+    Parameters
+    ----------
+    state : DirectionState
+        The state; it changes.
+    prior : Prior
+        Spread of the standing errors before the first record.
+    """
+    alarm = state.header.alarm
+    if alarm is None or Kind.SHORTED_TURNS not in alarm.named:
+        restart_reference(state, prior, keep_impedance=True)
+        return
+    _take_back(state)
+
+
+def _keep_what_is_shown(alarm: Alarm, change: Change, explanation: Explanation, time_ns: int) -> None:
+    """Keep what shorted turns show, so that it is seen when they show it no more."""
+    if alarm.vanishing is not None and alarm.vanishing.is_open:
+        return
+    shown = is_shorted_turns(change) and change.level.ci95[0] > 0.0
+    level = explanation.level(alarm)
+    alarm.vanishing = Vanishing.of(change, level.shown, level.reference, time_ns) if shown else None
+
+
+def _live_with(
+    alarm: Alarm, state: DirectionState, explanation: Explanation, expectations: Expectations, motor: Motor
+) -> None:
+    """Learn a reference with the change, so that another one is seen; the change stays told."""
+    header = state.header
+    kept, gone = explanation.change(alarm, motor), header.gone
+    standing, called = header.standing, header.called
+    # The impedance has taken up some of the change.
+    taken, spread = taken_up(explanation.weighing, state.bank, expectations.hypotheses)
+    state.filter.x -= taken
+    state.filter.P += spread
+    restart_reference(state, expectations.prior, keep_impedance=Kind.PARAMETERS not in alarm.named)
+    header.kept, header.gone, header.standing, header.called = kept, gone, standing, called
+
+
+def _take_back(state: DirectionState) -> None:
+    """Go back to the reference as it was before the change."""
+    kalman = state.filter
+    kalman.x[:], kalman.P[:] = before_change(kalman, state.bank)
+    kalman.recent, kalman.block = 0.0, 1.0
+    _close(state)
+
+
+def _close(state: DirectionState) -> None:
+    """Close the alarm: changes of the same reference are looked for again."""
+    header = state.header
+    header.alarm = None
+    header.standing = None if header.kept is None else header.standing
+    state.filter.candidates = 0.0
