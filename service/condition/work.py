@@ -1,9 +1,11 @@
 """What there is to do for the conditions of motors, for workers that have nothing to diagnose."""
 
 import time
+from collections import deque
 from collections.abc import Callable, Mapping
 from concurrent.futures import BrokenExecutor, Future
 from dataclasses import dataclass, field
+from importlib.metadata import version
 from random import choice
 
 import structlog
@@ -12,6 +14,7 @@ from structlog.typing import FilteringBoundLogger
 
 from core.condition.rules import RULES
 from core.machines.parameters import Motor
+from core.units import NANOSECONDS_PER_DAY
 from service.condition.errors import RecordFoldError
 from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_recordings
 from service.recording_store.store import RecordingStore
@@ -36,9 +39,13 @@ A motor whose fold fails otherwise, or brings its worker down, is set aside unti
 HELD_S = 600.0
 """Time between two folds of a motor while recordings of its bus are yet to be observed."""
 
-LEFT_OUT = (
-    "left out of the condition: {}; it is tried again with another diagnosis, and when the service starts"
-)
+LEFT_OUT = "left out of the condition: {}; it is tried again with another diagnosis, and by another version"
+
+PROGRAM = f"{version('statorwatch')}, rules {RULES}"
+"""What left a record out: another one tries it again."""
+
+IN_TURN_NS = NANOSECONDS_PER_DAY
+"""Motors take turns that are to be folded from about the same time on; those further behind come after."""
 
 MOST_CHARACTERS = 300
 """Of what is told of a failure."""
@@ -102,18 +109,20 @@ class ConditionWork:
         # Services that share a database begin with different motors, and seldom fold the same one.
         self._latest = choice(sorted(motors)) if motors else ""  # noqa: S311 - nothing to keep secret
         self._all_observed = False
+        self._to_judge_again: deque[str] = deque()
         self._begun_s = time.monotonic()
         self._folded_s: dict[str, float] = {}
         self._progress = _Progress()
 
     def begin(self) -> None:
-        """Have tried again what was set aside or left out, and judged again what other rules judged.
+        """Have tried again what was set aside or left out, and see what other rules have judged.
 
         Raises SQLAlchemyError.
         """
-        self._repository.resume_folds()
-        number = self._repository.judge_anew(RULES)
-        if number:
+        self._repository.resume_folds(PROGRAM)
+        self._to_judge_again = deque(self._repository.motors_judged_by_other_rules(RULES))
+        if self._to_judge_again:
+            number = len(self._to_judge_again)
             log.info("motors are judged again by the rules of this version", motors=number)
 
     def next_task(self) -> ConditionTask | None:
@@ -121,7 +130,7 @@ class ConditionWork:
 
         Raises SQLAlchemyError.
         """
-        task = self._next_fold() or self._next_observation()
+        task = self._next_fold() or self._next_observation() or self._next_judged_again()
         if task is not None:
             self._under_way[task.motor] = task
         return task
@@ -151,8 +160,12 @@ class ConditionWork:
         self._under_way.clear()
 
     def _next_fold(self) -> ConditionTask | None:
-        """Return the next motor to fold. They take turns: none waits until another has no more to do."""
-        due = [motor for motor in self._repository.motors_to_fold() if self._is_free(motor)]
+        """Return the next motor to fold: new records first, then those that are folded from long ago on.
+
+        Of the latter, the one that is furthest comes to its end before another one begins.
+        """
+        marks_ns = self._repository.earliest_marks()
+        due = [motor for motor in marks_ns if self._is_free(motor)]
         if due and not self._all_observed:
             # Each recording that is yet to be observed would have them folded again.
             awaiting = self._repository.motors_awaiting_observations()
@@ -160,12 +173,31 @@ class ConditionWork:
             due = [one for one in due if one not in awaiting or now_s >= self._held_until_s(one)]
         if not due:
             return None
+        latest_ns = max(marks_ns[motor] for motor in due)
+        due = [motor for motor in due if marks_ns[motor] >= latest_ns - IN_TURN_NS]
         motor = next((one for one in due if one > self._latest), due[0])
         self._latest = motor
         self._folded_s[motor] = time.monotonic()
         # They may be many, and are of use only where the motor is about to be set aside.
         marks = self._repository.fold_marks(motor) if motor in self._trouble else ()
         return ConditionTask(motor, fold_motor, FoldTask(self._database_url, self._motors[motor]), marks)
+
+    def _next_judged_again(self) -> ConditionTask | None:
+        """Begin with another motor that other rules have judged, where none waits to be folded.
+
+        Until its turn it goes on from where it is: its condition follows new records.
+        """
+        if not self._to_judge_again:
+            return None
+        waiting = set(self._repository.earliest_marks()).intersection(self._motors)
+        if waiting.difference(self._under_way):
+            return None
+        while self._to_judge_again:
+            motor = self._to_judge_again.popleft()
+            if self._repository.judge_anew(motor, RULES):
+                log.info("motor is judged again", motor=motor, left=len(self._to_judge_again))
+                return self._next_fold()
+        return None
 
     def _held_until_s(self, motor: str) -> float:
         return self._folded_s.get(motor, self._begun_s) + HELD_S
@@ -205,7 +237,7 @@ class ConditionWork:
             del self._trouble[task.motor]
         elif isinstance(error, RecordFoldError) and trouble.failures >= MOST_FAILURES:
             log.error("record left out of the condition", recording=error.recording_id, reason=error.reason)
-            self._repository.leave_out(error.recording_id, LEFT_OUT.format(error.reason))
+            self._repository.leave_out(error.recording_id, LEFT_OUT.format(error.reason), PROGRAM)
             del self._trouble[task.motor]
         elif (
             isinstance(task.argument, FoldTask)

@@ -18,7 +18,9 @@ NEAR: Final = 0.3
 MAY_BE_LEFT: Final = 0.7
 """Share of it in the mean of few records beyond which it is another change that hides them."""
 LONGEST: Final = 32
-"""Records within which it has to become certain. What has only become smaller is followed again then."""
+"""Records for which a change is told as it was while they show little of it.
+
+After that what is left is followed again. That they have vanished may become certain later too."""
 
 
 @dataclass(slots=True)

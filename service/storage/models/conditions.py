@@ -34,6 +34,7 @@ class ObservationRow(Figures, Base):
     It outlives a recording that a rule of retention deletes, because the motor's reference rests on it.
     Phasors are peak values in volts and amperes. state and the figures: null until it is folded.
     left_out: why it is not folded, because that failed; null where it is, or is to be.
+    left_out_by: version of the program and its rules that left it out: another one tries again.
     """
 
     __tablename__ = "observations"
@@ -61,6 +62,7 @@ class ObservationRow(Figures, Base):
     cycles: Mapped[int]
     load_level: Mapped[float | None] = mapped_column(Double)
     left_out: Mapped[str | None]
+    left_out_by: Mapped[str | None]
     state: Mapped[State | None]
     kind: Mapped[Kind | None]
 

@@ -52,9 +52,22 @@ IDS_A_STATEMENT = 500
 class FoldingRows(Sessions):
     def motors_to_fold(self) -> tuple[str, ...]:
         """Return the motors of which something has changed; those set aside with the next change only."""
-        waiting = select(FoldMarkRow.motor).where(FoldMarkRow.set_aside.is_(False)).distinct()
+        return tuple(self.earliest_marks())
+
+    def earliest_marks(self) -> Mapping[str, int]:
+        """Return from which time on each motor is to be folded, by the motors' names, in their order.
+
+        Motors that are out of service wait until they are back.
+        """
+        waiting = (
+            select(FoldMarkRow.motor, func.min(FoldMarkRow.from_ns))
+            .join(MotorRow, MotorRow.name == FoldMarkRow.motor)
+            .where(FoldMarkRow.set_aside.is_(False), MotorRow.in_service)
+            .group_by(FoldMarkRow.motor)
+            .order_by(FoldMarkRow.motor)
+        )
         with self._read() as session:
-            return tuple(session.scalars(waiting.order_by(FoldMarkRow.motor)))
+            return dict(session.execute(waiting).all())
 
     def fold_marks(self, motor: str) -> tuple[str, ...]:
         """Return the ids of a motor's marks: the changes that a fold beginning now takes in."""
@@ -73,28 +86,46 @@ class FoldingRows(Sessions):
             for some in _in_parts(marks):
                 session.execute(update(FoldMarkRow).where(FoldMarkRow.id.in_(some)).values(set_aside=True))
 
-    def resume_folds(self) -> None:
-        """Have folded what was set aside or left out: the service that starts may be a mended one."""
+    def resume_folds(self, program: str) -> None:
+        """Have folded what was set aside, and what another program left out: this one may be mended."""
+        left_out = (
+            select(ObservationRow)
+            .join(MotorRow, MotorRow.name == ObservationRow.motor)
+            .where(
+                ObservationRow.left_out.is_not(None),
+                ObservationRow.left_out_by.is_distinct_from(program),
+                MotorRow.in_service,
+            )
+        )
         with self._write() as session:
             resume(session)
-            left_out = select(ObservationRow).where(ObservationRow.left_out.is_not(None))
             for row in session.scalars(left_out).all():
                 take_in_again(session, row)
 
-    def judge_anew(self, rules: str) -> int:
-        """Have all motors folded from the first record on that were judged by other rules; return how many.
-
-        Their conditions stay as they are until that is done.
-        """
-        others = select(ConditionRow.motor).where(
-            ConditionRow.as_of_ns.is_not(None), ConditionRow.rules.is_distinct_from(rules)
+    def motors_judged_by_other_rules(self, rules: str) -> tuple[str, ...]:
+        """Return the motors in service that have a condition by other rules, in the order of their names."""
+        query = (
+            select(ConditionRow.motor)
+            .join(MotorRow, MotorRow.name == ConditionRow.motor)
+            .where(
+                ConditionRow.as_of_ns.is_not(None),
+                ConditionRow.rules.is_distinct_from(rules),
+                MotorRow.in_service,
+            )
         )
-        marked = select(FoldMarkRow.motor).where(FoldMarkRow.from_ns == EARLIEST_NS)
+        with self._read() as session:
+            return tuple(session.scalars(query.order_by(ConditionRow.motor)))
+
+    def judge_anew(self, motor: str, rules: str) -> bool:
+        """Have a motor folded from the first record on, unless these rules have judged it meanwhile.
+
+        Its condition stays as it is until that is done. Returns whether it is folded. Raises NotFoundError.
+        """
         with self._write() as session:
-            motors = session.scalars(others.order_by(ConditionRow.motor)).all()
-            for motor in set(motors).difference(session.scalars(marked)):
-                mark(session, motor, EARLIEST_NS)
-            return len(motors)
+            if found(session, ConditionRow, motor, "motor").rules == rules:
+                return False
+            mark(session, motor, EARLIEST_NS)
+            return True
 
     def begin_fold(self, motor: str, most_records: int) -> FoldInput | None:
         """Return what a fold of a motor needs, with about so many observations; None where none is due.

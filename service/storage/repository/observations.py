@@ -157,26 +157,32 @@ class ObservationRows(Sessions):
                     number += 1
         return number
 
-    def leave_out(self, recording_id: str, reason: str) -> None:
+    def leave_out(self, recording_id: str, reason: str, program: str) -> None:
         """Have a motor's condition follow without one of its recordings, which is kept with the reason.
 
-        It is taken in again when a service starts, and with another diagnosis.
+        It is taken in again with another diagnosis, and by another program. program: the version that failed.
         """
         with self._write() as session:
             row = session.get(ObservationRow, recording_id)
             if row is None:
                 return
-            row.left_out, row.state, row.kind = storable(reason), None, None
+            row.left_out, row.left_out_by = storable(reason), program
+            row.state, row.kind = None, None
             mark_with_bus(session, row.motor, row.time_ns)
             recording = session.get(RecordingRow, recording_id)
             if recording is not None:
                 recording.reason = storable(reason)
 
     def backlog(self) -> Backlog:
-        """Return how much the conditions are behind the recordings."""
+        """Return how much the conditions are behind the recordings; of motors in service."""
+        in_service = select(MotorRow.name).where(MotorRow.in_service)
         unobserved = select(func.count()).select_from(UnobservedRecordingRow)
-        marked = select(func.count(FoldMarkRow.motor.distinct())).where(FoldMarkRow.set_aside.is_(False))
-        problems = select(func.count(ConditionRow.motor)).where(ConditionRow.problem.is_not(None))
+        marked = select(func.count(FoldMarkRow.motor.distinct())).where(
+            FoldMarkRow.set_aside.is_(False), FoldMarkRow.motor.in_(in_service)
+        )
+        problems = select(func.count(ConditionRow.motor)).where(
+            ConditionRow.problem.is_not(None), ConditionRow.motor.in_(in_service)
+        )
         with self._read() as session:
             return Backlog(*(session.scalar(query) or 0 for query in (unobserved, marked, problems)))
 
@@ -206,7 +212,7 @@ def keep_observation(
 
 def take_in_again(session: Session, row: ObservationRow) -> None:
     """Have a record folded that was left out."""
-    row.left_out = None
+    row.left_out, row.left_out_by = None, None
     recording = session.get(RecordingRow, row.recording_id)
     if recording is not None:
         recording.reason = None

@@ -9,6 +9,7 @@ from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import replace
+from itertools import permutations
 from pathlib import Path
 from typing import Any
 
@@ -25,9 +26,11 @@ from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from core.recordings.comtrade_writer import write
 from core.time_stamps import nanoseconds
+from core.units import NANOSECONDS_PER_DAY
 from service.api.condition_documents import condition_document
 from service.condition import folding, work, worker
 from service.condition.errors import RecordFoldError
+from service.condition.folding import fold
 from service.condition.work import ConditionWork
 from service.condition.worker import FoldTask, ObserveTask, fold_due
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Outcome
@@ -45,7 +48,7 @@ from testing.machines.phase_circuits import recording as waveforms
 from testing.machines.phase_circuits import running as operating
 from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
 from testing.service.observations import HOUR_NS, records_of_a_motor
-from testing.service.plants import NOW_NS, healthy, motor
+from testing.service.plants import NOW_NS, healthy, motor, two_motor_plant
 from testing.waiting import wait_until
 
 RECORDS = records_of_a_motor(12)
@@ -376,6 +379,9 @@ def test_a_record_that_cannot_be_folded_is_left_out_at_last_and_the_others_count
 
     monkeypatch.setattr(Follower, "fold", fold)
     conditions.begin()
+    assert repository.motors_to_fold() == (), "the same program is not tried twice"
+    monkeypatch.setattr(work, "PROGRAM", "a mended one")
+    conditions.begin()
     fold_all(repository)
     points = repository.condition_trend(PUMP, limit=10).items
     assert [point.recording_id for point in points] == ids, "nothing is lost once the service is mended"
@@ -388,7 +394,7 @@ def test_another_diagnosis_takes_a_record_in_again_that_was_left_out(
     recorder = Recorder(repository, store)
     ids = recorder.record_all(RECORDS[:3])
     fold_all(repository)
-    repository.leave_out(ids[1], "left out")
+    repository.leave_out(ids[1], "left out", "this program")
     fold_all(repository)
     assert [one.recording_id for one in repository.condition_trend(PUMP, limit=9).items] == [ids[0], ids[2]]
     recorder.diagnose_again(ids[1], RECORDS[1])
@@ -396,30 +402,116 @@ def test_another_diagnosis_takes_a_record_in_again_that_was_left_out(
     assert [one.recording_id for one in repository.condition_trend(PUMP, limit=9).items] == ids
 
 
+def other_rules(monkeypatch: pytest.MonkeyPatch, rules: str) -> None:
+    for module in (work, folding):
+        monkeypatch.setattr(module, "RULES", rules)
+
+
+def one_part(conditions: ConditionWork, repository: Repository, records: int) -> str:
+    """Have the next task fold one part of its motor; return the motor."""
+    task = conditions.next_task()
+    assert task is not None
+    due = repository.begin_fold(task.motor, records)
+    assert due is not None
+    assert repository.finish_fold(due, fold(due, motor(task.motor)), now_ns=NOW_NS)
+    future: Future[int] = Future()
+    future.set_result(len(due.observations))
+    conditions.ended(task, future)
+    return task.motor
+
+
 def test_motors_that_other_rules_judged_are_judged_again_in_the_background(
     repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    recorder = Recorder(repository, store)
-    recorder.record_all(RECORDS[:12])
+    """A service killed between two parts goes on; one with other rules begins from the first record."""
+    Recorder(repository, store).record_all(RECORDS[:12])
     fold_all(repository)
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
-    conditions.begin()
-    assert conditions.next_task() is None, "the same rules"
     before = repository.condition(PUMP)
-    monkeypatch.setattr(work, "RULES", "another")
-    monkeypatch.setattr(folding, "RULES", "another")
-    for _ in range(2):
+
+    def started() -> ConditionWork:
+        conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
         conditions.begin()
-    assert repository.motors_to_fold() == (PUMP,)
-    assert len(repository.fold_marks(PUMP)) == 1
-    assert repository.condition(PUMP) == before, "it stays until it is judged again"
-    due = repository.begin_fold(PUMP, 500)
-    assert due is not None
-    assert len(due.observations) == 12, "from the first record on"
-    fold_all(repository)
-    assert repository.condition(PUMP).as_of_ns == before.as_of_ns
+        return conditions
+
+    assert started().next_task() is None, "the same rules"
+    other_rules(monkeypatch, "another")
+    assert one_part(started(), repository, 5) == PUMP
+    assert repository.condition(PUMP) == replace(before, version=before.version + 1), (
+        "as it was until the end"
+    )
+    conditions = started()
+    assert repository.earliest_marks() == {PUMP: RECORDS[5].time_ns}, "what was done is not lost"
+    other_rules(monkeypatch, "a third")
+    conditions = started()
+    parts = 0
+    while repository.motors_to_fold():
+        parts += 1
+        one_part(conditions, repository, 5)
+    while conditions.next_task() is not None:
+        conditions.give_back()
+        parts += 1
+        one_part(conditions, repository, 5)
+    assert parts == 2 + 3, "the rest of it by rules of before, then all of it"
+    assert repository.condition(PUMP).document == before.document
+    assert started().next_task() is None
+
+
+def test_new_records_come_before_motors_that_are_judged_again(
+    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = (FAN, PUMP, "ZZ-NEW")
+    motors = {name: motor(name) for name in names}
+    plant = two_motor_plant()
+    (known, *_) = plant.motors
+    repository.sync_plant(replace(plant, motors=(*plant.motors, replace(known, motor=motors[names[2]]))))
+    recorder = Recorder(repository, store)
+    spread = [replace(one, time_ns=NOW_NS + at * 3 * NANOSECONDS_PER_DAY) for at, one in enumerate(RECORDS)]
+    for name in names:
+        recorder.record_all(spread[:10], name)
+    fold_all(repository, motors[names[2]])
+    other_rules(monkeypatch, "another")
+    conditions = ConditionWork(repository, store, motors, database_url=database_url)
     conditions.begin()
     assert repository.motors_to_fold() == ()
+    given = [one_part(conditions, repository, 4) for _ in range(2)]
+    assert given == [FAN, FAN], "one after the other"
+    recorder.record(spread[10], PUMP)
+    recorder.record(spread[10], names[2])
+    given = [one_part(conditions, repository, 4) for _ in range(2)]
+    assert sorted(given) == [PUMP, names[2]]
+    assert repository.condition(PUMP).as_of_ns == spread[10].time_ns
+    assert repository.motors_to_fold() == (FAN,)
+    for one in (PUMP, names[2]):
+        repository.forget_checkpoints(one)
+    first, *others = [one_part(conditions, repository, 4) for _ in range(7)]
+    assert first == FAN, "it is further than those that begin from the first record on"
+    assert [others[:3], others[3:]] in ([[one] * 3, [two] * 3] for one, two in permutations(names[1:]))
+    assert conditions.next_task() is None, "those with other checkpoints have been judged again already"
+
+
+def test_a_motor_out_of_service_is_judged_again_when_it_is_back(
+    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recorder = Recorder(repository, store)
+    (left_out, *_) = recorder.record_all(RECORDS[:3])
+    fold_all(repository)
+    repository.leave_out(left_out, "it failed", "an older program")
+    repository.set_fold_aside(PUMP, repository.fold_marks(PUMP), "it failed too")
+    plant = two_motor_plant()
+    without = tuple(one for one in plant.motors if one.name != PUMP)
+    other_rules(monkeypatch, "another")
+    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
+    repository.sync_plant(replace(plant, motors=without))
+    conditions.begin()
+    assert conditions.next_task() is None
+    assert repository.backlog() == Backlog(0, 0)
+    repository.sync_plant(plant)
+    conditions.begin()
+    while conditions.next_task() is not None:
+        conditions.give_back()
+        one_part(conditions, repository, 4)
+    assert len(repository.condition_trend(PUMP, limit=9).items) == 3
+    assert repository.motors_judged_by_other_rules("another") == ()
 
 
 def test_motors_of_a_bus_are_folded_once_all_its_recordings_are_observed(

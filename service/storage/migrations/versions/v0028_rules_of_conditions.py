@@ -11,9 +11,11 @@ depends_on = None
 
 def upgrade() -> None:
     op.add_column("conditions", sa.Column("rules", sa.String(), nullable=True))
-    op.add_column("observations", sa.Column("left_out", sa.String(), nullable=True))
+    for name in ("left_out", "left_out_by"):
+        op.add_column("observations", sa.Column(name, sa.String(), nullable=True))
 
 
 def downgrade() -> None:
-    op.drop_column("observations", "left_out")
+    for name in ("left_out_by", "left_out"):
+        op.drop_column("observations", name)
     op.drop_column("conditions", "rules")
