@@ -47,7 +47,7 @@ def condition_document(
     stale = is_stale(entry, now_ns, stale_after_ns)
     told = document["reasons"]
     reasons = told if isinstance(told, list) and entry.document is not None else []
-    milder = None if latest is None else _why_milder(entry, latest)
+    milder = None if latest is None else _why_milder(entry, latest, {**_NO_REFERENCE, **known})
     if entry.problem is not None:
         document["reasons"] = [NOT_FOLDED.format(entry.problem), *reasons]
     elif milder is not None:
@@ -57,9 +57,18 @@ def condition_document(
     )
 
 
-def _why_milder(entry: ConditionEntry, latest: LatestDiagnosis) -> str | None:
-    is_later = entry.as_of_ns is None or latest.recorded_ns > entry.as_of_ns
-    return why_milder(entry.state, latest.verdict, latest.mu_f, latest.phase, is_later=is_later)
+def _why_milder(
+    entry: ConditionEntry, latest: LatestDiagnosis, reference: Mapping[str, object]
+) -> str | None:
+    return why_milder(
+        entry.state,
+        latest.verdict,
+        latest.mu_f,
+        latest.phase,
+        is_later=entry.as_of_ns is None or latest.recorded_ns > entry.as_of_ns,
+        is_complete=bool(reference["complete"]),
+        is_accepted=bool(reference["accepted"]),
+    )
 
 
 def is_stale(entry: ConditionEntry, now_ns: int, stale_after_ns: int) -> bool:

@@ -1,6 +1,7 @@
 """A motor's records in one direction of rotation: its standing errors, and what changes."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from core.condition.assessment import Assessment, Declared, Level, Reference
 from core.condition.bus.differences import same_transformer
@@ -158,15 +159,16 @@ class Direction:
         motor, edited : Motor
             The motor before and after it.
         """
-        state, prior = self.state, self._expectations.prior
-        if event.kind is EventKind.PARAMETERS_EDITED:
-            edit_impedance(state, motor, edited)
-        elif event.kind is EventKind.RECORDER_CHANGED:
+        state = self.state
+        declared = self._shown(motor) if event.kind is EventKind.REFERENCE_RESTARTED else None
+        if event.kind is EventKind.PARAMETERS_EDITED or edited != motor:
+            self._edit(motor, edited)
+        prior = self._expectations.prior
+        if event.kind is EventKind.RECORDER_CHANGED:
             restart_reference(state, prior, keep_impedance=True)
         elif event.kind is EventKind.MAINTENANCE:
             maintain(state, prior)
         elif event.kind is EventKind.REFERENCE_RESTARTED:
-            declared = self._shown(motor)
             restart_reference(state, prior, keep_impedance=True)
             state.header.accepted, state.header.declared = True, declared
         self._explanation = Explanation(state, self._expectations)
@@ -244,6 +246,20 @@ class Direction:
             self._expected_of = of
             self._expectations = expectations_of(*of, self.state.header.scale_ohm)
         return self._expectations
+
+    def _edit(self, motor: Motor, edited: Motor) -> None:
+        """Let the motor's file be another: its errors stay, and are held against what that file leaves."""
+        header = self.state.header
+        edit_impedance(self.state, motor, edited)
+        before = self._expect(motor).voltage
+        more = self._expect(edited).voltage - before
+        if header.standing is not None:
+            header.standing = header.standing.of_another_class(more)
+        if header.called is not None:
+            errors = header.called.errors.of_another_class(more)
+            score = score_of(edited, errors)
+            called = replace(header.called, errors=errors, score=score)
+            header.called = called if score >= STANDING_SCORE else None
 
     def _errors(self) -> StandingErrors:
         state = self.state

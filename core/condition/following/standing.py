@@ -193,7 +193,7 @@ def standing_of(motor: Motor, asymmetry: Array, covariance: Array, *, from_bus: 
 def _likeliest(asymmetry: Array, covariance: Array, directions: Array) -> tuple[int, float, float, float]:
     """Return the direction that explains an asymmetry best, with size, deviation and score."""
     W = inverse(covariance)
-    best, size, deviation, score = 0, 0.0, 0.0, -1e300
+    best, size, deviation, score = 0, 0.0, 0.0, -1.0
     for n in range(directions.shape[0]):
         x, y = directions[n]
         u0, u1 = x * W[0, 0] + y * W[1, 0], x * W[0, 1] + y * W[1, 1]

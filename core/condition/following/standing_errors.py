@@ -1,6 +1,6 @@
 """A motor's standing errors as its records alone tell them, without what was known before."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -52,6 +52,26 @@ class StandingErrors:
     difference_imaginary: float
     others: int
     transformers: int
+
+    def of_another_class(self, more: Array) -> "StandingErrors":
+        """Return the same errors, held against sensors of another class.
+
+        Parameters
+        ----------
+        more : ndarray, shape (2, 2)
+            Covariance of E in sound motors with such sensors, less that with those of before.
+
+        Returns
+        -------
+        StandingErrors
+            Errors with another spread and prior.
+        """
+        added = (float(more[0, 0]), float(more[0, 1]), float(more[1, 1]))
+        return replace(
+            self,
+            spread=[old + new for old, new in zip(self.spread, added, strict=True)],
+            prior=[old + new for old, new in zip(self.prior, added, strict=True)],
+        )
 
 
 def standing_errors_of(
@@ -105,7 +125,7 @@ def _of_records(
     sides : array of SideState
         Side channels; v2 tells how much the supply changes.
     voltage : ndarray, shape (2, 2)
-        Covariance that E started from, about zero.
+        Covariance of E in sound motors. The filter started from another where the class was edited since.
 
     Returns
     -------
@@ -119,7 +139,8 @@ def _of_records(
     x, P = state.x.copy(), state.P.copy()
     if state.statistic > SUSPECTED:
         x, P = before_change(state, bank)
-    prior = voltage.copy()
+    prior = state.P0[:2, :2].copy()
+    edited = voltage - prior
     for i in range(2):
         prior[i, i] += WANDER_VARIANCE * state.records
     found, spread = _without_prior(x[:2].copy(), P[:2, :2].copy(), prior)
@@ -135,6 +156,8 @@ def _of_records(
     usual_spread += IMPEDANCE**2 * slope @ slope.T
     if np.trace(usual_spread) < np.trace(spread):
         found, spread = usual, usual_spread
+    prior += edited
+    spread += edited
     return (
         (found[0], found[1]),
         (spread[0, 0], spread[0, 1], spread[1, 1]),

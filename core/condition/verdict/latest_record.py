@@ -16,7 +16,14 @@ _RANK: Final = {
 
 
 def why_milder(
-    state: State, verdict: Verdict, level: float | None, phase: str | None, *, is_later: bool
+    state: State,
+    verdict: Verdict,
+    level: float | None,
+    phase: str | None,
+    *,
+    is_later: bool,
+    is_complete: bool,
+    is_accepted: bool,
 ) -> str | None:
     """Say why a condition is milder than the verdict of the latest record.
 
@@ -32,6 +39,10 @@ def why_milder(
         Phase that it names.
     is_later : bool
         Whether that record is later than all that the condition rests on.
+    is_complete : bool
+        Whether the motor has records enough to be compared with.
+    is_accepted : bool
+        Whether a person has declared healthy what stands from the first record on.
 
     Returns
     -------
@@ -45,6 +56,13 @@ def why_milder(
     told = f"the latest record by itself says {verdict}{size}"
     if is_later:
         return f"{told}; it is not in the condition: it is yet to be taken into account, or was left out"
+    if is_accepted:
+        return (
+            f"{told}: a person has declared healthy what the motor showed when its reference was restarted, "
+            "so that only what has changed since counts"
+        )
+    if not is_complete:
+        return f"{told}: one record is not enough, and there are too few yet to judge them together"
     if state is State.HEALTHY:
         return (
             f"{told}: one record cannot tell shorted turns from errors of its channels and of the motor's "

@@ -125,6 +125,51 @@ def test_a_called_fault_does_not_wear_away_on_a_constant_supply() -> None:
     assert assessment.reference.standing_score > 5.0
 
 
+def test_another_class_of_sensors_counts_at_once_and_as_if_it_had_from_the_first_record_on() -> None:
+    coarse = motor_of()
+    fine = replace(coarse, sensors=replace(coarse.sensors, voltage_gain=coarse.sensors.voltage_gain / 4.0))
+    follower = follow(coarse, Plant(level=0.02).records(60))
+    before = follower.assessment()
+    follower.apply(Event(0, EventKind.PARAMETERS_EDITED), fine)
+    edited = follower.assessment()
+    assert Follower.restore(fine, follower.save()).assessment() == edited
+    other = follow(fine, Plant(level=0.02).records(60)).assessment()
+    assert before is not None
+    assert edited is not None
+    assert other is not None
+    assert edited.reference.standing_score > 1.2 * before.reference.standing_score
+    assert edited.reference.standing_score == pytest.approx(other.reference.standing_score, rel=0.1)
+    assert edited.reference.standing.value == pytest.approx(other.reference.standing.value, rel=0.1)
+
+
+@pytest.mark.parametrize("kind", sorted(EventKind))
+def test_any_event_may_come_with_finer_sensors(kind: EventKind) -> None:
+    coarse = replace(motor_of(), sensors=SensorClass(0.01, 0.01, 50e-6, 50e-6))
+    fine = replace(coarse, sensors=SensorClass(0.001, 0.001, 5e-6, 5e-6))
+    plant = Plant(load=(0.9, 0.9), supply_swing=0.0)
+    follower = follow(coarse, plant.records(40))
+    follower.apply(Event(plant.time_ns, kind), fine)
+    assert Follower.restore(fine, follower.save()).assessment() == follower.assessment()
+    for record in plant.records(20):
+        follower.fold(record)
+        assessment = follower.assessment()
+        assert assessment is not None
+        assert 0.0 <= assessment.reference.standing_score < 100.0
+
+
+def test_a_called_fault_is_held_against_a_coarser_class() -> None:
+    fine = replace(motor_of(), sensors=SensorClass(0.002, 0.002, 5e-6, 5e-6))
+    coarse = replace(fine, sensors=SensorClass(0.03, 0.03, 200e-6, 200e-6))
+    follower = follow(fine, Plant(level=0.01).records(60))
+    before = follower.assessment()
+    follower.apply(Event(0, EventKind.PARAMETERS_EDITED), coarse)
+    after = follower.assessment()
+    assert before is not None
+    assert before.standing_fault
+    assert after is not None
+    assert not after.standing_fault
+
+
 def test_a_fault_that_was_called_is_one_no_more_where_all_of_it_lies_below_the_limit() -> None:
     motor = motor_of()
     follower = follow(motor, Plant(level=0.03).records(60))
