@@ -117,12 +117,14 @@ class FoldingRows(Sessions):
             return tuple(session.scalars(query.order_by(ConditionRow.motor)))
 
     def judge_anew(self, motor: str, rules: str) -> bool:
-        """Have a motor folded from the first record on, unless these rules have judged it meanwhile.
+        """Have a motor folded from the first record on, unless it is already, or these rules have judged it.
 
-        Its condition stays as it is until that is done. Returns whether it is folded. Raises NotFoundError.
+        Its condition stays as it is until that is done. Returns whether it is new. Raises NotFoundError.
         """
+        marked = select(FoldMarkRow.id).where(FoldMarkRow.motor == motor, FoldMarkRow.from_ns == EARLIEST_NS)
         with self._write() as session:
-            if found(session, ConditionRow, motor, "motor").rules == rules:
+            judged = found(session, ConditionRow, motor, "motor").rules == rules
+            if judged or session.scalar(marked.limit(1)) is not None:
                 return False
             mark(session, motor, EARLIEST_NS)
             return True

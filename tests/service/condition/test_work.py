@@ -473,6 +473,13 @@ def test_new_records_come_before_motors_that_are_judged_again(
     conditions = ConditionWork(repository, store, motors, database_url=database_url)
     conditions.begin()
     assert repository.motors_to_fold() == ()
+    task = conditions.next_task()
+    assert task is not None
+    conditions.ended(task, failed(RuntimeError("a bug")))
+    assert conditions.next_task() is None, "no other one begins while this one waits to be tried again"
+    conditions = ConditionWork(repository, store, motors, database_url=database_url)
+    conditions.begin()
+    assert not repository.judge_anew(FAN, "another"), "it has its mark"
     given = [one_part(conditions, repository, 4) for _ in range(2)]
     assert given == [FAN, FAN], "one after the other"
     recorder.record(spread[10], PUMP)
