@@ -11,9 +11,10 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 SCRIPT = """
-import os, time
+import os, signal, time
 from benchmarks.processes import worker_processes
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell has its background jobs ignore it
     with worker_processes(1) as pool:
         print(pool.submit(os.getpid).result(), flush=True)
         pool.submit(time.sleep, 60).result()
