@@ -59,6 +59,8 @@ class Alarm:
         it exceeds the motor's limit.
     vanishing : Vanishing or None
         Whether shorted turns that were named have vanished; None while none were.
+    worked_on : bool
+        Whether a person has told since of works that may have mended them.
     """
 
     detected_ns: int
@@ -68,6 +70,7 @@ class Alarm:
     running: int = 0
     surely_above: float = 0.0
     vanishing: Vanishing | None = None
+    worked_on: bool = False
 
     @property
     def is_to_be_weighed(self) -> bool:

@@ -46,8 +46,9 @@ def follow_up(
     if vanishing is not None:
         vanishing.look(state.filter, record.y, record.j1, state.header.as_of_ns)
         if vanishing.is_certain:
-            # Shorted turns do not heal: they were repaired, or a contact comes and goes.
-            state.header.gone = replace(vanishing.change, until_ns=vanishing.last_ns)
+            # Shorted turns do not heal. Unless somebody told of works, a contact may come and go.
+            if not alarm.worked_on:
+                state.header.gone = replace(vanishing.change, until_ns=vanishing.last_ns)
             _take_back(state)
             return
     if alarm.is_to_be_weighed:
@@ -64,10 +65,11 @@ def follow_up(
 
 
 def maintain(state: DirectionState, prior: Prior) -> None:
-    """Close a change; one that may be shorted turns is looked for again: few works mend a winding.
+    """Close a change, but not one that may be shorted turns: few works mend a winding.
 
-    Against the reference of before it the next records show within a few whether it is still there. Any
-    other change may have been mended where it was learnt, so that the channels are learnt anew.
+    Shorted turns that are told stay told until the records show that they have vanished. What may be
+    something else, too, is looked for again against the reference of before it, which takes a few records.
+    Any other change may have been mended where it was learnt, so that the channels are learnt anew.
 
     Parameters
     ----------
@@ -79,8 +81,10 @@ def maintain(state: DirectionState, prior: Prior) -> None:
     alarm = state.header.alarm
     if alarm is None or Kind.SHORTED_TURNS not in alarm.named:
         restart_reference(state, prior, keep_impedance=True)
-        return
-    _take_back(state)
+    elif alarm.vanishing is None:
+        _take_back(state)
+    else:
+        alarm.worked_on = True
 
 
 def _keep_what_is_shown(alarm: Alarm, change: Change, explanation: Explanation, time_ns: int) -> None:
