@@ -1,7 +1,6 @@
 """Workers that have nothing to diagnose fold conditions, and observe recordings from before."""
 
 import os
-import pickle
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -9,9 +8,7 @@ from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import replace
-from itertools import permutations
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,16 +18,11 @@ from sqlalchemy import Engine
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
-from core.condition.following.follower import Follower
-from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from core.recordings.comtrade_writer import write
 from core.time_stamps import nanoseconds
-from core.units import NANOSECONDS_PER_DAY
 from service.api.condition_documents import condition_document
-from service.condition import folding, work, worker
-from service.condition.errors import RecordFoldError
-from service.condition.folding import fold
+from service.condition import work, worker
 from service.condition.work import ConditionWork
 from service.condition.worker import FoldTask, ObserveTask, fold_due
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Outcome
@@ -47,17 +39,16 @@ from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import recording as waveforms
 from testing.machines.phase_circuits import running as operating
 from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
-from testing.service.observations import HOUR_NS, records_of_a_motor
-from testing.service.plants import NOW_NS, healthy, motor, two_motor_plant
+from testing.service.observations import HOUR_NS
+from testing.service.plants import NOW_NS, healthy
 from testing.waiting import wait_until
+from tests.service.condition.tasks import MOTORS, RECORDS, failed
 
-RECORDS = records_of_a_motor(12)
 WRONG_CLOCKS = {
     100: replace(RECORDS[0], time_ns=nanoseconds("2095-01-01T00:00:00Z")),
     101: replace(RECORDS[0], time_ns=HOUR_NS),
 }
 LIMITS = JobLimits(workers=2, job_timeout_s=30.0, attempts=2, backoff=Backoff(0.01, 0.1), lease_s=30.0)
-MOTORS = {name: motor(name) for name in (PUMP, FAN)}
 
 
 def observe_as_told(task: DiagnosisTask) -> Outcome:
@@ -148,12 +139,6 @@ def real_files(path: Path, seed: int) -> dict[str, Path]:
     )
     entry = write(path, replace(record, channels=channels, start_time_ns=NOW_NS + seed * HOUR_NS))
     return {one.name: one for one in (entry, entry.with_suffix(".DAT"))}
-
-
-def failed(error: Exception) -> Future[int]:
-    future: Future[int] = Future()
-    future.set_exception(error)
-    return future
 
 
 def test_motors_take_turns_and_each_has_one_task(
@@ -313,212 +298,6 @@ def test_folds_that_kill_their_worker_hold_up_no_other_motor(
         wait_until(lambda: repository.backlog() == Backlog(0, 0, motors_set_aside=1), within_s=60)
         assert repository.condition(FAN).as_of_ns == RECORDS[0].time_ns
     assert "the worker process died (exit code -9)" in str(repository.condition(PUMP).problem)
-
-
-def test_a_recording_that_brings_its_worker_down_is_left_out_at_last(
-    repository: Repository,
-    store: RecordingStore,
-    database_url: str,
-    engine: Engine,
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
-    recorder = Recorder(repository, store)
-    ids = [recorder.record(None) for _ in range(3)]
-    with Session(engine) as session, session.begin():
-        session.add_all(
-            UnobservedRecordingRow(recording_id=id_, motor=PUMP, recorded_ns=NOW_NS + at)
-            for at, id_ in enumerate(ids)
-        )
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
-    asked = []
-    for _ in range(3):
-        task = conditions.next_task()
-        assert task is not None
-        assert isinstance(task.argument, ObserveTask)
-        asked.append([one.recording_id for one in task.argument.recordings])
-        conditions.ended(task, failed(RuntimeError("its worker died")))
-    assert asked == [ids, ids[:1], ids[:1]]
-    assert repository.backlog().unobserved_recordings == 2
-
-
-def test_a_record_that_cannot_be_folded_is_left_out_at_last_and_the_others_count(
-    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(work, "FAILURES", Backoff(0.0, 0.0))
-    recorder = Recorder(repository, store)
-    ids = recorder.record_all(RECORDS[:5])
-    recorder.record(RECORDS[0], FAN)
-    refuse = RECORDS[3].time_ns
-    fold = Follower.fold
-
-    def failing(follower: Follower, observation: Observation, *others: Any) -> None:
-        if observation.time_ns == refuse:
-            raise OverflowError("too large")
-        fold(follower, observation, *others)
-
-    monkeypatch.setattr(Follower, "fold", failing)
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
-    tries = 0
-    while (task := conditions.next_task()) is not None:
-        tries += 1
-        assert tries < 10
-        future: Future[int] = Future()
-        try:
-            future.set_result(task.function(task.argument))
-        except RecordFoldError as error:
-            future.set_exception(pickle.loads(pickle.dumps(error)))  # noqa: S301 - as from a worker
-        conditions.ended(task, future)
-    assert repository.condition(PUMP).as_of_ns == RECORDS[4].time_ns
-    assert repository.condition(FAN).as_of_ns == RECORDS[0].time_ns
-    points = repository.condition_trend(PUMP, limit=10).items
-    assert [point.recording_id for point in points] == [*ids[:3], ids[4]]
-    reason = repository.recording(ids[3]).reason
-    assert reason is not None
-    assert reason.startswith("left out of the condition: OverflowError: too large; it is tried again")
-
-    monkeypatch.setattr(Follower, "fold", fold)
-    conditions.begin()
-    assert repository.motors_to_fold() == (), "the same program is not tried twice"
-    monkeypatch.setattr(work, "PROGRAM", "a mended one")
-    conditions.begin()
-    fold_all(repository)
-    points = repository.condition_trend(PUMP, limit=10).items
-    assert [point.recording_id for point in points] == ids, "nothing is lost once the service is mended"
-    assert repository.recording(ids[3]).reason is None
-
-
-def test_another_diagnosis_takes_a_record_in_again_that_was_left_out(
-    repository: Repository, store: RecordingStore
-) -> None:
-    recorder = Recorder(repository, store)
-    ids = recorder.record_all(RECORDS[:3])
-    fold_all(repository)
-    repository.leave_out(ids[1], "left out", "this program")
-    fold_all(repository)
-    assert [one.recording_id for one in repository.condition_trend(PUMP, limit=9).items] == [ids[0], ids[2]]
-    recorder.diagnose_again(ids[1], RECORDS[1])
-    fold_all(repository)
-    assert [one.recording_id for one in repository.condition_trend(PUMP, limit=9).items] == ids
-
-
-def other_rules(monkeypatch: pytest.MonkeyPatch, rules: str) -> None:
-    for module in (work, folding):
-        monkeypatch.setattr(module, "RULES", rules)
-
-
-def one_part(conditions: ConditionWork, repository: Repository, records: int) -> str:
-    """Have the next task fold one part of its motor; return the motor."""
-    task = conditions.next_task()
-    assert task is not None
-    due = repository.begin_fold(task.motor, records)
-    assert due is not None
-    assert repository.finish_fold(due, fold(due, motor(task.motor)), now_ns=NOW_NS)
-    future: Future[int] = Future()
-    future.set_result(len(due.observations))
-    conditions.ended(task, future)
-    return task.motor
-
-
-def test_motors_that_other_rules_judged_are_judged_again_in_the_background(
-    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A service killed between two parts goes on; one with other rules begins from the first record."""
-    Recorder(repository, store).record_all(RECORDS[:12])
-    fold_all(repository)
-    before = repository.condition(PUMP)
-
-    def started() -> ConditionWork:
-        conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
-        conditions.begin()
-        return conditions
-
-    assert started().next_task() is None, "the same rules"
-    other_rules(monkeypatch, "another")
-    assert one_part(started(), repository, 5) == PUMP
-    assert repository.condition(PUMP) == replace(before, version=before.version + 1), (
-        "as it was until the end"
-    )
-    conditions = started()
-    assert repository.earliest_marks() == {PUMP: RECORDS[5].time_ns}, "what was done is not lost"
-    other_rules(monkeypatch, "a third")
-    conditions = started()
-    parts = 0
-    while repository.motors_to_fold():
-        parts += 1
-        one_part(conditions, repository, 5)
-    while conditions.next_task() is not None:
-        conditions.give_back()
-        parts += 1
-        one_part(conditions, repository, 5)
-    assert parts == 2 + 3, "the rest of it by rules of before, then all of it"
-    assert repository.condition(PUMP).document == before.document
-    assert started().next_task() is None
-
-
-def test_new_records_come_before_motors_that_are_judged_again(
-    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    names = (FAN, PUMP, "ZZ-NEW")
-    motors = {name: motor(name) for name in names}
-    plant = two_motor_plant()
-    (known, *_) = plant.motors
-    repository.sync_plant(replace(plant, motors=(*plant.motors, replace(known, motor=motors[names[2]]))))
-    recorder = Recorder(repository, store)
-    spread = [replace(one, time_ns=NOW_NS + at * 3 * NANOSECONDS_PER_DAY) for at, one in enumerate(RECORDS)]
-    for name in names:
-        recorder.record_all(spread[:10], name)
-    fold_all(repository, motors[names[2]])
-    other_rules(monkeypatch, "another")
-    conditions = ConditionWork(repository, store, motors, database_url=database_url)
-    conditions.begin()
-    assert repository.motors_to_fold() == ()
-    task = conditions.next_task()
-    assert task is not None
-    conditions.ended(task, failed(RuntimeError("a bug")))
-    assert conditions.next_task() is None, "no other one begins while this one waits to be tried again"
-    conditions = ConditionWork(repository, store, motors, database_url=database_url)
-    conditions.begin()
-    assert not repository.judge_anew(FAN, "another"), "it has its mark"
-    given = [one_part(conditions, repository, 4) for _ in range(2)]
-    assert given == [FAN, FAN], "one after the other"
-    recorder.record(spread[10], PUMP)
-    recorder.record(spread[10], names[2])
-    given = [one_part(conditions, repository, 4) for _ in range(2)]
-    assert sorted(given) == [PUMP, names[2]]
-    assert repository.condition(PUMP).as_of_ns == spread[10].time_ns
-    assert repository.motors_to_fold() == (FAN,)
-    for one in (PUMP, names[2]):
-        repository.forget_checkpoints(one)
-    first, *others = [one_part(conditions, repository, 4) for _ in range(7)]
-    assert first == FAN, "it is further than those that begin from the first record on"
-    assert [others[:3], others[3:]] in ([[one] * 3, [two] * 3] for one, two in permutations(names[1:]))
-    assert conditions.next_task() is None, "those with other checkpoints have been judged again already"
-
-
-def test_a_motor_out_of_service_is_judged_again_when_it_is_back(
-    repository: Repository, store: RecordingStore, database_url: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    recorder = Recorder(repository, store)
-    (left_out, *_) = recorder.record_all(RECORDS[:3])
-    fold_all(repository)
-    repository.leave_out(left_out, "it failed", "an older program")
-    repository.set_fold_aside(PUMP, repository.fold_marks(PUMP), "it failed too")
-    plant = two_motor_plant()
-    without = tuple(one for one in plant.motors if one.name != PUMP)
-    other_rules(monkeypatch, "another")
-    conditions = ConditionWork(repository, store, MOTORS, database_url=database_url)
-    repository.sync_plant(replace(plant, motors=without))
-    conditions.begin()
-    assert conditions.next_task() is None
-    assert repository.backlog() == Backlog(0, 0)
-    repository.sync_plant(plant)
-    conditions.begin()
-    while conditions.next_task() is not None:
-        conditions.give_back()
-        one_part(conditions, repository, 4)
-    assert len(repository.condition_trend(PUMP, limit=9).items) == 3
-    assert repository.motors_judged_by_other_rules("another") == ()
 
 
 def test_motors_of_a_bus_are_folded_once_all_its_recordings_are_observed(
