@@ -42,9 +42,16 @@ class ServedRelay:
         return next(values[name] for values in self._reported() if name in values)
 
     def next_record(self) -> int:
-        """Number of the next record announced: one report tells that it is made and which it is."""
-        announced = next(values for values in self._reported() if values.get("RcdMade") is True)
-        number = announced["FltNum"]
+        """Number of the next record announced.
+
+        The relay publishes the number first. It may be in an earlier report than RcdMade: a block that still
+        buffers an earlier change of RcdMade sends that, with the number, before it takes the new one.
+        """
+        number: Value | None = None
+        for values in self._reported():
+            number = values.get("FltNum", number)
+            if values.get("RcdMade") is True:
+                break
         assert isinstance(number, int)
         return number
 
