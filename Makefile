@@ -1,6 +1,7 @@
 # make install | demo | test | test-all | lint | bench | fuzz SECONDS=60 | interop [LIBIEC61850=TREE]    (PYTHON=python3.11 make install: another interpreter)
 # make chaos SEED=1 MINUTES=2 RECORDINGS=300 RELAYS=12 [FAULTS=1] [JSON=FILE] [DATA=DIR]     (faults of all kinds: docs/evidence/track-record.md)
 # make bench [QUICK=1] [DATA=FOLDER]     (DATA: measured recordings, for docs/evidence/condition.md)
+# make corpus DIR=FOLDER     (how recordings and SCL files of a folder are read: docs/evidence/corpus.md)
 # make hostile CASES=10000 SEED=1     (a relay that answers nonsense: docs/evidence/interoperability.md)
 # make compose-test COMPOSE="docker compose"     (the demo enterprise in containers, run for real)
 PYTHON ?= python3
@@ -12,7 +13,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 # docker compose where its engine answers, else nothing; COMPOSE="podman-compose" make compose-test: another one
 COMPOSE ?= $(shell docker compose version >/dev/null 2>&1 && docker info >/dev/null 2>&1 && echo docker compose)
 
-.PHONY: install demo test test-all hostile chaos compose-test lint docs bench interop fuzz lock clean
+.PHONY: install demo test test-all hostile chaos compose-test lint docs bench corpus interop fuzz lock clean
 .DEFAULT_GOAL := install
 
 install: $(WARM)
@@ -80,6 +81,11 @@ bench: install
 	$(BIN)/python -m benchmarks
 	$(BIN)/python -m benchmarks.commands
 	$(BIN)/python -m benchmarks.condition $(if $(QUICK),--quick) $(if $(DATA),--data $(DATA))
+
+# Reads every COMTRADE, CEV and SCL file of a folder, and says of each what became of it.
+corpus: install
+	@test -n "$(DIR)" || { echo "corpus: name the folder: make corpus DIR=folder" >&2; exit 2; }
+	@$(BIN)/python -m benchmarks.corpus "$(DIR)" $(if $(JSON),--json)
 
 # Clients and servers of other stacks; LIBIEC61850: a built source tree of that library, too (docs/evidence/interoperability.md).
 interop: install

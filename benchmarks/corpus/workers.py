@@ -1,0 +1,113 @@
+"""Each file is read in a worker process with limits of time and memory, so that none ends the run."""
+
+import multiprocessing
+import os
+import resource
+import signal
+import time
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future
+from pathlib import Path
+from typing import TypeVar
+
+from pebble import ProcessExpired, ProcessPool
+
+from benchmarks.corpus.outcomes import (
+    Agreement,
+    Comparison,
+    Examined,
+    Kind,
+    Outcome,
+    Reading,
+    shortened,
+)
+
+TIMEOUT_S = 60.0
+MEMORY_BYTES = 2 << 30
+"""Beyond what a worker takes before it reads anything."""
+
+_COMPARED = (Reading.READ, Reading.WARNED, Reading.LENIENT)
+_PAGE = resource.getpagesize()
+
+Answer = TypeVar("Answer")
+
+
+def examine_all(
+    files: Sequence[tuple[Path, Kind]],
+    folder: Path,
+    *,
+    timeout_s: float = TIMEOUT_S,
+    memory_bytes: int = MEMORY_BYTES,
+) -> Iterator[Examined]:
+    """Read and compare the files, and yield what became of each in their order."""
+    pool = ProcessPool(
+        max_workers=min(len(os.sched_getaffinity(0)), max(1, len(files))),
+        initializer=_prepare,
+        initargs=(memory_bytes,),
+        context=multiprocessing.get_context("spawn"),
+    )
+    with pool:
+        begun: list[tuple[Path, Kind, Future[tuple[Outcome, float]]]] = []
+        at_a_time = 64
+        for first in range(0, len(files), at_a_time):
+            begun = [
+                (path, kind, pool.schedule(_read, args=(path, kind.read), timeout=timeout_s))
+                for path, kind in files[first : first + at_a_time]
+            ]
+            for path, kind, future in begun:
+                outcome, seconds = _answer(future, _crashed, timeout_s)
+                comparison = Comparison(Agreement.NOT_COMPARED)
+                if kind.compare is not None and outcome.reading in _COMPARED:
+                    comparing = pool.schedule(kind.compare, args=(path,), timeout=timeout_s)
+                    comparison = _answer(comparing, _not_compared, timeout_s)
+                yield Examined(
+                    path=_shown(path.relative_to(folder)),
+                    kind=kind.name,
+                    outcome=Outcome(outcome.reading, tuple(map(shortened, outcome.notes))),
+                    comparison=Comparison(comparison.agreement, tuple(map(shortened, comparison.notes))),
+                    seconds=seconds,
+                )
+
+
+def _prepare(memory_bytes: int) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the run as a whole
+    warnings.simplefilter("ignore")
+    taken = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * _PAGE
+    resource.setrlimit(resource.RLIMIT_AS, (taken + memory_bytes, resource.getrlimit(resource.RLIMIT_AS)[1]))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+
+def _read(path: Path, read: Callable[[Path], Outcome]) -> tuple[Outcome, float]:
+    begun = time.perf_counter()
+    outcome = read(path)
+    return outcome, time.perf_counter() - begun
+
+
+def _answer(future: "Future[Answer]", failed: Callable[[str, float], Answer], timeout_s: float) -> Answer:
+    """What a worker answers, or what is said of a file that it did not survive."""
+    begun = time.perf_counter()
+    try:
+        return future.result()
+    except TimeoutError:
+        why = f"took longer than {timeout_s:g} s"
+    except ProcessExpired as error:
+        why = f"the process died (exit code {error.exitcode})"
+    except MemoryError:
+        why = "took more memory than allowed"
+    except Exception as error:  # noqa: BLE001 - whatever a reader fails with is told of its file
+        why = f"{type(error).__name__}: {error}"
+    return failed(why, time.perf_counter() - begun)
+
+
+def _crashed(why: str, seconds: float) -> tuple[Outcome, float]:
+    return Outcome(Reading.CRASHED, (why,)), seconds
+
+
+def _not_compared(why: str, _seconds: float) -> Comparison:
+    return Comparison(Agreement.PEER_FAILS, (why,))
+
+
+def _shown(path: Path) -> str:
+    """A path in text that every terminal and file takes, also of a name that is not UTF-8."""
+    return str(path).encode("utf-8", "backslashreplace").decode("utf-8")

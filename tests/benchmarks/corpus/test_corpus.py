@@ -1,0 +1,102 @@
+"""A corpus run tells of every file how it was read, and no file ends it."""
+
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from benchmarks.corpus import kinds, workers
+from benchmarks.corpus.__main__ import main
+from benchmarks.corpus.kinds import files_of
+from benchmarks.corpus.outcomes import Agreement, Comparison, Kind, Outcome, Reading
+from tests.core.recordings.comtrade_files import RECORD_1999
+
+
+def hostile(path: Path) -> Outcome:
+    """A reader as a hostile file would have it: it hangs, dies, eats memory or fails, by the file's name."""
+    match path.stem:
+        case "hangs":
+            while True:
+                pass
+        case "dies":
+            os._exit(11)
+        case "eats":
+            np.ones(1 << 32)
+        case "fails":
+            raise ZeroDivisionError("of the reader")
+    return Outcome(Reading.READ)
+
+
+def hostile_to_the_peer(path: Path) -> Comparison:
+    if path.stem == "sound":
+        os._exit(12)
+    return Comparison(Agreement.AGREES)
+
+
+HOSTILE = Kind("hostile", (".bad",), hostile, hostile_to_the_peer, "nobody")
+
+
+def run(folder: Path, monkeypatch: pytest.MonkeyPatch, *options: str) -> int:
+    monkeypatch.setattr(sys, "argv", ["corpus", str(folder), *options])
+    return main()
+
+
+def test_every_file_gets_its_row(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "deep").mkdir()
+    RECORD_1999.write(tmp_path, name="sound.CFG", data_name="sound.DAT")
+    RECORD_1999.write(tmp_path / "deep", name="lonely.cfg", data_name="other.dat")
+    cut = RECORD_1999.write(tmp_path, name="cut.cfg", data_name="cut.dat")
+    cut.with_suffix(".dat").write_bytes(RECORD_1999.data()[:40])
+    (tmp_path / "notes.txt").write_text("no recording")
+    (tmp_path / "broken.cev").write_bytes(b"\x00\xff| no report")
+    os.mkfifo(tmp_path / "pipe.cfg")
+    assert run(tmp_path, monkeypatch, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    files = {one["file"]: one for one in found["files"]}
+    assert {name: one["reading"] for name, one in files.items()} == {
+        "sound.CFG": "read",
+        "cut.cfg": "read only leniently",
+        "deep/lonely.cfg": "refused",
+        "broken.cev": "refused",
+    }
+    assert "data file" in files["deep/lonely.cfg"]["notes"][0]
+    assert files["sound.CFG"]["agreement"] == "differs as documented"
+    assert files["sound.CFG"]["differences"] == ["values in primary SI units"]
+    assert (found["parts"], found["others"]) == (3, 1)
+    assert run(tmp_path, monkeypatch) == 0
+    shown = capsys.readouterr().out
+    assert "| COMTRADE | 3 | 1 | 0 | 1 | 1 | 0 |" in shown
+
+
+def test_a_hostile_file_does_not_end_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(kinds, "KINDS", (HOSTILE,))
+    names = ["dies", "eats", "fails", "fine", "hangs", "sound"]
+    for name in names:
+        (tmp_path / f"{name}.bad").touch()
+    found = files_of(tmp_path)
+    files = list(workers.examine_all(found.files, tmp_path, timeout_s=2.0))
+    assert [one.path for one in files] == [f"{name}.bad" for name in names]
+    assert [one.outcome.reading for one in files] == [
+        *[Reading.CRASHED] * 3, Reading.READ, Reading.CRASHED, Reading.READ,
+    ]  # fmt: skip
+    notes = [one.outcome.notes for one in files]
+    assert notes[0] == ("the process died (exit code 11)",)
+    assert "memory" in notes[1][0].lower()
+    assert notes[2] == ("ZeroDivisionError: of the reader",)
+    assert notes[4] == ("took longer than 2 s",)
+    assert files[3].comparison.agreement is Agreement.AGREES
+    assert files[5].comparison == Comparison(Agreement.PEER_FAILS, ("the process died (exit code 12)",))
+
+
+def test_no_folder_is_wrong_use(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(tmp_path / "none", monkeypatch) == 2
+    assert "expected a folder" in capsys.readouterr().err
