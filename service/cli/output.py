@@ -9,6 +9,8 @@ from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from service.configuration.problems import ConfigurationError
+
 DONE, FAILED, WRONG_USE = 0, 1, 2
 
 UNLIMITED_WIDTH = 10_000
@@ -39,7 +41,11 @@ class CommandError(Exception):
             value = getattr(error, name, None)
             if value is not None:
                 details[name] = value if isinstance(value, int) else str(value)
-        message = one_line(str(error) or type(error).__name__)
+        message = "\n".join(map(one_line, str(error).splitlines())) or type(error).__name__
+        if isinstance(error, ConfigurationError):
+            details["problems"] = [problem.document() for problem in error.problems]
+        else:
+            message = one_line(message)
         return cls(message, details=details, exit_code=exit_code)
 
 
@@ -91,8 +97,8 @@ def print_document(document: object) -> None:
 
 
 def print_failure(error: CommandError, *, in_json: bool) -> None:
-    """Print one line on stderr and, if `in_json`, the same as one JSON document on stdout."""
-    sys.stderr.write(f"mcc: {error}\n")
+    """Print a line for each problem on stderr and, if `in_json`, the same as one JSON document on stdout."""
+    sys.stderr.writelines(f"mcc: {line}\n" for line in str(error).splitlines())
     if in_json:
         print_document(failure_document(error))
 

@@ -14,6 +14,7 @@ from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDic
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
 from core.units import SECONDS_PER_DAY
+from service.configuration.problems import ConfigurationError, Problem
 from service.configuration.relay_access import AbsolutePath, RelayAccess
 from service.configuration.retention import MOST_DAYS, RetentionSettings
 
@@ -22,15 +23,13 @@ PATHS = ("data_directory", "recordings_directory", "scd", "motors")
 RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
 
 
-class SettingsError(ValueError):
+class SettingsError(ConfigurationError):
     """A setting cannot be used; it says which one, from where, what was expected and what was found."""
 
-    def __init__(self, source: str, field: str, *, expected: str, found: str) -> None:
-        self.source = source
-        self.field = field
-        self.expected = expected
-        self.found = found
-        super().__init__(f"{source}: {field}: expected {expected}, found {found}")
+
+def settings_error(source: str, field: str, *, expected: str, found: str) -> SettingsError:
+    """Return the error of one problem in the settings."""
+    return SettingsError([Problem(source, field, expected, found)])
 
 
 def sqlite_url(data_directory: Path) -> str:
@@ -104,7 +103,7 @@ class Settings(BaseSettings):
         try:
             return cls.model_validate({**table, **EnvSettingsSource(cls)(), **given})
         except UnreadableEnvironment as error:
-            raise SettingsError(
+            raise settings_error(
                 "environment",
                 "MCC_...",
                 expected='lists and tables as JSON, such as ["mcc"]',
@@ -118,11 +117,11 @@ def _read_table(config: Path) -> dict[str, object]:
     try:
         table: dict[str, object] = tomllib.loads(config.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
-        raise SettingsError(str(config), "file", expected="a TOML file", found="no file") from error
+        raise settings_error(str(config), "file", expected="a TOML file", found="no file") from error
     except OSError as error:
-        raise SettingsError(str(config), "file", expected="a readable file", found=str(error)) from error
+        raise settings_error(str(config), "file", expected="a readable file", found=str(error)) from error
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise SettingsError(str(config), "file", expected="valid TOML in UTF-8", found=str(error)) from error
+        raise settings_error(str(config), "file", expected="valid TOML in UTF-8", found=str(error)) from error
     for name in PATHS:
         value = table.get(name)
         if isinstance(value, str):
@@ -155,12 +154,14 @@ def _first_problem(error: ValidationError, config: Path | None) -> SettingsError
     depth = None if problem["loc"][:1] in (("relays",), ("retention",)) else 1
     field = ".".join(str(part) for part in problem["loc"][:depth])
     if problem["type"] == "extra_forbidden":
-        return SettingsError(
+        return settings_error(
             source, field, expected="a setting named in docs/reference/settings.md", found="another name"
         )
     if problem["type"] == "missing":
-        return SettingsError(source, field, expected="this setting", found="none")
+        return settings_error(source, field, expected="this setting", found="none")
     found = repr(problem["input"])
     if field in Settings.model_fields and not Settings.model_fields[field].repr:
         found = f"a value of type {type(problem['input']).__name__}"  # it may hold a password
-    return SettingsError(source, field, expected=problem["msg"].removeprefix("Input should be "), found=found)
+    return settings_error(
+        source, field, expected=problem["msg"].removeprefix("Input should be "), found=found
+    )

@@ -1,42 +1,85 @@
-"""Reads the plant from its two files.
+"""Reads the plant from its files.
 
-The SCD says which relay protects which motor, at which address, and what it offers. The motors file gives the
-nameplate and the equivalent circuit of each motor. Both must name the same motors. Either may say on which
-bus a motor is; the motors file wins.
+The SCD says which relay protects which motor, at which address, and what it offers. The motors file gives
+the nameplate and the equivalent circuit of each motor. It may also bind motors to relays, and describe relays
+that no SCD has. Either may say on which bus a motor is. The motors file wins.
 """
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from ipaddress import ip_address
 from pathlib import Path
 
 import scl
-from core.machines.sensors import SensorClass
+from core.machines.motor_file import MotorFileError, motor_from_table
+from service.configuration.problems import Problem, Problems, nearest
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
-from service.configuration.settings import Settings, SettingsError
+from service.configuration.settings import Settings
+from service.plant.binding import Binding, bindings
 from service.plant.errors import PlantError
-from service.plant.metering import measurands_from_scl
 from service.plant.model import Bus, Plant, PlantMotor, Relay, Site
-from service.plant.motors_file import BusEntry, read_motors_file
-from service.plant.offer import offer_from_scl
-from service.plant.overrides import Overrides
-from service.plant.recognition import recognise
+from service.plant.motors_file import BusEntry, MotorsFile, read_motors_file
+from service.plant.relay_entry import RelayEntry
+from service.plant.relays import read_own_scl, relay_of_ied, relay_without_scl, scl_problem
 from service.plant.sensor_classes import typical_sensors
+
+NOTHING_TOLD = BusEntry(schedule=None, common_voltage_transformer=False)
 
 
 def read_plant(settings: Settings) -> Plant:
-    """Read the two files that the settings name. Raises PlantError, or SettingsError where one is not set."""
-    plant = plant_of_files(
-        _given(settings.scd, "scd", "the path of the plant's SCD file"),
-        _given(settings.motors, "motors", "the path of the plant's motors file (TOML)"),
-        settings.subnetwork,
-    )
-    names = {relay.name for relay in plant.relays}
-    for source, named in (("settings", settings.relays), ("environment", named_in_environment())):
-        for unknown in sorted(set(named) - names):
-            field = f"relays.{unknown}" if source == "settings" else f"{PASSWORD_VARIABLE}{unknown}"
-            expected = f"a relay of {settings.scd} ({', '.join(sorted(names))})"
-            raise SettingsError(source, field, expected=expected, found="another name")
+    """Read the files that the settings name. Raises PlantError, with every problem of them."""
+    problems = Problems()
+    plant = examine_plant(settings, problems)
+    if plant is None or problems:
+        raise PlantError(problems)
+    return plant
+
+
+def examine_plant(settings: Settings, problems: Problems) -> Plant | None:
+    """Read as much of the plant as can be read, and add what is wrong to the problems.
+
+    None: nothing can be read.
+    """
+    if settings.motors is None:
+        problems.add(Problem("settings", "motors", "the path of the plant's motors file (TOML)", "nothing"))
+        return None
+    plant = _plant(settings.scd, settings.motors, settings.subnetwork, problems)
+    if plant is None:
+        return None
+    _known_in_settings(settings, plant, problems)
     return replace(plant, relays=tuple(_at_its_port(relay, settings.relays) for relay in plant.relays))
+
+
+def plant_of_files(scd_path: Path | None, motors_path: Path, subnetwork: str | None = None) -> Plant:
+    """Read the plant.
+
+    subnetwork: relays get the addresses that they have on it; their first address if None.
+
+    Raises PlantError, with every problem.
+    """
+    problems = Problems()
+    plant = _plant(scd_path, motors_path, subnetwork, problems)
+    if plant is None or problems:
+        raise PlantError(problems)
+    return plant
+
+
+def _known_in_settings(settings: Settings, plant: Plant, problems: Problems) -> None:
+    """Tell of relays that the settings or the environment name, and the plant does not have."""
+    names = sorted(relay.name for relay in plant.relays)
+    for source, named in (("settings", settings.relays), ("environment", named_in_environment())):
+        for unknown in sorted(set(named) - set(names)):
+            field = f"relays.{unknown}" if source == "settings" else f"{PASSWORD_VARIABLE}{unknown}"
+            where = settings.motors if settings.scd is None else settings.scd
+            problems.add(
+                Problem(
+                    source,
+                    field,
+                    f"a relay of {where} ({', '.join(names)})",
+                    "another name",
+                    nearest(unknown, names),
+                )
+            )
 
 
 def _at_its_port(relay: Relay, access: Mapping[str, RelayAccess]) -> Relay:
@@ -45,150 +88,149 @@ def _at_its_port(relay: Relay, access: Mapping[str, RelayAccess]) -> Relay:
     return relay if tls is None or tls.port is None else replace(relay, port=tls.port)
 
 
-def plant_of_files(scd_path: Path, motors_path: Path, subnetwork: str | None = None) -> Plant:
-    """Read the plant.
-
-    subnetwork: relays get the addresses that they have on it; their first address if None.
-
-    Raises PlantError.
-    """
+def _plant(
+    scd_path: Path | None, motors_path: Path, subnetwork: str | None, problems: Problems
+) -> Plant | None:
+    told = configuration = None
+    with problems.collected():
+        told = read_motors_file(motors_path, problems)
     try:
-        configuration = scl.read(scd_path)
-        if subnetwork is not None:
+        configuration = None if scd_path is None else scl.read(scd_path)
+        if configuration is not None and subnetwork is not None:
             configuration = configuration.seen_from(subnetwork)
-        return _plant(configuration, motors_path)
     except scl.SclError as error:
-        line = "" if error.line is None else f"line {error.line}: "
-        raise PlantError(
-            error.path, f"{line}{error.element or 'file'}", expected=error.expected, found=error.found
-        ) from error
-
-
-def _given(path: Path | None, name: str, expected: str) -> Path:
-    if path is None:
-        raise SettingsError("settings", name, expected=expected, found="nothing")
-    return path
-
-
-def _plant(configuration: scl.Scl, motors_path: Path) -> Plant:
-    path = configuration.path
-    feeders = configuration.feeders()
-    told = read_motors_file(motors_path, _typical_sensors(configuration, feeders))
-    entries = told.motors
-    if not feeders:
-        raise PlantError(
-            path,
-            "<Substation>",
-            expected='motors (ConductingEquipment type="MOT" with an LNode of their relay)',
-            found="none",
-        )
-    _once(path, "motor", (feeder.motor for feeder in feeders))
-    _once(path, "relay", (feeder.ied for feeder in feeders))
-    _one_relay_an_address(configuration, [feeder.ied for feeder in feeders])
-    names = {feeder.motor for feeder in feeders}
-    for missing in sorted(names - entries.keys()):
-        raise PlantError(
-            motors_path,
-            f"motor {missing}",
-            expected=f"its [[motor]] table, as {path.name} has it",
-            found="none",
-        )
-    for unknown in sorted(entries.keys() - names):
-        known = ", ".join(sorted(names))
-        raise PlantError(
-            motors_path,
-            f"motor {unknown}",
-            expected=f"a motor of {path.name} ({known})",
-            found="another name",
-        )
-    bus_of = {feeder.motor: entries[feeder.motor].bus or feeder.bus for feeder in feeders}
-    sites = {feeder.site: Site(feeder.site, feeder.site_description) for feeder in feeders}
+        problems.add(scl_problem(error))
+        return None
+    if told is None or (configuration is None and not _describes_relays(told, problems)):
+        return None
+    bound = bindings(configuration, told, problems)
+    relays = _relays(bound, configuration, told, subnetwork, problems)
+    _one_relay_an_address(relays.values(), configuration, told, problems)
+    motors = [motor for one in bound if (motor := _motor(one, told, relays, problems)) is not None]
+    sites: dict[str, Site] = {}
+    for one in bound:
+        sites.setdefault(one.site, Site(one.site, one.site_description))
     return Plant(
         sites=tuple(sites.values()),
-        relays=tuple(_relay(configuration, feeder, entries[feeder.motor].overrides) for feeder in feeders),
-        motors=tuple(
-            PlantMotor(
-                entries[feeder.motor].motor,
-                feeder.motor_description,
-                feeder.site,
-                feeder.ied,
-                entries[feeder.motor].schedule,
-                bus_of[feeder.motor],
-            )
-            for feeder in feeders
-        ),
-        buses=_buses(bus_of, told.buses, motors_path),
+        relays=tuple(relays.values()),
+        motors=tuple(motors),
+        buses=_buses({motor.name: motor.bus for motor in motors}, told, problems),
     )
 
 
-def _typical_sensors(configuration: scl.Scl, feeders: Iterable[scl.MotorFeeder]) -> dict[str, SensorClass]:
-    """Return the class of sensors that is typical of each motor's relay."""
-    relays = {feeder.motor: configuration.ied(feeder.ied) for feeder in feeders}
-    return {motor: typical_sensors(relay.manufacturer, relay.type) for motor, relay in relays.items()}
+def _describes_relays(told: MotorsFile, problems: Problems) -> bool:
+    """Tell whether the motors file does without an SCD."""
+    if told.relays or not told.motors:
+        return True
+    problems.add(
+        Problem(
+            "settings",
+            "scd",
+            f"the path of the plant's SCD file, or [[relay]] tables in {told.path.name}",
+            "nothing",
+        )
+    )
+    return False
 
 
-def _buses(
-    bus_of: Mapping[str, str | None], told: Mapping[str, BusEntry], motors_path: Path
-) -> tuple[Bus, ...]:
-    """Return the buses in the order of their first motors. Raises PlantError for a bus without motors."""
+def _relays(
+    bound: Iterable[Binding],
+    configuration: scl.Scl | None,
+    told: MotorsFile,
+    subnetwork: str | None,
+    problems: Problems,
+) -> dict[str, Relay]:
+    """Return the relays of the motors that some file describes."""
+    ieds = {} if configuration is None else {ied.name: ied for ied in configuration.ieds}
+    relays: dict[str, Relay] = {}
+    for one in bound:
+        motor, entry = told.motors.get(one.motor), told.relays.get(one.relay, RelayEntry(one.relay))
+        if motor is None or one.relay in relays:
+            continue
+        with problems.collected():
+            if configuration is not None and one.relay in ieds:
+                relay = relay_of_ied(configuration, ieds[one.relay], one.site, entry, motor.overrides)
+            elif entry.scl is not None:
+                relay = relay_of_ied(
+                    *read_own_scl(entry, told.path, subnetwork), one.site, entry, motor.overrides
+                )
+            elif one.relay in told.relays:
+                relay = relay_without_scl(entry, one.site, told.path, motor.overrides)
+            else:
+                continue
+            relays[one.relay] = relay
+    return relays
+
+
+def _motor(
+    one: Binding, told: MotorsFile, relays: Mapping[str, Relay], problems: Problems
+) -> PlantMotor | None:
+    entry = told.motors.get(one.motor)
+    if entry is None:
+        return None
+    relay = relays.get(one.relay)
+    typical = typical_sensors(relay.manufacturer, relay.type) if relay else typical_sensors("", "")
+    try:
+        motor = motor_from_table(entry.data, name=entry.name, source=str(told.path), typical=typical)
+    except MotorFileError as error:
+        problems.add(
+            Problem(str(told.path), f"motor {entry.name}: {error.field}", error.expected, error.found)
+        )
+        return None
+    description = one.motor_description if entry.description is None else entry.description
+    return PlantMotor(motor, description, one.site, one.relay, entry.schedule, entry.bus or one.bus)
+
+
+def _buses(bus_of: Mapping[str, str | None], told: MotorsFile, problems: Problems) -> tuple[Bus, ...]:
+    """Return the buses in the order of their first motors."""
     buses: dict[str, list[str]] = {}
     for motor, bus in bus_of.items():
         if bus is not None:
             buses.setdefault(bus, []).append(motor)
-    for unknown in sorted(told.keys() - buses.keys()):
+    named = {entry.bus for entry in told.motors.values()}
+    for unknown in sorted(told.buses.keys() - buses.keys() - named):
         known = ", ".join(sorted(buses)) or "none is known"
-        raise PlantError(
-            motors_path,
-            f"bus {unknown}",
-            expected=f"a bus of the SCD, or one that a motor names ({known})",
-            found="a bus without motors",
+        problems.add(
+            Problem(
+                str(told.path),
+                f"bus {unknown}",
+                f"a bus of the SCD, or one that a motor names ({known})",
+                "a bus without motors",
+                nearest(unknown, buses),
+            )
         )
-    nothing_told = BusEntry(schedule=None, common_voltage_transformer=False)
-    entries = {name: told.get(name, nothing_told) for name in buses}
+    entries = {name: told.buses.get(name, NOTHING_TOLD) for name in buses}
     return tuple(
         Bus(name, tuple(motors), entries[name].schedule, entries[name].common_voltage_transformer)
         for name, motors in buses.items()
     )
 
 
-def _once(path: Path, kind: str, names: Iterable[str]) -> None:
-    seen: set[str] = set()
-    for name in names:
-        if name in seen:
-            raise PlantError(
-                path, f"{kind} {name}", expected="one motor for one relay", found=f"{name} twice"
+def _canonical(host: str) -> str:
+    """Return one spelling of a host: ::1 is 0:0:0:0:0:0:0:1, PUMPS.PLANT is pumps.plant."""
+    try:
+        return str(ip_address(host))
+    except ValueError:
+        return host.lower()
+
+
+def _one_relay_an_address(
+    relays: Iterable[Relay], configuration: scl.Scl | None, told: MotorsFile, problems: Problems
+) -> None:
+    sharing: dict[str, list[str]] = {}
+    for relay in relays:
+        address = str(scl.Address(_canonical(relay.host), relay.port))
+        sharing.setdefault(address, []).append(relay.name)
+    for address, names in sharing.items():
+        if len(names) > 1:
+            path = told.path
+            if configuration is not None and not told.relays.keys() & set(names):
+                path = configuration.path
+            problems.add(
+                Problem(
+                    str(path),
+                    f"relays {' and '.join(names)}",
+                    "an address for each relay (host and port, or P elements IP and MMS-Port of its SCL)",
+                    f"{address} for {len(names)} of them",
+                )
             )
-        seen.add(name)
-
-
-def _one_relay_an_address(configuration: scl.Scl, relays: Iterable[str]) -> None:
-    for address, sharing in configuration.shared_addresses(relays).items():
-        raise PlantError(
-            configuration.path,
-            f"relays {' and '.join(sharing)}",
-            expected="an address for each relay (P elements IP and MMS-Port)",
-            found=f"{address} for {len(sharing)} of them",
-        )
-
-
-def _relay(configuration: scl.Scl, feeder: scl.MotorFeeder, overrides: Overrides) -> Relay:
-    """Return the relay with what its SCL offers and what the motors file says of it."""
-    ied = configuration.ied(feeder.ied)
-    address = configuration.address(feeder.ied)
-    points = recognise(ied)
-    return Relay(
-        name=ied.name,
-        site=feeder.site,
-        host=address.host,
-        port=address.port,
-        manufacturer=ied.manufacturer,
-        type=ied.type,
-        trigger_control=points.trigger,
-        record_made=points.record_made,
-        fault_number=points.record_number,
-        report_control=points.report_control,
-        metering_data_set=points.metering_data_set,
-        measurands=measurands_from_scl(ied),
-        expected=offer_from_scl(ied),
-        overrides=overrides,
-    )

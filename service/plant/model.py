@@ -28,6 +28,7 @@ class Relay:
     measurands: what it measures all the time.
     expected: all that the SCL describes, for comparison with what the relay offers.
     overrides: what the motors file says instead of what would be recognised.
+    time_zone: IANA name of the zone in which its clock runs; None for UTC.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Relay:
     measurands: tuple[Measurand, ...] = ()
     expected: Offer | None = field(default=None, compare=False, repr=False)
     overrides: Overrides = AS_RECOGNISED
+    time_zone: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

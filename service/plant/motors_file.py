@@ -1,32 +1,39 @@
-"""Reads the motors file: what it says of each motor, its relay, and the buses that motors share."""
+"""Reads the motors file: what it says of each motor, of relays, and of the buses that motors share."""
 
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
 
-from core.machines.motor_file import MotorFileError, motor_from_table
-from core.machines.parameters import Motor
-from core.machines.sensors import SensorClass
-from service.plant.errors import PlantError
-from service.plant.overrides import OverrideError, Overrides, overrides_from_table
+from service.configuration.problems import Problem, Problems, nearest
+from service.plant.errors import plant_error
+from service.plant.overrides import AS_RECOGNISED, OverrideError, Overrides, overrides_from_table
+from service.plant.relay_entry import RelayEntry, relay_entry
 from service.plant.schedule import Schedule
+from service.plant.tables import PlantTable, is_text, shown
 
-DEFAULT_SENSORS = SensorClass()
+TABLES = ("motor", "relay", "bus")
 
 
 @dataclass(frozen=True, slots=True)
 class MotorEntry:
     """What the file says of one motor and its relay.
 
+    data: the tables of its nameplate, parameters and the like.
+    description: in words; None where the file has none.
+    relay: name of its relay; None where it names none.
     bus: the bus it names; None where it names none.
+    is_sound: whether all of this could be read.
     """
 
-    motor: Motor
+    name: str
+    data: Mapping[str, object]
+    description: str | None
+    relay: str | None
     schedule: Schedule | None
     overrides: Overrides
     bus: str | None
+    is_sound: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,32 +46,38 @@ class BusEntry:
 
 @dataclass(frozen=True, slots=True)
 class MotorsFile:
-    """Motors and buses by their names."""
+    """Motors, relays and buses by their names."""
 
+    path: Path
     motors: Mapping[str, MotorEntry]
+    relays: Mapping[str, RelayEntry]
     buses: Mapping[str, BusEntry]
 
 
-def read_motors_file(path: Path, typical: Mapping[str, SensorClass]) -> MotorsFile:
-    """Read the file.
+def read_motors_file(path: Path, problems: Problems) -> MotorsFile:
+    """Read the file; what is wrong in its tables is added to the problems.
 
-    typical: class of sensors that is typical of a motor's relay, by motor; the file's own wins.
-
-    Raises PlantError.
+    Raises PlantError where the file cannot be read at all.
     """
     document = _document(path)
-    motors = document.pop("motor", None)
-    buses = document.pop("bus", [])
-    if document or not _are_tables(motors) or not _are_tables(buses):
-        found = ", ".join(document) or ("none" if motors is None else "something else of these names")
-        raise PlantError(
-            path, "top level", expected="[[motor]] and [[bus]] tables and nothing else", found=found
+    for unknown in [name for name in document if name not in TABLES]:
+        problems.add(
+            Problem(
+                str(path),
+                "top level",
+                "[[motor]], [[relay]] and [[bus]] tables and nothing else",
+                unknown,
+                nearest(unknown, TABLES),
+            )
         )
-    entries: dict[str, MotorEntry] = {}
-    for name, table in _named(motors, "motor", path):
-        entries[name] = _motor_entry(table, name, path, typical.get(name, DEFAULT_SENSORS))
+    entries = {kind: dict(_tables(document, kind, path, problems)) for kind in TABLES}
+    if not entries["motor"] and not problems:
+        problems.add(Problem(str(path), "top level", "a [[motor]] table for each motor", "none"))
     return MotorsFile(
-        entries, {name: _bus_entry(table, name, path) for name, table in _named(buses, "bus", path)}
+        path,
+        {name: _motor_entry(table, name) for name, table in entries["motor"].items()},
+        {name: relay_entry(table, name) for name, table in entries["relay"].items()},
+        {name: _bus_entry(table) for name, table in entries["bus"].items()},
     )
 
 
@@ -72,74 +85,78 @@ def _document(path: Path) -> dict[str, object]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
-        raise PlantError(
+        raise plant_error(
             path, "file", expected="a TOML file with [[motor]] tables", found="no file"
         ) from error
     except OSError as error:
-        raise PlantError(path, "file", expected="a readable file", found=str(error)) from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise PlantError(path, "file", expected="valid TOML in UTF-8", found=str(error)) from error
+        raise plant_error(path, "file", expected="a readable file", found=str(error)) from error
+    except (ValueError, RecursionError) as error:  # also of tables or numbers that Python has no room for
+        raise plant_error(path, "file", expected="valid TOML in UTF-8", found=str(error)) from error
 
 
-def _are_tables(value: object) -> bool:
-    return isinstance(value, list) and all(isinstance(table, dict) for table in value)
-
-
-def _named(tables: object, kind: str, path: Path) -> Iterator[tuple[str, dict[str, object]]]:
-    """Yield each table with its name. Raises PlantError for a name that is missing or there twice."""
+def _tables(
+    document: Mapping[str, object], kind: str, path: Path, problems: Problems
+) -> Iterator[tuple[str, PlantTable]]:
+    """Yield each table of a kind with its name, the first of each name."""
+    given = document.get(kind, [])
+    if not isinstance(given, list):
+        problems.add(Problem(str(path), kind, f"[[{kind}]] tables, with two brackets", shown(given)))
+        return
     seen: set[str] = set()
-    for number, table in enumerate(cast(list[dict[str, object]], tables), start=1):
-        name = table.pop("name", None)
-        if not isinstance(name, str) or not name:
-            raise PlantError(path, f"{kind} {number}: name", expected=f"the {kind}'s name", found=repr(name))
-        if name in seen:
-            raise PlantError(
-                path, f"{kind} {number}: name", expected=f"each {kind} once", found=f"{name} again"
-            )
-        seen.add(name)
-        yield name, table
+    for number, values in enumerate(given, start=1):
+        whose = f"{kind} {number}"
+        if not isinstance(values, dict):
+            problems.add(Problem(str(path), whose, "a table", shown(values)))
+            continue
+        name = values.pop("name", None)
+        if not isinstance(name, str) or not is_text(name):
+            problems.add(Problem(str(path), f"{whose}: name", f"the {kind}'s name", repr(name)))
+        elif name in seen:
+            problems.add(Problem(str(path), f"{whose}: name", f"each {kind} once", f"{name} again"))
+        else:
+            seen.add(name)
+            yield name, PlantTable(values, f"{kind} {name}", path, problems)
 
 
-def _motor_entry(table: dict[str, object], name: str, path: Path, typical: SensorClass) -> MotorEntry:
-    schedule = _schedule(table, path, f"motor {name}")
-    bus = table.pop("bus", None)
-    if bus is not None and (not isinstance(bus, str) or not bus):
-        raise PlantError(path, f"motor {name}: bus", expected="the name of a bus", found=repr(bus))
+def _motor_entry(table: PlantTable, name: str) -> MotorEntry:
+    if "/" in name:
+        table.refuse("name", "a name without '/', which parts addresses of the REST API", name)
+    description = table.text("description", "what the motor drives, in words")
+    schedule = table.schedule()
+    bus = table.text("bus", "the name of a bus")
+    relay, overrides = _relay_of_motor(table)
+    is_sound = table.is_sound
+    return MotorEntry(name, table.rest(), description, relay, schedule, overrides, bus, is_sound)
+
+
+def _relay_of_motor(table: PlantTable) -> tuple[str | None, Overrides]:
+    """Read `relay = "NAME"` or the table [motor.relay], which has a name or not."""
+    value = table.take("relay")
+    if value is None:
+        return None, AS_RECOGNISED
+    decided: dict[str, object] = {"name": value} if isinstance(value, str) else {}
+    if isinstance(value, dict):
+        decided = dict(value)
+    elif not decided:
+        table.refuse("relay", "the name of a relay, or a table", value)
+    name = decided.pop("name", None)
+    if name is not None and not (isinstance(name, str) and is_text(name)):
+        table.refuse("relay.name", "the name of a relay", name)
+        name = None
     try:
-        overrides = overrides_from_table(table.pop("relay", {}))
-        motor = motor_from_table(table, name=name, source=str(path), typical=typical)
-    except (MotorFileError, OverrideError) as error:
-        raise PlantError(
-            path, f"motor {name}: {error.field}", expected=error.expected, found=error.found
-        ) from error
-    return MotorEntry(motor, schedule, overrides, bus)
+        return name, overrides_from_table(decided)
+    except OverrideError as error:
+        table.tell(error.field, expected=error.expected, found=error.found, nearest=error.nearest)
+        return name, AS_RECOGNISED
 
 
-def _bus_entry(table: dict[str, object], name: str, path: Path) -> BusEntry:
-    schedule = _schedule(table, path, f"bus {name}")
-    common = table.pop("common_voltage_transformer", False)
-    if not isinstance(common, bool):
-        raise PlantError(
-            path,
-            f"bus {name}: common_voltage_transformer",
-            expected="true (all relays have their voltages from one transformer) or false",
-            found=repr(common),
-        )
-    if table:
-        raise PlantError(
-            path,
-            f"bus {name}: {next(iter(table))}",
-            expected="one of name, schedule, common_voltage_transformer",
-            found="an unknown key",
-        )
-    return BusEntry(schedule, common)
-
-
-def _schedule(table: dict[str, object], path: Path, whose: str) -> Schedule | None:
-    expression = table.pop("schedule", None)
-    if expression is None:
-        return None
-    try:
-        return Schedule.parse(expression if isinstance(expression, str) else "")
-    except ValueError as error:
-        raise PlantError(path, f"{whose}: schedule", expected=str(error), found=repr(expression)) from error
+def _bus_entry(table: PlantTable) -> BusEntry:
+    entry = BusEntry(
+        table.schedule(),
+        table.flag(
+            "common_voltage_transformer",
+            "true (all relays have their voltages from one transformer) or false",
+        ),
+    )
+    table.end()
+    return entry

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from service.configuration.problems import nearest
+
 NONE = "none"
 """This word in place of a reference means: use none, whatever the relay offers."""
 
@@ -41,11 +43,12 @@ AS_RECOGNISED = Overrides()
 class OverrideError(ValueError):
     """A key of the table cannot be used; it says which one, what was expected and what was found."""
 
-    def __init__(self, field: str, *, expected: str, found: str) -> None:
+    def __init__(self, field: str, *, expected: str, found: str, nearest: str | None = None) -> None:
         super().__init__(f"{field}: expected {expected}, found {found}")
         self.field = field
         self.expected = expected
         self.found = found
+        self.nearest = nearest
 
 
 def overrides_from_table(table: object) -> Overrides:
@@ -71,8 +74,14 @@ def overrides_from_table(table: object) -> Overrides:
             found=repr(directory),
         )
     if given:
-        known = ", ".join([*_REFERENCES, "trigger_action", "events_directory"])
-        raise OverrideError(f"relay.{next(iter(given))}", expected=f"one of {known}", found="another name")
+        known = [*_REFERENCES, "trigger_action", "events_directory", "name"]
+        unknown = next(iter(given))
+        raise OverrideError(
+            f"relay.{unknown}",
+            expected=f"one of {', '.join(known)}",
+            found="another name",
+            nearest=nearest(unknown, known),
+        )
     return Overrides(
         trigger=trigger,
         trigger_action=None if action is None else TriggerAction(action),

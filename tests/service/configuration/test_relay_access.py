@@ -12,8 +12,8 @@ from service.configuration.relay_access import (
     clear_passwords,
     credentials,
 )
-from service.configuration.settings import Settings, SettingsError
-from service.plant import read_plant
+from service.configuration.settings import Settings
+from service.plant import PlantError, read_plant
 from tests.service.plant.test_files import DEMO_MOTORS
 
 TLS = RelayTls(certificate=Path("c"), key=Path("k"), pinned=(Path("p"),))
@@ -60,11 +60,9 @@ def test_the_port_of_tls_takes_the_place_of_the_scds() -> None:
 
 
 def test_a_name_that_is_no_relays_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(SettingsError, match=r"settings: relays\.A9: expected a relay of .*A1_SEL710, A2"):
+    with pytest.raises(PlantError, match=r"settings: relays\.A9: expected a relay of .*A1_SEL710, A2"):
         read_plant(demo({"A9": RelayAccess()}))
     monkeypatch.setenv(f"{PASSWORD_VARIABLE}A8", PASSWORD)
-    with pytest.raises(
-        SettingsError, match=rf"environment: {PASSWORD_VARIABLE}A8: expected a relay"
-    ) as failure:
+    with pytest.raises(PlantError, match=rf"environment: {PASSWORD_VARIABLE}A8: expected a relay") as failure:
         read_plant(demo({}))
     assert PASSWORD not in str(failure.value)

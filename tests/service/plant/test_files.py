@@ -4,7 +4,7 @@ import pytest
 
 import scl
 from core.machines.sensors import SensorClass
-from service.configuration.settings import Settings, SettingsError
+from service.configuration.settings import Settings
 from service.plant import Bus, Overrides, PlantError, Schedule, read_plant
 from testing.service.busbar import BUSBAR, scd_with_a_busbar
 
@@ -60,7 +60,8 @@ def test_the_demo_plant(motors: Path) -> None:
         (
             "# The demo",
             "motors = 6 # The demo",
-            "top level: expected [[motor]] and [[bus]] tables and nothing else, found motors",
+            "top level: expected [[motor]], [[relay]] and [[bus]] tables and nothing else, found motors "
+            "(did you mean motor?)",
         ),
         ("[[motor]]", "[[motor", "expected valid TOML in UTF-8"),
     ],
@@ -80,7 +81,9 @@ def test_a_motor_the_scd_does_not_have(motors: Path) -> None:
     extra = content[content.index('name = "PUMP-A1"') : content.index('name = "FAN-A2"') - len("[[motor]]\n")]
     motors.write_text(content + "\n[[motor]]\n" + extra.replace("PUMP-A1", "PUMP-Z9"))
     with pytest.raises(
-        PlantError, match=r"motor PUMP-Z9: expected a motor of demo_plant\.scd \(COMPRESSOR-B2"
+        PlantError,
+        match=r"motor PUMP-Z9: relay: expected the name of its relay \(relay = \"NAME\" of a \[\[relay\]\] "
+        r"table\), or a motor of demo_plant\.scd \(COMPRESSOR-B2.*found none",
     ):
         read_plant(settings(motors))
 
@@ -95,7 +98,7 @@ def test_a_motor_the_scd_does_not_have(motors: Path) -> None:
             '<P type="MMS-Port">10211</P>',
             '<P type="MMS-Port">10210</P>',
             "relays A1_SEL710 and A2_SEL710: expected an address for each relay "
-            "(P elements IP and MMS-Port), found 127.0.0.1:10210 for 2 of them",
+            "(host and port, or P elements IP and MMS-Port of its SCL), found 127.0.0.1:10210 for 2 of them",
         ),
         ('<P type="MMS-Port">10211</P>', '<P type="MMS-Port">70000</P>', "expected a port from 1 to 65535"),
         ("</SCL>", "", "expected"),
@@ -121,7 +124,7 @@ def test_files_that_are_not_there(motors: Path, tmp_path: Path) -> None:
         read_plant(settings(tmp_path))
     with pytest.raises(PlantError, match=r"none\.scd"):
         read_plant(settings(motors, tmp_path / "none.scd"))
-    with pytest.raises(SettingsError, match="settings: scd: expected the path of the plant's SCD file"):
+    with pytest.raises(PlantError, match="settings: scd: expected the path of the plant's SCD file"):
         read_plant(Settings(motors=motors))
 
 

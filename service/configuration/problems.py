@@ -1,0 +1,90 @@
+"""What is wrong in the files and variables that configure the service, as values and in words."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from difflib import get_close_matches
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One thing that is wrong.
+
+    source: the file, or "environment".
+    field: the key in it, such as "motor P-101A: schedule".
+    nearest: the known key that was probably meant; None where none is like it.
+    """
+
+    source: str
+    field: str
+    expected: str
+    found: str
+    nearest: str | None = None
+
+    def __str__(self) -> str:
+        meant = "" if self.nearest is None else f" (did you mean {self.nearest}?)"
+        return f"{self.source}: {self.field}: expected {self.expected}, found {self.found}{meant}"
+
+    def document(self) -> dict[str, str | None]:
+        """Return the problem as a JSON document."""
+        return asdict(self)
+
+
+class ConfigurationError(ValueError):
+    """The configuration cannot be used. It has at least one problem, and its text has a line for each."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(map(str, self.problems)))
+
+    @property
+    def source(self) -> str:
+        """Return where the first problem is."""
+        return self.problems[0].source
+
+    @property
+    def field(self) -> str:
+        """Return the key of the first problem."""
+        return self.problems[0].field
+
+    @property
+    def expected(self) -> str:
+        """Return what the first problem expected."""
+        return self.problems[0].expected
+
+    @property
+    def found(self) -> str:
+        """Return what the first problem found."""
+        return self.problems[0].found
+
+
+class Problems:
+    """Problems as they are found, so that all of them can be told at once."""
+
+    def __init__(self) -> None:
+        self._found: list[Problem] = []
+
+    def __bool__(self) -> bool:
+        return bool(self._found)
+
+    def __iter__(self) -> Iterator[Problem]:
+        return iter(self._found)
+
+    def add(self, problem: Problem) -> None:
+        """Keep one more problem."""
+        self._found.append(problem)
+
+    @contextmanager
+    def collected(self) -> Iterator[None]:
+        """Keep the problems that the block raises. What follows the block goes on without its result."""
+        try:
+            yield
+        except ConfigurationError as error:
+            self._found.extend(error.problems)
+
+
+def nearest(unknown: str, known: Iterable[str]) -> str | None:
+    """Return the known name that is most like an unknown one; None where none is like it."""
+    names = {name.casefold(): name for name in known}
+    found = get_close_matches(unknown.casefold(), names, n=1, cutoff=0.7)
+    return names[found[0]] if found else None

@@ -1,0 +1,124 @@
+"""Relays as the plant's files describe them: an IED of the SCD, one of its own SCL file, or an address."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import scl
+from scl.configuration import MMS_PORT
+from scl.ied_model import Ied
+from service.configuration.problems import Problem
+from service.plant.errors import PlantError, plant_error
+from service.plant.metering import measurands_from_scl
+from service.plant.model import Relay
+from service.plant.offer import offer_from_scl
+from service.plant.overrides import Overrides
+from service.plant.recognition import recognise
+from service.plant.relay_entry import RelayEntry
+
+TEMPLATE = "TEMPLATE"
+"""The IED of an ICD has this name, which says that its own is yet to be given (IEC 61850-6)."""
+
+
+def relay_of_ied(
+    configuration: scl.Scl, ied: Ied, site: str, entry: RelayEntry, overrides: Overrides
+) -> Relay:
+    """Return a relay that has an SCL file; the motors file wins where it says more. Raises PlantError."""
+    address = None if entry.host and entry.port else _address(configuration, ied.name, entry)
+    points = recognise(ied)
+    return Relay(
+        name=entry.name,
+        site=site,
+        host=entry.host or (address.host if address else ""),
+        port=entry.port or (address.port if address else MMS_PORT),
+        manufacturer=entry.manufacturer or ied.manufacturer,
+        type=entry.type or ied.type,
+        trigger_control=points.trigger,
+        record_made=points.record_made,
+        fault_number=points.record_number,
+        report_control=points.report_control,
+        metering_data_set=points.metering_data_set,
+        measurands=measurands_from_scl(ied),
+        expected=offer_from_scl(ied),
+        overrides=overrides,
+        time_zone=entry.time_zone,
+    )
+
+
+def relay_without_scl(entry: RelayEntry, site: str, path: Path, overrides: Overrides) -> Relay:
+    """Return a relay of which only the address is known: it is asked what it offers. Raises PlantError."""
+    if entry.host is None:
+        raise plant_error(
+            path,
+            f"relay {entry.name}: host",
+            expected="the relay's address (host), or its CID with an address (scl)",
+            found="none",
+        )
+    return Relay(
+        name=entry.name,
+        site=site,
+        host=entry.host,
+        port=entry.port or MMS_PORT,
+        manufacturer=entry.manufacturer or "",
+        type=entry.type or "",
+        trigger_control=None,
+        record_made=None,
+        fault_number=None,
+        report_control=None,
+        metering_data_set=None,
+        overrides=overrides,
+        time_zone=entry.time_zone,
+    )
+
+
+def read_own_scl(entry: RelayEntry, path: Path, subnetwork: str | None) -> tuple[scl.Scl, Ied]:
+    """Read the SCL file of one relay, and find its IED: the one of its name, or the only one.
+
+    path: of the motors file, for messages.
+
+    Raises PlantError.
+    """
+    file = entry.scl or path
+    try:
+        configuration = scl.read(file)
+        if [ied.name for ied in configuration.ieds] == [TEMPLATE]:
+            configuration = _named(file, entry.name)
+        if subnetwork in [network.name for network in configuration.communication]:
+            configuration = configuration.seen_from(str(subnetwork))
+    except scl.SclError as error:
+        raise PlantError([scl_problem(error)]) from error
+    names = [ied.name for ied in configuration.ieds]
+    if entry.name in names or len(names) == 1:
+        return configuration, configuration.ied(entry.name if entry.name in names else names[0])
+    raise plant_error(
+        path,
+        f"relay {entry.name}: scl",
+        expected=f"a file with one IED, or with one called {entry.name}",
+        found=f"{file.name} with {', '.join(names[:20]) or 'none'}",
+    )
+
+
+def scl_problem(error: scl.SclError) -> Problem:
+    """Return what is wrong in an SCL file."""
+    line = "" if error.line is None else f"line {error.line}: "
+    return Problem(str(error.path), f"{line}{error.element or 'file'}", error.expected, error.found)
+
+
+def _named(file: Path, name: str) -> scl.Scl:
+    """Read an ICD as if its IED had the relay's name: logical devices are called by it. Raises SclError."""
+    with TemporaryDirectory() as folder:
+        instance = Path(folder) / file.name
+        scl.instantiate(file, instance, name)
+        return scl.read(instance)
+
+
+def _address(configuration: scl.Scl, ied_name: str, entry: RelayEntry) -> scl.Address | None:
+    """Return the address in the SCL file; None where the motors file has the host and the SCL no address.
+
+    Raises PlantError.
+    """
+    try:
+        return configuration.address(ied_name)
+    except scl.SclError as error:
+        if entry.host is not None:
+            return None
+        raise PlantError([scl_problem(error)]) from error
