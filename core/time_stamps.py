@@ -14,6 +14,7 @@ SECONDS_END: Final = len("2026-01-31T12:00:00")
 MAX_LENGTH: Final = 64
 """Of the text of a time: all digits of a nanosecond and a few more."""
 
+_DATE = re.compile(r"\d{4}-\d\d-\d\d", re.ASCII)
 _RFC3339 = re.compile(r"(\d{4}-\d\d-\d\d)[Tt](\d\d:\d\d:\d\d)(?:\.(\d+))?([Zz]|[+-]\d\d:\d\d)", re.ASCII)
 
 
@@ -35,14 +36,14 @@ def rfc3339(time_ns: int) -> str:
 
 
 def nanoseconds(text: str) -> int:
-    """Return an RFC 3339 time as UTC [ns].
+    """Return an RFC 3339 time as UTC [ns]; a date alone is its beginning in UTC.
 
     Times beyond 64 bits are moved to the first or last that they hold.
 
     Parameters
     ----------
     text : str
-        The time as text, in any zone.
+        The time as text, in any zone, or a date.
 
     Returns
     -------
@@ -52,11 +53,16 @@ def nanoseconds(text: str) -> int:
     Raises
     ------
     ValueError
-        If the text is no RFC 3339 time.
+        If the text is no RFC 3339 time and no date.
     """
+    if _DATE.fullmatch(text):
+        text = f"{text}T00:00:00Z"
     match = _RFC3339.fullmatch(text) if len(text) <= MAX_LENGTH else None
     if match is None:
-        raise ValueError("expected an RFC 3339 time such as 2026-01-31T12:00:00Z")
+        raise ValueError(
+            f"expected an RFC 3339 time such as 2026-01-31T12:00:00Z or a date such as 2026-01-31, "
+            f"found {text[:MAX_LENGTH]!a}"
+        )
     date, clock, fraction, zone = match.groups()
     leap = clock.endswith(":60")
     whole = datetime.fromisoformat(f"{date}T{clock[:-2] + '59' if leap else clock}{zone.upper()}")

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import version
 
-from fastapi import APIRouter, FastAPI, Response
+from fastapi import APIRouter, Depends, FastAPI, Response
 from fastapi.openapi.utils import get_openapi
 
 from service.api import (
@@ -26,6 +26,7 @@ from service.api.host_guard import HostGuard
 from service.api.limits.arrivals import Arrivals
 from service.api.limits.body_limits import BodyLimits, Route, document
 from service.api.limits.long_lists import LongLists
+from service.api.query_parameters import refuse_unknown_parameters
 
 PREFIX = "/api/v1"
 DESCRIPTION = """Stator condition of every motor of the plant, from the protection relays it already has.
@@ -45,7 +46,7 @@ def create_app(context: ApiContext) -> FastAPI:
         redoc_url=None,
     )
     app.state.context = context
-    api = APIRouter(prefix=PREFIX)
+    api = APIRouter(prefix=PREFIX, dependencies=[Depends(refuse_unknown_parameters)])
     for part in (
         motors,
         conditions,
@@ -95,7 +96,11 @@ def _complete_document(app: FastAPI, limits: Mapping[Route, int]) -> None:
     def written() -> bytes:
         return json.dumps(openapi()).encode()
 
-    @app.get(f"{PREFIX}/openapi.json", include_in_schema=False)
+    @app.get(
+        f"{PREFIX}/openapi.json",
+        include_in_schema=False,
+        dependencies=[Depends(refuse_unknown_parameters)],
+    )
     async def get_openapi_document() -> Response:
         return Response(written(), media_type="application/json")
 

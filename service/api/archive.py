@@ -1,12 +1,28 @@
 """The files of a recording as a ZIP archive, made while it is sent: it is neither in memory nor on disk."""
 
 import io
+import re
 import zipfile
 from collections.abc import Iterator
 
+from core.time_stamps import SECONDS_END, rfc3339
 from service.recording_store.store import StoredRecording
+from service.storage.records import RecordingEntry
 
 CHUNK_BYTES = 1 << 16
+
+_UNSAFE = re.compile(r"[^A-Za-z0-9-]+")
+"""Some system or header gives these a meaning of their own."""
+
+
+def archive_name(recording: RecordingEntry) -> str:
+    """Return MOTOR_TIME.zip, such as "PUMP-A1_2026-01-31T12-00-00Z.zip", which every system takes as a name.
+
+    The time is that of the recording, or of its announcement where nobody has read it yet.
+    """
+    time_ns = recording.announced_ns if recording.recorded_ns is None else recording.recorded_ns
+    time = rfc3339(time_ns)[:SECONDS_END].replace(":", "-")
+    return f"{_UNSAFE.sub('_', recording.motor)}_{time}Z.zip"
 
 
 def zipped(stored: StoredRecording) -> Iterator[bytes]:

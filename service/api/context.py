@@ -36,6 +36,11 @@ class ApiContext:
     waveforms_read: Admission = field(default_factory=lambda: Admission("waveforms", 1, wait_s=10.0))
     waveforms_sent: Admission = field(default_factory=lambda: Admission("waveforms", 16, wait_s=10.0))
 
+    def require_motor(self, name: str | None) -> None:
+        """Raise NotFoundError where a list is asked for of a motor that there is not; None asks for all."""
+        if name is not None:
+            self.repository.motor(name)
+
 
 def _context_of(request: Request) -> ApiContext:
     context = request.app.state.context

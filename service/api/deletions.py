@@ -54,7 +54,7 @@ def delete_recording(context: Context, recording_id: UUID, reason: Reason) -> No
     delete_with_folder(context.repository, context.store, str(recording_id), reason, now_ns=time.time_ns())
 
 
-@router.get("/deletions", responses=problems())
+@router.get("/deletions", responses=problems(404))
 def list_deletions(
     context: Context,
     motor: Annotated[str | None, Query(max_length=200)] = None,
@@ -62,6 +62,7 @@ def list_deletions(
     cursor: CursorText = None,
 ) -> Page[Deletion]:
     """Return the recordings that were deleted, of one motor or of all, latest first."""
+    context.require_motor(motor)
     deletions = context.repository.deletions(motor=motor, limit=limit, after=decode(cursor, int, str))
     return page(deletions, Deletion.model_validate)
 

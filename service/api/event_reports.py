@@ -53,7 +53,7 @@ def request_event_report(
     return EventReport.model_validate(recording_request)
 
 
-@router.get("/event-reports", responses=problems())
+@router.get("/event-reports", responses=problems(404))
 def list_event_reports(
     context: Context,
     motor: Annotated[str | None, Query(max_length=200)] = None,
@@ -61,6 +61,7 @@ def list_event_reports(
     cursor: CursorText = None,
 ) -> Page[EventReport]:
     """Return the recording requests of one motor or of all motors, latest first."""
+    context.require_motor(motor)
     requests = context.repository.recording_requests(motor=motor, limit=limit, after=decode(cursor, int, str))
     return page(requests, EventReport.model_validate)
 

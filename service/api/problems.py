@@ -202,7 +202,7 @@ def _methods(request: Request) -> list[str]:
     ]
 
 
-def _location(way: Iterable[str | int]) -> str:
+def location(way: Iterable[str | int]) -> str:
     """Return the way to a fault; names in it come from the client, and may be long or no proper text."""
     text = ".".join(str(part)[:MAX_LOCATION_LENGTH] for part in way)[:MAX_LOCATION_LENGTH]
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
@@ -261,7 +261,7 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(RequestValidationError)
     async def _validation(request: Request, error: RequestValidationError) -> JSONResponse:
         errors = [
-            FieldError(location=_location(found["loc"]), message=found["msg"])
+            FieldError(location=location(found["loc"]), message=found["msg"])
             for found in error.errors()[:MAX_ERRORS]
         ]
         detail = "; ".join(f"{found.location}: {found.message}" for found in errors[:3])

@@ -13,7 +13,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
 from core.recordings import Envelope, RecordingError, read_envelope
-from service.api.archive import zipped
+from service.api.archive import archive_name, zipped
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import FieldError, ProblemError, problems
@@ -34,7 +34,7 @@ UPLOAD_ROUTES = frozenset({("POST", "/recordings")})
 """Routes that take files; bodies of others are small."""
 
 
-@router.get("/recordings", responses=problems())
+@router.get("/recordings", responses=problems(404))
 def list_recordings(
     context: Context,
     motor: Annotated[str | None, Query(max_length=200)] = None,
@@ -43,6 +43,7 @@ def list_recordings(
     cursor: CursorText = None,
 ) -> Page[Recording]:
     """Return recordings, of one motor or of all, in one state or in any, latest first."""
+    context.require_motor(motor)
     recordings = context.repository.recordings(
         motor=motor, state=state, limit=limit, after=decode(cursor, int, str)
     )
@@ -124,13 +125,16 @@ async def get_waveform(
     | {200: {"content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}}}},
 )
 def download_recording(context: Context, recording_id: UUID) -> StreamingResponse:
-    """Return the files of a recording as they came from the relay, in a ZIP archive."""
+    """Return the files of a recording as they came from the relay, in a ZIP archive.
+
+    The archive is named by the motor and the time of the recording.
+    """
     entry = context.repository.recording(str(recording_id))
     stored = context.store.find(_digest(entry))
     return StreamingResponse(
         zipped(stored),
         media_type="application/zip",
-        headers={"Content-Disposition": f'attachment; filename="{stored.name}.zip"'},
+        headers={"Content-Disposition": f'attachment; filename="{archive_name(entry)}"'},
     )
 
 

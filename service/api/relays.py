@@ -88,7 +88,7 @@ def list_gateways(context: Context) -> Page[Gateway]:
     return Page(items=[Gateway.model_validate(gateway) for gateway in gateways], next_cursor=None)
 
 
-@router.get("/alarms", responses=problems())
+@router.get("/alarms", responses=problems(404))
 def list_alarms(
     context: Context,
     ied: Annotated[
@@ -104,6 +104,9 @@ def list_alarms(
     cursor: CursorText = None,
 ) -> Page[Alarm]:
     """Return the alarms of the relays and of the motors' conditions, latest first."""
+    context.require_motor(motor)
+    if ied is not None:
+        context.repository.relay(ied)
     alarms = context.repository.alarms(
         relay=ied, motor=motor, standing=standing, limit=limit, after=decode(cursor, int, str)
     )

@@ -1,5 +1,6 @@
 """Times of the REST API: integer nanoseconds inside, RFC 3339 in UTC outside."""
 
+import re
 from typing import Annotated
 
 from pydantic import BeforeValidator, WithJsonSchema
@@ -8,13 +9,22 @@ from core.time_stamps import MAX_LENGTH, MAX_NS, nanoseconds, rfc3339
 
 __all__ = ["MAX_NS", "Time", "TimeParameter", "nanoseconds", "rfc3339"]
 
+_SPACE_FOR_PLUS = re.compile(r":\d\d(\.\d+)? \d\d:\d\d$", re.ASCII)
+"""What is left of the offset in 2026-01-31T12:00:00+01:00 where an address holds it as it is."""
+
 
 def _outside(value: object) -> object:
     return rfc3339(value) if isinstance(value, int) else value
 
 
 def _inside(value: object) -> int:
-    return nanoseconds(value if isinstance(value, str) else "")  # a number in a document is no time
+    text = value if isinstance(value, str) else ""  # a number in a document is no time
+    if _SPACE_FOR_PLUS.search(text):
+        raise ValueError(
+            f"expected an RFC 3339 time, found {text[:MAX_LENGTH]!a}: a + in an address stands for a "
+            "space; write %2B for the + of an offset, or give the time in UTC (Z)"
+        )
+    return nanoseconds(text)
 
 
 Time = Annotated[str, BeforeValidator(_outside), WithJsonSchema({"type": "string", "format": "date-time"})]
@@ -23,6 +33,13 @@ Time = Annotated[str, BeforeValidator(_outside), WithJsonSchema({"type": "string
 TimeParameter = Annotated[
     int,
     BeforeValidator(_inside),
-    WithJsonSchema({"type": "string", "format": "date-time", "maxLength": MAX_LENGTH}),
+    WithJsonSchema(
+        {
+            "anyOf": [
+                {"type": "string", "format": "date-time", "maxLength": MAX_LENGTH},
+                {"type": "string", "format": "date"},
+            ]
+        }
+    ),
 ]
-"""A time in a request is RFC 3339 and becomes nanoseconds."""
+"""A time in a request is RFC 3339, or a date for its beginning in UTC, and becomes nanoseconds."""

@@ -17,8 +17,8 @@ def show_demo(url: str, *, as_json: bool) -> None:
     """Print each motor's condition and truth. Raises CommandError."""
     with failing_clearly(ServiceError, TruthError), ServiceClient(url) as service:
         motors = ask_plant(service)
-    right = sum(motor.is_right is True for motor in motors)
-    judged = sum(motor.is_right is not None for motor in motors)
+        right = sum(motor.is_right is True for motor in motors)
+        judged = sum(motor.is_right is not None for motor in motors)
     if as_json:
         print_document({"motors": [motor.as_dict() for motor in motors], "right": right, "judged": judged})
         return

@@ -69,8 +69,8 @@ class ServiceClient:
         cursor: dict[str, str] = {}
         while True:
             page = self.get(path, **query, **cursor)
-            items = page["items"]
-            if not isinstance(items, list):
+            items = page.get("items")
+            if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
                 raise ServiceError(f"{self._url}{API}{path}: expected a list of items")
             yield from items
             following = page.get("next_cursor")

@@ -1,5 +1,6 @@
 """The state of a running demo plant: each motor's condition beside the truth."""
 
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -7,7 +8,7 @@ from datetime import datetime
 from scl import DEMO_PLANT_SCD
 from service.client.conditions import condition_of
 from service.client.rest_client import Document, ServiceClient, segment
-from service.demo import MONTH, SCENARIO
+from service.demo import MONTH, MOTORS, SCENARIO
 from service.demo.month import began, latest_s
 from service.demo.truth import Truth, TruthError, ask_course, ask_simulator
 
@@ -16,6 +17,9 @@ VERDICT = (
     "recorded_time",
 )  # fmt: skip
 LINK = ("link_state", "link_reason")
+
+MOST_NAMED = 3
+"""So many motors of another plant are named."""
 
 Truths = Mapping[str, Truth]
 """By name of the relay."""
@@ -68,13 +72,28 @@ class MotorStatus:
 def ask_plant(service: ServiceClient) -> list[MotorStatus]:
     """Return the status of every motor of a demo plant that runs, by the scenario that it plays.
 
-    Raises ServiceError, TruthError.
+    Raises ServiceError, TruthError where the service watches another plant.
     """
+    _require_demo_plant(service)
     since = began(service, MONTH)
     if since is None:
         truths = ask_simulator(DEMO_PLANT_SCD, SCENARIO)
         return ask_status(service, lambda healths: [truths] * len(healths))
     return ask_status(service, lambda healths: truths_of_month(healths, since))
+
+
+def _require_demo_plant(service: ServiceClient) -> None:
+    """Raise TruthError where the motors are not the demo's: nobody knows the truth of others."""
+    demo = {str(motor["name"]) for motor in tomllib.loads(MOTORS.read_text(encoding="utf-8"))["motor"]}
+    found = [str(motor.get("name")) for motor in service.items("/motors")]
+    others = [name for name in found if name not in demo]
+    if found and not others:
+        return
+    named = ", ".join(others[:MOST_NAMED]) + (", ..." if len(others) > MOST_NAMED else "")
+    raise TruthError(
+        f"expected a service that watches the demo plant, found one with {named or 'no motor'}: "
+        "nobody knows the truth there; mcc motors shows the conditions of any plant"
+    )
 
 
 def truths_of_month(healths: Sequence[Document], since: datetime) -> Sequence[Truths]:

@@ -10,7 +10,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, func, select
 from sqlalchemy.engine.interfaces import DBAPIConnection
 from sqlalchemy.pool import ConnectionPoolEntry
 
-from service.storage.database_url import parsed_url
+from service.storage.database_url import POSTGRESQL, parsed_url
 from service.storage.errors import StorageError
 
 BUSY_TIMEOUT_S = 30.0
@@ -40,7 +40,7 @@ def connect(url: str, *, busy_timeout_s: float = BUSY_TIMEOUT_S) -> Engine:
     serializer = partial(json.dumps, allow_nan=False)
     if parsed.get_backend_name() != "sqlite":
         if parsed.drivername == "postgresql":
-            parsed = parsed.set(drivername="postgresql+psycopg")
+            parsed = parsed.set(drivername=POSTGRESQL)
         try:
             return create_engine(parsed, json_serializer=serializer, pool_pre_ping=True)
         except ModuleNotFoundError as error:

@@ -10,12 +10,17 @@ class StorageError(Exception):
 
 
 class NotFoundError(StorageError):
-    """There is no such thing: `kind` ("motor", "recording", ...) and the name or id asked for."""
+    """There is no such thing: `kind` ("motor", "recording", ...) and the name or id asked for.
 
-    def __init__(self, kind: str, name: str) -> None:
+    nearest: the name that was meant, perhaps.
+    """
+
+    def __init__(self, kind: str, name: str, *, nearest: str | None = None) -> None:
         self.kind = kind
         self.name = name
-        super().__init__(f"there is no {kind} {name[:100]!r}")
+        self.nearest = nearest
+        hint = "" if nearest is None else f"; did you mean {nearest!r}?"
+        super().__init__(f"there is no {kind} {name[:100]!r}{hint}")
 
 
 class OutOfServiceError(StorageError):

@@ -31,7 +31,13 @@ def test_forms_of_a_time(text: str, same: str) -> None:
     assert rfc3339(nanoseconds(text)) == same
 
 
-@pytest.mark.parametrize("text", ["", "2026-01-31", "2026-01-31T12:00:00", "2026-02-31T12:00:00Z", "1"])
+def test_a_date_is_its_beginning() -> None:
+    assert nanoseconds("2026-01-31") == nanoseconds("2026-01-31T00:00:00Z")
+
+
+@pytest.mark.parametrize(
+    "text", ["", "2026-1-31", "2026-02-30", "2026-01-31T12:00:00", "2026-02-31T12:00:00Z", "1"]
+)
 def test_what_is_no_time(text: str) -> None:
     with pytest.raises(ValueError):  # noqa: PT011  # any ValueError is what the contract says
         nanoseconds(text)

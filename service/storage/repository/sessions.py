@@ -1,6 +1,6 @@
 """Transactions, and the step from table rows to plain values."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import fields
 from threading import Lock
@@ -12,9 +12,10 @@ from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from service.storage.engine import WRITES, busy_timeout_s_of
 from service.storage.errors import NotFoundError
-from service.storage.models import Base
+from service.storage.models import Base, IedRow, MotorRow
 from service.storage.records import Cursor, Page
 from service.storage.repository.counting_session import CountingSession
+from service.storage.repository.nearest_name import nearest_name
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 Row = TypeVar("Row", bound=Base)
 Item = TypeVar("Item")
 Order = Sequence[InstrumentedAttribute[str] | InstrumentedAttribute[int]]
+
+NAMES: Mapping[type[Base], InstrumentedAttribute[str]] = {MotorRow: MotorRow.name, IedRow: IedRow.name}
+"""People type the keys of these tables, and may misspell them."""
 
 
 class Sessions:
@@ -77,7 +81,8 @@ def found(session: Session, row_type: type[Row], key: str, kind: str, *, lock: b
     """
     row = session.get(row_type, key, with_for_update={"key_share": True} if lock else None)
     if row is None:
-        raise NotFoundError(kind, key)
+        nearest = nearest_name(session, NAMES[row_type], key) if row_type in NAMES else None
+        raise NotFoundError(kind, key, nearest=nearest)
     return row
 
 

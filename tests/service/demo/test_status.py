@@ -6,18 +6,25 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from fastapi import FastAPI
+from sqlalchemy import Engine
 
+from core.units import NANOSECONDS_PER_DAY
 from service.api import ApiContext, create_app
+from service.api.limits.connections import ConnectionLimits
 from service.cli import main
 from service.client.rest_client import Document, ServiceClient
 from service.configuration.settings import Settings
 from service.demo.plant import START_LIMIT_S, NotReadyError, plant_elsewhere, wait_until_ready
 from service.demo.status import MotorStatus, ask_status
 from service.demo.truth import Truth, TruthError
+from service.plant import Plant, PlantMotor, Site
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.service.job_runner import RUNNER, register_runner
+from testing.service.plants import NOW_NS, fault, motor, relay
 from testing.service.processes import MOTOR_NAMES, running_service, simulated_plant
-from tests.service.api.serving import serving
+from tests.service.api.serving import listening, serving
 from tests.service.fixtures import database_url, engine, repository
 
 __all__ = ["database_url", "engine", "repository"]
@@ -99,3 +106,47 @@ def test_the_plant_of_somebody_else_is_no_demo(repository: Repository, tmp_path:
         pytest.raises(TruthError, match="watches the demo plant, found one with the relay A"),
     ):
         ask_status(service, lambda healths: [{"B1_SEL710": FAULT_B}] * len(healths))
+
+
+@pytest.mark.parametrize("motors", [[], ["P-101A"], ["FAN-A2", "P-101A", "P-101B", "P-102"]])
+def test_another_plant_is_one_line_and_no_traceback(
+    engine: Engine, tmp_path: Path, capsys: pytest.CaptureFixture[str], motors: list[str]
+) -> None:
+    """Also where a relay has a name of the demo's, and where records are of years ago."""
+    repository, store = Repository(engine), RecordingStore(tmp_path / "recordings")
+    names = ["A2_SEL710", "R1", "R2", "R3"][: len(motors)]
+    relays = tuple(relay(name, "SITE", 10300 + number) for number, name in enumerate(names))
+    bound = tuple(
+        PlantMotor(motor(name), "", "SITE", one.name) for name, one in zip(motors, relays, strict=True)
+    )
+    repository.sync_plant(Plant((Site("SITE", ""),), relays, bound))
+    register_runner(repository)
+    for name in motors[-1:]:
+        repository.add_recording(store.store({"E.CFF": b"samples"}), motor=name, now_ns=NOW_NS)
+        claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
+        assert claimed is not None
+        years_ago_ns = NOW_NS - 10 * 365 * NANOSECONDS_PER_DAY
+        job = claimed.job.id
+        repository.finish_job(job, fault(), recorded_ns=years_ago_ns, now_ns=NOW_NS, runner=RUNNER)
+    app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
+    with serving(app) as client:
+        assert main(["demo-status", "--url", str(client.base_url), "--json"]) == 1
+    output = capsys.readouterr()
+    message = json.loads(output.out)["error"]["message"]
+    assert f"found one with {'P-101A' if motors else 'no motor'}" in message
+    assert "mcc motors" in message
+    assert output.err == f"mcc: {message}\n"
+
+
+def test_another_service_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    """It answers 200 to everything, with a document that is not ours."""
+    app = FastAPI()
+
+    @app.get("/{path:path}")
+    async def answer(path: str) -> dict[str, str]:
+        return {"path": path}
+
+    limits = ConnectionLimits(400, 10.0, 20.0, 5.0)
+    with listening(app, limits) as port:
+        assert main(["demo-status", "--url", f"http://127.0.0.1:{port}"]) == 1
+    assert capsys.readouterr().err.endswith("/api/v1/motors: expected a list of items\n")

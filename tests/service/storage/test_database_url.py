@@ -1,5 +1,6 @@
 """A database URL is printed without its password, and not at all where it is wrong."""
 
+import re
 import traceback
 
 import pytest
@@ -27,6 +28,16 @@ def test_a_url_that_ends_its_password_early_is_refused_and_told_nowhere(url: str
     with pytest.raises(StorageError, match="%40") as refused:
         connect(url)
     assert MARK not in "".join(traceback.format_exception(refused.value))
+
+
+@pytest.mark.parametrize(
+    "scheme", ["postgres", "postgres+psycopg", "postgresql+psycopg2", "postgresql+asyncpg"]
+)
+def test_another_name_of_postgresql_names_the_right_url(scheme: str) -> None:
+    words = rf"found {re.escape(scheme)}://; write postgresql\+psycopg://"
+    with pytest.raises(StorageError, match=words) as refused:
+        connect(f"{scheme}://mcc:{MARK}@db/mcc")
+    assert MARK not in str(refused.value)
 
 
 @pytest.mark.parametrize(

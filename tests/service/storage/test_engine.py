@@ -11,7 +11,7 @@ from service.storage.errors import StorageError
     [
         ("nonsense", "expected a URL such as sqlite"),
         ("sqlite://", "a database in memory"),
-        ("mysql+pymysql://mcc@db.example/mcc", "needs the Python package 'pymysql', which is not installed"),
+        ("mysql+pymysql://mcc@db.example/mcc", "expected sqlite:///FILE or postgresql\\+psycopg://"),
     ],
 )
 def test_what_cannot_be_connected_to_is_named(url: str, message: str) -> None:

@@ -1,0 +1,49 @@
+"""Query parameters that a route does not have are refused: a misspelt one would silently select nothing."""
+
+from difflib import get_close_matches
+from http import HTTPStatus
+
+from fastapi import Request, params
+from fastapi.dependencies.utils import get_flat_params
+from fastapi.routing import APIRoute
+
+from service.api.problems import MAX_ERRORS, FieldError, ProblemError, location
+
+LONGEST_QUOTED = 100
+
+
+def refuse_unknown_parameters(request: Request) -> None:
+    """Raise ProblemError (422) for a query parameter that the route does not have, or that is given twice."""
+    if not request.query_params:
+        return
+    known = _known(request)
+    given = request.query_params.multi_items()
+    names = [name for name, _ in given]
+    errors = [
+        FieldError(location=location(("query", name)), message=_fault(name, known))
+        for name in dict.fromkeys(names)
+        if name not in known or names.count(name) > 1
+    ][:MAX_ERRORS]
+    if errors:
+        detail = "; ".join(f"{error.location}: {error.message}" for error in errors[:3])
+        raise ProblemError(HTTPStatus.UNPROCESSABLE_ENTITY, detail[:1000], errors=errors)
+
+
+def _known(request: Request) -> list[str]:
+    """Return the names of the query parameters of the route that answers."""
+    route = request.scope["route"]
+    if not isinstance(route, APIRoute):
+        return []
+    fields = get_flat_params(route.dependant)
+    return [field.alias for field in fields if isinstance(field.field_info, params.Query)]
+
+
+def _fault(name: str, known: list[str]) -> str:
+    if name in known:
+        return "expected it once, found it several times"
+    quoted = ascii(name[:LONGEST_QUOTED])
+    if not known:
+        return f"there is no parameter {quoted} here, nor any other"
+    near = get_close_matches(name[:LONGEST_QUOTED].casefold(), known, n=1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    return f"there is no parameter {quoted} here{hint} (known: {', '.join(known)})"
