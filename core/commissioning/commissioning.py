@@ -80,7 +80,10 @@ def commission(
     begun = perf_counter()
     report = progress or _no_progress
     prior = prior_of(plate.nameplate, plate.parameters)
-    starts = [start_of(one, plate.nameplate, plate.channels, span_s=span_s) for one in recordings]
+    starts = [
+        start_of(one, plate.nameplate, plate.channels, transformers=plate.transformers, span_s=span_s)
+        for one in recordings
+    ]
     if not starts:
         raise ValueError("commissioning needs at least one recording of a start")
     vector, evaluations = _found(starts, prior, load_law or LoadLaw.CONSTANT, report)
@@ -222,7 +225,15 @@ def _result(
         _start_found(start, fit.residuals[k], point.starts[k], half, k, why)
         for k, start in enumerate(records.starts)
     )
-    motor = Motor(plate.name, plate.nameplate, point.machine, plate.channels, plate.limits, plate.sensors)
+    motor = Motor(
+        plate.name,
+        plate.nameplate,
+        point.machine,
+        plate.channels,
+        plate.limits,
+        plate.sensors,
+        plate.transformers,
+    )
     return Commissioning(
         motor=motor,
         parameters=estimates,

@@ -15,7 +15,7 @@ from core.commissioning.onset import current_onset, quiet_offset, voltage_onset
 from core.commissioning.start import FULL_OFFSET_CYCLES, KNOWN_OFFSET_CYCLES, Start
 from core.commissioning.wiring import check_wiring
 from core.machines.base import Array
-from core.machines.parameters import ChannelNames, Nameplate
+from core.machines.parameters import ChannelNames, Nameplate, Transformers
 from core.machines.playback import DELAY_MARGIN_COLUMNS
 from core.machines.supply import supply
 from core.machines.winding_frame import to_winding_frame
@@ -26,6 +26,8 @@ from core.signals.errors import SignalError
 from core.signals.phasors import fundamental_frequency, fundamental_phasors
 from core.signals.sequence import PhaseSequence, sequence_phasors
 from core.signals.terminals import Terminals, terminals
+
+AS_RECORDED = Transformers()
 
 HIGHEST_VOLTAGE = 1.3
 """Highest voltage accepted, over the rated one."""
@@ -84,6 +86,7 @@ def start_of(
     nameplate: Nameplate,
     channels: ChannelNames,
     *,
+    transformers: Transformers = AS_RECORDED,
     span_s: tuple[float, float | None] = (0.0, None),
 ) -> Start:
     """Find the start in a recording and check that it is one.
@@ -96,6 +99,8 @@ def start_of(
         Rated values of the motor.
     channels : ChannelNames
         Names of the channels.
+    transformers : Transformers, optional
+        Ratios of the instrument transformers, where the recording does not tell them right.
     span_s : (float, float or None), optional
         Part of the record whose currents are compared, after the switching instant [s].
 
@@ -116,6 +121,8 @@ def start_of(
         currents=channels.currents,
         phase_voltages=channels.phase_voltages,
         line_voltages=channels.line_voltages,
+        voltage_ratio=transformers.voltage_ratio,
+        current_ratio=transformers.current_ratio,
     )
     source, rate = recording.source, measured.sample_rate_hz
     if measured.voltage_ab is None:

@@ -112,6 +112,8 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
         phase_voltages=None if currents_only else motor.channels.phase_voltages,
         line_voltages=None if currents_only else motor.channels.line_voltages,
         longest_s=LONGEST_RECORD_S,
+        voltage_ratio=motor.transformers.voltage_ratio,
+        current_ratio=motor.transformers.current_ratio,
     )
     assumed = measured.voltage_ab is None
     if assumed and not currents_only:

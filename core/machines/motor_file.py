@@ -2,19 +2,30 @@
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from math import inf
 from pathlib import Path
 
 from core.machines import plausibility
-from core.machines.parameters import ChannelNames, Connection, Limits, MachineParameters, Motor, Nameplate
+from core.machines.parameters import (
+    ChannelNames,
+    Connection,
+    Limits,
+    MachineParameters,
+    Motor,
+    Nameplate,
+    Transformers,
+)
 from core.machines.sensors import SensorClass
 
-TABLES = ("nameplate", "parameters", "intervals", "channels", "limits", "sensors")
+TABLES = ("nameplate", "parameters", "intervals", "channels", "limits", "sensors", "transformers")
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))
 DEFAULT_SENSORS = SensorClass()
 FAULT_LEVELS = (0.0, 0.2)
 """To the upper end of the search. A higher limit would never be reached and would switch the alarm off."""
+
+TRANSFORMER_RATIOS = (1e-4, 1e5)
+"""Also of clip-on sensors whose volts or millivolts the recording calls amperes, and of kV called V."""
 
 ROUNDING = 1e-6
 """A value may lie so far beyond its ends, relatively: files have seven digits of it."""
@@ -66,6 +77,8 @@ class Plate:
         Limits of the motor's condition.
     sensors : SensorClass
         Class of the relay's channels with their transformers.
+    transformers : Transformers, optional
+        Ratios of the instrument transformers, where the recordings do not tell them right.
     """
 
     name: str
@@ -74,6 +87,7 @@ class Plate:
     channels: ChannelNames
     limits: Limits
     sensors: SensorClass
+    transformers: Transformers = field(default_factory=Transformers)
 
 
 def read_motor(path: Path | str) -> Motor:
@@ -125,7 +139,8 @@ def motor_from_table(
 ) -> Motor:
     """Make a motor from the tables of its file.
 
-    [nameplate] and [parameters] must be there; [intervals], [channels], [limits] and [sensors] are optional.
+    [nameplate] and [parameters] must be there; [intervals], [channels], [limits], [sensors] and
+    [transformers] are optional.
 
     Parameters
     ----------
@@ -151,7 +166,15 @@ def motor_from_table(
     plate = _plate_from_table(table, name=name, source=source, typical=typical)
     if plate.parameters is None:
         raise MotorFileError(source, "[parameters]", expected="a table", found="nothing")
-    return Motor(plate.name, plate.nameplate, plate.parameters, plate.channels, plate.limits, plate.sensors)
+    return Motor(
+        plate.name,
+        plate.nameplate,
+        plate.parameters,
+        plate.channels,
+        plate.limits,
+        plate.sensors,
+        plate.transformers,
+    )
 
 
 def _table_of(path: Path) -> dict[str, object]:
@@ -185,6 +208,7 @@ def _plate_from_table(
     limits = _Table(table, "limits", source, optional=True)
     channels = _Table(table, "channels", source, optional=True)
     sensors = _Table(table, "sensors", source, optional=True)
+    transformers = _Table(table, "transformers", source, optional=True)
     rated = _nameplate(nameplate)
     plate = Plate(
         name=name,
@@ -204,11 +228,15 @@ def _plate_from_table(
             )
         ),
         sensors=_sensors(sensors, typical),
+        transformers=Transformers(
+            voltage_ratio=transformers.ratio("voltage_ratio"),
+            current_ratio=transformers.ratio("current_ratio"),
+        ),
     )
     for parameter in PARAMETERS:
         # The intervals are for readers of the file; the models use the values alone.
         intervals.interval(parameter)
-    for section in (nameplate, machine, intervals, limits, channels, sensors):
+    for section in (nameplate, machine, intervals, limits, channels, sensors, transformers):
         if section is not None:
             section.reject_unknown()
     return plate
@@ -277,6 +305,13 @@ class _Table:
         if not low * (1.0 - ROUNDING) <= value <= high * (1.0 + ROUNDING):
             raise self._error(key, expected, value)
         return float(value)
+
+    def ratio(self, key: str) -> float | None:
+        """Return a ratio of transformers, None where there is none."""
+        if self._take(key, None) is None:
+            return None
+        expected = "primary over secondary value such as 60 for 6600:110, or 1 where the values are primary"
+        return self.number(key, TRANSFORMER_RATIOS, expected)
 
     def interval(self, key: str) -> tuple[float, float] | None:
         value = self._take(key, None)

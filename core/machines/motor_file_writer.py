@@ -103,6 +103,10 @@ def motor_text(
     if motor.sensors != SensorClass():
         lines += ["", "[sensors]"]
         lines += [f"{name} = {_number(span)}" for name, span in asdict(motor.sensors).items()]
+    ratios = {name: ratio for name, ratio in asdict(motor.transformers).items() if ratio is not None}
+    if ratios:
+        lines += ["", "[transformers]"]
+        lines += [f"{name} = {_number(ratio)}" for name, ratio in ratios.items()]
     return "\n".join(lines) + "\n"
 
 

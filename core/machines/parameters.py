@@ -102,6 +102,25 @@ class ChannelNames:
 
 
 @dataclass(frozen=True, slots=True)
+class Transformers:
+    """Ratios of the instrument transformers, where the recordings do not tell them right.
+
+    A ratio turns the values as the recording has them written into primary ones, and replaces what the
+    recording itself says of ratio and side.
+
+    Parameters
+    ----------
+    voltage_ratio : float or None, optional
+        Primary over secondary voltage; 1 where the values are primary ones. None: as the recording says.
+    current_ratio : float or None, optional
+        The same of the currents.
+    """
+
+    voltage_ratio: float | None = None
+    current_ratio: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Limits:
     """Limits of a motor's condition.
 
@@ -133,6 +152,8 @@ class Motor:
         Limits of the motor's condition.
     sensors : SensorClass, optional
         Class of the relay's channels with their transformers.
+    transformers : Transformers, optional
+        Ratios of the instrument transformers, where the recordings do not tell them right.
     """
 
     name: str
@@ -141,3 +162,4 @@ class Motor:
     channels: ChannelNames = field(default_factory=ChannelNames)
     limits: Limits = field(default_factory=Limits)
     sensors: SensorClass = field(default_factory=SensorClass)
+    transformers: Transformers = field(default_factory=Transformers)

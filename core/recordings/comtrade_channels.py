@@ -27,7 +27,16 @@ def channels_of(configuration: Configuration, roles: tuple[ChannelRole, ...]) ->
         The channels, in the order of the file.
     """
     return tuple(
-        Channel(c.name, role.quantity, role.phase, role.unit, _full_scale(c, role.scale), c.ratio)
+        Channel(
+            c.name,
+            role.quantity,
+            role.phase,
+            role.unit,
+            full_scale=_full_scale(c, role.scale),
+            transformer_ratio=c.ratio,
+            applied_ratio=c.to_primary,
+            is_constant=c.gain == 0,
+        )
         for c, role in zip(configuration.analog, roles, strict=True)
     )
 

@@ -37,6 +37,10 @@ class Channel:
     transformer_ratio : float or None, optional
         Primary over secondary value of its instrument transformer, as the file tells it; None where it tells
         none, or a ratio of 1, which many a recorder writes for want of knowledge.
+    applied_ratio : float, default 1.0
+        Ratio by which the values as written were multiplied because the file says that they are secondary.
+    is_constant : bool, default False
+        Whether the file gives the channel one value whatever was sampled, as recorders do with spare inputs.
     """
 
     name: str
@@ -45,6 +49,8 @@ class Channel:
     unit: str
     full_scale: float | None = None
     transformer_ratio: float | None = None
+    applied_ratio: float = 1.0
+    is_constant: bool = False
 
 
 @dataclass(frozen=True, slots=True)

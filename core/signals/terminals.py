@@ -1,6 +1,6 @@
 """What the machine models need of a recording: terminal currents, and terminal voltages in Clarke axes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from math import ceil, inf, isfinite
 
@@ -64,6 +64,8 @@ def terminals(
     phase_voltages: tuple[str, str, str] | None = None,
     line_voltages: tuple[str, str, str] | None = None,
     longest_s: float = inf,
+    voltage_ratio: float | None = None,
+    current_ratio: float | None = None,
 ) -> Terminals:
     """Pick the terminal quantities by channel name, or by quantity and phase where no names are given.
 
@@ -82,6 +84,9 @@ def terminals(
         Names of the channels of v_ab, v_bc, v_ca.
     longest_s : float, default inf
         Of a longer record only the end is taken [s].
+    voltage_ratio, current_ratio : float or None, optional
+        Ratios of the instrument transformers by which the values as written are multiplied, instead of what
+        the recording says; None for what it says.
 
     Returns
     -------
@@ -109,23 +114,39 @@ def terminals(
     voltage_quantity, voltage_rows, voltage_axes = _voltages(recording, phase_voltages, line_voltages)
     longest = min(longest_s * recording.sample_rate_hz, recording.samples.shape[1])
     first = recording.samples.shape[1] - ceil(longest)
-    voltages = _rows(recording, voltage_rows, first)
+    currents_abc, current_channels = _primary(recording, chosen_currents, first, current_ratio)
+    voltages, voltage_channels = _primary(recording, voltage_rows, first, voltage_ratio)
     with np.errstate(invalid="ignore", over="ignore"):  # infinite samples become NaN and stay so
         voltage_ab = voltage_axes @ voltages
     return Terminals(
-        current_abc=_rows(recording, chosen_currents, first),
+        current_abc=currents_abc,
         voltage_ab=voltage_ab if voltage_rows else None,
         sample_rate_hz=recording.sample_rate_hz,
-        current_channels=tuple(recording.channels[row] for row in chosen_currents),
-        voltage_channels=tuple(recording.channels[row] for row in voltage_rows),
+        current_channels=current_channels,
+        voltage_channels=voltage_channels,
         voltages=voltages,
         voltage_axes=voltage_axes,
         voltage_quantity=voltage_quantity,
     )
 
 
-def _rows(recording: Recording, rows: tuple[int, ...], first: int) -> NDArray[np.float64]:
-    return recording.samples[:, first:][list(rows)].astype(np.float64, copy=False)
+def _primary(
+    recording: Recording, rows: tuple[int, ...], first: int, ratio: float | None
+) -> tuple[NDArray[np.float64], tuple[Channel, ...]]:
+    """Return samples and channels; with a ratio of the motor's own, that instead of the recording's."""
+    samples = recording.samples[:, first:][list(rows)].astype(np.float64, copy=False)
+    channels = [recording.channels[row] for row in rows]
+    if ratio is None:
+        return samples, tuple(channels)
+    factors = np.array([ratio / channel.applied_ratio for channel in channels])
+    with np.errstate(over="ignore"):
+        samples = samples * factors[:, np.newaxis]
+    return samples, tuple(map(_with_ratio, channels, factors.tolist(), [ratio] * len(channels)))
+
+
+def _with_ratio(channel: Channel, factor: float, ratio: float) -> Channel:
+    full_scale = None if channel.full_scale is None else channel.full_scale * factor
+    return replace(channel, full_scale=full_scale, transformer_ratio=ratio, applied_ratio=ratio)
 
 
 def _voltages(
@@ -182,7 +203,7 @@ def _find(recording: Recording, quantity: Quantity, phases: tuple[str, str, str]
     rows = [
         (phases.index(channel.phase), row)
         for row, channel in enumerate(recording.channels)
-        if channel.quantity is quantity and channel.phase in phases
+        if channel.quantity is quantity and channel.phase in phases and not channel.is_constant
     ]
     found: dict[str, int] = {}
     for index, group in groupby(sorted(rows), key=lambda item: item[0]):
@@ -220,11 +241,18 @@ def _row_of(recording: Recording, quantity: Quantity, name: str) -> int:
             expected=f"a {_WORDS[quantity]} in {unit}",
             found=f"unit {channel.unit!r}",
         )
+    if channel.is_constant:
+        raise RecordingError(
+            recording.source,
+            f"channel {name!r}",
+            expected="a channel that was sampled",
+            found="a constant: its multiplier is 0 in the configuration",
+        )
     return rows[0]
 
 
 def _listing(recording: Recording, rows: list[int] | range) -> str:
     channels = [recording.channels[row] for row in rows]
-    return ", ".join(f"{c.name!r} [{c.unit}]" for c in channels[:12]) + (
+    return ", ".join(f"{c.name!r} [{c.unit}]{', constant' * c.is_constant}" for c in channels[:12]) + (
         ", ..." if len(channels) > 12 else ""
     )

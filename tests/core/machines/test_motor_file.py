@@ -16,6 +16,7 @@ from core.machines.parameters import (
     Limits,
     MachineParameters,
     Motor,
+    Transformers,
 )
 from core.machines.sensors import SensorClass
 from testing.machines.motors import REFERENCE
@@ -196,15 +197,19 @@ names = st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() 
     plausible=plausible_motors(),
     currents=st.one_of(st.none(), st.tuples(names, names, names)),
     sensors=st.sampled_from([SensorClass(), SensorClass(0.002, 0.003, 1e-5, 2e-5)]),
+    transformers=st.sampled_from([Transformers(), Transformers(30.0), Transformers(30.0, 80.0)]),
 )
 def test_what_is_written_is_read_again(
     tmp_path_factory: pytest.TempPathFactory,
     plausible: Motor,
     currents: tuple[str, str, str] | None,
     sensors: SensorClass,
+    transformers: Transformers,
 ) -> None:
     channels = ChannelNames(currents=currents)
-    motor = replace(plausible, channels=channels, limits=Limits(0.02), sensors=sensors)
+    motor = replace(
+        plausible, channels=channels, limits=Limits(0.02), sensors=sensors, transformers=transformers
+    )
     inertia = motor.parameters.inertia_kgm2
     path = tmp_path_factory.mktemp("motor") / "PUMP-7.toml"
     write_motor(
@@ -219,6 +224,7 @@ def test_what_is_written_is_read_again(
     assert again.nameplate.connection is motor.nameplate.connection
     assert again.limits == motor.limits
     assert again.sensors == motor.sensors
+    assert again.transformers == motor.transformers
     assert ("[sensors]" in path.read_text()) is (sensors != SensorClass())
     for name in MachineParameters.__slots__:
         assert getattr(again.parameters, name) == pytest.approx(getattr(motor.parameters, name), rel=1e-6)

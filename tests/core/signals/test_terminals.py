@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -79,3 +81,26 @@ def test_what_is_missing_is_named() -> None:
         terminals(recording((CURRENTS, I_ABC)), currents=("IX", "IB", "IC"))
     with pytest.raises(RecordingError, match="phase voltage in V, found unit 'A'"):
         terminals(recording((CURRENTS, I_ABC)), phase_voltages=("IA", "IB", "IC"))
+
+
+def test_the_motors_ratios_replace_those_of_the_recording() -> None:
+    """Samples of a file that says S 10:1 are ten times what is written; of one that says P, just that."""
+    said = [replace(c, full_scale=50.0, transformer_ratio=10.0, applied_ratio=10.0) for c in CURRENTS]
+    record = recording((said, I_ABC), (PHASE_VOLTAGES, V_ABC))
+    plain = terminals(record)
+    found = terminals(record, voltage_ratio=30.0, current_ratio=80.0)
+    np.testing.assert_allclose(found.current_abc, 8.0 * plain.current_abc)
+    np.testing.assert_allclose(found.voltages, 30.0 * plain.voltages)
+    assert [c.full_scale for c in found.current_channels] == pytest.approx([400.0] * 3)
+    assert {c.transformer_ratio for c in found.voltage_channels} == {30.0}
+    primary_already = terminals(record, current_ratio=1.0)
+    np.testing.assert_allclose(primary_already.current_abc, 0.1 * plain.current_abc)
+    np.testing.assert_array_equal(primary_already.voltages, plain.voltages)
+
+
+def test_a_constant_channel_measures_nothing() -> None:
+    spare = replace(CURRENTS[0], name="IA spare", is_constant=True)
+    record = recording((CURRENTS, I_ABC), ([spare], 0.0 * I_ABC[:1]))
+    np.testing.assert_array_equal(terminals(record).current_abc, I_ABC)
+    with pytest.raises(RecordingError, match="channel 'IA spare': expected a channel that was sampled"):
+        terminals(record, currents=("IA spare", "IB", "IC"))
