@@ -7,7 +7,13 @@ import numpy as np
 
 from benchmarks.condition.circuit import Array, Complex, Windings
 from core.condition.observation import VoltageChannels
-from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
+from core.machines.parameters import (
+    MAGNETISING_OVER_SELF,
+    Connection,
+    MachineParameters,
+    Motor,
+    Nameplate,
+)
 from core.machines.sensors import SensorClass
 from core.signals.sequence import PhaseSequence
 
@@ -141,7 +147,7 @@ def motor_of(nameplate: Nameplate, figures: Array, sensors: SensorClass) -> Moto
     """Make a motor file of R_s, R_r, L_ls, L_lr and L_m."""
     R_s, R_r, L_ls, L_lr, L_m = (float(one) for one in figures)
     inertia = 0.02 * (nameplate.rated_power_W / 800.0) ** 1.2
-    parameters = MachineParameters(R_s, R_r, L_ls, L_lr, L_m / 1.5, inertia)
+    parameters = MachineParameters(R_s, R_r, L_ls, L_lr, L_m / MAGNETISING_OVER_SELF, inertia)
     return Motor("simulated", nameplate, parameters, sensors=sensors)
 
 

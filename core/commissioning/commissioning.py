@@ -24,7 +24,7 @@ from core.commissioning.unknowns import OF_A_START, Point
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
 from core.machines.motor_file import Plate
-from core.machines.parameters import Motor
+from core.machines.parameters import Motor, ParametersSource
 from core.recordings import Recording
 
 STARTING_POINTS = 6
@@ -233,6 +233,7 @@ def _result(
         plate.limits,
         plate.sensors,
         plate.transformers,
+        ParametersSource.COMMISSIONED,
     )
     return Commissioning(
         motor=motor,

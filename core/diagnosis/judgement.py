@@ -11,6 +11,7 @@ from core.diagnosis.refinement import (
 )
 from core.diagnosis.tolerance import PARAMETERS, Systematic
 from core.diagnosis.verdict import Verdict
+from core.machines.typical import TYPICAL_REASON
 from core.quality.finding import QualityFinding, finding
 
 PHASES = ("a", "b", "c")
@@ -25,6 +26,8 @@ def judge(
     case: Case, explanation: Explanation, tolerance: Systematic, level_ci95: tuple[float, float]
 ) -> tuple[Verdict, list[str]]:
     """Decide on a verdict, with its reasons in words.
+
+    With typical parameters of the rating nothing is called a fault.
 
     Parameters
     ----------
@@ -44,6 +47,19 @@ def judge(
     reasons : list of str
         Its reasons.
     """
+    verdict, reasons = _judged(case, explanation, tolerance, level_ci95)
+    if not case.motor.is_typical:
+        return verdict, reasons
+    return (Verdict.WATCH if verdict is Verdict.FAULT else verdict), [
+        *reasons[:1],
+        TYPICAL_REASON,
+        *reasons[1:],
+    ]
+
+
+def _judged(
+    case: Case, explanation: Explanation, tolerance: Systematic, level_ci95: tuple[float, float]
+) -> tuple[Verdict, list[str]]:
     limit = case.motor.limits.fault_level
     fit = explanation.fit
     phase = PHASES[case.terminal_winding(explanation.winding)]

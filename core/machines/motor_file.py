@@ -14,9 +14,11 @@ from core.machines.parameters import (
     MachineParameters,
     Motor,
     Nameplate,
+    ParametersSource,
     Transformers,
 )
 from core.machines.sensors import SensorClass
+from core.machines.typical import tolerances_of, typical_parameters
 
 TABLES = ("nameplate", "parameters", "intervals", "channels", "limits", "sensors", "transformers")
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))
@@ -79,6 +81,10 @@ class Plate:
         Class of the relay's channels with their transformers.
     transformers : Transformers, optional
         Ratios of the instrument transformers, where the recordings do not tell them right.
+    source : ParametersSource
+        Where the parameters come from; typical of the rating where the file has none.
+    intervals : dict of str to tuple of float
+        95 % intervals of parameters, by name.
     """
 
     name: str
@@ -88,6 +94,24 @@ class Plate:
     limits: Limits
     sensors: SensorClass
     transformers: Transformers = field(default_factory=Transformers)
+    source: ParametersSource = ParametersSource.GIVEN
+    intervals: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+    @property
+    def motor(self) -> Motor:
+        """The motor, with typical parameters where the file has none."""
+        parameters = self.parameters or typical_parameters(self.nameplate).parameters
+        return Motor(
+            self.name,
+            self.nameplate,
+            parameters,
+            self.channels,
+            self.limits,
+            self.sensors,
+            self.transformers,
+            self.source,
+            tolerances_of(parameters, self.source, self.intervals),
+        )
 
 
 def read_motor(path: Path | str) -> Motor:
@@ -101,7 +125,7 @@ def read_motor(path: Path | str) -> Motor:
     Returns
     -------
     Motor
-        The motor.
+        The motor, with parameters typical of its rating where the file has none.
 
     Raises
     ------
@@ -113,7 +137,7 @@ def read_motor(path: Path | str) -> Motor:
 
 
 def read_plate(path: Path | str) -> Plate:
-    """Read a MOTOR.toml that may do without [parameters].
+    """Read a MOTOR.toml as it is, without typical parameters in place of those that it leaves out.
 
     Parameters
     ----------
@@ -139,8 +163,8 @@ def motor_from_table(
 ) -> Motor:
     """Make a motor from the tables of its file.
 
-    [nameplate] and [parameters] must be there; [intervals], [channels], [limits], [sensors] and
-    [transformers] are optional.
+    [nameplate] must be there; [parameters], [intervals], [channels], [limits], [sensors] and [transformers]
+    are optional. A motor without [parameters] has those that are typical of its rating.
 
     Parameters
     ----------
@@ -163,18 +187,7 @@ def motor_from_table(
     MotorFileError
         If a value is missing or impossible, or a key is unknown.
     """
-    plate = _plate_from_table(table, name=name, source=source, typical=typical)
-    if plate.parameters is None:
-        raise MotorFileError(source, "[parameters]", expected="a table", found="nothing")
-    return Motor(
-        plate.name,
-        plate.nameplate,
-        plate.parameters,
-        plate.channels,
-        plate.limits,
-        plate.sensors,
-        plate.transformers,
-    )
+    return _plate_from_table(table, name=name, source=source, typical=typical).motor
 
 
 def _table_of(path: Path) -> dict[str, object]:
@@ -210,6 +223,8 @@ def _plate_from_table(
     sensors = _Table(table, "sensors", source, optional=True)
     transformers = _Table(table, "transformers", source, optional=True)
     rated = _nameplate(nameplate)
+    # The intervals say how far the parameters may be off; the models use the values alone.
+    ends = {name: found for name in PARAMETERS if (found := intervals.interval(name)) is not None}
     plate = Plate(
         name=name,
         nameplate=rated,
@@ -232,10 +247,9 @@ def _plate_from_table(
             voltage_ratio=transformers.ratio("voltage_ratio"),
             current_ratio=transformers.ratio("current_ratio"),
         ),
+        source=_source(machine, has_intervals=bool(ends)),
+        intervals=ends,
     )
-    for parameter in PARAMETERS:
-        # The intervals are for readers of the file; the models use the values alone.
-        intervals.interval(parameter)
     for section in (nameplate, machine, intervals, limits, channels, sensors, transformers):
         if section is not None:
             section.reject_unknown()
@@ -261,6 +275,14 @@ def _parameters(table: "_Table", nameplate: Nameplate) -> MachineParameters:
             for one in plausibility.plausible_parameters(nameplate)
         }
     )
+
+
+def _source(table: "_Table | None", *, has_intervals: bool) -> ParametersSource:
+    """Return where the parameters come from: as the file says, else commissioned if it has intervals."""
+    if table is None:
+        return ParametersSource.TYPICAL
+    usual = ParametersSource.COMMISSIONED if has_intervals else ParametersSource.GIVEN
+    return table.source("source", usual)
 
 
 def _sensors(table: "_Table", typical: SensorClass) -> SensorClass:
@@ -341,6 +363,13 @@ class _Table:
             return Connection(str(value))
         except ValueError:
             raise self._error(key, '"star" or "delta"', value) from None
+
+    def source(self, key: str, default: ParametersSource) -> ParametersSource:
+        value = self._take(key, default.value)
+        try:
+            return ParametersSource(str(value))
+        except ValueError:
+            raise self._error(key, f"one of {', '.join(ParametersSource)}", value) from None
 
     def names(self, *keys: str) -> tuple[str, str, str] | None:
         self._known.update(keys)

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from core.machines.motor_file import MotorFileError, motor_from_table
-from core.machines.parameters import ChannelNames, Limits, Motor
+from core.machines.parameters import ChannelNames, Limits, Motor, ParametersSource
 from core.machines.sensors import SensorClass
 
 Interval = tuple[float, float]
@@ -91,6 +91,8 @@ def motor_text(
         "",
         "[parameters]",
     ]
+    if motor.parameters_source is not ParametersSource.GIVEN:
+        lines.append(f"source = {_text(motor.parameters_source.value)}")
     for name, value in asdict(motor.parameters).items():
         remark = f"  {_comment(remarks[name])}" if name in remarks else ""
         lines.append(f"{name} = {_number(value)}{remark}")

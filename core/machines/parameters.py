@@ -1,10 +1,18 @@
 """Description of a motor: nameplate, equivalent-circuit parameters, channels, limits and sensors."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from enum import StrEnum
 from math import pi
+from typing import Final, Self
 
 from core.machines.sensors import SensorClass
+
+MAGNETISING_OVER_SELF: Final = 1.5
+"""L_m / L_s: the magnetising inductance of three windings together over the self-inductance of one (thesis
+3.14). An X_m of a data sheet is 2 pi f times L_m."""
+USUAL_TOLERANCE: Final = 0.1
+"""Parameters that were measured or commissioned are within 10 % of the motor's: windings warm up, data sheets
+round off."""
 
 
 class Connection(StrEnum):
@@ -12,6 +20,16 @@ class Connection(StrEnum):
 
     STAR = "star"
     DELTA = "delta"
+
+
+class ParametersSource(StrEnum):
+    """Where the parameters of a motor come from."""
+
+    GIVEN = "given"
+    COMMISSIONED = "commissioned"
+    DATA_SHEET = "data-sheet"
+    TYPICAL = "typical"
+    """Of the rating: nothing but the nameplate is known of the motor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +66,17 @@ class Nameplate:
         """Torque that load level 1 stands for, P_B / (w_b / p), at synchronous speed [N m]."""
         return self.rated_power_W * self.pole_pairs / self.rated_angular_frequency
 
+    @property
+    def base_impedance_ohm(self) -> float:
+        """Impedance of a winding that counts as one per unit: V^2 / P in star, 3 V^2 / P in delta [ohm]."""
+        base = self.rated_voltage_V**2 / self.rated_power_W
+        return 3.0 * base if self.connection is Connection.DELTA else base
+
+    @property
+    def base_inertia_kgm2(self) -> float:
+        """Inertia whose constant H = J w_m^2 / (2 P) is one second [kg m^2]."""
+        return 2.0 * self.rated_power_W / (self.rated_angular_frequency / self.pole_pairs) ** 2
+
 
 @dataclass(frozen=True, slots=True)
 class MachineParameters:
@@ -64,7 +93,7 @@ class MachineParameters:
     rotor_leakage_H : float
         L_lr', referred to the stator [H].
     stator_self_inductance_H : float
-        L_s of the thesis; the magnetising inductance is 1.5 L_s [H].
+        L_s of the thesis; the magnetising inductance is `MAGNETISING_OVER_SELF` L_s [H].
     inertia_kgm2 : float
         J of motor and load [kg m^2].
     """
@@ -79,7 +108,79 @@ class MachineParameters:
     @property
     def magnetising_inductance_H(self) -> float:
         """Magnetising inductance L_m = 1.5 L_s [H] (thesis 3.14)."""
-        return 1.5 * self.stator_self_inductance_H
+        return MAGNETISING_OVER_SELF * self.stator_self_inductance_H
+
+    @classmethod
+    def from_magnetising_inductance(
+        cls,
+        *,
+        stator_resistance_ohm: float,
+        rotor_resistance_ohm: float,
+        stator_leakage_H: float,
+        rotor_leakage_H: float,
+        magnetising_inductance_H: float,
+        inertia_kgm2: float,
+    ) -> Self:
+        """Return the parameters of a machine whose L_m is known, as data sheets have it.
+
+        Parameters
+        ----------
+        stator_resistance_ohm, rotor_resistance_ohm : float
+            R_s and R_r' [ohm].
+        stator_leakage_H, rotor_leakage_H : float
+            L_ls and L_lr' [H].
+        magnetising_inductance_H : float
+            L_m = X_m / (2 pi f) [H].
+        inertia_kgm2 : float
+            J of motor and load [kg m^2].
+
+        Returns
+        -------
+        MachineParameters
+            The parameters, with L_s = L_m / 1.5.
+        """
+        return cls(
+            stator_resistance_ohm=stator_resistance_ohm,
+            rotor_resistance_ohm=rotor_resistance_ohm,
+            stator_leakage_H=stator_leakage_H,
+            rotor_leakage_H=rotor_leakage_H,
+            stator_self_inductance_H=magnetising_inductance_H / MAGNETISING_OVER_SELF,
+            inertia_kgm2=inertia_kgm2,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterTolerances:
+    """How far the parameters of a motor may be off: shares either way, every error as likely as another.
+
+    A wide one is the logarithm of a factor: 0.7 is half to twice the parameter.
+
+    Parameters
+    ----------
+    stator_resistance_ohm, rotor_resistance_ohm : float, default 0.1
+        Of R_s and R_r'.
+    stator_leakage_H, rotor_leakage_H : float, default 0.1
+        Of L_ls and L_lr'.
+    stator_self_inductance_H : float, default 0.1
+        Of L_s.
+    """
+
+    stator_resistance_ohm: float = USUAL_TOLERANCE
+    rotor_resistance_ohm: float = USUAL_TOLERANCE
+    stator_leakage_H: float = USUAL_TOLERANCE
+    rotor_leakage_H: float = USUAL_TOLERANCE
+    stator_self_inductance_H: float = USUAL_TOLERANCE
+
+    @classmethod
+    def names(cls) -> tuple[str, ...]:
+        """Return the parameters that have one.
+
+        Returns
+        -------
+        tuple of str
+            Fields of `MachineParameters`.
+        """
+        return tuple(one.name for one in fields(cls))
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +255,10 @@ class Motor:
         Class of the relay's channels with their transformers.
     transformers : Transformers, optional
         Ratios of the instrument transformers, where the recordings do not tell them right.
+    parameters_source : ParametersSource, optional
+        Where the parameters come from.
+    tolerances : ParameterTolerances, optional
+        How far they may be off.
     """
 
     name: str
@@ -163,3 +268,10 @@ class Motor:
     limits: Limits = field(default_factory=Limits)
     sensors: SensorClass = field(default_factory=SensorClass)
     transformers: Transformers = field(default_factory=Transformers)
+    parameters_source: ParametersSource = ParametersSource.GIVEN
+    tolerances: ParameterTolerances = field(default_factory=ParameterTolerances)
+
+    @property
+    def is_typical(self) -> bool:
+        """Whether nothing but the nameplate is known, and the parameters are those of any such motor."""
+        return self.parameters_source is ParametersSource.TYPICAL

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import sqrt
 
-from core.machines.parameters import Connection, Nameplate
+from core.machines.parameters import MAGNETISING_OVER_SELF, Nameplate
 
 RATED_POWER_W = (10.0, 100e6)
 RATED_VOLTAGE_V = (10.0, 50e3)
@@ -95,19 +95,16 @@ def plausible_parameters(nameplate: Nameplate) -> Iterator[Plausible]:
     Plausible
         Range of a field of `MachineParameters`.
     """
-    base_ohm = nameplate.rated_voltage_V**2 / nameplate.rated_power_W
-    if nameplate.connection is Connection.DELTA:
-        base_ohm *= 3.0
-    w_b = nameplate.rated_angular_frequency
-    base_H = base_ohm / w_b
-    base_kgm2 = 2.0 * nameplate.rated_power_W / (w_b / nameplate.pole_pairs) ** 2
+    base_ohm = nameplate.base_impedance_ohm
+    base_H = base_ohm / nameplate.rated_angular_frequency
     of_rating = "per unit of the nameplate"
     for field in ("stator_resistance_ohm", "rotor_resistance_ohm"):
         yield _scaled(field, RESISTANCE_PU, base_ohm, "ohm", of_rating)
     for field in ("stator_leakage_H", "rotor_leakage_H"):
         yield _scaled(field, LEAKAGE_REACTANCE_PU, base_H, "H", of_rating)
-    # The magnetising inductance is 1.5 times the self-inductance.
-    yield _scaled("stator_self_inductance_H", MAGNETISING_REACTANCE_PU, base_H / 1.5, "H", of_rating)
+    base_of_self_H = base_H / MAGNETISING_OVER_SELF
+    yield _scaled("stator_self_inductance_H", MAGNETISING_REACTANCE_PU, base_of_self_H, "H", of_rating)
+    base_kgm2 = nameplate.base_inertia_kgm2
     yield _scaled("inertia_kgm2", INERTIA_CONSTANT_S, base_kgm2, "kg m^2", "s of inertia constant")
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from core.machines.base import Array
 from core.machines.batch import find_rates, play
 from core.machines.candidates import LoadLaw
-from core.machines.parameters import MachineParameters, Nameplate
+from core.machines.parameters import MAGNETISING_OVER_SELF, MachineParameters, Nameplate
 from core.machines.playback import DELAY_MARGIN_COLUMNS, Trajectories
 from core.machines.stepping import Comparison, InitialState, MachineRates, SteppedVoltage, Track
 from core.machines.supply import Supply
@@ -210,7 +210,7 @@ def _circuits(candidates: StartCandidates, share: Array) -> tuple[Array, Array]:
 
     The rotor's rows are multiplied by J_ref / J; the fifth circuit is idle, as in `healthy`.
     """
-    L_m = 1.5 * candidates.stator_self_inductance_H
+    L_m = MAGNETISING_OVER_SELF * candidates.stator_self_inductance_H
     L, R = np.zeros((len(candidates), 5, 5)), np.zeros((len(candidates), 5, 5))
     for axis in (0, 1):
         stator, rotor = axis, axis + 2

@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from core.condition.kinds import Kind, State
 from core.condition.verdict.advice import advice
 from core.condition.verdict.latest_record import why_milder
+from core.machines.parameters import ParametersSource
+from core.machines.typical import TYPICAL_REASON
 from service.api.condition_schemas import Condition, ConditionReference
 from service.storage.records import ConditionEntry, LatestDiagnosis
 
@@ -32,16 +34,28 @@ _NOTHING: Mapping[str, object] = {
     "advice": advice(State.UNKNOWN, Kind.NONE),
     "reasons": [NOT_JUDGED],
 }
+_OF_TYPICAL: Mapping[str, object] = {
+    **_NOTHING,
+    "advice": advice(State.UNKNOWN, Kind.NONE, is_typical=True),
+    "reasons": [TYPICAL_REASON, NOT_JUDGED],
+}
 
 
 def condition_document(
-    entry: ConditionEntry, now_ns: int, stale_after_ns: int, latest: LatestDiagnosis | None = None
+    entry: ConditionEntry,
+    now_ns: int,
+    stale_after_ns: int,
+    latest: LatestDiagnosis | None = None,
+    *,
+    source: ParametersSource,
 ) -> Condition:
     """Return a motor's condition as it is seen now: a condition gets stale without any record.
 
     latest: of the motor's records. Where the condition is milder, a reason says why.
+    source: where the motor's parameters come from.
     """
-    document = {**_NOTHING, **(entry.document or {})}
+    nothing = _OF_TYPICAL if source is ParametersSource.TYPICAL else _NOTHING
+    document = {**nothing, **(entry.document or {})}
     reference = document["reference"]
     known = reference if isinstance(reference, Mapping) else {}
     stale = is_stale(entry, now_ns, stale_after_ns)

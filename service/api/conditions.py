@@ -51,7 +51,9 @@ def get_condition(
     now_ns = time.time_ns()
     health = context.repository.health(name)
     oldest_ns = stale_after_ns(health.motor.schedule, context.settings.stale_after_days)
-    condition = condition_document(health.condition, now_ns, oldest_ns, health.diagnosis)
+    condition = condition_document(
+        health.condition, now_ns, oldest_ns, health.diagnosis, source=health.motor.parameters_source
+    )
     points = context.repository.latest_condition_points(name, limit=history)
     return ConditionDetails(
         **dict(condition), history=[ConditionPoint.model_validate(point) for point in points]

@@ -124,7 +124,10 @@ def _health(health: MotorHealth, now_ns: int, settings: Settings) -> Health:
         motor=health.motor.name,
         site=health.motor.site,
         ied=health.motor.ied,
-        condition=condition_document(health.condition, now_ns, oldest_ns, diagnosis),
+        parameters_source=health.motor.parameters_source,
+        condition=condition_document(
+            health.condition, now_ns, oldest_ns, diagnosis, source=health.motor.parameters_source
+        ),
         verdict=None if diagnosis is None else diagnosis.verdict,
         mu_f=None if diagnosis is None else diagnosis.mu_f,
         mu_f_ci95=None if diagnosis is None else diagnosis.mu_f_ci95,

@@ -10,6 +10,7 @@ from core.condition.kinds import Kind, State
 from core.diagnosis import methods
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
+from core.machines.parameters import ParametersSource
 from service.api.condition_schemas import Condition
 from service.api.document import Document, Listed, Person, Reason, RequestDocument
 from service.api.relay_schemas import RelayClock
@@ -48,13 +49,18 @@ class Site(Document):
 
 
 class Motor(Document):
-    """A motor; `schedule`, a cron expression in UTC, says when it is recorded without anybody asking."""
+    """A motor; `schedule`, a cron expression in UTC, says when it is recorded without anybody asking.
+
+    parameters_source: where its parameters come from: given in the motors file, commissioned from a recorded
+    start, from a data sheet, or typical of its rating. With typical ones the motor is on watch at most.
+    """
 
     name: str
     description: str
     site: str
     ied: str
     schedule: str | None
+    parameters_source: ParametersSource
 
 
 class QualityFinding(Document):
@@ -236,6 +242,7 @@ class Health(Document):
     motor: str
     site: str
     ied: str
+    parameters_source: ParametersSource
     condition: Condition
     verdict: Verdict | None
     mu_f: float | None

@@ -11,6 +11,8 @@ from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file import MotorFileError, read_motor
+from core.machines.parameters import ParametersSource
+from core.machines.typical import COMMISSION
 from core.recordings import RecordingError, read
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.client.verdicts import detection, interval, level, load, verdict_text
@@ -54,9 +56,10 @@ def diagnose_recording(
     repaired = (f"repaired: {note}" for note in recording.repairs)
     diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
     if as_json:
-        print_document({**diagnosis.as_dict(), "motor_file": str(motor_file)})
+        source = str(found.parameters_source)
+        print_document({**diagnosis.as_dict(), "motor_file": str(motor_file), "parameters_source": source})
     else:
-        results().print(_table(record, motor_file, diagnosis))
+        results().print(_table(record, motor_file, found.parameters_source, diagnosis))
 
 
 def _motor_file_beside(record: Path) -> Path:
@@ -72,7 +75,7 @@ def _motor_file_beside(record: Path) -> Path:
     )
 
 
-def _table(record: Path, motor_file: Path, diagnosis: Diagnosis) -> Table:
+def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: Diagnosis) -> Table:
     table = Table(title=Text(record.name), title_justify="left", show_header=False)
     table.add_row("verdict", verdict_text(diagnosis.verdict))
     if diagnosis.mu_f is not None:
@@ -93,6 +96,8 @@ def _table(record: Path, motor_file: Path, diagnosis: Diagnosis) -> Table:
     table.add_row("model, method", f"{diagnosis.model}, {diagnosis.method}")
     table.add_row("effort", f"{diagnosis.evaluations} evaluations, {diagnosis.compute_seconds:.3f} s")
     table.add_row("motor file", Text(str(motor_file)))
+    needs = f"; {COMMISSION}" if source is ParametersSource.TYPICAL else ""
+    table.add_row("parameters", f"{source}{needs}")
     for finding in diagnosis.quality:
         if not finding.passed and not any(finding.message in reason for reason in diagnosis.reasons):
             table.add_row("quality", Text(finding.message))

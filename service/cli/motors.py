@@ -7,6 +7,8 @@ from rich.console import RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from core.machines.parameters import ParametersSource
+from core.machines.typical import COMMISSION
 from service.cli.output import facts_table, failing_clearly, one_line, print_document, results
 from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
@@ -22,6 +24,7 @@ from service.client.verdicts import (
 )
 
 LINK_COLOURS = {"up": "green", "down": "red", "quarantined": "red"}
+TYPICAL = str(ParametersSource.TYPICAL)
 NO_RECORDING = "no recording yet"
 
 
@@ -64,13 +67,19 @@ def motors_table(healths: Sequence[Document]) -> Table:
         condition = condition_of(health)
         table.add_row(
             Text(str(health["motor"])),
-            state_text(condition),
+            _state(health, condition),
             _level(condition),
             since_day(condition),
             as_of(condition),
             _link(health),
         )
     return table
+
+
+def _state(health: Document, condition: Document) -> Text:
+    """Return the condition's state; of a motor of which nothing but the nameplate is known, what it needs."""
+    state = state_text(condition)
+    return state.append(f"; {COMMISSION}") if health.get("parameters_source") == TYPICAL else state
 
 
 def _level(condition: Document) -> str:
@@ -117,6 +126,7 @@ def _latest_recording(health: Document) -> list[tuple[str, RenderableType]]:
         diagnosed = to_the_second(health["recorded_time"])
         if diagnosed != last:
             rows.append(("diagnosed recording", diagnosed))
+    rows.append(("parameters", Text(str(health.get("parameters_source", "-")))))
     rows.append(("last recording", Text(NO_RECORDING if last is None else last)))
     rows.append(("site, relay", Text(f"{health['site']}, {health['ied']}")))
     rows.append(("link", _link_with_reason(health)))

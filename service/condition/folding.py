@@ -146,7 +146,7 @@ class _Folding:
     def _say(self) -> Said:
         """Return what is said now. A forecast, which takes long, is made at the end only."""
         assessment = self._follower.assessment(self._bus.standings)
-        return _said(verdict_of(assessment, self._motor.limits.fault_level))
+        return _said(verdict_of(assessment, self._motor))
 
     def _entry(self) -> ConditionEntry:
         """Return the motor's condition, as it was said of it with its latest record."""

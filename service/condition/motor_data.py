@@ -4,7 +4,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from core.machines.parameters import Connection, MachineParameters, Motor, Nameplate
+from core.machines.parameters import (
+    Connection,
+    MachineParameters,
+    Motor,
+    Nameplate,
+    ParametersSource,
+    ParameterTolerances,
+)
 from service.storage.records import MotorVersion
 
 
@@ -13,18 +20,26 @@ def document_of(motor: Motor) -> dict[str, Any]:
     return {
         "nameplate": asdict(motor.nameplate),
         "parameters": asdict(motor.parameters),
+        "tolerances": {"source": str(motor.parameters_source), **asdict(motor.tolerances)},
         "limits": asdict(motor.limits),
         "sensors": asdict(motor.sensors),
     }
 
 
 def motor_of(motor: Motor, document: Mapping[str, Any]) -> Motor:
-    """Return a motor with the nameplate and the parameters that it had."""
+    """Return a motor with the nameplate and the parameters that it had.
+
+    Documents of earlier versions have no tolerances: all parameters were given.
+    """
     nameplate = document["nameplate"]
+    tolerances = dict(document.get("tolerances", {}))
+    source = ParametersSource(tolerances.pop("source", ParametersSource.GIVEN))
     return replace(
         motor,
         nameplate=Nameplate(**{**nameplate, "connection": Connection(nameplate["connection"])}),
         parameters=MachineParameters(**document["parameters"]),
+        parameters_source=source,
+        tolerances=ParameterTolerances(**tolerances),
     )
 
 

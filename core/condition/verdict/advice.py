@@ -4,11 +4,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from core.condition.kinds import Kind, State
+from core.machines.typical import COMMISSION
 
 HEALTHY = ("Nothing needs to be done.",)
 UNKNOWN = (
     "Have the motor recorded while it runs: there is no usable record yet, or none since the latest event.",
     "If records exist, look why they were refused: wrong channels, a wrong ratio, or no steady running.",
+)
+COMMISSION_ME = (
+    f"{COMMISSION}. Give the motor its own parameters: mcc commission from a recorded start, or mcc "
+    "parameters from its data sheet."
 )
 FAULT_URGENCY = (
     "Stop the motor at the next opportunity, within days: shorted turns run hot and take others with them."
@@ -136,6 +141,7 @@ def advice(
     phase: str | None = None,
     candidates: Iterable[Kind] = (),
     is_gone: bool = False,
+    is_typical: bool = False,
 ) -> str:
     """Say what to check first, how urgent it is, and what would make it surer.
 
@@ -151,12 +157,19 @@ def advice(
         What it may be, likeliest first, where the kind is unclear; none where a single record differs.
     is_gone : bool, optional
         Whether it has vanished.
+    is_typical : bool, optional
+        Whether nothing but the motor's nameplate is known.
 
     Returns
     -------
     str
         Two or three sentences; one for a healthy motor.
     """
+    if is_typical:
+        if state is State.UNKNOWN:
+            return COMMISSION_ME
+        told = advice(state, kind, phase=phase, candidates=candidates, is_gone=is_gone)
+        return f"{told} {COMMISSION_ME}"
     if state is State.HEALTHY:
         return " ".join(HEALTHY)
     if state is State.UNKNOWN:

@@ -21,6 +21,7 @@ from core.condition.verdict.advice import advice
 from core.condition.verdict.reasons import reason_of_unknown, reasons_of
 from core.condition.verdict.verdict import Verdict, verdict_of
 from core.machines.parameters import Motor
+from core.machines.typical import TYPICAL_REASON
 from core.machines.winding_frame import Winding
 from core.time_stamps import nanoseconds, rfc3339
 
@@ -214,7 +215,7 @@ def condition_of(
         The condition.
     """
     limit = motor.limits.fault_level
-    verdict = verdict_of(assessment, limit)
+    verdict = verdict_of(assessment, motor)
     if assessment is None or verdict.mu_f is None:
         return _unknown(motor, ended_by)
     fault = of_one_fault(assessment, limit)
@@ -239,8 +240,15 @@ def condition_of(
         reference=assessment.reference,
         as_of_ns=assessment.as_of_ns,
         stale=_is_stale(assessment.as_of_ns, now_ns, stale_after_ns),
-        advice=advice(state, kind, phase=verdict.phase, candidates=verdict.candidates, is_gone=is_gone),
-        reasons=reasons_of(assessment, limit, ahead),
+        advice=advice(
+            state,
+            kind,
+            phase=verdict.phase,
+            candidates=verdict.candidates,
+            is_gone=is_gone,
+            is_typical=motor.is_typical,
+        ),
+        reasons=(*_of_parameters(motor), *reasons_of(assessment, limit, ahead)),
     )
 
 
@@ -262,9 +270,13 @@ def _unknown(motor: Motor, ended_by: Event | None) -> Condition:
         reference=None,
         as_of_ns=None,
         stale=True,
-        advice=advice(State.UNKNOWN, Kind.NONE),
-        reasons=(reason_of_unknown(ended_by),),
+        advice=advice(State.UNKNOWN, Kind.NONE, is_typical=motor.is_typical),
+        reasons=(*_of_parameters(motor), reason_of_unknown(ended_by)),
     )
+
+
+def _of_parameters(motor: Motor) -> tuple[str, ...]:
+    return (TYPICAL_REASON,) if motor.is_typical else ()
 
 
 def _since(assessment: Assessment, limit: float) -> int | None:

@@ -6,6 +6,7 @@ from typing import Final
 from core.condition.assessment import PHASES, Assessment, Change, Level, Phase, Reference
 from core.condition.kinds import Kind, State
 from core.condition.severity import FEW, Interval, level_in_all, level_of, of_one_fault, stands_out, state_of
+from core.machines.parameters import Motor
 
 MOST_CANDIDATES: Final = 3
 
@@ -44,19 +45,27 @@ class Verdict:
     change_ci95: Interval | None
 
 
+OF_TYPICAL: Final = {
+    State.UNKNOWN: State.UNKNOWN,
+    State.HEALTHY: State.UNKNOWN,
+    State.WATCH: State.WATCH,
+    State.FAULT: State.WATCH,
+}
+"""What is said where nothing but the nameplate is known of the motor."""
 UNKNOWN: Final = Verdict(State.UNKNOWN, Kind.NONE, (), None, None, None, None, None)
 """What is said before the first record."""
 
 
-def verdict_of(assessment: Assessment | None, limit: float) -> Verdict:
+def verdict_of(assessment: Assessment | None, motor: Motor) -> Verdict:
     """Judge a motor from what its records tell, without a forecast and without words.
 
     Parameters
     ----------
     assessment : Assessment or None
         What the records tell; None before the first valid one.
-    limit : float
-        Limit of the motor, a fraction of the phase turns.
+    motor : Motor
+        The motor, with its limits. With typical parameters of its rating it is on watch at most, and what
+        would be healthy is unknown.
 
     Returns
     -------
@@ -65,12 +74,14 @@ def verdict_of(assessment: Assessment | None, limit: float) -> Verdict:
     """
     if assessment is None:
         return UNKNOWN
+    limit = motor.limits.fault_level
     fault = of_one_fault(assessment, limit)
     kind, candidates = _kind(fault, limit)
     level = level_of(fault.change)
     mu_f, mu_f_ci95 = level_in_all(fault)
+    state = state_of(assessment, limit)
     return Verdict(
-        state=state_of(assessment, limit),
+        state=OF_TYPICAL[state] if motor.is_typical else state,
         kind=kind,
         candidates=candidates,
         phase=_phase(fault),

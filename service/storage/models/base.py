@@ -10,6 +10,7 @@ from core.condition.events import EventKind
 from core.condition.kinds import Kind, State
 from core.condition.observation import VoltageChannels
 from core.diagnosis.verdict import Verdict
+from core.machines.parameters import ParametersSource
 from core.signals.sequence import PhaseSequence
 from service.storage.states import (
     AlarmKind,
@@ -73,6 +74,7 @@ class Base(DeclarativeBase):
         DeletedBy: _words(DeletedBy),
         JobState: _words(JobState),
         Verdict: _words(Verdict),
+        ParametersSource: _words(ParametersSource),
         State: _words(State),
         Kind: _words(Kind),
         tuple[Kind, ...]: _Kinds,

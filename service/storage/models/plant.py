@@ -3,6 +3,7 @@
 from sqlalchemy import ForeignKey, LargeBinary
 from sqlalchemy.orm import Mapped, mapped_column
 
+from core.machines.parameters import ParametersSource
 from service.storage.models.base import Base
 from service.storage.states import ClockQuality, LinkState
 
@@ -38,7 +39,7 @@ class IedRow(Base):
 
 
 class MotorRow(Base):
-    """A motor. bus: with whose other motors it is compared."""
+    """A motor. bus: with whose other motors it is compared. parameters_source: of the motors file."""
 
     __tablename__ = "motors"
 
@@ -49,3 +50,4 @@ class MotorRow(Base):
     in_service: Mapped[bool]
     schedule: Mapped[str | None]
     bus: Mapped[str | None]
+    parameters_source: Mapped[ParametersSource]

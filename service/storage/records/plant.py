@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from core.machines.parameters import ParametersSource
 from service.storage.states import ClockQuality, LinkState
 
 
@@ -36,10 +37,14 @@ class IedEntry:
 
 @dataclass(frozen=True, slots=True)
 class MotorEntry:
-    """A motor; `schedule`, its own or its bus's, is a cron expression in UTC."""
+    """A motor; `schedule`, its own or its bus's, is a cron expression in UTC.
+
+    parameters_source: where its parameters come from.
+    """
 
     name: str
     description: str
     site: str
     ied: str
     schedule: str | None
+    parameters_source: ParametersSource

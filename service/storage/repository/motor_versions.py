@@ -14,8 +14,10 @@ from service.storage.records import MotorVersion
 from service.storage.repository.fold_marks import EARLIEST_NS, mark
 from service.storage.repository.sessions import Sessions, found, record_of
 
-MACHINE = ("nameplate", "parameters")
+MACHINE = ("nameplate", "parameters", "tolerances")
 """Tables of the motors file that tell which machine it is: an edit counts from then on."""
+TYPICAL = "typical"
+"""Source of parameters that were never measured. Those that replace them have always been the motor's."""
 
 MOTORS_FILE = "motors file"
 """Who tells of an edit."""
@@ -33,7 +35,8 @@ class MotorVersionRows(Sessions):
         documents: of each motor, a table of figures by the name of the table in the file.
 
         Other figures of the machine count from now on, and are an event. Another class of the sensors has
-        always been so: all is folded again. Another limit counts from the latest record on.
+        always been so: all is folded again. So have parameters that take the place of typical ones. Another
+        limit counts from the latest record on.
         Raises NotFoundError.
         """
         with self._write() as session:
@@ -61,7 +64,15 @@ def _note(session: Session, motor: str, document: Mapping[str, Any], now_ns: int
     if latest_ns is not None and before.get("limits") != document["limits"]:
         mark(session, motor, latest_ns)
     edits = list(_edits(before, document))
+    if edits and _source(before) == TYPICAL and before["nameplate"] == document["nameplate"]:
+        for version in versions:
+            if _source(version.document) == TYPICAL:
+                version.document = document
+        if latest_ns is not None:
+            mark(session, motor, EARLIEST_NS)
+        return
     if not edits:
+        latest.document = document  # a table that earlier versions did not keep
         return
     if latest_ns is None or latest.from_ns == now_ns:  # no record has seen the machine as it was
         latest.document = document
@@ -83,10 +94,17 @@ def _note(session: Session, motor: str, document: Mapping[str, Any], now_ns: int
 
 def _edits(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:
     for table in MACHINE:
+        if table not in before:
+            continue
         for name, value in after[table].items():
             old = before[table].get(name)
             if old != value:
                 yield f"{name} {value} instead of {old}"
+
+
+def _source(document: Mapping[str, Any]) -> str | None:
+    source = document.get("tolerances", {}).get("source")
+    return None if source is None else str(source)
 
 
 def _rows(session: Session, motor: str) -> Sequence[MotorVersionRow]:

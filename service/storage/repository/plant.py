@@ -49,6 +49,7 @@ class PlantRows(Sessions):
                         in_service=True,
                         schedule=None if schedule is None else schedule.expression,
                         bus=_compared_on(plant, motor),
+                        parameters_source=motor.motor.parameters_source,
                     )
                 )
             session.flush()

@@ -2,6 +2,7 @@
 
 import tomllib
 from dataclasses import replace
+from math import log
 from pathlib import Path
 
 import pytest
@@ -16,9 +17,12 @@ from core.machines.parameters import (
     Limits,
     MachineParameters,
     Motor,
+    ParametersSource,
+    ParameterTolerances,
     Transformers,
 )
 from core.machines.sensors import SensorClass
+from core.machines.typical import TYPICAL_TOLERANCES, typical_parameters
 from testing.machines.motors import REFERENCE
 from testing.machines.plausible_motors import plausible_motors
 
@@ -181,13 +185,39 @@ def test_a_missing_file_and_a_missing_table_are_named(tmp_path: Path) -> None:
         read_motor(tmp_path / "binary.toml")
 
 
-def test_a_plate_may_do_without_parameters(tmp_path: Path) -> None:
-    bare = COMPLETE[: COMPLETE.index("[parameters]")]
-    plate = read_plate(written(tmp_path, bare))
+def test_a_motor_without_parameters_has_those_typical_of_its_rating(tmp_path: Path) -> None:
+    bare = written(tmp_path, COMPLETE[: COMPLETE.index("[parameters]")])
+    plate = read_plate(bare)
     assert plate.parameters is None
     assert plate.nameplate.rated_power_W == 800
-    with pytest.raises(MotorFileError, match=r"\[parameters\]: expected a table, found nothing"):
-        read_motor(written(tmp_path, bare))
+    motor = read_motor(bare)
+    assert motor.parameters_source is ParametersSource.TYPICAL
+    assert motor.is_typical
+    assert motor.parameters == typical_parameters(motor.nameplate).parameters
+    assert motor.tolerances == TYPICAL_TOLERANCES
+
+
+@pytest.mark.parametrize("source", ParametersSource)
+def test_a_file_says_where_its_parameters_come_from(tmp_path: Path, source: ParametersSource) -> None:
+    said = COMPLETE.replace("[parameters]", f'[parameters]\nsource = "{source}"')
+    assert read_motor(written(tmp_path, said)).parameters_source is source
+    assert read_plate(tmp_path / "PUMP-7.toml").parameters is not None
+
+
+def test_parameters_with_intervals_are_commissioned_and_others_given(tmp_path: Path) -> None:
+    assert read_motor(written(tmp_path, COMPLETE)).parameters_source is ParametersSource.COMMISSIONED
+    given_ones = COMPLETE.replace("[intervals]\nstator_resistance_ohm = [8.3, 8.5]\n", "")
+    motor = read_motor(written(tmp_path, given_ones))
+    assert (motor.parameters_source, motor.is_typical) == (ParametersSource.GIVEN, False)
+    unknown = COMPLETE.replace("[parameters]", '[parameters]\nsource = "hearsay"')
+    with pytest.raises(MotorFileError, match=r"source: expected one of given, commissioned, .* 'hearsay'"):
+        read_motor(written(tmp_path, unknown))
+
+
+def test_a_wide_interval_widens_the_tolerance_and_a_narrow_one_does_not(tmp_path: Path) -> None:
+    wide = COMPLETE.replace("[8.3, 8.5]", "[4.2, 10.0]")
+    assert read_motor(written(tmp_path, wide)).tolerances == ParameterTolerances(log(2.0))
+    assert read_motor(written(tmp_path, COMPLETE)).tolerances == ParameterTolerances()
 
 
 names = st.text(min_size=1, max_size=12).filter(lambda text: text.isprintable() or text == "\x7f")

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from core.machines.motor_file_writer import write_motor
+from core.machines.parameters import ParametersSource
 from core.quality.finding import QualityFinding
 from core.recordings import comtrade
 from service.cli import main
@@ -31,7 +32,7 @@ def test_what_keeps_a_record_from_being_diagnosed_is_said_once(capsys: pytest.Ca
             QualityFinding("duration", 1.0, 0.2, "s", passed=True, message="long enough"),
         ),
     )
-    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), diagnosis))
+    results().print(_table(Path("HR_1.CFG"), Path("motor.toml"), ParametersSource.GIVEN, diagnosis))
     shown = capsys.readouterr().out
     assert shown.count(CLIPPED) == 1
     assert "motor.toml" in shown
@@ -87,3 +88,25 @@ def test_two_recordings_are_no_baseline(
     words = ["--baseline", paths[1], "--baseline", paths[2], "--json"]
     assert main(["diagnose", paths[0], *words]) == 2
     assert "at least 3 healthy recordings, found 2" in json.loads(capsys.readouterr().out)["error"]["message"]
+
+
+@pytest.mark.parametrize("fault", [None, Fault(0.06, 1)])
+def test_a_nameplate_alone_asks_to_be_commissioned_and_calls_nothing_a_fault(
+    pump: Callable[..., Path], capsys: pytest.CaptureFixture[str], fault: Fault | None
+) -> None:
+    record = pump("PUMP", 0.6, fault=fault)
+    motor = record.with_name("motor.toml")
+    motor.write_text(motor.read_text("utf-8").partition("[parameters]")[0], "utf-8")
+    assert main(["diagnose", str(record), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["parameters_source"] == "typical"
+    assert any(reason.startswith("collecting; commission me") for reason in found["reasons"])
+    low, high = found["mu_f_ci95"]
+    if fault is None:
+        assert found["verdict"] in ("healthy", "watch")
+        assert low == 0.0
+    else:
+        assert found["verdict"] == "watch"
+        assert low <= 0.06 <= high
+    assert main(["diagnose", str(record)]) == 0
+    assert "typical; collecting; commission me" in capsys.readouterr().out

@@ -9,21 +9,22 @@ from dataclasses import replace
 from multiprocessing import get_context
 
 import pytest
-from sqlalchemy import Engine
+from sqlalchemy import Engine, update
 from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
 from core.condition.following.follower import Follower
 from core.condition.observation import Observation
 from core.condition.verdict.condition import condition_of
-from core.machines.parameters import Motor
+from core.machines.parameters import Motor, ParametersSource
+from core.machines.typical import TYPICAL_TOLERANCES, typical_parameters
 from service.condition import worker
 from service.condition.motor_data import document_of
 from service.condition.worker import fold_due
 from service.plant import Bus
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.models import ConditionCheckpointRow
+from service.storage.models import ConditionCheckpointRow, MotorVersionRow
 from service.storage.records import FoldInput, FoldResult
 from service.storage.repository.folding import FoldingRows
 from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
@@ -166,6 +167,49 @@ def test_edited_parameters_are_an_event_and_count_from_then_on(
     for record in RECORDS[20:]:
         late.fold(record)
     require_same(repository, late, edited())
+
+
+def typical(name: str = PUMP) -> Motor:
+    """The motor as it is before anybody has commissioned it."""
+    plain = motor(name)
+    return replace(
+        plain,
+        parameters=typical_parameters(plain.nameplate).parameters,
+        parameters_source=ParametersSource.TYPICAL,
+        tolerances=TYPICAL_TOLERANCES,
+    )
+
+
+def test_a_commissioned_motor_has_its_records_judged_again_from_the_first(
+    repository: Repository, recorder: Recorder
+) -> None:
+    repository.note_motors({PUMP: document_of(typical())}, now_ns=NOW_NS)
+    recorder.record_all(RECORDS[:17])
+    fold_all(repository, typical())
+    before = repository.condition(PUMP)
+    assert before.state == "unknown"
+    assert str((before.document or {})["advice"]).startswith("collecting; commission me")
+    repository.note_motors({PUMP: document_of(motor(PUMP))}, now_ns=NOW_NS + 10**15)
+    fold_all(repository)
+    require_same(repository, followed(RECORDS[:17]))
+    assert repository.condition(PUMP).state == "healthy"
+    assert repository.events(PUMP, limit=10).items == ()
+
+
+def test_what_an_earlier_version_did_not_keep_is_no_edit(
+    repository: Repository, recorder: Recorder, engine: Engine
+) -> None:
+    now = document_of(motor(PUMP))
+    with Session(engine) as session, session.begin():
+        kept = {table: figures for table, figures in now.items() if table != "tolerances"}
+        session.execute(update(MotorVersionRow).where(MotorVersionRow.motor == PUMP).values(document=kept))
+    recorder.record_all(RECORDS[:2])
+    fold_all(repository)
+    repository.note_motors({PUMP: now}, now_ns=NOW_NS)
+    assert repository.motors_to_fold() == ()
+    (version,) = repository.motor_versions(PUMP)
+    assert version.document == now
+    assert repository.events(PUMP, limit=10).items == ()
 
 
 def test_another_class_of_the_sensors_has_always_been_so(repository: Repository, recorder: Recorder) -> None:

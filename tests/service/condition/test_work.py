@@ -18,7 +18,7 @@ from sqlalchemy import Engine
 from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
-from core.machines.parameters import Motor
+from core.machines.parameters import Motor, ParametersSource
 from core.recordings.comtrade_writer import write
 from core.time_stamps import nanoseconds
 from service.api.condition_documents import condition_document
@@ -221,7 +221,7 @@ def test_a_motor_whose_fold_fails_three_times_is_set_aside_until_something_chang
     problem = repository.condition(PUMP).problem
     assert problem == f"folding failed 3 times, the last time: {words}"
     assert repository.backlog() == Backlog(0, motors_to_fold=0, motors_set_aside=1)
-    told = condition_document(repository.condition(PUMP), NOW_NS, HOUR_NS)
+    told = condition_document(repository.condition(PUMP), NOW_NS, HOUR_NS, source=ParametersSource.GIVEN)
     assert problem in told.reasons[0]
     assert "tried again with the next record" in told.reasons[0]
     assert tries() == 0

@@ -12,6 +12,7 @@ from core.condition.assessment import STALE_AFTER_NS, Assessment, Change, Declar
 from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
 from core.condition.verdict.condition import Condition, condition_of
+from core.machines.parameters import ParametersSource
 from core.machines.winding_frame import Winding
 from core.units import NANOSECONDS_PER_DAY
 from testing.machines.motors import REFERENCE as MOTOR
@@ -112,6 +113,21 @@ def test_no_change_is_healthy_from_the_first_record_on() -> None:
     assert (early.state, early.kind, early.change) == (State.HEALTHY, Kind.NONE, None)
     late = judged(assessment())
     assert (late.state, late.phase, late.change, late.since_ns) == (State.HEALTHY, None, 0.0, None)
+
+
+def test_a_nameplate_alone_is_never_healthy_and_on_watch_at_most() -> None:
+    typical = replace(MOTOR, parameters_source=ParametersSource.TYPICAL)
+    quiet = condition_of(typical, assessment(), AS_OF_NS)
+    assert (judged(assessment()).state, quiet.state) == (State.HEALTHY, State.UNKNOWN)
+    assert quiet.advice.startswith("collecting; commission me.")
+    assert quiet.mu_f == judged(assessment()).mu_f
+    grown = assessment(change(Kind.SHORTED_TURNS, size=level(0.03)))
+    shorted = condition_of(typical, grown, AS_OF_NS)
+    assert (judged(grown).state, shorted.state) == (State.FAULT, State.WATCH)
+    assert shorted.kind is Kind.SHORTED_TURNS
+    assert shorted.advice.endswith("from its data sheet.")
+    for one in (quiet, shorted, condition_of(typical, None, AS_OF_NS)):
+        assert one.reasons[0].startswith("collecting; commission me: the parameters are typical")
 
 
 def test_what_sensors_leave_is_in_the_interval_and_not_in_the_level() -> None:

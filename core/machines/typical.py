@@ -1,0 +1,139 @@
+"""Typical parameters of a rating, for a motor of which nothing but the nameplate is known.
+
+Per unit of a winding's V^2 / P, the parameters of cage motors follow the rated power. The table is the trend
+through published motors of 0.8 kW to 1.7 MW, which lie within its intervals:
+
+- Krause, Wasynczuk, Sudhoff: Analysis of Electric Machinery and Drive Systems, 2nd edition, IEEE Press 2002,
+  table 4.10-1: motors of 3, 50, 500 and 2250 hp at 220, 460 and 2300 V.
+- The preset motors of 4 to 160 kW at 400 and 460 V of Simscape Electrical's asynchronous machine, which the
+  Modelica Buildings library (lbl-srg) publishes as well.
+- IEEE Task Force on Load Representation: Standard load models for power flow and dynamic performance
+  simulation, IEEE Transactions on Power Systems 10 (1995) 1302-1313: small and large industrial motors.
+- The motors of this project: 0.8 kW (the thesis, table 3.2), 7.5, 37 and 250 kW.
+
+They are no more than a beginning. One motor of a rating differs from the next by a factor of two, an old one
+of a high slip by more. Only a start of the motor itself, or its data sheet, tells its own parameters.
+"""
+
+from dataclasses import dataclass
+from math import exp, log
+
+import numpy as np
+
+from core.machines.parameters import MachineParameters, Nameplate, ParametersSource, ParameterTolerances
+
+POWERS_W = (750.0, 7.5e3, 75e3, 750e3, 7.5e6)
+STATOR_RESISTANCE_PU = (0.050, 0.027, 0.0145, 0.0090, 0.0060)
+ROTOR_RESISTANCE_PU = (0.048, 0.025, 0.0115, 0.0085, 0.0060)
+LEAKAGE_REACTANCE_PU = (0.060, 0.055, 0.060, 0.080, 0.085)
+"""Of the stator, and as much of the rotor."""
+MAGNETISING_REACTANCE_PU = (1.15, 1.75, 2.30, 3.40, 4.00)
+INERTIA_CONSTANT_S = 0.3
+"""H = J w_m^2 / (2 P) of rotor and load."""
+
+RESISTANCE_FACTOR, ROTOR_RESISTANCE_FACTOR, REACTANCE_FACTOR, INERTIA_FACTOR = 2.2, 3.0, 2.1, 10.0
+"""A motor of the rating lies within these factors of the typical parameters, either way."""
+FACTORS = {
+    "stator_resistance_ohm": RESISTANCE_FACTOR,
+    "rotor_resistance_ohm": ROTOR_RESISTANCE_FACTOR,
+    "stator_leakage_H": REACTANCE_FACTOR,
+    "rotor_leakage_H": REACTANCE_FACTOR,
+    "stator_self_inductance_H": REACTANCE_FACTOR,
+    "inertia_kgm2": INERTIA_FACTOR,
+}
+
+TYPICAL_TOLERANCES = ParameterTolerances(
+    **{name: log(factor) for name, factor in FACTORS.items() if name != "inertia_kgm2"}
+)
+COMMISSION = "collecting; commission me"
+"""What a motor says whose parameters are typical ones."""
+TYPICAL_REASON = (
+    f"{COMMISSION}: the parameters are typical of the rating, not this motor's. Commission it from a "
+    "recorded start (mcc commission) or give data-sheet values (mcc parameters); until then nothing is "
+    "called a fault"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class TypicalParameters:
+    """Typical parameters of a rating, with what they are worth.
+
+    Parameters
+    ----------
+    parameters : MachineParameters
+        The middle of what motors of the rating have.
+    intervals : dict of str to tuple of float
+        Lower and upper end of what they have, by parameter.
+    """
+
+    parameters: MachineParameters
+    intervals: dict[str, tuple[float, float]]
+
+
+def typical_parameters(nameplate: Nameplate) -> TypicalParameters:
+    """Return the parameters that are typical of a nameplate.
+
+    Between the powers of the table the logarithm of a parameter goes evenly with that of the power. Beyond
+    them the last one holds.
+
+    Parameters
+    ----------
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Returns
+    -------
+    TypicalParameters
+        Parameters and intervals.
+    """
+    base_ohm, w_b = nameplate.base_impedance_ohm, nameplate.rated_angular_frequency
+    leakage_H = _at(LEAKAGE_REACTANCE_PU, nameplate) * base_ohm / w_b
+    parameters = MachineParameters.from_magnetising_inductance(
+        stator_resistance_ohm=_at(STATOR_RESISTANCE_PU, nameplate) * base_ohm,
+        rotor_resistance_ohm=_at(ROTOR_RESISTANCE_PU, nameplate) * base_ohm,
+        stator_leakage_H=leakage_H,
+        rotor_leakage_H=leakage_H,
+        magnetising_inductance_H=_at(MAGNETISING_REACTANCE_PU, nameplate) * base_ohm / w_b,
+        inertia_kgm2=INERTIA_CONSTANT_S * nameplate.base_inertia_kgm2,
+    )
+    intervals = {
+        name: (getattr(parameters, name) / factor, getattr(parameters, name) * factor)
+        for name, factor in FACTORS.items()
+    }
+    return TypicalParameters(parameters, intervals)
+
+
+def tolerances_of(
+    parameters: MachineParameters, source: ParametersSource, intervals: dict[str, tuple[float, float]]
+) -> ParameterTolerances:
+    """Return how far a motor's parameters may be off.
+
+    Parameters
+    ----------
+    parameters : MachineParameters
+        The parameters.
+    source : ParametersSource
+        Where they come from.
+    intervals : dict of str to tuple of float
+        95 % intervals of some or all of them.
+
+    Returns
+    -------
+    ParameterTolerances
+        Those of typical parameters, or of any others: what is usual, or the interval where it is wider.
+    """
+    if source is ParametersSource.TYPICAL:
+        return TYPICAL_TOLERANCES
+    usual = ParameterTolerances()
+    wider = {}
+    for name in ParameterTolerances.names():
+        if name in intervals:
+            low, high = intervals[name]
+            value = getattr(parameters, name)
+            wider[name] = max(getattr(usual, name), log(high / value), log(value / low))
+    return ParameterTolerances(**wider)
+
+
+def _at(per_unit: tuple[float, ...], nameplate: Nameplate) -> float:
+    power = log(nameplate.rated_power_W)
+    return exp(float(np.interp(power, np.log(POWERS_W), np.log(per_unit))))
