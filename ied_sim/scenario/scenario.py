@@ -110,6 +110,13 @@ def _motor(path: Path, section: MotorTable) -> Motor:
     """Return the motor of the tables nameplate and parameters; the reference motor where neither is given."""
     if section.nameplate is None and section.parameters is None:
         return _reference_motor(section.ied)
+    if section.parameters is None:
+        raise ScenarioError(
+            path,
+            f"[motor {section.ied}] [parameters]",
+            expected="a table: the machine as it truly is",
+            found="nothing",
+        )
     table = {"nameplate": section.nameplate, "parameters": section.parameters}
     given = {name: part for name, part in table.items() if part is not None}
     try:
