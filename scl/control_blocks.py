@@ -70,7 +70,7 @@ class ControlBlockReader:
             if name is None:
                 continue
             if name in seen:
-                self._document.note(element, "a second control block of this name: the first one counts")
+                self._document.leave_out(element, "a second control block of this name, the first one counts")
                 continue
             seen.add(name)
             yield name, element

@@ -5,7 +5,7 @@ resolved: a data object carries its attributes and their initial values, instanc
 """
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Flag, StrEnum
 
 CONTROL_MODELS = (
@@ -147,6 +147,13 @@ class DataObject:
     attributes: tuple[DataAttribute, ...] = ()
     count: int = 0
     transient: bool = False
+    _constraints: frozenset[FunctionalConstraint] = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        # Types share their objects, so this costs little. To collect them at each question would cost much.
+        below = [child.constraints() for child in self.objects]
+        own = frozenset([attribute.fc for attribute in self.attributes])
+        object.__setattr__(self, "_constraints", own.union(*below))
 
     def find(self, path: str) -> "DataObject | DataAttribute | None":
         """Find a sub object or attribute below this object.
@@ -179,12 +186,11 @@ class DataObject:
         return CONTROL_MODELS[ordinal] if ordinal is not None and ordinal in range(5) else None
 
     def constraints(self) -> frozenset[FunctionalConstraint]:
-        """Collect the functional constraints that occur anywhere in the object.
+        """Tell the functional constraints that occur anywhere in the object.
 
         Returns
         -------
         frozenset of FunctionalConstraint
             The constraints.
         """
-        below = (child.constraints() for child in self.objects)
-        return frozenset(attribute.fc for attribute in self.attributes).union(*below)
+        return self._constraints

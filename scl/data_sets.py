@@ -55,7 +55,7 @@ class DataSetReader:
             if name is None:
                 continue
             if name in data_sets:
-                document.note(element, "a second data set of this name: the first one counts")
+                document.leave_out(element, "a second data set of this name, the first one counts")
                 continue
             members = [self._member(child, device) for child in document.children(element, "FCDA")]
             data_sets[name] = DataSet(
@@ -84,27 +84,28 @@ class DataSetReader:
         inst = element.get("ldInst") or device
         constraint = element.get("fc", "")
         if inst not in self._domains:
-            document.note(element, f"no LDevice {inst!r} in this IED: member left out")
+            document.leave_out(element, f"no LDevice {inst!r} in this IED")
             return None
         fc = _CONSTRAINTS.get(constraint)
         if fc is None or not element.get("doName"):
-            document.note(element, "names no data without doName and a known fc: member left out")
+            document.leave_out(element, "names no data without doName and a known fc")
+            return None
+        if not element.get("lnClass"):
+            document.leave_out(element, "names no logical node without lnClass")
             return None
         logical_node = _logical_node(
             element.get("prefix", ""), element.get("lnClass", ""), element.get("lnInst", "")
         )
         if logical_node is None:
-            document.note(element, "names no logical node: member left out")
+            document.leave_out(element, "names no logical node")
             return None
-        if not element.get("lnClass"):
-            document.required(element, "lnClass")
         path, index_text = _path(element.get("doName", ""), element.get("daName", ""), element.get("ix", ""))
         index = decimal(index_text) if index_text else None
         if index is None and index_text:
             document.note(element, f"ix={index_text!r} is no number: left out")
         reference = f"{self._domains[inst]}/{logical_node}.{path}"
         if len(reference) > LONGEST_REFERENCE:
-            document.note(element, f"a reference of over {LONGEST_REFERENCE} characters: member left out")
+            document.leave_out(element, f"a reference of over {LONGEST_REFERENCE} characters")
             return None
         member = DataSetMember(
             reference=reference,

@@ -12,6 +12,9 @@ from scl.errors import Finding, SclError
 from scl.xml_file import LARGEST_FILE_BYTES, parse
 
 NAMESPACE = "http://www.iec.ch/61850/2003/SCL"
+NAMESPACES = re.compile(r"https?://www\.iec\.ch/61850/[0-9]{4}/SCL[/#]?", re.IGNORECASE)
+"""Spellings of the namespace that tools write, of other years (2006, 2007) for one."""
+
 NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 IED_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}")
 IDENTITY = ("name", "id", "inst", "iedName", "apName", "prefix", "lnClass", "lnType", "type", "doName")
@@ -39,17 +42,20 @@ class Document:
     def __init__(self, path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> None:
         self.path = path
         self.findings: list[Finding] = []
+        self.omissions: list[Finding] = []
         self.root = parse(path, largest_bytes=largest_bytes).getroot()
         name = etree.QName(self.root)
-        self._prefix = f"{{{NAMESPACE}}}" if name.namespace else ""
+        self._prefix = f"{{{name.namespace}}}" if name.namespace else ""
         self._names: dict[tuple[str, ...], tuple[str, ...]] = {}
         self._names_seen: set[str] = set()  # values already checked
-        if name.localname != "SCL" or name.namespace not in (NAMESPACE, None):
+        if name.localname != "SCL" or not NAMESPACES.fullmatch(name.namespace or NAMESPACE):
             raise self.error(self.root, f"a root element SCL of {NAMESPACE}", str(self.root.tag))
-        if not name.namespace:
-            self.note(self.root, f"no namespace: read as {NAMESPACE}")
+        if name.namespace != NAMESPACE:
+            self.note(self.root, f"{name.namespace or 'no'} namespace: read as {NAMESPACE}")
 
-    def error(self, element: etree._Element, expected: str, found: str) -> SclError:
+    def error(
+        self, element: etree._Element, expected: str, found: str, kind: type[SclError] = SclError
+    ) -> SclError:
         """Make an error that names the file, the line and the element.
 
         Parameters
@@ -60,13 +66,15 @@ class Document:
             What should be there.
         found : str
             What is there.
+        kind : type of SclError
+            Class of the error.
 
         Returns
         -------
         SclError
             The error.
         """
-        return SclError(
+        return kind(
             self.path,
             line=_line(element),
             element=_excerpt(element),
@@ -84,10 +92,29 @@ class Document:
         message : str
             What is odd.
         """
-        if len(self.findings) < MOST_FINDINGS:
-            self.findings.append(Finding(_line(element), _excerpt(element), message))
-        elif len(self.findings) == MOST_FINDINGS:
-            self.findings.append(Finding(_line(element), _excerpt(element), "more is odd: not listed"))
+        self._add(self.findings, element, message, left_out=False)
+
+    def leave_out(self, element: etree._Element, reason: str | SclError) -> None:
+        """Add a finding that an element is left out of what is read.
+
+        Parameters
+        ----------
+        element : lxml.etree._Element
+            The element.
+        reason : str or SclError
+            Why, in words, or the error that says what was expected and found, and where.
+        """
+        if isinstance(reason, SclError):
+            elsewhere = reason.element and reason.element != _excerpt(element)
+            where = f" at line {reason.line}, {reason.element}" if elsewhere else ""
+            reason = f"expected {reason.expected}, found {reason.found}{where}"
+        self._add(self.omissions, element, f"left out: {reason}", left_out=True)
+
+    def _add(self, findings: list[Finding], element: etree._Element, message: str, *, left_out: bool) -> None:
+        if len(findings) == MOST_FINDINGS:
+            message = "more is left out: not listed" if left_out else "more is odd: not listed"
+        if len(findings) <= MOST_FINDINGS:
+            findings.append(Finding(_line(element), _excerpt(element), message, left_out))
 
     def is_own(self, element: etree._Element) -> bool:
         """Tell whether an element is of the SCL namespace, not a vendor's.
@@ -301,7 +328,7 @@ class Document:
         value = element.get(attribute, "").strip()
         if NAME.fullmatch(value):
             return value
-        self.note(element, f"{attribute}={value[:EXCERPT]!r} is no name of letters, digits and _: left out")
+        self.leave_out(element, f"{attribute}={value[:EXCERPT]!r} is no name of letters, digits and _")
         return None
 
     def integer(

@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 class SclError(ValueError):
-    """A configuration file cannot be used; nothing of it was repaired or guessed.
+    """A configuration file, or a part of it, cannot be used; nothing of it was repaired or guessed.
 
     Parameters
     ----------
@@ -52,11 +52,14 @@ class Finding:
         XML element as it stands there, shortened.
     message : str
         What is odd.
+    left_out : bool
+        Whether the element is missing from what was read.
     """
 
     line: int
     element: str
     message: str
+    left_out: bool = False
 
     def __str__(self) -> str:
         return f"line {self.line}: {self.element}: {self.message}"

@@ -3,19 +3,24 @@
 from lxml import etree
 
 from scl.control_blocks import ControlBlockReader
+from scl.data_model import DataAttribute, DataObject
 from scl.data_sets import DataSetReader
 from scl.document import Document
+from scl.errors import SclError
 from scl.ied_model import AccessPoint, Ied, LogicalDevice, LogicalNode
 from scl.instance_values import InstanceValues
 from scl.multicast_addresses import MulticastAddresses
-from scl.templates import Templates
+from scl.templates import NodeType, Templates
 
 LONGEST_NAME = 64
+MOST_ATTRIBUTES = 1_000_000
+"""Of an IED, with the elements of its arrays."""
+LONGEST_REFERENCE = 128
 DEFAULT_LOG = "GeneralLog"
 
 
 class IedSection:
-    """Reads one IED element.
+    """Reads one IED element. Logical devices and nodes that cannot be used are left out with a finding.
 
     Parameters
     ----------
@@ -33,7 +38,7 @@ class IedSection:
     Raises
     ------
     SclError
-        A name is missing, unusable or used twice.
+        The IED has no usable name.
     """
 
     def __init__(
@@ -49,13 +54,18 @@ class IedSection:
         self._templates = templates
         self._instance_values = instance_values
         self._addresses = addresses
-        self._name = document.name(element, "name")
+        self.name = document.name(element, "name")
         self._type = element.get("type", "")
         # A data set names logical devices by inst, of any access point; its references need the domain.
         self._domains: dict[str, str] = {}
+        self._devices: dict[etree._Element, str] = {}
+        self._attributes = 0
         for point in document.children(element, "AccessPoint"):
             for device in document.children(document.child(point, "Server"), "LDevice"):
-                self._add_domain(device)
+                try:
+                    self._add_domain(device)
+                except SclError as error:
+                    document.leave_out(device, error)
         self._data_sets = DataSetReader(document, self._domains)
 
     def read(self) -> Ied:
@@ -65,16 +75,11 @@ class IedSection:
         -------
         Ied
             The IED with its resolved data model.
-
-        Raises
-        ------
-        SclError
-            The data model is unclear.
         """
         document, element = self._document, self._element
         services = document.child(element, "Services")
         ied = Ied(
-            name=self._name,
+            name=self.name,
             manufacturer=element.get("manufacturer", ""),
             type=element.get("type", ""),
             description=element.get("desc", ""),
@@ -90,7 +95,7 @@ class IedSection:
     def _add_domain(self, device: etree._Element) -> None:
         document = self._document
         inst = document.name(device, "inst")
-        domain = document.name(device, "ldName") if device.get("ldName") else f"{self._name}{inst}"
+        domain = document.name(device, "ldName") if device.get("ldName") else f"{self.name}{inst}"
         if inst in self._domains or domain in self._domains.values():
             raise document.error(device, "one LDevice of each inst and name in an IED", "a second one")
         if len(domain) > LONGEST_NAME:
@@ -98,6 +103,7 @@ class IedSection:
                 device, f"an IED name and inst of at most {LONGEST_NAME} characters together", domain
             )
         self._domains[inst] = domain
+        self._devices[device] = inst
 
     def _access_point(self, element: etree._Element) -> AccessPoint:
         document = self._document
@@ -106,18 +112,23 @@ class IedSection:
             name=element.get("name", ""),
             description=element.get("desc", ""),
             logical_devices=tuple(
-                self._logical_device(device) for device in document.children(server, "LDevice")
+                self._logical_device(device, self._devices[device])
+                for device in document.children(server, "LDevice")
+                if device in self._devices
             ),
         )
 
-    def _logical_device(self, element: etree._Element) -> LogicalDevice:
+    def _logical_device(self, element: etree._Element, inst: str) -> LogicalDevice:
         document = self._document
-        inst = document.name(element, "inst")
         nodes: dict[str, LogicalNode] = {}
         for child in [*document.children(element, "LN0"), *document.children(element, "LN")]:
-            node = self._logical_node(child, inst)
+            try:
+                node = self._logical_node(child, inst)
+            except SclError as error:
+                document.leave_out(child, error)
+                continue
             if node.name in nodes:
-                document.note(child, f"a second logical node {node.name}: the first one counts")
+                document.leave_out(child, f"a second logical node {node.name}, the first one counts")
             else:
                 nodes[node.name] = node
         return LogicalDevice(
@@ -134,10 +145,12 @@ class IedSection:
         reference = f"{self._domains[device]}/{prefix}{ln_class}{inst}"
         if len(prefix + ln_class + inst) > LONGEST_NAME:
             raise document.error(element, f"a name of at most {LONGEST_NAME} characters", reference)
+        node_type = self._templates.node_type(element, ln_class, self._type)
+        self._count(element, node_type)
         parts = document.grouped(element)
         data_sets = self._data_sets.data_sets(parts["DataSet"], reference, device)
         blocks = ControlBlockReader(
-            document, self._addresses, ied=self._name, device=device, node=reference, data_sets=data_sets
+            document, self._addresses, ied=self.name, device=device, node=reference, data_sets=data_sets
         )
         return LogicalNode(
             reference=reference,
@@ -146,7 +159,8 @@ class IedSection:
             inst=inst,
             description=element.get("desc", ""),
             data_objects=self._instance_values.apply(
-                element, self._templates.data_objects(element, ln_class, self._type)
+                element,
+                self._nameable(element, self._domains[device], f"{prefix}{ln_class}{inst}", node_type),
             ),
             data_sets=tuple(data_sets.values()),
             report_controls=blocks.reports(parts["ReportControl"]),
@@ -156,6 +170,49 @@ class IedSection:
             sampled_value_controls=blocks.sampled_values(parts["SampledValueControl"]),
             setting_groups=blocks.setting_groups(parts["SettingControl"]),
         )
+
+    def _count(self, element: etree._Element, node_type: NodeType) -> None:
+        if self._attributes + node_type.attributes > MOST_ATTRIBUTES:
+            expected = f"at most {MOST_ATTRIBUTES} attributes in an IED"
+            raise self._document.error(
+                element, expected, f"{node_type.attributes} more than there is room for"
+            )
+        self._attributes += node_type.attributes
+
+    def _nameable(
+        self, element: etree._Element, domain: str, node: str, node_type: NodeType
+    ) -> tuple[DataObject, ...]:
+        """Return the data objects whose attributes all have names that clients can use."""
+        before = len(f"{domain}/{node}.")
+        if before + node_type.characters <= LONGEST_NAME:
+            return node_type.data_objects
+        kept = []
+        for data_object in node_type.data_objects:
+            name = f"{node}$ST${_longest(data_object, '$', with_elements=False)}"
+            reference = f"{domain}/{node}.{_longest(data_object, '.', with_elements=True)}"
+            if len(name) <= LONGEST_NAME and len(reference) <= LONGEST_REFERENCE:
+                kept.append(data_object)
+                continue
+            long = name if len(name) > LONGEST_NAME else reference
+            self._document.leave_out(
+                element, f"the name {long} of {len(long)} characters is too long for MMS"
+            )
+        return tuple(kept)
+
+
+def _longest(member: DataObject | DataAttribute, separator: str, *, with_elements: bool) -> str:
+    """Return the longest path of an object.
+
+    The list of MMS names ends at an array. References go on, with the number of the element.
+    """
+    children: tuple[DataObject | DataAttribute, ...] = member.attributes
+    if isinstance(member, DataObject):
+        children += member.objects
+    if member.count and not with_elements:
+        children = ()
+    below = [_longest(child, separator, with_elements=with_elements) for child in children]
+    own = f"{member.name}({member.count - 1})" if member.count and with_elements else member.name
+    return separator.join(filter(None, (own, max(below, key=len, default=""))))
 
 
 def _node_name(document: Document, element: etree._Element) -> tuple[str, str, str]:

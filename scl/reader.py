@@ -1,7 +1,8 @@
 """Reader of SCL files of editions 1, 2 and 2.1 (IEC 61850-6), which makes plain frozen dataclasses of them.
 
 Private elements and foreign namespaces are passed over. What is odd but clear becomes a finding with its
-line; what leaves the data model in doubt is an SclError.
+line. What cannot be used is left out, as little as possible, with a finding too: a data set member, a data
+object, a node, an IED. Only a file that is no safe SCL at all is an SclError.
 """
 
 from collections.abc import Iterable
@@ -12,6 +13,7 @@ from lxml import etree
 from scl.configuration import ConnectedAccessPoint, Header, Scl, SubNetwork
 from scl.conformance import check_conformance
 from scl.document import Document
+from scl.errors import SclError
 from scl.ied_model import Ied
 from scl.ied_section import IedSection
 from scl.instance_values import InstanceValues
@@ -39,7 +41,7 @@ def read(path: Path | str, *, largest_bytes: int = LARGEST_FILE_BYTES) -> Scl:
     Raises
     ------
     SclError
-        The file is missing or no safe XML, or its data model is unclear.
+        The file is missing, too large, no safe XML, or no SCL.
 
     References
     ----------
@@ -51,10 +53,15 @@ def read(path: Path | str, *, largest_bytes: int = LARGEST_FILE_BYTES) -> Scl:
     addresses = multicast_addresses(document)
     ieds: dict[str, Ied] = {}
     for element in document.children(document.root, "IED"):
-        ied = IedSection(document, element, templates, instance_values, addresses).read()
-        if ied.name in ieds:
-            raise document.error(element, "one IED of each name", "a second one")
-        ieds[ied.name] = ied
+        try:
+            section = IedSection(document, element, templates, instance_values, addresses)
+        except SclError as error:
+            document.leave_out(element, error)
+            continue
+        if section.name in ieds:
+            document.leave_out(element, "a second IED of this name, the first one counts")
+        else:
+            ieds[section.name] = section.read()
     communication = _communication(document, ieds)
     substations = _substations(document, ieds)
     header = _header(document)
@@ -64,7 +71,7 @@ def read(path: Path | str, *, largest_bytes: int = LARGEST_FILE_BYTES) -> Scl:
         ieds=tuple(ieds.values()),
         communication=communication,
         substations=substations,
-        warnings=tuple(sorted(document.findings, key=lambda finding: finding.line)),
+        warnings=tuple(sorted(document.findings + document.omissions, key=lambda finding: finding.line)),
     )
 
 

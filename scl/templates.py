@@ -2,6 +2,9 @@
 
 A type is resolved once and its tree is shared by all that use it. So a large substation costs little memory,
 and types that multiply (a type of ten members of a type of ten members ...) cannot fill it.
+
+What is wrong costs the smallest part that it spoils: a member whose type is missing, or a data object whose
+types have no end, is left out with a finding.
 """
 
 from collections.abc import Iterator
@@ -11,10 +14,16 @@ from lxml import etree
 
 from scl.data_model import DataAttribute, DataObject, Enumeration, FunctionalConstraint, TriggerOptions
 from scl.document import Document, decimal
+from scl.errors import SclError
 from scl.xml_file import content
 
 DEEPEST_NESTING = 16
-MOST_ATTRIBUTES = 2_000
+MOST_MEMBERS = 2_000
+"""Of one type, as the file writes them."""
+MOST_ELEMENTS = 10_000
+"""Of an array."""
+MOST_ATTRIBUTES = 100_000
+"""Of a data object with the elements of its arrays; harmonics of real relays have several thousands."""
 MOST_COPIES = 1_000_000
 LONGEST_PATH = 128
 BASIC_TYPES = frozenset(
@@ -28,23 +37,29 @@ BASIC_TYPES = frozenset(
 )
 
 
+class _UnboundedTypeError(SclError):
+    """A type contains itself, or is too large, too deep or too long in its names."""
+
+
 @dataclass(frozen=True, slots=True)
 class _Extent:
-    """Size of a type: its number of attributes, its levels, and the characters of its longest path."""
+    """Size of a type: its attributes, its levels, and the characters of its longest path.
+
+    `attributes` counts every element of an array, `written` counts an array once.
+    """
 
     attributes: int = 0
+    written: int = 0
     depth: int = 1
     characters: int = 0
 
     def plus(self, name: str, count: int, part: "_Extent | None") -> "_Extent":
         """Return the extent with one more member: a name, its array elements, and the extent of its type."""
         elements = max(count, 1)
-        if part is None:
-            return replace(
-                self, attributes=self.attributes + elements, characters=max(self.characters, len(name))
-            )
+        part = part or _Extent(depth=0, characters=-1)
         return _Extent(
             attributes=self.attributes + elements * (1 + part.attributes),
+            written=self.written + 1 + part.written,
             depth=max(self.depth, 1 + part.depth),
             characters=max(self.characters, len(name) + 1 + part.characters),
         )
@@ -58,6 +73,25 @@ class _Resolved:
     objects: tuple[DataObject, ...]
     attributes: tuple[DataAttribute, ...]
     extent: _Extent
+
+
+@dataclass(frozen=True, slots=True)
+class NodeType:
+    """A resolved LNodeType.
+
+    Parameters
+    ----------
+    data_objects : tuple of DataObject
+        Its data objects.
+    attributes : int
+        Number of their attributes, those of every array element counted.
+    characters : int
+        Length of the longest path below the node.
+    """
+
+    data_objects: tuple[DataObject, ...]
+    attributes: int
+    characters: int
 
 
 class Templates:
@@ -74,7 +108,8 @@ class Templates:
         self._elements: dict[tuple[str, str], etree._Element] = {}
         self._resolved: dict[tuple[str, str], _Resolved] = {}
         self._node_types: dict[str, list[etree._Element]] = {}
-        self._nodes: dict[etree._Element, tuple[DataObject, ...]] = {}
+        self._unbounded: dict[tuple[str, str], _UnboundedTypeError] = {}
+        self._nodes: dict[etree._Element, NodeType] = {}
         self._inherited: dict[
             tuple[str, FunctionalConstraint, TriggerOptions], tuple[DataAttribute, ...]
         ] = {}
@@ -96,7 +131,7 @@ class Templates:
                 else:
                     self._elements[key] = element
 
-    def data_objects(self, node: etree._Element, ln_class: str, ied_type: str) -> tuple[DataObject, ...]:
+    def node_type(self, node: etree._Element, ln_class: str, ied_type: str) -> NodeType:
         """Resolve the data objects of a logical node as its LNodeType defines them.
 
         Parameters
@@ -110,25 +145,34 @@ class Templates:
 
         Returns
         -------
-        tuple of DataObject
-            The data objects.
+        NodeType
+            The data objects and their extent.
 
         Raises
         ------
         SclError
-            A type is missing, contains itself, or is too large.
+            The node names no LNodeType of the document.
         """
-        definition = self._node_type(node, ln_class, ied_type)
+        definition = self._definition(node, ln_class, ied_type)
         if definition not in self._nodes:
-            objects: list[DataObject] = []
-            for name, member in self._named(definition, "DO"):
-                part = self._resolve("DOType", member, ())
-                self._check(member, _Extent().plus(name, 0, part.extent))
-                objects.append(self._data_object(name, 0, member, part))
-            self._nodes[definition] = tuple(objects)
+            self._nodes[definition] = self._node(definition)
         return self._nodes[definition]
 
-    def _node_type(self, node: etree._Element, ln_class: str, ied_type: str) -> etree._Element:
+    def _node(self, definition: etree._Element) -> NodeType:
+        objects: list[DataObject] = []
+        extent = _Extent()
+        for name, member in self._named(definition, "DO"):
+            try:
+                part = self._resolve("DOType", member, ())
+                self._check(member, _Extent().plus(name, 0, part.extent))
+            except SclError as error:
+                self._document.leave_out(member, error)
+                continue
+            extent = extent.plus(name, 0, part.extent)
+            objects.append(self._data_object(name, 0, member, part))
+        return NodeType(tuple(objects), extent.attributes, extent.characters)
+
+    def _definition(self, node: etree._Element, ln_class: str, ied_type: str) -> etree._Element:
         """Return the LNodeType that a node names. Types of several classes and IED types may share an id."""
         type_id = self._document.required(node, "lnType")
         found = self._node_types.get(type_id)
@@ -151,53 +195,85 @@ class Templates:
         """Iterate over members of a type with their names; a name that comes twice counts once."""
         seen: set[str] = set()
         for member in self._document.children(element, *tags):
-            name = self._document.name(member, "name")
+            try:
+                name = self._document.name(member, "name")
+            except SclError as error:
+                self._document.leave_out(member, error)
+                continue
             if name in seen:
-                self._document.note(member, "a second member of this name: the first one counts")
+                self._document.leave_out(member, "a second member of this name, the first one counts")
                 continue
             seen.add(name)
             yield name, member
 
-    def _resolve(self, kind: str, user: etree._Element, path: tuple[str, ...]) -> _Resolved:
+    def _resolve(self, kind: str, user: etree._Element, path: tuple[tuple[str, str], ...]) -> _Resolved:
         """Resolve the type that a member names.
 
         `path` holds the types being resolved around it, so that a type inside itself is found.
         """
-        type_id = self._document.required(user, "type")
-        name = f"{kind} {type_id}"
-        if name in path:
+        key = kind, self._document.required(user, "type")
+        if key in path:
+            circle = " > ".join(" ".join(each) for each in (*path, key))
             raise self._document.error(
-                user, "types that do not contain themselves", " > ".join([*path, name])
+                user, "types that do not contain themselves", circle, _UnboundedTypeError
             )
         if len(path) > DEEPEST_NESTING:
-            raise self._document.error(user, f"types nested at most {DEEPEST_NESTING} deep", "deeper ones")
-        if (kind, type_id) not in self._resolved:
-            definition = self._find(kind, type_id, user)
-            self._resolved[kind, type_id] = self._members(definition, (*path, name))
-        return self._resolved[kind, type_id]
+            expected = f"types nested at most {DEEPEST_NESTING} deep"
+            raise self._document.error(user, expected, "deeper ones", _UnboundedTypeError)
+        if key in self._unbounded:
+            raise self._unbounded[key]
+        if key not in self._resolved:
+            definition = self._find(*key, user)
+            try:
+                self._resolved[key] = self._members(definition, (*path, key))
+            except _UnboundedTypeError as error:
+                self._unbounded[key] = error
+                raise
+        resolved = self._resolved[key]
+        if not resolved.objects and not resolved.attributes:
+            raise self._document.error(user, f"{kind} {key[1]!r} with members", "none that can be used")
+        return resolved
 
-    def _members(self, definition: etree._Element, path: tuple[str, ...]) -> _Resolved:
-        """Resolve the members of a DOType or DAType.
+    def _members(self, definition: etree._Element, path: tuple[tuple[str, str], ...]) -> _Resolved:
+        """Resolve the members of a DOType or DAType; one whose type cannot be used is left out.
 
         Components (BDA) get their constraint where the struct is used.
         """
         objects: list[DataObject] = []
         attributes: list[DataAttribute] = []
         extent = _Extent()
-        for name, member in self._named(definition, "SDO", "DA", "BDA"):
-            tag, count = etree.QName(member).localname, self._count(member)
-            if tag == "SDO":
-                part = self._resolve("DOType", member, path)
-                extent = extent.plus(name, count, part.extent)
-                self._check(definition, extent)
-                objects.append(self._data_object(name, count, member, part))
+        for number, (name, member) in enumerate(self._named(definition, "SDO", "DA", "BDA"), 1):
+            if number > MOST_MEMBERS:
+                expected = f"at most {MOST_MEMBERS} members of a type"
+                raise self._document.error(definition, expected, "more", _UnboundedTypeError)
+            try:
+                part = self._member(name, member, path)
+            except _UnboundedTypeError:
+                raise
+            except SclError as error:
+                self._document.leave_out(member, error)
                 continue
-            struct = self._resolve("DAType", member, path) if member.get("bType") == "Struct" else None
-            extent = extent.plus(name, count, None if struct is None else struct.extent)
+            made, size = part
+            extent = extent.plus(name, made.count, size)
             self._check(definition, extent)
-            constraint = self._constraint(member) if tag == "DA" else FunctionalConstraint.ST
-            attributes.append(self._attribute(name, count, member, constraint, struct))
+            if isinstance(made, DataObject):
+                objects.append(made)
+            else:
+                attributes.append(made)
         return _Resolved(definition.get("cdc", ""), tuple(objects), tuple(attributes), extent)
+
+    def _member(
+        self, name: str, member: etree._Element, path: tuple[tuple[str, str], ...]
+    ) -> tuple[DataObject | DataAttribute, _Extent | None]:
+        """Return a member of a type, and the extent of its own type."""
+        tag, count = etree.QName(member).localname, self._count(member)
+        if tag == "SDO":
+            part = self._resolve("DOType", member, path)
+            return self._data_object(name, count, member, part), part.extent
+        struct = self._resolve("DAType", member, path) if member.get("bType") == "Struct" else None
+        constraint = self._constraint(member) if tag == "DA" else FunctionalConstraint.ST
+        attribute = self._attribute(name, count, member, constraint, struct)
+        return attribute, None if struct is None else struct.extent
 
     def _check(self, definition: etree._Element, extent: _Extent) -> None:
         if (
@@ -209,6 +285,7 @@ class Templates:
                 definition,
                 f"at most {MOST_ATTRIBUTES} attributes, {DEEPEST_NESTING} levels, {LONGEST_PATH} characters",
                 f"{extent.attributes} attributes, {extent.depth} levels, {extent.characters} characters",
+                _UnboundedTypeError,
             )
 
     def _data_object(self, name: str, count: int, element: etree._Element, resolved: _Resolved) -> DataObject:
@@ -232,7 +309,7 @@ class Templates:
         document = self._document
         basic_type = document.required(element, "bType")
         if basic_type not in BASIC_TYPES:
-            document.note(element, f"bType {basic_type!r} is no basic type of IEC 61850-6")
+            raise document.error(element, "bType, a basic type of IEC 61850-6", repr(basic_type))
         triggers = trigger_options(document, element, general_interrogation=False)
         return DataAttribute(
             name=name,
@@ -256,11 +333,11 @@ class Templates:
         struct_id = self._document.required(element, "type")
         key = struct_id, constraint, triggers
         if key not in self._inherited:
-            self._copies += struct.extent.attributes
-            if self._copies > MOST_COPIES:
+            if self._copies + struct.extent.written > MOST_COPIES:
                 raise self._document.error(
                     element, f"types of at most {MOST_COPIES} attributes in all", f"more, at {struct_id!r}"
                 )
+            self._copies += struct.extent.written
             self._inherited[key] = tuple(_inherit(part, constraint, triggers) for part in struct.attributes)
         return self._inherited[key]
 
@@ -278,7 +355,7 @@ class Templates:
         if text is None:
             return 0
         number = decimal(text)
-        if number is None or number > MOST_ATTRIBUTES:
+        if number is None or number > MOST_ELEMENTS:
             # In edition 2 another attribute may hold the count; the model then has no fixed array.
             self._document.note(element, f"array count {text!r} is no number: taken as no array")
             return 0

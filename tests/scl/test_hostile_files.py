@@ -1,4 +1,4 @@
-"""Files that try to do harm or make no sense: SclError and nothing else, quickly."""
+"""Files that try to do harm or make no sense: findings, or SclError and nothing else, quickly."""
 
 from pathlib import Path
 
@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 import scl
 from scl import SclError
+from scl.document import MOST_FINDINGS
 from scl.model_text import model_text
 from tests.scl.documents import TEMPLATES, scl_text, write_scl
 
@@ -135,7 +136,7 @@ def of_objects(levels: int) -> str:
         ),
         (
             TEMPLATES.replace('type="AnalogueValue"', 'type="T0"') + of_attributes(12, 10),
-            "at most 2000 attributes",
+            "at most 100000 attributes",
         ),
         (
             TEMPLATES.replace('type="AnalogueValue"', 'type="T0"') + of_attributes(400, 1),
@@ -143,8 +144,18 @@ def of_objects(levels: int) -> str:
         ),
         (TEMPLATES.replace('type="SPS"', 'type="T0"') + of_objects(3000), "nested at most 16 deep"),
         (
-            TEMPLATES.replace('name="mag"', 'name="mag" count="2000"'),
-            "at most 2000 attributes",
+            TEMPLATES.replace('name="mag"', 'name="mag" count="9999"').replace(
+                '<BDA name="f" bType="FLOAT32"/>',
+                "".join(f'<BDA name="f{n}" bType="FLOAT32"/>' for n in range(10)),
+            ),
+            "at most 100000 attributes",
+        ),
+        (
+            TEMPLATES.replace(
+                '<BDA name="f" bType="FLOAT32"/>',
+                "".join(f'<BDA name="f{n}" bType="FLOAT32"/>' for n in range(2001)),
+            ),
+            "at most 2000 members",
         ),
         (
             TEMPLATES.replace('name="mag"', f'name="{"m" * 64}"').replace('name="f"', f'name="{"f" * 64}"'),
@@ -152,9 +163,12 @@ def of_objects(levels: int) -> str:
         ),
     ],
 )
-def test_types_without_end_are_refused(tmp_path: Path, templates: str, message: str) -> None:
-    with pytest.raises(SclError, match=message):
-        scl.read(write_scl(tmp_path / "types.icd", scl_text(templates=templates)))
+def test_types_without_end_are_left_out(tmp_path: Path, templates: str, message: str) -> None:
+    document = scl.read(write_scl(tmp_path / "types.icd", scl_text(templates=templates)))
+    (finding,) = (each for each in document.warnings if each.left_out)
+    assert finding.element.startswith("<DO name=")
+    assert message in finding.message
+    assert document.ied("R1").logical_nodes("GGIO")[0].data_objects
 
 
 def test_types_resolved_from_the_leaves_up_are_still_counted(tmp_path: Path) -> None:
@@ -162,8 +176,27 @@ def test_types_resolved_from_the_leaves_up_are_still_counted(tmp_path: Path) -> 
     users = "".join(f'<DO name="D{level}" type="T{level}"/>' for level in range(40, -1, -1))
     templates = f'{TEMPLATES}{of_objects(41)}<LNodeType id="Chain" lnClass="GGIO">{users}</LNodeType>'
     nodes = '<LN lnClass="GGIO" inst="1" lnType="Chain"/>'
-    with pytest.raises(SclError, match="16 levels"):
-        scl.read(write_scl(tmp_path / "chain.icd", scl_text(templates=templates, nodes=nodes)))
+    document = scl.read(write_scl(tmp_path / "chain.icd", scl_text(templates=templates, nodes=nodes)))
+    assert any("16 levels" in str(warning) for warning in document.warnings)
+    (node,) = document.ied("R1").logical_nodes("GGIO")
+    assert [each.name for each in node.data_objects] == [f"D{level}" for level in range(40, 26, -1)]
+
+
+def test_an_ied_has_room_for_so_many_attributes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nodes beyond the limit are left out, those before it are read."""
+    monkeypatch.setattr("scl.ied_section.MOST_ATTRIBUTES", 20)
+    nodes = "".join(f'<LN lnClass="GGIO" inst="{n}" lnType="GGIO"/>' for n in range(1, 8))
+    document = scl.read(write_scl(tmp_path / "many.icd", scl_text(nodes=nodes)))
+    assert 1 <= len(document.ied("R1").logical_nodes("GGIO")) < 7
+    assert any("at most 20 attributes in an IED" in str(warning) for warning in document.warnings)
+
+
+@pytest.mark.parametrize("faults", [100, 3000])
+def test_a_fault_that_comes_often_costs_little_and_is_told_so_often(tmp_path: Path, faults: int) -> None:
+    odd = "".join(f'<LN lnClass="GGIO" inst="{n}" lnType="gone"/>' for n in range(faults))
+    document = scl.read(write_scl(tmp_path / "odd.icd", scl_text(nodes=odd)))
+    told = [warning for warning in document.warnings if warning.left_out]
+    assert len(told) == min(faults, MOST_FINDINGS + 1)
 
 
 def test_a_file_too_large_is_refused(tmp_path: Path) -> None:

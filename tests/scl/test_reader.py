@@ -8,7 +8,7 @@ import pytest
 import scl
 from scl import SclError
 from scl.data_model import DataAttribute, FunctionalConstraint, TriggerOptions
-from tests.scl.documents import COMMUNICATION, NODE_ZERO, TEMPLATES, scl_text, write_scl
+from tests.scl.documents import COMMUNICATION, NODE_ZERO, NODES, TEMPLATES, scl_text, write_scl
 
 
 def read(tmp_path: Path, **parts: str) -> scl.Scl:
@@ -183,7 +183,7 @@ def test_logs_settings_and_goose(tmp_path: Path) -> None:
         ),
         (
             {"templates": TEMPLATES.replace('bType="Quality"', 'bType="Quantity"')},
-            "'Quantity' is no basic type",
+            "bType, a basic type of IEC 61850-6, found 'Quantity'",
         ),
         ({"templates": TEMPLATES.replace('ord="5"', 'ord="five"')}, "ord='five' is no number"),
         ({"templates": TEMPLATES.replace('EnumType id="Mode"', 'EnumType id="Mood"')}, "no EnumType 'Mode'"),
@@ -194,7 +194,7 @@ def test_logs_settings_and_goose(tmp_path: Path) -> None:
         ),
         (
             {"node_zero": '<LN0 lnType="LLN0"><ReportControl name="R"/><ReportControl name="R"/></LN0>'},
-            "a second control block of this name: the first one counts",
+            "left out: a second control block of this name, the first one counts",
         ),
         (
             {"templates": TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="Ind1" type="MV"/>')},
@@ -206,18 +206,18 @@ def test_logs_settings_and_goose(tmp_path: Path) -> None:
                 "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
                 f'<FCDA lnClass="GGIO" doName="{"x" * 130}" fc="ST"/></DataSet></LN0>'
             },
-            "a reference of over 129 characters: member left out",
+            "left out: a reference of over 129 characters",
         ),
         (
             {"node_zero": '<LN0 lnType="LLN0"><DataSet name="D 1"/><ReportControl/></LN0>'},
-            "name='D 1' is no name of letters, digits and _: left out",
+            "left out: name='D 1' is no name of letters, digits and _",
         ),
         (
             {
                 "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
                 '<FCDA lnClass="G G" doName="Ind1" fc="ST"/></DataSet></LN0>'
             },
-            "names no logical node: member left out",
+            "left out: names no logical node",
         ),
         (
             {"nodes": '<LN lnClass="GGIO" inst="1" lnType="GGIO"><DOI/></LN>'},
@@ -241,45 +241,134 @@ def test_oddities_become_warnings_with_a_line(tmp_path: Path, parts: dict[str, s
     assert read_scl.ied("R1").logical_nodes()
 
 
+MEMBER = '<FCDA lnClass="GGIO" lnInst="1" doName="Ind1" fc="ST"/>'
+
+
 @pytest.mark.parametrize(
-    ("parts", "message"),
+    ("parts", "place", "reason"),
     [
+        ({"nodes": NODES + '<LN lnClass="GGIO" lnType="gone"/>'}, "LN", 'a LNodeType with id="gone"'),
+        ({"nodes": NODES + '<LN lnClass="GGIO"/>'}, "LN", "expected an attribute lnType"),
+        ({"nodes": NODES + '<LN lnClass="G G" lnType="GGIO"/>'}, "LN", "lnClass of 1 to 64 letters"),
+        ({"nodes": NODES * 2}, "LN", "a second logical node GGIO1"),
         (
-            {"nodes": '<LN lnClass="GGIO" lnType="gone"/>'},
-            'line 10: <LN lnClass="GGIO" lnType="gone">: expected a LNodeType with id="gone"',
-        ),
-        ({"nodes": '<LN lnClass="GGIO"/>'}, "expected an attribute lnType"),
-        ({"nodes": '<LN lnClass="G G" lnType="GGIO"/>'}, "lnClass of 1 to 64 letters"),
-        ({"templates": TEMPLATES.replace('type="SPS"', 'type="gone"')}, 'a DOType with id="gone"'),
-        ({"templates": TEMPLATES.replace(' fc="DC"', "")}, "expected an attribute fc"),
-        ({"templates": TEMPLATES.replace('fc="DC"', 'fc="XX"')}, "fc, one of ST, MX"),
-        ({"device": 'inst="LD/0"'}, "inst of 1 to 64 letters"),
-        ({"device": ""}, "expected an attribute inst"),
-        ({"device": f'inst="{"L" * 64}"'}, "at most 64 characters together"),
-        (
-            {"nodes": f'<LN prefix="{"P" * 40}" lnClass="GGIO" inst="{"1" * 40}" lnType="GGIO"/>'},
+            {"nodes": f'{NODES}<LN prefix="{"P" * 40}" lnClass="GGIO" inst="{"1" * 40}" lnType="GGIO"/>'},
+            "LN",
             "a name of at most 64 characters",
         ),
-        ({"nodes": '</LDevice><LDevice inst="LD0">' + NODE_ZERO}, "one LDevice of each inst"),
-        ({"root": 'xmlns="urn:something"'}, "a root element SCL"),
+        ({"templates": TEMPLATES.replace('type="MV"', 'type="gone"')}, "DO", 'a DOType with id="gone"'),
+        ({"templates": TEMPLATES.replace('type="MV"', "")}, "DO", "expected an attribute type"),
+        ({"templates": TEMPLATES.replace('"AnIn1"', '"An In"')}, "DO", "name of 1 to 64 letters"),
+        ({"templates": TEMPLATES.replace(' fc="DC"', "")}, "DA", "expected an attribute fc"),
+        ({"templates": TEMPLATES.replace('fc="DC"', 'fc="XX"')}, "DA", "fc, one of ST, MX"),
+        ({"templates": TEMPLATES.replace('bType="Quality"', "")}, "DA", "expected an attribute bType"),
+        ({"templates": TEMPLATES.replace('bType="Quality"', 'bType="Bits"')}, "DA", "a basic type"),
+        ({"templates": TEMPLATES.replace('type="Unit"', 'type="gone"')}, "DA", 'a DAType with id="gone"'),
+        ({"templates": TEMPLATES.replace('bType="Struct" type="Unit"', 'bType="Struct"')}, "DA", "type"),
+        (
+            {"templates": TEMPLATES.replace('<BDA name="f" bType="FLOAT32"/>', "")},
+            "DA",
+            "DAType 'AnalogueValue' with members, found none that can be used",
+        ),
+        (
+            {"templates": TEMPLATES.replace('type="MV"', 'type="E"') + '<DOType id="E" cdc="E"/>'},
+            "DO",
+            "DOType 'E' with members",
+        ),
+        ({"device": 'inst="LD0"/><LDevice inst="LD/0"'}, "LDevice", "inst of 1 to 64 letters"),
+        ({"device": 'inst="LD0"/><LDevice'}, "LDevice", "expected an attribute inst"),
+        ({"device": f'inst="LD0"/><LDevice inst="{"L" * 64}"'}, "LDevice", "at most 64 characters together"),
+        (
+            {"nodes": f'{NODES}</LDevice><LDevice inst="LD0">{NODE_ZERO}'},
+            "LDevice",
+            "one LDevice of each inst",
+        ),
+        ({"nodes": f'{NODES}</LDevice><LDevice inst="9" ldName="R1LD0">'}, "LDevice", "one LDevice of each"),
+        ({"services": '</IED><IED name="R1"/><IED name="R2">'}, "IED", "a second IED of this name"),
+        ({"services": '</IED><IED/><IED name="R2">'}, "IED", "expected an attribute name"),
+        ({"services": '</IED><IED name="Ä/1"/><IED name="R2">'}, "IED", "name of 1 to 64 letters"),
     ],
 )
-def test_an_unclear_data_model_is_an_error_with_place(
-    tmp_path: Path, parts: dict[str, str], message: str
+def test_what_cannot_be_used_is_left_out_and_named(
+    tmp_path: Path, parts: dict[str, str], place: str, reason: str
 ) -> None:
+    read_scl = read(tmp_path, **parts)
+    (finding,) = (each for each in read_scl.warnings if each.left_out)
+    assert finding.element.startswith(f"<{place}")
+    assert f"left out: {'' if 'second' in reason else 'expected '}" in finding.message
+    assert reason in finding.message
+    lines = read_scl.path.read_text(encoding="utf-8").splitlines()
+    assert f"<{place}" in lines[finding.line - 1]
+
+
+def test_all_but_what_is_left_out_is_read(tmp_path: Path) -> None:
+    """One odd data object costs neither its node nor what stands beside it."""
+    odd = TEMPLATES.replace(
+        '<DO name="AnIn1" type="MV"/>', '<DO name="AnIn1" type="gone"/><DO name="Ind2" type="SPS"/>'
+    )
+    members = MEMBER + MEMBER.replace("Ind1", "AnIn1") + '<FCDA ldInst="LD0" doName="Mod" fc="ST"/>' + MEMBER
+    node_zero = f'<LN0 lnType="LLN0"><DataSet name="D">{members}</DataSet></LN0>'
+    read_scl = read(tmp_path, templates=odd, node_zero=node_zero)
+    node = read_scl.ied("R1").logical_nodes("GGIO")[0]
+    assert [data_object.name for data_object in node.data_objects] == ["Ind1", "Ind2"]
+    (data_set,) = read_scl.ied("R1").data_sets()
+    assert [member.path for member in data_set.members] == ["Ind1", "AnIn1", "Ind1"]
+    assert "left out: names no logical node without lnClass" in messages(read_scl)
+    assert "the data model has no R1LD0/GGIO1.AnIn1 [ST]" in messages(read_scl)
+
+
+@pytest.mark.parametrize(
+    "namespace",
+    [
+        "http://www.iec.ch/61850/2006/SCL",
+        "http://www.iec.ch/61850/2003/SCL/",
+        "https://www.iec.ch/61850/2007/SCL",
+        "http://www.IEC.ch/61850/2003/scl",
+    ],
+)
+def test_other_spellings_of_the_namespace_are_told_and_read(tmp_path: Path, namespace: str) -> None:
+    read_scl = read(tmp_path, root=f'xmlns="{namespace}"')
+    assert f"{namespace} namespace: read as http://www.iec.ch/61850/2003/SCL" in messages(read_scl)
+    assert read_scl.ied("R1").logical_nodes("GGIO")
+    assert read_scl.address("R1").host == "10.0.0.7"
+
+
+@pytest.mark.parametrize("root", ['xmlns="urn:something"', 'xmlns="http://www.iec.ch/61850/2003/CIM"'])
+def test_another_document_is_an_error_with_place(tmp_path: Path, root: str) -> None:
     with pytest.raises(SclError) as caught:
-        read(tmp_path, **parts)
-    assert message in str(caught.value)
+        read(tmp_path, root=root)
+    assert "a root element SCL" in str(caught.value)
     assert "relay.cid" in str(caught.value)
     assert caught.value.line
-    assert caught.value.expected
     assert caught.value.found
 
 
-def test_two_ieds_of_one_name_are_refused(tmp_path: Path) -> None:
-    text = scl_text().replace("</IED>", '</IED><IED name="R1"/>')
-    with pytest.raises(SclError, match="one IED of each name"):
-        scl.read(write_scl(tmp_path / "plant.scd", text))
+def test_harmonics_of_several_thousand_attributes_are_read(tmp_path: Path) -> None:
+    """Seven spectra of 64 harmonics, as power quality relays have them."""
+    spectra = "".join(
+        f'<SDO name="{name}Har" type="CMV" count="64"/>'
+        for name in ("phsA", "phsB", "phsC", "neut", "net", "res", "zero")
+    )
+    types = (
+        f'<DOType id="HWYE" cdc="HWYE">{spectra}</DOType><DOType id="CMV" cdc="CMV">'
+        '<DA name="cVal" bType="Struct" type="Vector" fc="MX"/><DA name="q" bType="Quality" fc="MX"/>'
+        '<DA name="t" bType="Timestamp" fc="MX"/>'
+        '<DA name="units" bType="Struct" type="Unit" fc="CF"/></DOType>'
+        '<DAType id="Vector"><BDA name="mag" bType="Struct" type="AnalogueValue"/></DAType>'
+    )
+    templates = TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="HA" type="HWYE"/>') + types
+    read_scl = read(tmp_path, templates=templates)
+    assert not [each for each in read_scl.warnings if each.left_out]
+    assert read_scl.ied("R1").find("R1LD0/GGIO1.HA.phsAHar.cVal.mag.f") is not None
+
+
+def test_names_too_long_for_mms_are_left_out(tmp_path: Path) -> None:
+    prefix = "A" * 45
+    nodes = f'<LN prefix="{prefix}" lnClass="GGIO" inst="1" lnType="GGIO"/>'
+    read_scl = read(tmp_path, nodes=nodes)
+    node = read_scl.ied("R1").logical_nodes("GGIO")[0]
+    assert [data_object.name for data_object in node.data_objects] == ["Ind1"]
+    assert f"{prefix}GGIO1$ST$AnIn1$units$SIUnit" in messages(read_scl)
 
 
 def test_missing_file_and_folder_are_named(tmp_path: Path) -> None:
