@@ -25,6 +25,12 @@ from ied_sim.simulator import Simulator
 from mms import filter_tls_log_from_stderr
 from scl import Address
 
+HOST = "127.0.0.1"
+PORT = 10102
+HIGHEST_PORT = 65535
+
+log = logging.getLogger(__name__)
+
 app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})
 
 
@@ -44,17 +50,28 @@ def _print_profiles(wanted: bool) -> None:
 @app.command()
 def ied_sim(
     scd: Annotated[
-        Path | None, typer.Option("--scd", help="SCD file with the relays and their addresses.")
+        Path | None, typer.Option("--scd", help="SCL file of any make with the relays: SCD, CID, IID or ICD.")
     ] = None,
     profile: Annotated[
         str | None,
-        typer.Option(help="In place of --scd: one relay of this kind (a name, or a .toml file)."),
+        typer.Option(
+            help="One relay of this kind (a name, or a .toml file); with --scd the kind of its relays."
+        ),
     ] = None,
     ied: Annotated[
         list[str] | None, typer.Option("--ied", help="Serve this relay only; may be given again.")
     ] = None,
-    host: Annotated[str, typer.Option(help="With --profile: address to listen at.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="With --profile: port to listen at.")] = 10102,
+    host: Annotated[
+        str | None, typer.Option(help=f"Address to listen at, in place of the file's; default {HOST}.")
+    ] = None,
+    port: Annotated[
+        int | None,
+        typer.Option(
+            min=1,
+            max=65535,
+            help=f"Port to listen at, in place of the file's; each further relay one higher; default {PORT}.",
+        ),
+    ] = None,
     scenario: Annotated[
         Path | None,
         typer.Option(help="Motors, loads and faults (docs/reference/scenario.md); healthy motors without."),
@@ -84,15 +101,15 @@ def ied_sim(
     ] = False,
 ) -> None:
     """Serve simulated motor relays over IEC 61850 MMS until interrupted."""
-    if (scd is None) == (profile is None):
-        raise typer.BadParameter("give either --scd or --profile")
+    if scd is None and profile is None:
+        raise typer.BadParameter("give --scd or --profile")
     logging.basicConfig(stream=sys.stderr, level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     try:
-        if profile is not None:
+        if scd is not None:
+            document = _read(scd)
+        else:
             name = ied[0] if ied else IED_NAME
-            document = standalone(read_profile(profile), name, Address(host, port))
-        elif scd is not None:
-            document = scl.read(scd)
+            document = standalone(read_profile(profile or DEFAULT), name, Address(host or HOST, port or PORT))
         names = ied or [found.name for found in document.ieds]
         scenarios = _scenarios(document, scenario, profile or DEFAULT)
         clock = REAL_TIME if scenario is None else read_clock(scenario)
@@ -103,7 +120,9 @@ def ied_sim(
             ]
             _say(json.dumps(told if len(told) > 1 else told[0]))
             return
-        _serve(document, names, scenarios, files, clock)
+        given = host is not None or port is not None
+        addresses = _addresses(document, names, host or HOST, port or PORT) if given else {}
+        _serve(document, names, scenarios, files, clock, addresses)
     except (SimulatorError, TableError, scl.SclError, OSError) as error:
         typer.echo(f"ied-sim: {error}", err=True)
         raise typer.Exit(1) from error
@@ -112,6 +131,25 @@ def ied_sim(
 def main() -> None:
     """Entry point of the command."""
     app()
+
+
+def _read(path: Path) -> scl.Scl:
+    """Read an SCL file, and log what the reader left out of it. Raises SclError."""
+    document = scl.read(path)
+    for warning in document.warnings:
+        if warning.left_out:
+            log.warning("%s: %s", path.name, warning)
+    return document
+
+
+def _addresses(document: scl.Scl, names: list[str], host: str, port: int) -> dict[str, Address]:
+    """Return an address for each relay with a server: one port after the other. Raises SclError."""
+    serving = [name for name in dict.fromkeys(names) if document.ied(name).logical_devices]
+    if port + len(serving) - 1 > HIGHEST_PORT:
+        raise SimulatorError(
+            f"{len(serving)} relays from port {port} on: there are only {HIGHEST_PORT} ports"
+        )
+    return {name: Address(host, port + number) for number, name in enumerate(serving)}
 
 
 def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, RelayConfiguration]:
@@ -135,6 +173,7 @@ def _serve(
     scenarios: dict[str, RelayConfiguration],
     files: Path | None,
     clock: ClockSettings,
+    addresses: dict[str, Address],
 ) -> None:
     # The signals are waited for, not handled. They are blocked before any thread starts, so all inherit that.
     signals = (signal.SIGTERM, signal.SIGINT)
@@ -144,7 +183,9 @@ def _serve(
     warm_up()
     with (
         tempfile.TemporaryDirectory(prefix="ied-sim-") as temporary,
-        Simulator(document, scenarios, files=files or Path(temporary), ieds=names, clock=clock) as simulator,
+        Simulator(
+            document, scenarios, files=files or Path(temporary), ieds=names, clock=clock, addresses=addresses
+        ) as simulator,
     ):
         for name, address in simulator.addresses.items():
             _say(f"{name} {address.host} {address.port}")

@@ -1,5 +1,6 @@
-"""The simulated plant: relays of an SCD file, served side by side in one process."""
+"""The simulated plant: relays of an SCL file, served side by side in one process."""
 
+import logging
 import threading
 import time
 from collections.abc import Mapping, Sequence
@@ -13,20 +14,25 @@ from ied_sim.relay.configuration import RelayConfiguration
 from ied_sim.relay.plant_clock import REAL_TIME, ClockSettings, PlantClock
 from ied_sim.relay.relay import Relay
 from ied_sim.scenario.scenario import healthy_reference
-from mms import ServerPump, ServerStartFailed
-from scl import Address, Scl
+from mms import ModelError, ServerPump, ServerStartFailed
+from scl import Address, Scl, SclError
+from scl.ied_model import Ied
+
+log = logging.getLogger(__name__)
 
 UPDATE_CHECK_PERIOD_S = 0.05
 """Time between checks for relays that are due for an update."""
 
 
 class Simulator:
-    """Relays of an SCD file, served at the addresses it names while this context manager is entered.
+    """Relays of an SCL file, served while this context manager is entered.
+
+    A relay that cannot be served is left out, with a line in the log; the others are served.
 
     Parameters
     ----------
     document : Scl
-        The SCD file.
+        The SCL file.
     scenarios : mapping of str to RelayConfiguration
         Configuration of each relay by its IED. A relay without one protects a healthy reference motor.
     files : pathlib.Path
@@ -35,13 +41,15 @@ class Simulator:
         Names of the relays to serve. All of the file's by default.
     clock : ClockSettings
         How the plant's time runs.
+    addresses : mapping of str to Address
+        Where relays listen, by their IED. A relay without one listens where the file says.
 
     Raises
     ------
     SimulatorError
-        A relay cannot be made as its profile and scenario say.
+        A relay cannot be made as its scenario says, or no relay can be served at all.
     SclError
-        The file lacks an IED or its address.
+        The file lacks an IED of `ieds`.
     OSError
         The relays' directories cannot be made.
     """
@@ -54,24 +62,22 @@ class Simulator:
         files: Path,
         ieds: Sequence[str] = (),
         clock: ClockSettings = REAL_TIME,
+        addresses: Mapping[str, Address] | None = None,
     ) -> None:
-        names = tuple(dict.fromkeys(ieds)) or tuple(ied.name for ied in document.ieds)
-        self.addresses: dict[str, Address] = {name: document.address(name) for name in names}
+        self._files = files
         self._clock = PlantClock(time.time_ns(), clock)
         self._start_s = time.monotonic()
         self._proxies = RelayProxies()
         self.relays: dict[str, Relay] = {}
-        for name, address in self.addresses.items():
-            relay = Relay(
-                document,
-                name,
-                scenarios.get(name) or healthy_reference(name),
-                address=address,
-                files=files,
-                clock=self._clock,
-                proxies=self._proxies,
-            )
-            self.relays[name] = relay
+        self.addresses: dict[str, Address] = {}
+        self.left_out: dict[str, str] = {}
+        """Why a relay is not served, by its IED."""
+        for ied in [document.ied(name) for name in dict.fromkeys(ieds)] or document.ieds:
+            scenario = scenarios.get(ied.name) or healthy_reference(ied.name)
+            self._add(document, ied, scenario, (addresses or {}).get(ied.name))
+        if not self.relays:
+            reasons = "; ".join(f"{name}: {reason}" for name, reason in self.left_out.items())
+            raise SimulatorError(f"{document.path}: no relay to serve: {reasons or 'the file has no IED'}")
         self._pump = ServerPump(relay.server for relay in self.relays.values() if not relay.serves_itself)
         self._stopping = threading.Event()
         self._updating = threading.Thread(target=self._update_relays, name="relay updates", daemon=True)
@@ -117,6 +123,40 @@ class Simulator:
     ) -> None:
         self.stop()
 
+    def _add(self, document: Scl, ied: Ied, scenario: RelayConfiguration, address: Address | None) -> None:
+        """Add a relay, or note why it is left out. Raises SimulatorError where the scenario is at fault."""
+        if not ied.logical_devices:
+            self._leave_out(ied, "it has no server (an access point with a Server and LDevices)")
+            return
+        try:
+            address = address or document.address(ied.name)
+        except SclError as error:
+            self._leave_out(ied, f"{error}; --host and --port give it an address")
+            return
+        other = next((name for name, taken in self.addresses.items() if taken == address), None)
+        if other is not None:
+            self._leave_out(ied, f"{other} has its address, {address}; --port gives each its own")
+            return
+        try:
+            self.relays[ied.name] = Relay(
+                document,
+                ied.name,
+                scenario,
+                address=address,
+                files=self._files,
+                clock=self._clock,
+                proxies=self._proxies,
+            )
+        except (SclError, ModelError) as error:
+            self._proxies.remove(address)
+            self._leave_out(ied, str(error))
+            return
+        self.addresses[ied.name] = address
+
+    def _leave_out(self, ied: Ied, reason: str) -> None:
+        self.left_out[ied.name] = reason
+        log.warning("%s is not served: %s", ied.name, reason)
+
     def _update_relays(self) -> None:
         """Update every relay when it is due; the first updates come one after the other."""
         relays = tuple(self.relays.values())
@@ -133,6 +173,6 @@ class Simulator:
                 return SimulatorError(
                     f"{name}: cannot listen on {address.host} port {address.port}: the port is taken or "
                     "needs rights this process lacks, or the address is not this machine's; "
-                    "stop what listens there, or change IP and MMS-Port in the SCD file"
+                    "stop what listens there, change IP and MMS-Port in the file, or give --host and --port"
                 )
         return SimulatorError(f"cannot listen on {where}: the port was taken meanwhile; start again")

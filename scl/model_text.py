@@ -7,6 +7,7 @@ left out (initial values of bit strings, say) or refused (names longer than the 
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from scl.configuration import Scl
 from scl.control_block_model import (
@@ -194,10 +195,22 @@ def _object_parts(data_object: DataObject, *, transient: bool) -> Iterator[str]:
     for part in data_object.objects:
         yield from _object(part, transient=transient)
     for attribute in data_object.attributes:
+        if attribute.name == "ctlModel" and attribute.value is None:
+            attribute = replace(attribute, value=_control_model(data_object))
         if attribute.fc is FunctionalConstraint.SE:
             # An editable setting is also read as the active group's. libiec61850 needs both, SG first.
             yield from _attribute(attribute, FunctionalConstraint.SG, transient=transient)
         yield from _attribute(attribute, attribute.fc, transient=transient)
+
+
+def _control_model(data_object: DataObject) -> str | None:
+    """Return the control model that an object's attributes allow, where the file gives none."""
+    names = {attribute.name for attribute in data_object.attributes}
+    if "SBOw" in names:
+        return "4"  # select before operate with enhanced security
+    if "SBO" in names:
+        return "2"
+    return "1" if "Oper" in names else None
 
 
 def _elements(count: int, parts: list[str]) -> Iterator[str]:

@@ -190,7 +190,8 @@ class RelayProxies:
 
     def __init__(self) -> None:
         self._proxies: list[RelayProxy] = []
-        self._reserved: list[ReservedAddress] = []
+        self._reserved: dict[Address, ReservedAddress] = {}
+        """Where the servers listen, by the address of their proxy."""
         self._running: tuple[asyncio.AbstractEventLoop, threading.Thread] | None = None
 
     def add(
@@ -205,7 +206,7 @@ class RelayProxies:
     ) -> Address:
         """Add a proxy at `outside`; return the address where the server behind it is to listen."""
         inside = ReservedAddress()
-        self._reserved.append(inside)
+        self._reserved[outside] = inside
         self._proxies.append(
             RelayProxy(
                 outside,
@@ -218,6 +219,13 @@ class RelayProxies:
             )
         )
         return inside.address
+
+    def remove(self, outside: Address) -> None:
+        """Take back the proxy at `outside`, where there is one, before the proxies are started."""
+        self._proxies = [proxy for proxy in self._proxies if proxy.outside != outside]
+        inside = self._reserved.pop(outside, None)
+        if inside is not None:
+            inside.release()
 
     def start(self) -> Address | None:
         """Open all proxies; return None, or the address of the first that cannot be had."""
@@ -236,7 +244,7 @@ class RelayProxies:
 
     def stop(self) -> None:
         """Close all proxies. Without any, this does nothing."""
-        for inside in self._reserved:
+        for inside in self._reserved.values():
             inside.release()
         if self._running is None:
             return

@@ -1,40 +1,47 @@
 """The points of a profile, found in the model of a relay: references as clients use them."""
 
-from collections.abc import Iterator
+from collections.abc import Container
 
-from ied_sim.errors import SimulatorError
 from ied_sim.profiles.profile import Profile
-from scl.data_model import DataObject
+from ied_sim.relay.standard_points import fitted_points, is_operable
+from scl.data_model import DataAttribute, DataObject
 from scl.ied_model import Ied
 
 _VALUE_ATTRIBUTES = frozenset({"stVal", "general", "instMag", "mag", "instCVal", "cVal"})
 
 
-class RelayPoints:
-    """Points of `profile` in the model of `ied`. Raises SimulatorError where the model lacks one."""
+_BOOLEAN = frozenset({"BOOLEAN"})
+_FLOAT = frozenset({"FLOAT32", "FLOAT64"})
+_NUMBERS = frozenset({"INT16", "INT24", "INT32", "INT64", "INT16U", "INT24U", "INT32U"})
+_STAMPS = {"q": "Quality", "t": "Timestamp"}
 
-    def __init__(self, ied: Ied, profile: Profile, source: str) -> None:
+
+class RelayPoints:
+    """Points of `profile` in the model of `ied`, or what the model has in their place."""
+
+    def __init__(self, ied: Ied, profile: Profile) -> None:
         self._ied = ied
-        self._points = profile.points
         self._domains = {device.inst: device.name for device in ied.logical_devices}
-        self._complaint = (
-            f"{source}: {ied.name} has no {{}}, so it is no {profile.name} (points.{{}} of its profile); "
-            "choose the relays with --ied, or another profile in the scenario"
-        )
-        for key, reference in self._points.controls():
-            self._require(key, reference, is_control=True)
-        for key, reference in self._points.statuses():
-            self._require(key, reference, is_control=False)
-        for key in ("metering", "sequence"):
-            node = getattr(self._points, key)
-            if node is not None and not self._has_node(node):
-                raise SimulatorError(self._complaint.format(node, key))
-        if self._points.reports is not None and self.reports not in set(self._buffered_reports()):
-            raise SimulatorError(self._complaint.format(self._points.reports, "reports"))
-        self.controls = tuple(placed.reference for placed in ied.data_objects(common_data_class="SPC"))
+        self._profile = profile
+        self._fitted = fitted_points(ied, profile.points)
+        self._points = profile.points.model_copy(update=self._fitted)
+        self.metering, self.sequence = self._points.metering, self._points.sequence
+        controls = ied.data_objects(common_data_class="SPC")
+        self.controls = tuple(placed.reference for placed in controls if is_operable(placed.data_object))
         self.triggers = frozenset(self.reference(each) for each in self._points.trigger)
         pulsed = tuple(f"{self.reference(node)}." for node in self._points.pulse)
         self.pulsed = frozenset(each for each in self.controls if each.startswith(pulsed or ("/",)))
+
+    @property
+    def departures(self) -> str | None:
+        """What the model has in place of points of the profile, in words; None where it has all of them."""
+        if not self._fitted:
+            return None
+        told = [f"{key} is {_words(point)}" for key, point in self._fitted.items() if point]
+        without = [key for key, point in self._fitted.items() if not point]
+        if without:
+            told.append(f"no {', '.join(without)}")
+        return f"not all points of {self._profile.name} are in its model: {'; '.join(told)}"
 
     @property
     def reports(self) -> str | None:
@@ -45,8 +52,14 @@ class RelayPoints:
     @property
     def frequency(self) -> str | None:
         """Reference of the metered frequency, None where there is none."""
-        reference = f"{self._points.metering}.Hz"
-        return self.reference(reference) if self.has(self.reference(reference)) else None
+        if self.metering is None:
+            return None
+        reference = self.reference(f"{self.metering}.Hz")
+        return reference if self._ied.find(reference) is not None else None
+
+    def is_measurand(self, reference: str) -> bool:
+        """Tell whether the model has a metered value of this reference."""
+        return self.has(reference, _FLOAT)
 
     def reference(self, inst_reference: str) -> str:
         """Return the reference that clients use, with the domain in place of the logical device's inst."""
@@ -69,12 +82,19 @@ class RelayPoints:
         found = getattr(self._points, key)
         if found is None:
             return None
-        attribute = "stVal" if self._ied.find(f"{found}.stVal") is not None else "general"
-        return self.reference(f"{found}.{attribute}")
+        types = _NUMBERS if key == "record_number" else _BOOLEAN
+        named = (self.reference(f"{found}.{attribute}") for attribute in ("stVal", "general"))
+        return next((reference for reference in named if self.has(reference, types)), None)
 
-    def has(self, reference: str) -> bool:
-        """Tell whether the model has such an object or attribute."""
-        return self._ied.find(reference) is not None
+    def status_of(self, control: str) -> str | None:
+        """Return the reference of a control's status, None for a control that clients can only operate."""
+        reference = f"{control}.stVal"
+        return reference if self.has(reference, _BOOLEAN) else None
+
+    def has(self, reference: str, types: Container[str]) -> bool:
+        """Tell whether the model has an attribute of one of the basic types."""
+        found = self._ied.find(reference)
+        return isinstance(found, DataAttribute) and found.basic_type in types and not found.count
 
     def report_ids(self) -> dict[str, str]:
         """Return the MMS reference of each report control block by its RptID."""
@@ -93,19 +113,13 @@ class RelayPoints:
         found = self._ied.find(data_object)
         if not isinstance(found, DataObject):
             return None, None
-        own = {attribute.name for attribute in found.attributes}
-        return f"{data_object}.q" if "q" in own else None, f"{data_object}.t" if "t" in own else None
+        stamps = (f"{data_object}.{name}" for name in _STAMPS)
+        quality, time = (
+            stamp if self.has(stamp, {kind}) else None
+            for stamp, kind in zip(stamps, _STAMPS.values(), strict=True)
+        )
+        return quality, time
 
-    def _require(self, key: str, reference: str, *, is_control: bool) -> None:
-        found = self._ied.find(reference)
-        if not isinstance(found, DataObject) or (is_control and found.find("Oper") is None):
-            what = f"control {reference}" if is_control and found is not None else reference
-            raise SimulatorError(self._complaint.format(what, key))
 
-    def _has_node(self, reference: str) -> bool:
-        full = self.reference(reference)
-        return any(node.reference == full for node in self._ied.logical_nodes())
-
-    def _buffered_reports(self) -> Iterator[str]:
-        for report in self._ied.report_controls(buffered=True):
-            yield from report.references
+def _words(point: object) -> str:
+    return ", ".join(map(str, point)) if isinstance(point, tuple) else str(point)

@@ -70,7 +70,7 @@ class Relay:
     Raises
     ------
     SimulatorError
-        The data model is not that of its profile, or a proxy is needed and not possible.
+        The scenario asks for what the relay cannot do, or a proxy is needed and not possible.
     SclError, ModelError, OSError
         The model cannot be served, or the directories cannot be made.
     """
@@ -92,7 +92,9 @@ class Relay:
         self._epoch_ns = clock.epoch_ns
         self._rated_A = rated_current(configuration.plant.motor)
         ied = document.ied(ied_name)
-        self._points = RelayPoints(ied, profile, str(document.path))
+        self._points = RelayPoints(ied, profile)
+        if self._points.departures is not None:
+            log.warning("%s: %s", ied_name, self._points.departures)
         self.misbehaviour_state = MisbehaviourState(configuration.misbehaviour, clock.running_s)
         self._clock = RelayClock(clock, self.misbehaviour_state)
         self._word = RelayWord()
@@ -154,8 +156,6 @@ class Relay:
         self._values = RelayValues(
             self._relay_server,
             self._points,
-            profile.points.metering,
-            profile.points.sequence,
             refresh_s=configuration.metering_refresh_s,
         )
         self._misbehaviour = RelayMisbehaviour(

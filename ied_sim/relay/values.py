@@ -15,25 +15,22 @@ from mms import Value
 class RelayValues:
     """Publishes the values on one relay's server.
 
-    `metering` and `sequence` are the profile's logical nodes, None for none. `refresh_s` is the longest time
-    until metered values that have not changed are published again.
+    `refresh_s` is the longest time until metered values that have not changed are published again.
     """
 
     def __init__(
         self,
         server: RelayServer,
         points: RelayPoints,
-        metering: str | None,
-        sequence: str | None,
         *,
         refresh_s: float,
     ) -> None:
         self._refresh_s = refresh_s
         self._server = server
         self._points = points
-        self._nodes = metering, sequence
+        self._nodes = points.metering, points.sequence
         nothing = Metering(0.0, np.zeros(3, complex), np.zeros(3, complex), 1)
-        self._measured = [name for name in self._measurements(nothing) if points.has(name)]
+        self._measured = [name for name in self._measurements(nothing) if points.is_measurand(name)]
         self._published, self._published_ns = nothing, 0
 
     def publish_status(self, values: dict[str, Value], time_ns: int) -> None:
@@ -45,7 +42,10 @@ class RelayValues:
 
     def publish_controls(self, values: dict[str, bool], time_ns: int) -> None:
         """Publish the state of controls by their reference."""
-        self._server.publish({f"{reference}.stVal": value for reference, value in values.items()}, time_ns)
+        statuses = {self._points.status_of(reference): value for reference, value in values.items()}
+        found = {reference: value for reference, value in statuses.items() if reference is not None}
+        if found:
+            self._server.publish(found, time_ns)
 
     def publish_metering(self, metering: Metering, time_ns: int) -> None:
         """Publish all metered values."""

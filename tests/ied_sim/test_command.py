@@ -24,6 +24,7 @@ from mms import Client
 from scl import Address
 from testing.ports import free_port
 from testing.waiting import wait_until
+from tests.scl.documents import NODE_ZERO, scl_text, write_scl
 
 DEMO_SCENARIO = Path(__file__).parents[2] / "service" / "demo" / "scenario.toml"
 RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")
@@ -188,6 +189,49 @@ def test_one_relay_of_a_profile_is_served_without_an_scd(tmp_path: Path) -> None
         assert process.wait(20) == 0
 
 
+def test_relays_without_an_address_are_served_at_consecutive_ports(tmp_path: Path) -> None:
+    """Two CIDs in one file; the terminal tells what is left out of them."""
+    odd = '<LN lnClass="GGIO" inst="2" lnType="gone"/>'
+    server = f'<Server><Authentication/><LDevice inst="LD0">{NODE_ZERO}{odd}</LDevice></Server>'
+    second = f'<IED name="R2"><AccessPoint name="S1">{server}</AccessPoint></IED>'
+    text = scl_text(communication="").replace("</IED>", f"</IED>{second}")
+    path = write_scl(tmp_path / "relays.cid", text)
+    first = free_port_pair()
+    with serving("--scd", path, "--port", str(first)) as (process, lines):
+        assert lines == [f"R1 127.0.0.1 {first}", f"R2 127.0.0.1 {first + 1}", "ready"]
+        with Client.connect("127.0.0.1", first + 1) as client:
+            assert client.logical_devices() == ["R2LD0"]
+        process.terminate()
+        _, told = process.communicate(timeout=20)
+    assert 'relays.cid: line 8: <LN inst="2" lnClass="GGIO" lnType="gone">: left out: expected a LN' in told
+
+
+def free_port_pair() -> int:
+    """A free port with a free one above it."""
+    while True:
+        port = free_port()
+        with socket.socket() as above:
+            try:
+                above.bind(("127.0.0.1", port + 1))
+            except (OSError, OverflowError):
+                continue
+        return port
+
+
+def test_a_file_without_addresses_says_how_it_is_served(tmp_path: Path) -> None:
+    path = write_scl(tmp_path / "relay.cid", scl_text(communication=""))
+    code, _, error = run_process("--scd", path)
+    assert code == 1
+    assert "R1" in error
+    assert "--host and --port give it an address" in error
+
+
+def test_more_relays_than_ports_are_refused(plant: Path) -> None:
+    code, _, error = run("--scd", plant, "--port", "65533")
+    assert code == 1
+    assert "6 relays from port 65533 on" in error
+
+
 def test_an_unknown_profile_is_told_with_those_there_are() -> None:
     code, _, error = run("--profile", "siprotec")
     assert code == 1
@@ -197,7 +241,7 @@ def test_an_unknown_profile_is_told_with_those_there_are() -> None:
 def test_a_call_names_an_scd_or_a_profile() -> None:
     ended = CliRunner().invoke(app, [])
     assert ended.exit_code == 2
-    assert "give either --scd or --profile" in " ".join(ended.output.split())
+    assert "give --scd or --profile" in " ".join(ended.output.split())
 
 
 def test_the_profiles_are_listed() -> None:

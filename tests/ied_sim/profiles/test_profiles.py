@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ied_sim.errors import ProfileError, SimulatorError
+from ied_sim.errors import ProfileError
 from ied_sim.profiles.profile import Profile, RecordFormat, Triggers, read_profile, shipped
 from ied_sim.relay.configuration import RelayConfiguration
 from mms import Client, FunctionalConstraint, MmsError, NotFound, Report, Value
@@ -261,15 +261,20 @@ def test_an_unknown_profile_names_those_there_are() -> None:
         read_profile("siprotec")
 
 
-def test_a_model_that_is_not_that_of_its_profile_is_refused(tmp_path: Path) -> None:
+def test_a_model_that_is_not_that_of_its_profile_is_served_and_told(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """What stands under the standard name is taken; the rest is left out."""
     profile = read_profile("sel-710-ed1")
-    points = profile.points.model_copy(update={"record_made": "PRO/FLTRDRE1.RcdMade"})
+    points = profile.points.model_copy(
+        update={"record_made": "PRO/FLTRDRE1.RcdMade", "trigger": ("CON/PRBGGIO1.SPCSO01",)}
+    )
     scenario = replaced(scenario_of("sel-710-ed1"), profile.model_copy(update={"points": points}))
-    with (
-        pytest.raises(SimulatorError, match=r"R1 has no PRO/FLTRDRE1.RcdMade.*points.record_made"),
-        simulated(tmp_path, scenario),
-    ):
-        pass
+    with simulated(tmp_path, scenario) as served, served.client() as client:
+        client.operate(served.reference("CON/RBGGIO1.SPCSO01"), value=True)
+        wait_until(lambda: names(client, "EVENTS"), "a record")
+    told = "trigger is CON/RBGGIO1.SPCSO01; no record_made"
+    assert f"R1: not all points of sel-710-ed1 are in its model: {told}" in caplog.text
 
 
 def test_a_control_the_relay_lacks_is_refused_to_the_client(tmp_path: Path) -> None:
