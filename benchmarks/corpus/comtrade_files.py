@@ -23,7 +23,7 @@ def reading(path: Path) -> tuple[Outcome, Recording | None]:
         return Outcome(Reading.LENIENT, mended.repairs or (str(refusal),)), mended
     except OSError as error:
         return Outcome(Reading.REFUSED, (str(error),)), None
-    return Outcome(Reading.READ), recording
+    return Outcome(Reading.WARNED if recording.warnings else Reading.READ, recording.warnings), recording
 
 
 def read_record(path: Path) -> Outcome:

@@ -97,7 +97,9 @@ def _of_times(ours: Recording, theirs: "peer.Comtrade") -> list[str]:
     late = float(np.max(np.abs(ours.time_s - (times - times[0])), initial=0.0)) if times.size else 0.0
     if late > TIME_TOLERANCE_S:
         said.append(f"times of samples differ by up to {late:.3g} s")
-    if ours.start_time_ns // 1000 != int(np.datetime64(theirs.start_timestamp, "us").astype(np.int64)):
+    if ours.start_time_ns is None:
+        said.append(f"time unknown, there {theirs.start_timestamp}")
+    elif ours.start_time_ns // 1000 != int(np.datetime64(theirs.start_timestamp, "us").astype(np.int64)):
         said.append(f"starts {np.datetime64(ours.start_time_ns, 'ns')}, there {theirs.start_timestamp}")
     return said
 

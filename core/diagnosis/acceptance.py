@@ -13,7 +13,7 @@ from core.diagnosis.errors import NoVoltagesError
 from core.diagnosis.fundamental import Fundamental, fundamental_of
 from core.machines.parameters import Motor
 from core.quality import examine
-from core.quality.finding import QualityFinding, finding
+from core.quality.finding import QualityFinding, file_warning, finding
 from core.recordings import Quantity, Recording
 from core.signals.terminals import Terminals, terminals
 
@@ -78,10 +78,12 @@ def accept(recording: Recording, motor: Motor, *, currents_only: bool = False) -
     RecordingError
         If the recording lacks channels that the motor needs.
     """
+    told = tuple(map(file_warning, recording.warnings))
     try:
-        return _accept(recording, motor, currents_only=currents_only)
+        acceptance = _accept(recording, motor, currents_only=currents_only)
     except (np.linalg.LinAlgError, ArithmeticError) as error:
-        return Acceptance((not_computable(str(error)),), currents_only, None)
+        acceptance = Acceptance((not_computable(str(error)),), currents_only, None)
+    return replace(acceptance, quality=(*told, *acceptance.quality))
 
 
 def not_computable(what: str) -> QualityFinding:

@@ -10,6 +10,8 @@ GREATEST_FIGURE = 1e30
 class QualityFinding:
     """One check of the quality gate.
 
+    A finding that passed and has a message is a warning.
+
     Parameters
     ----------
     name : str
@@ -23,7 +25,7 @@ class QualityFinding:
     passed : bool
         Whether the check passed.
     message : str
-        What a failure means, and what to do.
+        What a failure means, and what to do; or a warning.
     """
 
     name: str
@@ -32,6 +34,11 @@ class QualityFinding:
     unit: str
     passed: bool
     message: str
+
+    @property
+    def is_warning(self) -> bool:
+        """Whether the check passed and there is something to tell all the same."""
+        return self.passed and bool(self.message)
 
     def as_dict(self) -> dict[str, str | float | bool]:
         """Return the finding as JSON takes it.
@@ -78,6 +85,22 @@ def finding(
     """
     shown = min(max(float(value), -GREATEST_FIGURE), GREATEST_FIGURE)
     return QualityFinding(name, shown, float(limit), unit, bool(passed), "" if passed else message)
+
+
+def file_warning(message: str) -> QualityFinding:
+    """Return the finding of a file that departs from its standard without a change of any value.
+
+    Parameters
+    ----------
+    message : str
+        What was found, and how it is read.
+
+    Returns
+    -------
+    QualityFinding
+        The warning.
+    """
+    return QualityFinding("file", 1.0, 1.0, "departure from the standard", passed=True, message=message)
 
 
 def all_passed(findings: list[QualityFinding]) -> bool:

@@ -71,7 +71,7 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
         yield finding(
             "voltage", volts, LEAST_SIGNAL, "of rated", passed=False,
             message=f"current flows but the voltages are {volts:.2g} of rated: transformers off, fuses blown "
-            "or a wrong ratio or unit",
+            "or a wrong ratio or unit; without voltages, --currents-only gives a hint",
         )  # fmt: skip
     elif amps < NO_CURRENT:
         yield finding(

@@ -122,6 +122,7 @@ def _recording(
         digitals=Digitals(configuration.status_names, table.status) if configuration.status_names else None,
         instants_s=base.instants_s,
         repairs=repairs.notes,
+        warnings=repairs.warnings,
         source=str(path),
     )
 

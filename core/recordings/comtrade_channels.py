@@ -79,6 +79,8 @@ def scale_counts(
     _check_counts(data_path, counts, column)
     for channel, role, values in zip(configuration.analog, roles, counts, strict=True):
         scale = role.scale * channel.to_primary
+        if channel.gain == 0:
+            values[:] = 0.0  # missing counts, too
         with np.errstate(over="ignore", invalid="ignore"):
             values *= scale * channel.gain
             values += scale * channel.offset

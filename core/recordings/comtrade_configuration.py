@@ -6,17 +6,21 @@ Clauses are those of C37.111-1999, chapter 5; differences of the other editions 
 
 import re
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
+from core.recordings.comtrade_dates import date_time, utc_offset_ns
 from core.recordings.comtrade_lines import Line, Lines, quoted
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
-from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 
 REVISIONS = {"1991": 1991, "1997": 1999, "1999": 1999, "2001": 1999, "2013": 2013}
 """Revision year in the file -> edition whose layout holds. IEC 60255-24:2001 is the 1999 edition;
 Schneider's Sepam relays write 1997, the draft of it."""
+BETWEEN_EDITIONS = range(1997, 2013)
+"""In these years there was no layout but that of 1999, so that any other of them is read as 1999 (with a
+warning)."""
+NO_REVISIONS = ("", "0")
+"""Written by recorders that fill the field without knowing an edition, as RTDS simulators do."""
 
 DATA_FORMATS = ("ASCII", "BINARY", "BINARY32", "FLOAT32")
 
@@ -25,18 +29,16 @@ MAX_CHANNELS = 20_000
 MAX_SAMPLES = 9_999_999_999
 MAX_RATES = 999
 MOST_RATIO = 1e12
+MOST_NAMED = 12
+"""Constant channels that are named; a recorder may have hundreds of spare inputs."""
 
-_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _YEAR = re.compile(r"199[1-9]|20[0-9]{2}", re.ASCII)
-_DATE = re.compile(r"([0-9]{1,2})/([0-9]{1,2})/([0-9]{4}|[0-9]{2})", re.ASCII)
-_TIME = re.compile(r"([0-9]{1,2}):([0-9]{1,2}):([0-9]{1,2})(?:\.([0-9]{1,9}))?", re.ASCII)
-_UTC_OFFSET = re.compile(r"([+-]?)([0-9]{1,2})(?:h([0-9]{1,2}))?", re.ASCII)
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
 @dataclass(frozen=True, slots=True)
 class AnalogChannel:
-    """One analogue channel line (5.3.3): value = gain * count + offset, in `unit`.
+    """One analogue channel line (5.3.3): value = gain * count + offset, in `unit`; constant where gain is 0.
 
     Parameters
     ----------
@@ -96,8 +98,9 @@ class Configuration:
         where the samples' own time stamps are the only time base.
     sample_count : int
         Number of samples.
-    start_time_ns, trigger_time_ns : int
+    start_time_ns, trigger_time_ns : int or None
         UTC [ns since 1970]. The editions of 1991 and 1999 know no time zone: their times are taken as UTC.
+        None where a lenient reader found no time.
     data_format : str
         Format of the data file.
     time_stamp_unit_s : float
@@ -112,8 +115,8 @@ class Configuration:
     nominal_frequency_hz: float | None
     rates: tuple[tuple[float, int], ...]
     sample_count: int
-    start_time_ns: int
-    trigger_time_ns: int
+    start_time_ns: int | None
+    trigger_time_ns: int | None
     data_format: str
     time_stamp_unit_s: float
 
@@ -121,8 +124,8 @@ class Configuration:
 def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuration:
     """Check and read the text of a configuration file.
 
-    A lenient reader takes any revision year for the edition of its time and does not mind how channels are
-    numbered.
+    A lenient reader takes any revision year for the edition of its time, tells the edition from the layout
+    where there is no year, and does not mind how channels are numbered.
 
     Parameters
     ----------
@@ -147,8 +150,9 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
     if control := _CONTROL.search(text):
         raise RecordingError(path, "text", expected="no control characters", found=repr(control.group()))
     lines = Lines(path, text)
-    station, device, revision = _identification(lines.next("station, device and revision"), repairs)
+    station, device, edition = _identification(lines.next("station, device and revision"), repairs)
     analog_count, status_count = _channel_counts(lines.next("channel counts"), len(lines))
+    revision = edition or (1991 if lines.fields_ahead() == 10 else 1999)
     analog = tuple(
         _analog_channel(lines.next(f"analogue channel {k}"), k, revision, repairs)
         for k in range(1, analog_count + 1)
@@ -158,23 +162,20 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
         for k in range(1, status_count + 1)
     )
     nominal_frequency_hz = _nominal_frequency(lines.next("line frequency"))
-    rates, sample_count = _rates(lines)
-    start_ns, start_digits = _date_time(lines.next("time of the first sample"), revision)
-    trigger_ns, trigger_digits = _date_time(lines.next("time of the trigger"), revision)
+    rates, sample_count = _rates(lines, repairs)
+    start = date_time(lines.next("time of the first sample"), revision, repairs)
+    trigger = date_time(lines.next("time of the trigger"), revision, repairs)
     data_format = _data_format(lines.next("data format"))
-    time_multiplier, utc_offset_ns = 1.0, 0
-    if revision >= 1999:
-        line = lines.next("time multiplier")
-        line.has_fields(1)
-        time_multiplier = line.positive(0, "", 1e-9, 1e9)
-    if revision >= 2013:
-        utc_offset_ns = _utc_offset(lines.next("time code and local code"))
-        _check_time_quality(lines.next("time quality and leap second"))
+    time_multiplier = 1.0 if revision == 1991 else _time_multiplier(lines, repairs, needed=not rates)
+    if edition is None and revision == 1999 and lines.fields_ahead():
+        revision = 2013  # nothing else has lines behind the time multiplier
+    ahead_ns = utc_offset_ns(lines, repairs) if revision >= 2013 else 0
     for line in lines.remaining():
         if any(line.fields):
             raise line.refuse("", f"nothing more in a file of revision {revision}", line.quoted())
     # 2013, 7.4.9: nanoseconds if the file's times are written to more than six decimals.
-    time_base_s = 1e-9 if max(start_digits, trigger_digits) > 6 else 1e-6
+    time_base_s = 1e-9 if max(start.decimals, trigger.decimals) > 6 else 1e-6
+    _tell_constants(path, analog, repairs)
     return Configuration(
         revision=revision,
         station=station,
@@ -184,14 +185,15 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
         nominal_frequency_hz=nominal_frequency_hz,
         rates=rates,
         sample_count=sample_count,
-        start_time_ns=start_ns - utc_offset_ns,
-        trigger_time_ns=trigger_ns - utc_offset_ns,
+        start_time_ns=None if start.ns is None or ahead_ns is None else start.ns - ahead_ns,
+        trigger_time_ns=None if trigger.ns is None or ahead_ns is None else trigger.ns - ahead_ns,
         data_format=data_format,
         time_stamp_unit_s=time_multiplier * time_base_s,
     )
 
 
-def _identification(line: Line, repairs: Repairs) -> tuple[str, str, int]:
+def _identification(line: Line, repairs: Repairs) -> tuple[str, str, int | None]:
+    """Return station, device and edition; None for an edition that only the layout tells."""
     line.has_fields(2, 3)
     station, device = line.fields[:2]
     if len(line.fields) == 2:  # 1991 has no revision year
@@ -200,8 +202,14 @@ def _identification(line: Line, repairs: Repairs) -> tuple[str, str, int]:
     if year in REVISIONS:
         return station, device, REVISIONS[year]
     fault = line.refuse("revision", f"one of {', '.join(REVISIONS)}", quoted(year))
+    if year in NO_REVISIONS:
+        repairs.mend(fault, "the edition is told by the layout")
+        return station, device, None
     if not _YEAR.fullmatch(year):
         raise fault
+    if int(year) in BETWEEN_EDITIONS:
+        repairs.warn(f"{fault}: read as the edition of 1999")
+        return station, device, 1999
     edition = max(edition for edition in REVISIONS.values() if edition <= int(year))
     repairs.mend(fault, f"read as the edition of {edition}")
     return station, device, edition
@@ -236,9 +244,9 @@ def _check_index(line: Line, number: int, repairs: Repairs) -> None:
 def _analog_channel(line: Line, number: int, revision: int, repairs: Repairs) -> AnalogChannel:
     line.has_fields(10 if revision == 1991 else 13)
     _check_index(line, number, repairs)
-    gain = line.real(5, "multiplier a")
+    gain, offset = line.real(5, "multiplier a"), line.real(6, "offset b")
     if gain == 0:
-        raise line.refuse("multiplier a", "a number other than 0", quoted(line.fields[5]))
+        return _constant(line, revision, offset)
     minimum, maximum = line.real(8, "minimum"), line.real(9, "maximum")
     if minimum > maximum:
         raise line.refuse("minimum", f"at most the maximum, {maximum:g}", f"{minimum:g}")
@@ -247,13 +255,41 @@ def _analog_channel(line: Line, number: int, revision: int, repairs: Repairs) ->
         phase=line.fields[2],
         unit=line.fields[4],
         gain=gain,
-        offset=line.real(6, "offset b"),
+        offset=offset,
         skew_us=line.real(7, "skew") if line.fields[7] else 0.0,
         minimum=minimum,
         maximum=maximum,
         to_primary=1.0 if revision == 1991 else _to_primary(line),
         ratio=None if revision == 1991 else _written_ratio(line),
     )
+
+
+def _constant(line: Line, revision: int, value: float) -> AnalogChannel:
+    """Return a channel whose multiplier is 0: it has the value b whatever its counts, limits and skew are.
+
+    The ratio only counts for a value other than 0.
+    """
+    return AnalogChannel(
+        name=line.fields[1],
+        phase=line.fields[2],
+        unit=line.fields[4],
+        gain=0.0,
+        offset=value,
+        skew_us=0.0,
+        minimum=0.0,
+        maximum=0.0,
+        to_primary=1.0 if revision == 1991 or value == 0 else _to_primary(line),
+        ratio=None,
+    )
+
+
+def _tell_constants(path: Path, analog: tuple[AnalogChannel, ...], repairs: Repairs) -> None:
+    constants = [channel for channel in analog if channel.gain == 0]
+    if constants:
+        shown = ", ".join(f"{quoted(c.name)} ({c.offset:g} {c.unit})".strip() for c in constants[:MOST_NAMED])
+        rest = len(constants) - MOST_NAMED
+        more = f" and {rest} more" if rest > 0 else ""
+        repairs.warn(f"{path.name}: constant: {shown}{more}: the multiplier a is 0, so that the value is b")
 
 
 def _to_primary(line: Line) -> float:
@@ -303,8 +339,11 @@ def _nominal_frequency(line: Line) -> float | None:
     return line.positive(0, "", 1e-3, 1e6)
 
 
-def _rates(lines: Lines) -> tuple[tuple[tuple[float, int], ...], int]:
-    """Rates with their last samples, and the number of samples (5.3.6)."""
+def _rates(lines: Lines, repairs: Repairs) -> tuple[tuple[tuple[float, int], ...], int]:
+    """Rates with their last samples, and the number of samples (5.3.6).
+
+    A lenient reader leaves out rates at which no sample was taken.
+    """
     line = lines.next("number of sampling rates")
     line.has_fields(1)
     count = line.integer(0, "", 0, MAX_RATES)
@@ -314,7 +353,16 @@ def _rates(lines: Lines) -> tuple[tuple[tuple[float, int], ...], int]:
             "sampling rate and last sample" if count < 2 else f"sampling rate {k} and last sample"
         )
         line.has_fields(2)
-        samples = line.integer(1, "last sample", rates[-1][1] + 1 if rates else 1, MAX_SAMPLES)
+        try:
+            samples = line.integer(1, "last sample", rates[-1][1] + 1 if rates else 1, MAX_SAMPLES)
+        except RecordingError as fault:
+            if count < 2 or line.integer(1, "last sample", 0, MAX_SAMPLES) not in (
+                0,
+                rates[-1][1] if rates else 0,
+            ):
+                raise
+            repairs.mend(fault, "left out, as no sample was taken at this rate")
+            continue
         if count == 0:
             if line.real(0, "sampling rate [Hz]") != 0:
                 raise line.refuse(
@@ -322,33 +370,22 @@ def _rates(lines: Lines) -> tuple[tuple[tuple[float, int], ...], int]:
                 )
             return (), samples
         rates.append((line.positive(0, "sampling rate [Hz]", 1e-3, 1e9), samples))
+    if not rates:
+        raise line.refuse("last sample", "at least one sample at one of the rates", "none")
     return tuple(rates), rates[-1][1]
 
 
-def _date_time(line: Line, revision: int) -> tuple[int, int]:
-    """Nanoseconds since 1970 in the file's own time zone, and the number of decimals written."""
-    line.has_fields(2)
-    date, time = _DATE.fullmatch(line.fields[0]), _TIME.fullmatch(line.fields[1])
-    layout = "mm/dd/yy" if revision == 1991 else "dd/mm/yyyy"
-    if date is None or time is None or (revision >= 1999 and len(date[3]) != 4):
-        raise line.refuse("", f"{layout},hh:mm:ss.ssssss", line.quoted())
-    day, month = (date[2], date[1]) if revision == 1991 else (date[1], date[2])
-    year = int(date[3])
-    if len(date[3]) == 2:  # two digits of a format born in 1991; its files reach into this century
-        year += 1900 if year >= 70 else 2000
-    if not 1970 <= year <= 2200:
-        raise line.refuse("year", "1970 to 2200", str(year))
+def _time_multiplier(lines: Lines, repairs: Repairs, *, needed: bool) -> float:
+    """Return the factor of the time stamps; 1 where a lenient reader misses it and does not need it."""
     try:
-        moment = datetime(year, int(month), int(day), int(time[1]), int(time[2]), int(time[3]), tzinfo=UTC)
-    except ValueError as error:
-        raise line.refuse(
-            "", f"a date and time, {layout},hh:mm:ss.ssssss", f"{line.quoted()} ({error})"
-        ) from None
-    elapsed = moment - _EPOCH
-    fraction = time[4] or ""
-    elapsed_s = elapsed.days * SECONDS_PER_DAY + elapsed.seconds
-    ns = elapsed_s * NANOSECONDS_PER_SECOND + int(fraction.ljust(9, "0"))
-    return ns, len(fraction)
+        line = lines.next("time multiplier")
+    except RecordingError as fault:
+        if needed:
+            raise
+        repairs.mend(fault, "taken as 1")
+        return 1.0
+    line.has_fields(1)
+    return line.positive(0, "", 1e-9, 1e9)
 
 
 def _data_format(line: Line) -> str:
@@ -357,24 +394,3 @@ def _data_format(line: Line) -> str:
     if data_format not in DATA_FORMATS:
         raise line.refuse("", f"one of {', '.join(DATA_FORMATS)}", quoted(line.fields[0]))
     return data_format
-
-
-def _utc_offset(line: Line) -> int:
-    """Return how far the times are ahead of UTC [ns]; "-5h30" is 5.5 hours behind (2013, 7.4.11)."""
-    line.has_fields(2)
-    offset = _UTC_OFFSET.fullmatch(line.fields[0])
-    if offset is None or int(offset[2]) > 14 or int(offset[3] or 0) > 59:
-        raise line.refuse("time code", "hours ahead of UTC such as 0, +1 or -5h30", quoted(line.fields[0]))
-    if line.fields[1] not in ("x", "X") and not _UTC_OFFSET.fullmatch(line.fields[1]):
-        raise line.refuse(
-            "local code", "hours ahead of UTC such as 0, +1 or -5h30, or x", quoted(line.fields[1])
-        )
-    minutes = int(offset[2]) * 60 + int(offset[3] or 0)
-    return (-minutes if offset[1] == "-" else minutes) * 60 * NANOSECONDS_PER_SECOND
-
-
-def _check_time_quality(line: Line) -> None:
-    line.has_fields(2)
-    if not re.fullmatch(r"[0-9A-Fa-f]", line.fields[0], re.ASCII):
-        raise line.refuse("time quality", "a hexadecimal digit", quoted(line.fields[0]))
-    line.integer(1, "leap second", 0, 3)

@@ -74,7 +74,7 @@ def read_comtrade_envelope(path: Path, intervals_of: IntervalsOf) -> Envelope:
         lowest=np.fmin(extremes.lowest, extremes.highest),  # a negative factor exchanges them
         highest=np.fmax(extremes.lowest, extremes.highest),
         times_s=timing.time_s[extremes.starts],
-        start_time_ns=timing.start_time_ns,
+        start_time_ns=timing.first_time_ns,
         trigger_time_ns=timing.trigger_time_ns,
         sample_rate_hz=timing.sample_rate_hz,
         samples=samples,

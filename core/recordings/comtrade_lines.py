@@ -221,6 +221,16 @@ class Lines:
             )
         return Line(self._path, self._next, what, tuple(field.strip() for field in text.split(",")))
 
+    def fields_ahead(self) -> int:
+        """Return the number of fields of the next line.
+
+        Returns
+        -------
+        int
+            The number; 0 where the file has ended.
+        """
+        return self._lines[self._next].count(",") + 1 if self._next < len(self._lines) else 0
+
     def remaining(self) -> Iterator[Line]:
         """Return the lines not read yet.
 

@@ -19,8 +19,10 @@ from core.units import NANOSECONDS_PER_SECOND
 RATE_TOLERANCE = 1e-3
 """Largest difference between the rate in the configuration and the one the time stamps show, fraction."""
 
-SHORT_COUNTER = 1 << 16
-"""Some recorders keep their time stamps in 16 bits; these then start again from 0 and are compared so."""
+COUNTERS = (1 << 16, 1 << 32)
+"""Recorders keep time stamps in so many steps, and start again from 0: of 2^32 ns after 4.295 s."""
+LONGEST_STEP = 1.5
+"""Without a rate, the step over a counter's end may be so much longer than the longest of the others."""
 
 MAX_STAMP = 1e13
 """The longest that 13 characters hold, all that 2013 allows."""
@@ -82,11 +84,14 @@ def time_base(
             found=f"{stamps[k]:g}",
         )
     if not configuration.rates:
+        stamps = _counted_on(path, stamps, repairs)
         return _of_stamps(path, stamps * configuration.time_stamp_unit_s, configuration.time_stamp_unit_s)
     nominal = _Nominal.of(configuration.rates)
     instants = None
     try:
-        instants = _with_gaps(path, stamps, nominal, configuration.time_stamp_unit_s)
+        span = _counter_span(stamps, 2.0 * nominal.periods.max() / configuration.time_stamp_unit_s)
+        instants = _with_gaps(path, stamps, nominal, configuration.time_stamp_unit_s, span)
+        _tell_turns(path, stamps, span, repairs)
     except RecordingError as fault:
         repairs.mend(fault, "the time stamps are ignored")
     if instants is None and len(configuration.rates) > 1:
@@ -115,13 +120,15 @@ def trigger_index(
     Returns
     -------
     int or None
-        The sample; None where a lenient reader left it out.
+        The sample; None where a lenient reader left it out, or found no time.
 
     Raises
     ------
     RecordingError
         If the trigger is outside the record.
     """
+    if configuration.trigger_time_ns is None or configuration.start_time_ns is None:
+        return None
     elapsed_s = (configuration.trigger_time_ns - configuration.start_time_ns) / NANOSECONDS_PER_SECOND
     if base.instants_s is None:
         index, duration_s = round(elapsed_s * base.rate_hz), samples / base.rate_hz
@@ -166,17 +173,17 @@ class _Nominal:
 
 
 def _with_gaps(
-    path: Path, stamps: NDArray[np.float64], nominal: _Nominal, unit_s: float
+    path: Path, stamps: NDArray[np.float64], nominal: _Nominal, unit_s: float, span: int | None
 ) -> NDArray[np.float64] | None:
     """Return the nominal times, later by each gap the stamps show; None where they show none.
 
     Piece by piece: stamps of a long record need not be held in memory several times over.
+    span: steps after which the counter of the stamps starts again, None where it does not.
     """
     if not (np.isfinite(stamps) & (stamps != 0)).any():
         return None
     first = int(np.argmax(np.isfinite(stamps)))
-    span_s = SHORT_COUNTER * unit_s
-    turns = span_s > 2 * nominal.periods.max() and _starts_again(stamps)
+    span_s = 0.0 if span is None else span * unit_s
     instants: NDArray[np.float64] | None = None
     last, late_s, jumps, steps = first, 0.0, 0, 0
     first_jump: RecordingError | None = None
@@ -187,7 +194,7 @@ def _with_gaps(
         elapsed = (stamps[present] - stamps[first]) * unit_s
         expected = nominal.times(present) - nominal.times(np.array([first]))
         deviation = elapsed - expected
-        if turns:
+        if span_s:
             deviation = (deviation + span_s / 2) % span_s - span_s / 2
         period = nominal.period(present)
         # Where the rate changes, recorders differ in which period the first step has: either is taken as is.
@@ -219,9 +226,46 @@ def _with_gaps(
     return instants
 
 
-def _starts_again(stamps: NDArray[np.float64]) -> bool:
-    """Whether a counter of 16 bits runs over: stamps that fall, and are all below its end."""
-    return not (stamps >= SHORT_COUNTER).any() and bool((stamps[1:] < stamps[:-1]).any())
+def _counter_span(stamps: NDArray[np.float64], least: float) -> int | None:
+    """Return the steps of the counter that runs over; None where none does.
+
+    Stamps then fall and are all below its end; of a counter with a sign, all above minus half of its steps.
+    One of less than `least` steps tells nothing.
+    """
+    if not (stamps[1:] < stamps[:-1]).any():
+        return None
+    for span in COUNTERS:
+        if span > least and not ((stamps >= span) | (stamps < -(span // 2))).any():
+            return span
+    return None
+
+
+def _turns(stamps: NDArray[np.float64], span: int) -> NDArray[np.bool_]:
+    """Whether the counter ran over before each sample but the first, of stamps that are there."""
+    return np.diff(stamps) < -(span // 2)
+
+
+def _tell_turns(path: Path, stamps: NDArray[np.float64], span: int | None, repairs: Repairs) -> None:
+    if span is None:
+        return
+    count = int(np.count_nonzero(_turns(stamps[np.isfinite(stamps)], span)))
+    if count:
+        repairs.warn(
+            f"{path.name}: the time stamps start again {count} times, after {span} steps: counted on"
+        )
+
+
+def _counted_on(path: Path, stamps: NDArray[np.float64], repairs: Repairs) -> NDArray[np.float64]:
+    """Stamps that are the only time base, counted on where a counter of 32 bits runs over."""
+    span = COUNTERS[-1]
+    if np.isnan(stamps).any() or _counter_span(stamps, COUNTERS[0]) != span:
+        return stamps
+    turns = _turns(stamps, span)
+    steps = np.diff(stamps) + span * turns
+    if turns.all() or not (steps > 0).all() or steps[turns].max() > LONGEST_STEP * steps[~turns].max():
+        return stamps
+    _tell_turns(path, stamps, span, repairs)
+    return np.concatenate([stamps[:1], stamps[0] + np.cumsum(steps)])
 
 
 def _contradiction(

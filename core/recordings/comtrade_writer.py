@@ -203,7 +203,7 @@ def configuration_text(
         "" if frequency is None else repr(float(frequency)),
         "0" if recording.instants_s is not None else "1",
         f"{rate},{sample_count}",
-        _date_time(recording.start_time_ns, revision),
+        _date_time(recording.first_time_ns, revision),
         _date_time(recording.trigger_time_ns, revision),
         data_format,
     ]

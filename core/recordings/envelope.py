@@ -87,7 +87,7 @@ def envelope_of(recording: Recording, intervals_of: IntervalsOf) -> Envelope:
         lowest=extremes.lowest,
         highest=extremes.highest,
         times_s=recording.time_s[starts],
-        start_time_ns=recording.start_time_ns,
+        start_time_ns=recording.first_time_ns,
         trigger_time_ns=recording.trigger_time_ns,
         sample_rate_hz=recording.sample_rate_hz,
         samples=count,

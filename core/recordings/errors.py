@@ -35,5 +35,9 @@ class RecordingTooLongError(RecordingError):
     """The error of a recording that is sound as far as it was read, but longer than the caller wants it."""
 
 
+class UnknownTimeError(RecordingError):
+    """The error of a recording whose time is asked for and which has none."""
+
+
 def _rebuild(path: Path, field: str, expected: str, found: str) -> RecordingError:
     return RecordingError(path, field, expected=expected, found=found)

@@ -71,6 +71,31 @@ def read(path: Path, *, lenient: bool = False, most_values: int | None = None) -
     return reader(path, lenient=lenient, most_values=most_values)
 
 
+def mended_by(path: Path) -> str | None:
+    """Tell what the lenient reader mends in a recording that the strict one refuses.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        Path of the file, as `read` takes it.
+
+    Returns
+    -------
+    str or None
+        The first of the repairs; None where the lenient reader refuses the file, too.
+
+    Raises
+    ------
+    OSError
+        If a file that exists cannot be read.
+    """
+    try:
+        repairs = read(path, lenient=True).repairs
+    except RecordingError:
+        return None
+    return repairs[0] if repairs else None
+
+
 def read_envelope(path: Path, intervals_of: IntervalsOf) -> Envelope:
     """Read the envelope of a recording, in memory that does not grow with the recording.
 

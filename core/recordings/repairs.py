@@ -1,4 +1,4 @@
-"""What a lenient reader mends, and says so; what a strict reader refuses."""
+"""What a lenient reader mends, and says so; what a strict reader refuses; and what both only warn of."""
 
 from core.recordings.errors import RecordingError
 
@@ -8,7 +8,7 @@ MOST_REPAIRS = 10_000
 
 
 class Repairs:
-    """What was mended in one file; of a strict reader nothing ever is.
+    """What was mended in one file, of a strict reader nothing ever, and what it is only warned of.
 
     Parameters
     ----------
@@ -21,6 +21,23 @@ class Repairs:
         self._first: dict[str, str] = {}
         self._alike: dict[str, int] = {}
         self._count = 0
+        self._warnings: dict[str, None] = {}
+
+    def warn(self, sentence: str) -> None:
+        """Note what departs from the standard and changes no value; the strict reader goes on, too.
+
+        Parameters
+        ----------
+        sentence : str
+            What was found, and how it is read.
+        """
+        if len(self._warnings) < MOST_NOTES:
+            self._warnings[sentence] = None
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """The warnings, each once."""
+        return tuple(self._warnings)
 
     def mend(self, fault: RecordingError, mended: str) -> None:
         """Note a fault and what is done about it.

@@ -6,6 +6,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from core.recordings.errors import UnknownTimeError
 from core.units import NANOSECONDS_PER_SECOND
 
 
@@ -137,8 +138,8 @@ class Recording:
         Each row in its channel's SI unit; NaN where missing.
     sample_rate_hz : float
         Sampling rate [Hz]; where `instants_s` is given, the first of the rates, or the typical one.
-    start_time_ns : int
-        UTC of the first sample [ns since 1970].
+    start_time_ns : int or None
+        UTC of the first sample [ns since 1970]; None where a lenient reader found no time.
     channels : tuple of Channel
         The channels, one a row.
     trigger_index : int or None, optional
@@ -156,13 +157,15 @@ class Recording:
         None where they are.
     repairs : tuple of str, optional
         What a lenient reader mended, in words; empty for a file that was sound.
+    warnings : tuple of str, optional
+        What departs from the standard without a change of any value, in words.
     source : str, optional
         File it was read from, for messages.
     """
 
     samples: NDArray[np.float64]
     sample_rate_hz: float
-    start_time_ns: int
+    start_time_ns: int | None
     channels: tuple[Channel, ...]
     trigger_index: int | None = None
     nominal_frequency_hz: float | None = None
@@ -171,6 +174,7 @@ class Recording:
     digitals: Digitals | None = None
     instants_s: NDArray[np.float64] | None = None
     repairs: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
     source: str = field(default="recording", compare=False)
 
     def __post_init__(self) -> None:
@@ -201,12 +205,33 @@ class Recording:
         return float(self.instants_s[-1]) + _last_step(self.instants_s, self.sample_rate_hz)
 
     @property
+    def first_time_ns(self) -> int:
+        """UTC of the first sample [ns since 1970].
+
+        Raises
+        ------
+        UnknownTimeError
+            If the file tells no time: what is put in the order of time must not have a false one.
+        """
+        if self.start_time_ns is None:
+            raise UnknownTimeError(
+                self.source, "time", expected="a date and time in the file", found="none that can be read"
+            )
+        return self.start_time_ns
+
+    @property
     def trigger_time_ns(self) -> int:
-        """UTC of the trigger, or of the first sample where the file names no trigger [ns since 1970]."""
+        """UTC of the trigger, or of the first sample where the file names no trigger [ns since 1970].
+
+        Raises
+        ------
+        UnknownTimeError
+            If the file tells no time.
+        """
         index = self.trigger_index or 0
         if self.instants_s is not None:
-            return self.start_time_ns + round(float(self.instants_s[index]) * NANOSECONDS_PER_SECOND)
-        return self.start_time_ns + round(index / self.sample_rate_hz * NANOSECONDS_PER_SECOND)
+            return self.first_time_ns + round(float(self.instants_s[index]) * NANOSECONDS_PER_SECOND)
+        return self.first_time_ns + round(index / self.sample_rate_hz * NANOSECONDS_PER_SECOND)
 
 
 def _last_step(instants_s: NDArray[np.float64], sample_rate_hz: float) -> float:

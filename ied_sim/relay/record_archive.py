@@ -79,12 +79,12 @@ class RecordArchive:
     def _complete(self, recording: Recording) -> Recording:
         """Add the relay word beside the samples, and put the times into the relay's own."""
         elapsed_ns = np.rint(recording.time_s * NANOSECONDS_PER_SECOND).astype(np.int64)
-        times_ns = recording.start_time_ns + elapsed_ns
+        times_ns = recording.first_time_ns + elapsed_ns
         return replace(
             recording,
             device=self._origin.firmware,
             digitals=Digitals.of(BITS, self._word.states(times_ns)),
-            start_time_ns=self._clock.written(recording.start_time_ns),
+            start_time_ns=self._clock.written(recording.first_time_ns),
         )
 
     def _header(self, record: Recording, kind: str, metering: Metering) -> str:

@@ -1,6 +1,7 @@
 """`mcc diagnose`: the verdict of one recording of one motor, without a service."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,8 +14,9 @@ from core.diagnosis.verdict import Diagnosis
 from core.machines.motor_file import MotorFileError, read_motor
 from core.machines.parameters import ParametersSource
 from core.machines.typical import COMMISSION
-from core.recordings import RecordingError, read
-from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
+from core.recordings import Recording, RecordingError, read
+from core.recordings.reading import mended_by
+from service.cli.output import WRONG_USE, CommandError, failing_clearly, one_line, print_document, results
 from service.client.verdicts import detection, interval, level, load, verdict_text
 
 
@@ -41,18 +43,19 @@ def diagnose_recording(
         failing_clearly(RecordingError, MotorFileError, OSError),
         failing_clearly(DiagnosisError, exit_code=WRONG_USE),
     ):
-        recording = read(record, lenient=lenient)
+        recording = _read(record, lenient=lenient)
         motor_file = motor or _motor_file_beside(record)
         found = read_motor(motor_file)
-        healthy = [read(one, lenient=lenient) for one in baseline]
-        diagnosis = diagnose(
-            recording,
-            found,
-            method=method,
-            model=model,
-            baseline=learn_baseline(healthy, found, currents_only=currents_only) if healthy else None,
-            currents_only=currents_only,
-        )
+        healthy = [_read(one, lenient=lenient) for one in baseline]
+        with _naming_currents_only():
+            diagnosis = diagnose(
+                recording,
+                found,
+                method=method,
+                model=model,
+                baseline=learn_baseline(healthy, found, currents_only=currents_only) if healthy else None,
+                currents_only=currents_only,
+            )
     repaired = (f"repaired: {note}" for note in recording.repairs)
     diagnosis = replace(diagnosis, reasons=(*diagnosis.reasons, *repaired))
     if as_json:
@@ -60,6 +63,39 @@ def diagnose_recording(
         print_document({**diagnosis.as_dict(), "motor_file": str(motor_file), "parameters_source": source})
     else:
         results().print(_table(record, motor_file, found.parameters_source, diagnosis))
+
+
+def _read(path: Path, *, lenient: bool) -> Recording:
+    """Read a recording. Raises CommandError, which names --lenient where that would read it."""
+    try:
+        return read(path, lenient=lenient)
+    except RecordingError as error:
+        mended = None if lenient else mended_by(path)
+        if mended is None:
+            raise
+        raise _with_advice(
+            error, f"--lenient reads it all the same, and says what it mends: {mended}"
+        ) from error
+
+
+@contextmanager
+def _naming_currents_only() -> Iterator[None]:
+    """Name the option that does without voltages where they are what is missing."""
+    try:
+        yield
+    except RecordingError as error:
+        if error.field != "voltages":
+            raise
+        raise _with_advice(
+            error, "--currents-only does without: it assumes a balanced supply, and says watch at most"
+        ) from error
+
+
+def _with_advice(error: RecordingError, advice: str) -> CommandError:
+    failure = CommandError.from_error(error)
+    return CommandError(
+        f"{failure}; {one_line(advice)}", details=failure.details, exit_code=failure.exit_code
+    )
 
 
 def _motor_file_beside(record: Path) -> Path:
@@ -101,5 +137,8 @@ def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: 
     for finding in diagnosis.quality:
         if not finding.passed and not any(finding.message in reason for reason in diagnosis.reasons):
             table.add_row("quality", Text(finding.message))
+    for finding in diagnosis.quality:
+        if finding.is_warning:
+            table.add_row("warning", Text(finding.message))
     table.add_row("checks passed", str(sum(finding.passed for finding in diagnosis.quality)))
     return table

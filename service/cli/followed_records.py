@@ -13,7 +13,8 @@ from core.condition.observation import Observation
 from core.diagnosis.acceptance import accept
 from core.machines.parameters import Motor
 from core.recordings import RecordingError, read
-from core.recordings.reading import READERS
+from core.recordings.errors import RecordingTooLongError, UnknownTimeError
+from core.recordings.reading import READERS, mended_by
 
 MOST_VALUES = 8_000_000
 """A longer recording is refused, as the service refuses it."""
@@ -124,9 +125,19 @@ def observe_record(path: Path, motor: Motor, *, lenient: bool) -> Seen:
         return Seen(path, None, None, "no file matches" if is_pattern else "there is no such file or folder")
     try:
         recording = read(path, lenient=lenient, most_values=MOST_VALUES)
-    except (RecordingError, OSError) as error:
+    except RecordingTooLongError as error:
         return Seen(path, None, None, str(error))
-    unused = Seen(path, recording.trigger_time_ns, None)
+    except RecordingError as error:
+        mended = None if lenient else mended_by(path)
+        advice = "" if mended is None else "; --lenient reads it all the same"
+        return Seen(path, None, None, f"{error}{advice}")
+    except OSError as error:
+        return Seen(path, None, None, str(error))
+    try:
+        time_ns = recording.trigger_time_ns
+    except UnknownTimeError as error:
+        return Seen(path, None, None, f"{error}: it has no place among the others")
+    unused = Seen(path, time_ns, None)
     try:
         acceptance = accept(recording, motor)
     except RecordingError as error:
@@ -137,7 +148,7 @@ def observe_record(path: Path, motor: Motor, *, lenient: bool) -> Seen:
     observation = observation_of(recording, acceptance.accepted)
     if observation is None:
         return unused.refused("it gives no finite negative-sequence voltage and current")
-    return Seen(path, recording.trigger_time_ns, observation)
+    return Seen(path, time_ns, observation)
 
 
 def _without_copies(seen: Sequence[Seen]) -> Iterator[Seen]:

@@ -26,7 +26,6 @@ def mended(path: Path, *notes: str) -> Recording:
 @pytest.mark.parametrize(
     ("record", "note"),
     [
-        (RECORD_1999.but(identification="P,R,2000"), "found '2000': read as the edition of 1999"),
         (RECORD_2013.but(identification="P,R,2024"), "read as the edition of 2013"),
         (
             RECORD_1999.but(analog=tuple(f"1{line}" for line in ANALOG_LINES)),
@@ -98,7 +97,6 @@ def test_a_combined_file_of_another_size(tmp_path: Path) -> None:
     "record",
     [
         RECORD_1999.but(rates=("1", "0,5")),
-        RECORD_1999.but(start="31/02/2024,06:30:00.25"),
         RECORD_1999.but(identification="P,R,1066"),
         RECORD_1999.but(counts="7,4A,2D"),
         RECORD_1999.but(rates=("0", "0,5"), stamps=[0] * 5),

@@ -25,7 +25,7 @@ def analog(old: str, new: str) -> tuple[str, ...]:
 
 
 CONFIGURATIONS: dict[str, tuple[ComtradeFile, str]] = {
-    "unknown revision": (SOUND.but(identification="P,R,2000"), "line 1, .*revision: expected one of 1991"),
+    "unknown revision": (SOUND.but(identification="P,R,2024"), "line 1, .*revision: expected one of 1991"),
     "identification of one field": (SOUND.but(identification="P"), "line 1, .*expected 2 or 3 fields"),
     "total is no sum": (SOUND.but(counts="7,4A,2D"), "line 2, channel counts, total: .*4 \\+ 2 = 6"),
     "count without letter": (SOUND.but(counts="6,4,2D"), "line 2, .*a count followed by A, found '4'"),
@@ -34,7 +34,10 @@ CONFIGURATIONS: dict[str, tuple[ComtradeFile, str]] = {
     "one line too few": (SOUND.but(counts="7,5A,2D"), "line 7, analogue channel 5.*13 fields, found 5"),
     "no analogue channel": (SOUND.but(counts="2,0A,2D", analog=()), "at least one, found none"),
     "index out of order": (SOUND.but(analog=analog("2,IB", "3,IB")), "line 4, .*from 2 to 2, found '3'"),
-    "multiplier of zero": (SOUND.but(analog=analog("0.01", "0.0")), "multiplier a: expected a number other"),
+    "constant value in unknown volts": (
+        SOUND.but(analog=analog("0.01,0,0,-32767,32767,100,5,P", "0,7,0,0,0,0,5,S")),
+        "transformer ratio: .*found 0:5",
+    ),
     "multiplier not finite": (SOUND.but(analog=analog("0.01", "1e999")), "multiplier a: expected a finite"),
     "multiplier nan": (SOUND.but(analog=analog("0.01", "nan")), "multiplier a: .*found 'nan'"),
     "multiplier with underscore": (SOUND.but(analog=analog("0.01", "1_0")), "multiplier a: .*'1_0'"),

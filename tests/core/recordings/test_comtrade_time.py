@@ -44,7 +44,7 @@ def test_the_trigger_is_found_behind_a_gap(tmp_path: Path) -> None:
     record = RECORD_1999.but(stamps=(0, 1000, 2000, 9000, 10_000), trigger="21/11/2024,06:30:00.259100")
     recording = read(record.write(tmp_path))
     assert recording.trigger_index == 3
-    assert recording.trigger_time_ns - recording.start_time_ns == 9_000_000
+    assert recording.trigger_time_ns - recording.first_time_ns == 9_000_000
     late = record.but(trigger="21/11/2024,06:30:00.262000")
     with pytest.raises(RecordingError, match="time of the trigger"):
         read(late.write(tmp_path))

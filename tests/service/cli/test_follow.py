@@ -134,7 +134,7 @@ def test_records_of_a_stopped_motor_only_age_the_condition(
 ) -> None:
     running = read(few / "R0000.CFG")
     silent = replace(
-        running, samples=0.0 * running.samples, start_time_ns=running.start_time_ns + 8 * NANOSECONDS_PER_DAY
+        running, samples=0.0 * running.samples, start_time_ns=running.first_time_ns + 8 * NANOSECONDS_PER_DAY
     )
     stopped = comtrade.write(few / "STOPPED.CFG", silent)
     document = followed(capsys, few, str(few))

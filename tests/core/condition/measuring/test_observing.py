@@ -176,7 +176,7 @@ def test_the_recorder_is_another_where_a_transformer_is_exchanged(tmp_path: Path
     assert again is not None
     assert plain.recorder == "MCC-1/A1, IA, IB, IC, VA, VB, VC"
     assert again.recorder == "MCC-1/A1, IA 20:1, IB 20:1, IC 20:1, VA, VB, VC"
-    assert plain.time_ns == record.start_time_ns + 200_000_000
+    assert plain.time_ns == record.first_time_ns + 200_000_000
 
 
 def test_a_record_counts_even_where_no_fit_comes_near_it() -> None:
