@@ -5,6 +5,7 @@ import errno
 import math
 import resource
 import socket
+from types import FrameType
 from typing import Any
 
 import structlog
@@ -15,6 +16,7 @@ from structlog.typing import FilteringBoundLogger
 from service.api.limits.connection_guard import ConnectionGuard
 from service.api.limits.connections import EXTRA, ConnectionLimits, LimitedConnection, OpenConnections
 from service.configuration.settings import Settings
+from service.process.termination import Termination
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
 
@@ -46,10 +48,13 @@ OUT_OF_RESOURCES = {errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM}
 
 
 class ApiServer(uvicorn.Server):
-    """Answers requests until a signal comes."""
+    """Answers requests until a signal comes, which the termination is told too."""
 
-    def __init__(self, app: ASGIApp, limits: ConnectionLimits) -> None:
+    def __init__(
+        self, app: ASGIApp, limits: ConnectionLimits, termination: Termination | None = None
+    ) -> None:
         self._open = OpenConnections(limits)
+        self._termination = termination or Termination()
         super().__init__(
             uvicorn.Config(
                 ConnectionGuard(app, self._open),
@@ -72,6 +77,13 @@ class ApiServer(uvicorn.Server):
         for each in sockets or ():
             each.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNTAKEN_BYTES)  # its connections inherit it
             each.listen(QUEUE)
+        if self._termination.is_asked:  # before this server handled signals
+            self.should_exit = True
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """Handle a signal that asks for the end."""
+        self._termination.note()
+        super().handle_exit(sig, frame)
 
     async def on_tick(self, counter: int) -> bool:
         """Look at the connections, ten times a second."""

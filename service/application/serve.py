@@ -11,7 +11,6 @@ from ipaddress import IPv6Address
 from pathlib import Path
 from tempfile import TemporaryFile, gettempdir
 from threading import Event
-from types import FrameType
 
 import structlog
 from sqlalchemy.exc import OperationalError
@@ -35,6 +34,7 @@ from service.process.disk_space import disk_problem
 from service.process.garbage_collection import spare_what_stays
 from service.process.installation import installation_id
 from service.process.single_instance import exclusive
+from service.process.termination import Termination
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.database_url import readable_url
@@ -55,22 +55,31 @@ def serve(settings: Settings) -> None:
 
     Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError.
     """
-    signal.signal(signal.SIGTERM, _stop)
+    termination = Termination()
+    with termination.heeded():
+        _serve(settings, termination)
+    log.info("service ended")
+
+
+def _serve(settings: Settings, termination: Termination) -> None:
+    """Start step by step, and answer requests until a signal comes. Raises SystemExit during the start."""
     plant = _plant(settings)
     _require_writable(settings.data_directory)
+    termination.step()
     with exclusive(settings.data_directory / "service.lock", wait=False), listening(settings) as listener:
         repository = _prepared(settings, plant)
+        termination.step()
         store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
         store.discard_incoming()
-        jobs, parts = _parts(settings, plant, repository, store)
+        jobs, parts = _parts(settings, plant, repository, store, termination)
         room = {"disk": partial(disk_problem, _written(settings))}
         readiness = room | {name: part.problem for name, part in parts.items()}
         context = ApiContext(settings, repository, store, readiness=readiness, on_new_job=jobs.wake)
+        termination.step()
         with running(parts.values()):
             host, port = listener.getsockname()[:2]
             log.info("serving", host=host, port=port, motors=len(plant.motors))
-            _answer(context, listener)
-    log.info("service ended")
+            _answer(context, listener, termination)
 
 
 def _prepared(settings: Settings, plant: Plant) -> Repository:
@@ -119,18 +128,21 @@ def _plant(settings: Settings) -> Plant:
     return plant
 
 
-def _answer(context: ApiContext, listener: socket.socket) -> None:
-    """Answer requests until a signal comes."""
-    server = ApiServer(create_app(context), connection_limits(context.settings))
+def _answer(context: ApiContext, listener: socket.socket, termination: Termination) -> None:
+    """Answer requests until a signal comes. Raises SystemExit where one came before the first request."""
+    termination.step()
+    server = ApiServer(create_app(context), connection_limits(context.settings), termination)
     spare_what_stays()
-    try:
-        server.run(sockets=[listener])
-    except KeyboardInterrupt:
-        log.info("interrupted")
+    termination.step()
+    server.run(sockets=[listener])
 
 
 def _parts(
-    settings: Settings, plant: Plant, repository: Repository, store: RecordingStore
+    settings: Settings,
+    plant: Plant,
+    repository: Repository,
+    store: RecordingStore,
+    termination: Termination,
 ) -> tuple[JobRunner, Mapping[str, Part]]:
     """The job runner, and all parts of the service by the names that GET /readyz lists."""
     gateways = GatewayProcesses(settings, plant, repository)
@@ -157,6 +169,7 @@ def _parts(
         installation=installation_id(settings.data_directory),
         conditions=conditions,
         prepare_worker=prepare_worker,
+        is_ending=lambda: termination.is_asked,
     )
     workers = background_workers(
         settings,
@@ -207,9 +220,3 @@ def listening(settings: Settings) -> Iterator[socket.socket]:
         # of the header, 40 ms: asyncio sets it for sockets only that were made with the protocol's number.
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         yield listener
-
-
-def _stop(_number: int, _frame: FrameType | None) -> None:
-    """Handle SIGTERM, the ordinary end: leave every block in order, also during the start."""
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    raise SystemExit(0)

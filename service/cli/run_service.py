@@ -17,13 +17,15 @@ TROUBLES = (SettingsError, PlantError, StorageError, AlreadyRunningError, ServeE
 
 def run_service(config: Path | None) -> None:
     """Run until SIGTERM or Ctrl-C. Raises CommandError where the service cannot start."""
-    configure_logging("service")
     with failing_clearly(*TROUBLES, SQLAlchemyError):
-        serve(Settings.load(config))
+        settings = Settings.load(config)
+        configure_logging("service", settings.log_format)
+        serve(settings)
 
 
 def run_gateways(config: Path | None) -> None:
     """Run until SIGTERM or Ctrl-C. Raises CommandError where the gateways cannot start."""
-    configure_logging("gateways")
     with failing_clearly(*TROUBLES, SQLAlchemyError):
-        collect(Settings.load(config))
+        settings = Settings.load(config)
+        configure_logging("gateways", settings.log_format)
+        collect(settings)

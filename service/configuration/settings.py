@@ -7,7 +7,7 @@ import tomllib
 from collections.abc import Mapping
 from ipaddress import IPv4Address, IPv6Address
 from pathlib import Path
-from typing import Self
+from typing import Literal, Self
 
 from pydantic import Field, ValidationError
 from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDict
@@ -46,6 +46,7 @@ class Settings(BaseSettings):
     scd: AbsolutePath | None = None
     motors: AbsolutePath | None = None
     subnetwork: str | None = None
+    log_format: Literal["auto", "text", "json"] = "auto"
 
     bind_address: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
     port: int = Field(default=8710, ge=0, le=65535)

@@ -75,8 +75,9 @@ class JobRunner:
         conditions: ConditionWork | None = None,
         prepare_worker: Callable[[], None] = follow_service,
         poll_period_s: float = 0.2,
+        is_ending: Callable[[], bool] = lambda: False,
     ) -> None:
-        """conditions: what workers do that have nothing to diagnose."""
+        """conditions: what workers do that have nothing to diagnose. is_ending: workers are not needed."""
         self._repository = repository
         self._store = store
         self._motors = motors
@@ -86,7 +87,7 @@ class JobRunner:
         self._id = str(uuid.uuid4())
         self._peers = PeerLiveness(limits.lease_s)
         self._renew_at_s = 0.0
-        self._pool = WorkerPool(limits.workers, prepare_worker)
+        self._pool = WorkerPool(limits.workers, prepare_worker, is_ending)
         self._pool_problem: str | None = None
         self._in_flight: dict[str, Future[Outcome]] = {}
         self._results: deque[tuple[ClaimedJob, Future[Outcome]]] = deque()

@@ -7,6 +7,7 @@ all. None of this may end all diagnosing.
 
 import multiprocessing
 import os
+import signal
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -17,6 +18,7 @@ from typing import TypeVar
 import structlog
 from pebble import ProcessPool
 
+from service.process.termination import held_back
 from service.timing.backoff import RestartDelay
 
 log = structlog.get_logger(__name__)
@@ -34,12 +36,16 @@ class NoWorkersError(RuntimeError):
 class WorkerPool:
     """Run the worker processes. For use by one thread.
 
-    prepare_worker: runs first in every worker.
+    prepare_worker: runs first in every worker. is_ending: the service is asked to end, and its workers may
+    have been too; no others are started.
     """
 
-    def __init__(self, workers: int, prepare_worker: Callable[[], None]) -> None:
+    def __init__(
+        self, workers: int, prepare_worker: Callable[[], None], is_ending: Callable[[], bool]
+    ) -> None:
         self._workers = workers
         self._prepare_worker = prepare_worker
+        self._is_ending = is_ending
         self._context = multiprocessing.get_context("spawn")
         self._pool: ProcessPool | None = None
         self._prepared: Semaphore | None = None
@@ -63,7 +69,7 @@ class WorkerPool:
 
     def renew(self) -> None:
         """Start workers where there are none, after a pause that grows with each failure to do so."""
-        if self._pool is None and time.monotonic() >= self._retry_at_s:
+        if self._pool is None and time.monotonic() >= self._retry_at_s and not self._is_ending():
             self._start()
 
     def schedule(
@@ -106,7 +112,8 @@ class WorkerPool:
                 initargs=(self._prepare_worker, self._prepared),
                 context=self._context,
             )
-            pool.schedule(os.getpid)
+            with held_back(signal.SIGINT):  # the pool's threads, which start all workers, begin here
+                pool.schedule(os.getpid)
         # RuntimeError: pebble's, whose cause is an OSError; or there is no thread left.
         except (OSError, RuntimeError) as error:
             if pool is not None:
@@ -135,7 +142,8 @@ class WorkerPool:
         self._problem = problem
         pause_s = self._delay.after_run_s(lasted_s)
         self._retry_at_s = time.monotonic() + pause_s
-        log.error(problem, pause_s=pause_s)
+        if not self._is_ending():
+            log.error(problem, pause_s=pause_s)
 
 
 def _end(pool: ProcessPool) -> None:

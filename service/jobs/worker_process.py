@@ -6,10 +6,12 @@ import signal
 import threading
 from multiprocessing.connection import wait
 
+from service.process.termination import leave_to_parent
+
 
 def follow_service() -> None:
     """End this worker when the service says so, or with the service."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole process group
+    leave_to_parent(signal.SIGINT)  # Ctrl-C reaches the whole process group
     service = multiprocessing.parent_process()
     if service is None:
         raise RuntimeError("this is no worker process: it has no parent among Python's processes")

@@ -1,7 +1,9 @@
-"""Logs of the service's processes: one event per line on stderr, as JSON unless stderr is a terminal."""
+"""Logs of the service's processes: one event per line on stderr, readable on a terminal, JSON elsewhere."""
 
 import logging
+import os
 import sys
+from typing import Literal
 
 import structlog
 from structlog.typing import Processor
@@ -13,8 +15,14 @@ QUIETER = ("python_multipart",)
 """Libraries whose warnings are not logged either: they have one for each bad request, which is answered."""
 
 
-def configure_logging(process: str) -> None:
+LogFormat = Literal["auto", "text", "json"]
+"""How a line of the log looks. auto: text where stderr is a terminal, JSON elsewhere."""
+
+
+def configure_logging(process: str, log_format: LogFormat = "auto") -> None:
     """Send the events of this process and of the libraries it uses to stderr."""
+    is_terminal = sys.stderr.isatty()
+    is_text = log_format == "text" or (log_format == "auto" and is_terminal)
 
     def name_process(
         _logger: object, _method: str, event: structlog.typing.EventDict
@@ -25,12 +33,17 @@ def configure_logging(process: str) -> None:
     shared: list[Processor] = [
         name_process,
         structlog.stdlib.add_log_level,
-        structlog.processors.TimeStamper(fmt="iso", utc=True),
+        structlog.processors.TimeStamper(fmt="%Y-%m-%d %H:%M:%SZ" if is_text else "iso", utc=True),
         structlog.processors.format_exc_info,
     ]
     renderer: Processor = (
-        structlog.dev.ConsoleRenderer(exception_formatter=structlog.dev.plain_traceback)
-        if sys.stderr.isatty()
+        structlog.dev.ConsoleRenderer(
+            colors=is_terminal and not os.environ.get("NO_COLOR"),
+            pad_event_to=0,
+            pad_level=False,
+            exception_formatter=structlog.dev.plain_traceback,
+        )
+        if is_text
         else structlog.processors.JSONRenderer()
     )
     handler = logging.StreamHandler(sys.stderr)

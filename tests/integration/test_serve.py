@@ -1,9 +1,12 @@
 """`mcc serve` comes up whole or says why not, and goes down whole."""
 
+import os
 import re
 import shutil
 import signal
 import socket
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,10 +20,12 @@ from service.cli.run_service import TROUBLES
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from testing.service.processes import (
+    START_LIMIT_S,
     descendants,
     is_alive,
     running_service,
     serve_in_vain,
+    service_environment,
     switched_off_plant,
 )
 from testing.waiting import eventually
@@ -49,6 +54,34 @@ def test_ctrl_c_is_an_ordinary_end(tmp_path: Path) -> None:
         assert service.process is not None
         service.process.send_signal(signal.SIGINT)
         assert service.process.wait(30) == 0
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_to_all_its_processes_during_the_start_logs_no_error(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    """As systemd sends SIGTERM, and a terminal Ctrl-C: while gateway and workers still load."""
+    log = tmp_path / "service.log"
+    environment = service_environment(
+        tmp_path / "data", {"MCC_SCD": str(switched_off_plant(tmp_path)), "MCC_PORT": "0"}
+    )
+    with (
+        log.open("wb") as output,
+        subprocess.Popen(
+            [sys.executable, "-m", "service.cli", "serve"],
+            env=environment,
+            stdout=output,
+            stderr=output,
+            start_new_session=True,
+        ) as service,
+    ):
+        assert eventually(lambda: '"event": "serving"' in log.read_text(), START_LIMIT_S)
+        os.killpg(service.pid, number)
+        assert service.wait(30) == 0
+    told = log.read_text()
+    assert "Traceback" not in told
+    assert '"level": "error"' not in told
 
 
 def test_a_missing_scd_is_one_line(tmp_path: Path) -> None:

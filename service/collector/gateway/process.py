@@ -21,6 +21,7 @@ from service.plant import read_plant
 from service.process.installation import installation_id
 from service.process.logs import configure_logging
 from service.process.single_instance import exclusive
+from service.process.termination import leave_to_parent
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 
@@ -37,13 +38,13 @@ def gateway_id(settings: Settings, number: int) -> str:
 
 def main(settings_pipe: BinaryIO = sys.stdin.buffer) -> None:
     """Read the settings, collect until the pipe closes, end the process. The argument is its number."""
-    # Ctrl-C reaches every process of the terminal; this one ends when the service says so.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # They reach every process of a terminal or of a systemd unit; this one ends when the service says so.
+    leave_to_parent(signal.SIGINT, signal.SIGTERM)
     settings = Settings.model_validate_json(settings_pipe.readline())
     number = int(sys.argv[1])
     if any(access.tls is not None for access in settings.relays.values()):
         filter_tls_log_from_stderr()
-    configure_logging("collector")
+    configure_logging("collector", settings.log_format)
     service_gone = Event()
     Thread(
         target=_wait_for_end_of_input, args=(settings_pipe, service_gone), name="parent-watch", daemon=True

@@ -1,5 +1,6 @@
 """Keep one gateway process running. A crash in the C library costs a restart, not the service."""
 
+import signal
 import subprocess
 import sys
 import time
@@ -11,6 +12,7 @@ from threading import Event, Lock, Thread
 import structlog
 
 from service.configuration.settings import Settings
+from service.process.termination import held_back
 from service.timing.backoff import PROCESS_BACKOFF, STABLE_AFTER_S, Backoff, RestartDelay
 
 log = structlog.get_logger(__name__)
@@ -134,12 +136,13 @@ class GatewaySupervisor:
         with self._lock:
             if self._stopping.is_set():
                 return None
-            child = self._child = subprocess.Popen(  # noqa: S603 - our own module
-                self._command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
-                pipesize=PIPE_BYTES,
-            )
+            with held_back(signal.SIGINT, signal.SIGTERM):  # until the gateway ignores them
+                child = self._child = subprocess.Popen(  # noqa: S603 - our own module
+                    self._command,
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.DEVNULL,
+                    pipesize=PIPE_BYTES,
+                )
             # The settings are sent before anybody may close that pipe. They fit into it, so this never waits.
             _send_settings(child, self._settings)
         exit_code = child.wait()
