@@ -5,6 +5,8 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from difflib import get_close_matches
 
+ENVIRONMENT = "environment"
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:
@@ -12,7 +14,8 @@ class Problem:
 
     source: the file, or "environment".
     field: the key in it, such as "motor P-101A: schedule".
-    nearest: the known key that was probably meant; None where none is like it.
+    nearest: what was probably meant; None where nothing known is like it.
+    line: in the file; None where it is not known.
     """
 
     source: str
@@ -20,12 +23,14 @@ class Problem:
     expected: str
     found: str
     nearest: str | None = None
+    line: int | None = None
 
     def __str__(self) -> str:
         meant = "" if self.nearest is None else f" (did you mean {self.nearest}?)"
-        return f"{self.source}: {self.field}: expected {self.expected}, found {self.found}{meant}"
+        line = "" if self.line is None else f"line {self.line}: "
+        return f"{self.source}: {line}{self.field}: expected {self.expected}, found {self.found}{meant}"
 
-    def document(self) -> dict[str, str | None]:
+    def document(self) -> dict[str, str | int | None]:
         """Return the problem as a JSON document."""
         return asdict(self)
 
@@ -59,10 +64,14 @@ class ConfigurationError(ValueError):
 
 
 class Problems:
-    """Problems as they are found, so that all of them can be told at once."""
+    """Problems as they are found, so that all of them can be told at once.
+
+    warnings: what is odd and can be used all the same.
+    """
 
     def __init__(self) -> None:
         self._found: list[Problem] = []
+        self.warnings: list[str] = []
 
     def __bool__(self) -> bool:
         return bool(self._found)
@@ -73,6 +82,10 @@ class Problems:
     def add(self, problem: Problem) -> None:
         """Keep one more problem."""
         self._found.append(problem)
+
+    def extend(self, problems: Iterable[Problem]) -> None:
+        """Keep more problems."""
+        self._found.extend(problems)
 
     @contextmanager
     def collected(self) -> Iterator[None]:

@@ -3,6 +3,7 @@
 The later one wins. docs/reference/settings.md explains every setting; a test fails when one is missing there.
 """
 
+import os
 import tomllib
 from collections.abc import Mapping
 from ipaddress import IPv4Address, IPv6Address
@@ -10,13 +11,15 @@ from pathlib import Path
 from typing import Literal, Self
 
 from pydantic import Field, ValidationError
-from pydantic_settings import BaseSettings, EnvSettingsSource, SettingsConfigDict
+from pydantic_settings import BaseSettings, EnvSettingsSource, PydanticBaseSettingsSource, SettingsConfigDict
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
 from core.units import SECONDS_PER_DAY
-from service.configuration.problems import ConfigurationError, Problem
+from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
 from service.configuration.relay_access import AbsolutePath, RelayAccess
 from service.configuration.retention import MOST_DAYS, RetentionSettings
+from service.configuration.settings_problems import Sources, problems_of, unknown_variables
+from service.configuration.toml_lines import TomlLines
 
 MIB, GIB = 1024**2, 1024**3
 PATHS = ("data_directory", "recordings_directory", "scd", "motors")
@@ -92,36 +95,79 @@ class Settings(BaseSettings):
     max_relay_bytes_per_day: int = Field(default=GIB, ge=1, le=1024 * GIB)
 
     @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        """Take the values that are given and nothing else: `load` has looked into the environment."""
+        del settings_cls, env_settings, dotenv_settings, file_secret_settings
+        return (init_settings,)
+
+    @classmethod
     def load(cls, config: Path | None = None, options: Mapping[str, object] | None = None) -> Self:
         """Read a TOML file (may be None), the environment and `options` of the command line.
 
         Relative paths in the file start at the file's own folder. Options that are None were not given.
         Raises SettingsError.
         """
-        table = {} if config is None else _read_table(config)
+        problems = Problems()
+        settings = cls.examine(config, problems, options)
+        if settings is None or problems:
+            raise SettingsError(problems)
+        return settings
 
-        given = {name: value for name, value in (options or {}).items() if value is not None}
+    @classmethod
+    def examine(
+        cls, config: Path | None, problems: Problems, options: Mapping[str, object] | None = None
+    ) -> Self | None:
+        """Read the same and add what is wrong to the problems; what is wrong has its default.
+
+        None: the file cannot be read.
+        """
         try:
-            return cls.model_validate({**table, **EnvSettingsSource(cls)(), **given})
+            text = "" if config is None else _text(config)
+            table = {} if config is None else _table(text, config)
+        except SettingsError as error:
+            problems.extend(error.problems)
+            return None
+        return cls._examined(table, Sources(config, TomlLines(text), options or {}), problems)
+
+    @classmethod
+    def _examined(cls, table: Mapping[str, object], sources: Sources, problems: Problems) -> Self:
+        problems.extend(unknown_variables(os.environ, cls.model_fields))
+        try:
+            sources.environment = EnvSettingsSource(cls)()
         except UnreadableEnvironment as error:
-            raise settings_error(
-                "environment",
-                "MCC_...",
-                expected='lists and tables as JSON, such as ["mcc"]',
-                found=str(error),
-            ) from error
+            expected = 'lists and tables as JSON, such as ["mcc"]'
+            problems.add(Problem(ENVIRONMENT, "MCC_...", expected, str(error)))
+        values = {**table, **sources.environment, **sources.options}
+        try:
+            return cls.model_validate(values)
         except ValidationError as error:
-            raise _first_problem(error, config) from error
+            problems.extend(problems_of(error, sources, cls))
+            wrong = {str(details["loc"][0]) for details in error.errors(include_url=False)}
+        return cls.model_validate({name: value for name, value in values.items() if name not in wrong})
 
 
-def _read_table(config: Path) -> dict[str, object]:
+def _text(config: Path) -> str:
     try:
-        table: dict[str, object] = tomllib.loads(config.read_text(encoding="utf-8"))
+        return config.read_text(encoding="utf-8")
     except FileNotFoundError as error:
         raise settings_error(str(config), "file", expected="a TOML file", found="no file") from error
     except OSError as error:
         raise settings_error(str(config), "file", expected="a readable file", found=str(error)) from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except UnicodeDecodeError as error:
+        raise settings_error(str(config), "file", expected="valid TOML in UTF-8", found=str(error)) from error
+
+
+def _table(text: str, config: Path) -> dict[str, object]:
+    try:
+        table: dict[str, object] = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # also of tables or numbers that Python has no room for
         raise settings_error(str(config), "file", expected="valid TOML in UTF-8", found=str(error)) from error
     for name in PATHS:
         value = table.get(name)
@@ -147,22 +193,3 @@ def _paths(value: object, folder: Path) -> object:
     if isinstance(value, list):
         return [_paths(each, folder) for each in value]
     return folder / value if isinstance(value, str) else value
-
-
-def _first_problem(error: ValidationError, config: Path | None) -> SettingsError:
-    problem = error.errors(include_url=False)[0]
-    source = "settings" if config is None else f"settings ({config}, environment, options)"
-    depth = None if problem["loc"][:1] in (("relays",), ("retention",)) else 1
-    field = ".".join(str(part) for part in problem["loc"][:depth])
-    if problem["type"] == "extra_forbidden":
-        return settings_error(
-            source, field, expected="a setting named in docs/reference/settings.md", found="another name"
-        )
-    if problem["type"] == "missing":
-        return settings_error(source, field, expected="this setting", found="none")
-    found = repr(problem["input"])
-    if field in Settings.model_fields and not Settings.model_fields[field].repr:
-        found = f"a value of type {type(problem['input']).__name__}"  # it may hold a password
-    return settings_error(
-        source, field, expected=problem["msg"].removeprefix("Input should be "), found=found
-    )

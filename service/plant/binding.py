@@ -81,12 +81,7 @@ def _is_told(feeder: scl.MotorFeeder, told: MotorsFile, problems: Problems, scd:
     if feeder.motor in told.motors:
         return True
     problems.add(
-        Problem(
-            str(told.path),
-            f"motor {feeder.motor}",
-            f"its [[motor]] table, as {scd} has it",
-            "none",
-        )
+        told.problem("motor", feeder.motor, expected=f"its [[motor]] table, as {scd} has it", found="none")
     )
     return False
 
@@ -95,11 +90,12 @@ def _agree(feeder: scl.MotorFeeder, told: MotorsFile, problems: Problems) -> Non
     relay = told.motors[feeder.motor].relay
     if relay not in (None, feeder.ied):
         problems.add(
-            Problem(
-                str(told.path),
-                f"motor {feeder.motor}: relay",
-                f"{feeder.ied}, as the SCD's Substation section has it, or none",
-                str(relay),
+            told.problem(
+                "motor",
+                feeder.motor,
+                "relay",
+                expected=f"{feeder.ied}, as the SCD's Substation section has it, or none",
+                found=str(relay),
             )
         )
 
@@ -110,12 +106,13 @@ def _without_relay(motor: str, configuration: scl.Scl | None, told: MotorsFile) 
     if configuration is not None:
         known = ", ".join(sorted(feeder.motor for feeder in feeders)) or "none"
         expected += f", or a motor of {configuration.path.name} ({known})"
-    return Problem(
-        str(told.path),
-        f"motor {motor}: relay",
-        expected,
-        "none",
-        nearest(motor, [feeder.motor for feeder in feeders if feeder.motor not in told.motors]),
+    return told.problem(
+        "motor",
+        motor,
+        "relay",
+        expected=expected,
+        found="none",
+        nearest=nearest(motor, [feeder.motor for feeder in feeders if feeder.motor not in told.motors]),
     )
 
 
@@ -126,11 +123,11 @@ def _one_motor_a_relay(found: Mapping[str, Binding], told: MotorsFile, problems:
     for relay, sharing in motors.items():
         if len(sharing) > 1:
             problems.add(
-                Problem(
-                    str(told.path),
-                    f"relay {relay}",
-                    "one motor for one relay, which measures the currents of one",
-                    " and ".join(sharing),
+                told.problem(
+                    "relay",
+                    relay,
+                    expected="one motor for one relay, which measures the currents of one",
+                    found=" and ".join(sharing),
                 )
             )
 
@@ -141,36 +138,33 @@ def _known_relays(
     """Tell of relays that no file describes, that both do, and that no motor names."""
     ieds = [] if configuration is None else [ied.name for ied in configuration.ieds]
     known = [*told.relays, *ieds]
+    shown = ", ".join(known[:20]) or "there is none"
     for binding in found.values():
         if binding.relay not in known:
             scd = "" if configuration is None else f" or an IED of {configuration.path.name}"
             problems.add(
-                Problem(
-                    str(told.path),
-                    f"motor {binding.motor}: relay",
-                    f"the name of a [[relay]] table{scd} ({', '.join(known[:20]) or 'there is none'})",
-                    binding.relay,
-                    nearest(binding.relay, known),
+                told.problem(
+                    "motor",
+                    binding.motor,
+                    "relay",
+                    expected=f"the name of a [[relay]] table{scd} ({shown})",
+                    found=binding.relay,
+                    nearest=nearest(binding.relay, known),
                 )
             )
     named = {binding.relay for binding in found.values()}
     for entry in told.relays.values():
         if entry.name not in named and all(motor.is_sound for motor in told.motors.values()):
-            problems.add(
-                Problem(
-                    str(told.path),
-                    f"relay {entry.name}",
-                    f'a motor that names it (relay = "{entry.name}")',
-                    "none",
-                )
-            )
+            expected = f'a motor that names it (relay = "{entry.name}")'
+            problems.add(told.problem("relay", entry.name, expected=expected, found="none"))
         if entry.name in ieds and entry.scl is not None and configuration is not None:
             problems.add(
-                Problem(
-                    str(told.path),
-                    f"relay {entry.name}: scl",
-                    f"no file of its own, since {configuration.path.name} has an IED of this name, "
-                    "or another name",
-                    entry.scl.name,
+                told.problem(
+                    "relay",
+                    entry.name,
+                    "scl",
+                    expected=f"no file of its own, since {configuration.path.name} has an IED of this name, "
+                    "or another name of the relay",
+                    found=entry.scl.name,
                 )
             )

@@ -151,11 +151,9 @@ def _relays(
             if configuration is not None and one.relay in ieds:
                 relay = relay_of_ied(configuration, ieds[one.relay], one.site, entry, motor.overrides)
             elif entry.scl is not None:
-                relay = relay_of_ied(
-                    *read_own_scl(entry, told.path, subnetwork), one.site, entry, motor.overrides
-                )
+                relay = relay_of_ied(*read_own_scl(entry, told, subnetwork), one.site, entry, motor.overrides)
             elif one.relay in told.relays:
-                relay = relay_without_scl(entry, one.site, told.path, motor.overrides)
+                relay = relay_without_scl(entry, one.site, told, motor.overrides)
             else:
                 continue
             relays[one.relay] = relay
@@ -191,12 +189,12 @@ def _buses(bus_of: Mapping[str, str | None], told: MotorsFile, problems: Problem
     for unknown in sorted(told.buses.keys() - buses.keys() - named):
         known = ", ".join(sorted(buses)) or "none is known"
         problems.add(
-            Problem(
-                str(told.path),
-                f"bus {unknown}",
-                f"a bus of the SCD, or one that a motor names ({known})",
-                "a bus without motors",
-                nearest(unknown, buses),
+            told.problem(
+                "bus",
+                unknown,
+                expected=f"a bus of the SCD, or one that a motor names ({known})",
+                found="a bus without motors",
+                nearest=nearest(unknown, buses),
             )
         )
     entries = {name: told.buses.get(name, NOTHING_TOLD) for name in buses}

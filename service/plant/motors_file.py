@@ -3,9 +3,11 @@
 import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from service.configuration.problems import Problem, Problems, nearest
+from service.configuration.toml_lines import TomlLines
 from service.plant.errors import plant_error
 from service.plant.overrides import AS_RECOGNISED, OverrideError, Overrides, overrides_from_table
 from service.plant.relay_entry import RelayEntry, relay_entry
@@ -46,12 +48,26 @@ class BusEntry:
 
 @dataclass(frozen=True, slots=True)
 class MotorsFile:
-    """Motors, relays and buses by their names."""
+    """Motors, relays and buses by their names.
+
+    tables: where each table is in the file, by kind and name.
+    """
 
     path: Path
     motors: Mapping[str, MotorEntry]
     relays: Mapping[str, RelayEntry]
     buses: Mapping[str, BusEntry]
+    lines: TomlLines
+    tables: Mapping[tuple[str, str], int]
+
+    def problem(
+        self, kind: str, name: str, *key: str, expected: str, found: str, nearest: str | None = None
+    ) -> Problem:
+        """Return what is wrong with a key of a motor, relay or bus, or with all of its table."""
+        number = self.tables.get((kind, name))
+        line = None if number is None else self.lines.line(kind, number, *key)
+        field = ": ".join((f"{kind} {name}", *key[-1:]))
+        return Problem(str(self.path), field, expected, found, nearest, line)
 
 
 def read_motors_file(path: Path, problems: Problems) -> MotorsFile:
@@ -59,7 +75,8 @@ def read_motors_file(path: Path, problems: Problems) -> MotorsFile:
 
     Raises PlantError where the file cannot be read at all.
     """
-    document = _document(path)
+    text = _text(path)
+    document, lines = _document(path, text), TomlLines(text)
     for unknown in [name for name in document if name not in TABLES]:
         problems.add(
             Problem(
@@ -68,9 +85,16 @@ def read_motors_file(path: Path, problems: Problems) -> MotorsFile:
                 "[[motor]], [[relay]] and [[bus]] tables and nothing else",
                 unknown,
                 nearest(unknown, TABLES),
+                lines.line(unknown),
             )
         )
-    entries = {kind: dict(_tables(document, kind, path, problems)) for kind in TABLES}
+    entries: dict[str, dict[str, PlantTable]] = {kind: {} for kind in TABLES}
+    numbers: dict[tuple[str, str], int] = {}
+    for kind in TABLES:
+        for number, name, values in _tables(document, kind, path, lines, problems):
+            numbers[kind, name] = number
+            line = partial(lines.line, kind, number)
+            entries[kind][name] = PlantTable(values, f"{kind} {name}", path, problems, line)
     if not entries["motor"] and not problems:
         problems.add(Problem(str(path), "top level", "a [[motor]] table for each motor", "none"))
     return MotorsFile(
@@ -78,44 +102,51 @@ def read_motors_file(path: Path, problems: Problems) -> MotorsFile:
         {name: _motor_entry(table, name) for name, table in entries["motor"].items()},
         {name: relay_entry(table, name) for name, table in entries["relay"].items()},
         {name: _bus_entry(table) for name, table in entries["bus"].items()},
+        lines,
+        numbers,
     )
 
 
-def _document(path: Path) -> dict[str, object]:
+def _text(path: Path) -> str:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        return path.read_text(encoding="utf-8")
     except FileNotFoundError as error:
         raise plant_error(
             path, "file", expected="a TOML file with [[motor]] tables", found="no file"
         ) from error
     except OSError as error:
         raise plant_error(path, "file", expected="a readable file", found=str(error)) from error
+    except UnicodeDecodeError as error:
+        raise plant_error(path, "file", expected="valid TOML in UTF-8", found=str(error)) from error
+
+
+def _document(path: Path, text: str) -> dict[str, object]:
+    try:
+        return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # also of tables or numbers that Python has no room for
         raise plant_error(path, "file", expected="valid TOML in UTF-8", found=str(error)) from error
 
 
 def _tables(
-    document: Mapping[str, object], kind: str, path: Path, problems: Problems
-) -> Iterator[tuple[str, PlantTable]]:
-    """Yield each table of a kind with its name, the first of each name."""
+    document: Mapping[str, object], kind: str, path: Path, lines: TomlLines, problems: Problems
+) -> Iterator[tuple[int, str, dict[str, object]]]:
+    """Yield each table of a kind with its number and name, the first of each name."""
     given = document.get(kind, [])
     if not isinstance(given, list):
-        problems.add(Problem(str(path), kind, f"[[{kind}]] tables, with two brackets", shown(given)))
+        expected = f"[[{kind}]] tables, with two brackets"
+        problems.add(Problem(str(path), kind, expected, shown(given), line=lines.line(kind)))
         return
     seen: set[str] = set()
-    for number, values in enumerate(given, start=1):
-        whose = f"{kind} {number}"
-        if not isinstance(values, dict):
-            problems.add(Problem(str(path), whose, "a table", shown(values)))
-            continue
-        name = values.pop("name", None)
+    for number, values in enumerate(given):
+        field, line = f"{kind} {number + 1}: name", lines.line(kind, number, "name")
+        name = values.pop("name", None) if isinstance(values, dict) else None
         if not isinstance(name, str) or not is_text(name):
-            problems.add(Problem(str(path), f"{whose}: name", f"the {kind}'s name", repr(name)))
+            problems.add(Problem(str(path), field, f"the {kind}'s name", repr(name), line=line))
         elif name in seen:
-            problems.add(Problem(str(path), f"{whose}: name", f"each {kind} once", f"{name} again"))
+            problems.add(Problem(str(path), field, f"each {kind} once", f"{name} again", line=line))
         else:
             seen.add(name)
-            yield name, PlantTable(values, f"{kind} {name}", path, problems)
+            yield number, name, values
 
 
 def _motor_entry(table: PlantTable, name: str) -> MotorEntry:

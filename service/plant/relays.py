@@ -7,9 +7,10 @@ import scl
 from scl.configuration import MMS_PORT
 from scl.ied_model import Ied
 from service.configuration.problems import Problem
-from service.plant.errors import PlantError, plant_error
+from service.plant.errors import PlantError
 from service.plant.metering import measurands_from_scl
 from service.plant.model import Relay
+from service.plant.motors_file import MotorsFile
 from service.plant.offer import offer_from_scl
 from service.plant.overrides import Overrides
 from service.plant.recognition import recognise
@@ -44,15 +45,11 @@ def relay_of_ied(
     )
 
 
-def relay_without_scl(entry: RelayEntry, site: str, path: Path, overrides: Overrides) -> Relay:
+def relay_without_scl(entry: RelayEntry, site: str, told: MotorsFile, overrides: Overrides) -> Relay:
     """Return a relay of which only the address is known: it is asked what it offers. Raises PlantError."""
     if entry.host is None:
-        raise plant_error(
-            path,
-            f"relay {entry.name}: host",
-            expected="the relay's address (host), or its CID with an address (scl)",
-            found="none",
-        )
+        expected = "the relay's address (host), or its CID with an address (scl)"
+        raise PlantError([told.problem("relay", entry.name, "host", expected=expected, found="none")])
     return Relay(
         name=entry.name,
         site=site,
@@ -70,14 +67,12 @@ def relay_without_scl(entry: RelayEntry, site: str, path: Path, overrides: Overr
     )
 
 
-def read_own_scl(entry: RelayEntry, path: Path, subnetwork: str | None) -> tuple[scl.Scl, Ied]:
+def read_own_scl(entry: RelayEntry, told: MotorsFile, subnetwork: str | None) -> tuple[scl.Scl, Ied]:
     """Read the SCL file of one relay, and find its IED: the one of its name, or the only one.
-
-    path: of the motors file, for messages.
 
     Raises PlantError.
     """
-    file = entry.scl or path
+    file = entry.scl or told.path
     try:
         configuration = scl.read(file)
         if [ied.name for ied in configuration.ieds] == [TEMPLATE]:
@@ -89,12 +84,9 @@ def read_own_scl(entry: RelayEntry, path: Path, subnetwork: str | None) -> tuple
     names = [ied.name for ied in configuration.ieds]
     if entry.name in names or len(names) == 1:
         return configuration, configuration.ied(entry.name if entry.name in names else names[0])
-    raise plant_error(
-        path,
-        f"relay {entry.name}: scl",
-        expected=f"a file with one IED, or with one called {entry.name}",
-        found=f"{file.name} with {', '.join(names[:20]) or 'none'}",
-    )
+    expected = f"a file with one IED, or with one called {entry.name}"
+    found = f"{file.name} with {', '.join(names[:20]) or 'none'}"
+    raise PlantError([told.problem("relay", entry.name, "scl", expected=expected, found=found)])
 
 
 def scl_problem(error: scl.SclError) -> Problem:

@@ -1,5 +1,6 @@
 """Tables of the motors file: values of the expected type, and problems that name the key."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from service.configuration.problems import Problem, Problems, nearest
@@ -16,10 +17,22 @@ class PlantTable:
     problems and counts as if it were not there.
     """
 
-    def __init__(self, values: dict[str, object], whose: str, path: Path, problems: Problems) -> None:
+    def __init__(
+        self,
+        values: dict[str, object],
+        whose: str,
+        path: Path,
+        problems: Problems,
+        line: Callable[..., int | None],
+    ) -> None:
+        """Begin with all that tomllib read of the table.
+
+        line: returns the line of a key of the table, given by its path.
+        """
         self.is_sound = True
         self.path = path
         self._values, self._whose, self._problems = values, whose, problems
+        self._line = line
         self._known = ["name"]
 
     def text(self, key: str, expected: str) -> str | None:
@@ -76,7 +89,9 @@ class PlantTable:
     def tell(self, key: str, *, expected: str, found: str, nearest: str | None = None) -> None:
         """Tell of a problem with a key."""
         self.is_sound = False
-        self._problems.add(Problem(str(self.path), f"{self._whose}: {key}", expected, found, nearest))
+        line = self._line(*key.split("."))
+        field = f"{self._whose}: {key}"
+        self._problems.add(Problem(str(self.path), field, expected, found, nearest, line))
 
 
 def is_text(text: str) -> bool:

@@ -78,6 +78,37 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
         Settings.load(tmp_path)
 
 
+def test_everything_that_is_wrong_is_told_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text(
+        'scd = "plant.scd"\nwrokers = 4\nport = 99999\n\n[retention]\nhealty_days = 3\n\n'
+        '[relays.A1]\npasword_file = "a"\n'
+    )
+    monkeypatch.setenv("MCC_WROKERS", "4")
+    monkeypatch.setenv("MCC_LEASE_S", "soon")
+    monkeypatch.setenv("MCC_RELAY_PASWORD_A1", "hidden")
+    monkeypatch.setenv("MCC_URL", "http://mcc")
+    with pytest.raises(SettingsError) as failure:
+        Settings.load(config)
+    page = "docs/reference/settings.md"
+    variable = f"MCC_ and the name of a setting of {page} in capitals, found an unknown variable"
+    assert sorted(str(failure.value).splitlines()) == sorted(
+        [
+            f"environment: MCC_RELAY_PASWORD_A1: expected {variable} (did you mean MCC_RELAY_PASSWORD_?)",
+            f"environment: MCC_WROKERS: expected {variable} (did you mean MCC_WORKERS?)",
+            "environment: MCC_LEASE_S: expected a valid number, unable to parse string as a number, "
+            "found 'soon'",
+            f"{config}: line 2: wrokers: expected a setting named in {page}, found another name "
+            "(did you mean workers?)",
+            f"{config}: line 3: port: expected less than or equal to 65535, found 99999",
+            f"{config}: line 6: retention.healty_days: expected a setting named in {page}, "
+            "found another name (did you mean healthy_days?)",
+            f"{config}: line 9: relays.A1.pasword_file: expected a setting named in {page}, "
+            "found another name (did you mean password_file?)",
+        ]
+    )
+
+
 def test_a_password_in_the_url_is_not_shown() -> None:
     settings = Settings(database_url="postgresql+psycopg://mcc:secret@db.example/mcc")
     assert "secret" not in repr(settings)
@@ -148,11 +179,11 @@ def test_a_number_that_is_not_finite_or_out_of_bounds_is_refused(
     config = tmp_path / "mcc.toml"
     for value in ("inf", "-inf", "nan"):
         config.write_text(f"{name} = {value}\n")
-        with pytest.raises(SettingsError, match=name):
+        with pytest.raises(SettingsError, match=f"(?i){name}"):
             Settings.load(config)
         with monkeypatch.context() as environment:
             environment.setenv(f"MCC_{name.upper()}", value)
-            with pytest.raises(SettingsError, match=name):
+            with pytest.raises(SettingsError, match=f"(?i){name}"):
                 Settings.load()
     for number in (math.inf, math.nan, largest + 1, 2 * largest, least - 1, -math.inf):
         with pytest.raises(ValidationError):
