@@ -3,13 +3,15 @@
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from math import inf
+from difflib import get_close_matches
+from math import isnan
 from pathlib import Path
 
 from core.machines import plausibility
+from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_table import MotorTable
 from core.machines.parameters import (
     ChannelNames,
-    Connection,
     Limits,
     MachineParameters,
     Motor,
@@ -19,46 +21,13 @@ from core.machines.parameters import (
 )
 from core.machines.sensors import SensorClass
 from core.machines.typical import tolerances_of, typical_parameters
+from core.machines.unit_slips import likely_slip
 
 TABLES = ("nameplate", "parameters", "intervals", "channels", "limits", "sensors", "transformers")
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))
 DEFAULT_SENSORS = SensorClass()
 FAULT_LEVELS = (0.0, 0.2)
 """To the upper end of the search. A higher limit would never be reached and would switch the alarm off."""
-
-TRANSFORMER_RATIOS = (1e-4, 1e5)
-"""Also of clip-on sensors whose volts or millivolts the recording calls amperes, and of kV called V."""
-
-ROUNDING = 1e-6
-"""A value may lie so far beyond its ends, relatively: files have seven digits of it."""
-
-MOST_SHOWN = 60
-"""Of a value that is refused, so many characters are shown."""
-
-
-class MotorFileError(ValueError):
-    """The error of a motor's table that cannot be used.
-
-    It says which file, which field, what was expected and what was found.
-
-    Parameters
-    ----------
-    source : pathlib.Path or str
-        Name of the recording, for messages.
-    field : str
-        Field at fault.
-    expected : str
-        What was expected, in words.
-    found : str
-        What was found, in words.
-    """
-
-    def __init__(self, source: Path | str, field: str, *, expected: str, found: str) -> None:
-        self.source = str(source)
-        self.field = field
-        self.expected = expected
-        self.found = found
-        super().__init__(f"{self.source}: {field}: expected {expected}, found {found}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -206,22 +175,55 @@ def _table_of(path: Path) -> dict[str, object]:
 def _plate_from_table(
     table: Mapping[str, object], *, name: str, source: Path | str, typical: SensorClass = DEFAULT_SENSORS
 ) -> Plate:
-    unknown = sorted(set(table) - set(TABLES))
-    if unknown:
-        raise MotorFileError(
-            source,
-            unknown[0],
-            expected="one of the tables "
-            f"{', '.join(f'[{table}]' for table in TABLES)} (docs/reference/motor-file.md)",
-            found="an unknown key",
+    errors: list[MotorFileError] = []
+    plate = _plate(table, name, source, typical, errors)
+    figures = [number for number, error in enumerate(errors) if _is_of_a_figure(error)]
+    if figures:
+        slip = likely_slip(table, lambda other: _has_plausible_figures(other, name, source, typical))
+        errors[figures[0]] = errors[figures[0]].with_nearest(slip)
+    if errors:
+        raise errors[0].with_others(errors[1:])
+    return plate
+
+
+def _is_of_a_figure(error: MotorFileError) -> bool:
+    return error.field.startswith(("[nameplate]", "[parameters]")) and error.nearest is None
+
+
+def _has_plausible_figures(
+    table: Mapping[str, object], name: str, source: Path | str, typical: SensorClass
+) -> bool:
+    errors: list[MotorFileError] = []
+    _plate(table, name, source, typical, errors)
+    return not any(map(_is_of_a_figure, errors))
+
+
+def _plate(
+    table: Mapping[str, object],
+    name: str,
+    source: Path | str,
+    typical: SensorClass,
+    errors: list[MotorFileError],
+) -> Plate:
+    """Return what the tables say. With errors it is good for nothing."""
+    for unknown in sorted(set(table) - set(TABLES)):
+        errors.append(
+            MotorFileError(
+                source,
+                unknown,
+                expected="one of the tables "
+                f"{', '.join(f'[{each}]' for each in TABLES)} (docs/reference/motor-file.md)",
+                found="an unknown key",
+                nearest=next(iter(get_close_matches(unknown, TABLES, n=1)), None),
+            )
         )
-    nameplate = _Table(table, "nameplate", source)
-    machine = _Table(table, "parameters", source) if "parameters" in table else None
-    intervals = _Table(table, "intervals", source, optional=True)
-    limits = _Table(table, "limits", source, optional=True)
-    channels = _Table(table, "channels", source, optional=True)
-    sensors = _Table(table, "sensors", source, optional=True)
-    transformers = _Table(table, "transformers", source, optional=True)
+    nameplate = MotorTable(table, "nameplate", source, errors)
+    machine = MotorTable(table, "parameters", source, errors) if "parameters" in table else None
+    intervals = MotorTable(table, "intervals", source, errors, optional=True)
+    limits = MotorTable(table, "limits", source, errors, optional=True)
+    channels = MotorTable(table, "channels", source, errors, optional=True)
+    sensors = MotorTable(table, "sensors", source, errors, optional=True)
+    transformers = MotorTable(table, "transformers", source, errors, optional=True)
     rated = _nameplate(nameplate)
     # The intervals say how far the parameters may be off; the models use the values alone.
     ends = {name: found for name in PARAMETERS if (found := intervals.interval(name)) is not None}
@@ -252,15 +254,19 @@ def _plate_from_table(
     )
     for section in (nameplate, machine, intervals, limits, channels, sensors, transformers):
         if section is not None:
-            section.reject_unknown()
+            section.end()
     return plate
 
 
-def _nameplate(table: "_Table") -> Nameplate:
+def _nameplate(table: MotorTable) -> Nameplate:
     voltage_V = table.number("rated_voltage_V", plausibility.RATED_VOLTAGE_V, unit="V")
-    power = plausibility.plausible_power(voltage_V)
+    if isnan(voltage_V):
+        power_W = table.number("rated_power_W", plausibility.RATED_POWER_W, unit="W")
+    else:
+        power = plausibility.plausible_power(voltage_V)
+        power_W = table.number("rated_power_W", (power.least, power.most), str(power))
     return Nameplate(
-        rated_power_W=table.number("rated_power_W", (power.least, power.most), str(power)),
+        rated_power_W=power_W,
         rated_voltage_V=voltage_V,
         rated_frequency_Hz=table.number("rated_frequency_Hz", plausibility.RATED_FREQUENCY_HZ, unit="Hz"),
         pole_pairs=table.count("pole_pairs", plausibility.MOST_POLE_PAIRS),
@@ -268,7 +274,7 @@ def _nameplate(table: "_Table") -> Nameplate:
     )
 
 
-def _parameters(table: "_Table", nameplate: Nameplate) -> MachineParameters:
+def _parameters(table: MotorTable, nameplate: Nameplate) -> MachineParameters:
     return MachineParameters(
         **{
             one.field: table.number(one.field, (one.least, one.most), str(one))
@@ -277,7 +283,7 @@ def _parameters(table: "_Table", nameplate: Nameplate) -> MachineParameters:
     )
 
 
-def _source(table: "_Table | None", *, has_intervals: bool) -> ParametersSource:
+def _source(table: MotorTable | None, *, has_intervals: bool) -> ParametersSource:
     """Return where the parameters come from: as the file says, else commissioned if it has intervals."""
     if table is None:
         return ParametersSource.TYPICAL
@@ -285,7 +291,7 @@ def _source(table: "_Table | None", *, has_intervals: bool) -> ParametersSource:
     return table.source("source", usual)
 
 
-def _sensors(table: "_Table", typical: SensorClass) -> SensorClass:
+def _sensors(table: MotorTable, typical: SensorClass) -> SensorClass:
     return SensorClass(
         **{
             one.field: table.number(
@@ -294,120 +300,3 @@ def _sensors(table: "_Table", typical: SensorClass) -> SensorClass:
             for one in plausibility.plausible_sensors()
         }
     )
-
-
-class _Table:
-    """One table of the file: typed access that names the field when it refuses."""
-
-    def __init__(
-        self, tables: Mapping[str, object], name: str, source: Path | str, *, optional: bool = False
-    ) -> None:
-        values = tables.get(name, {} if optional else None)
-        if not isinstance(values, Mapping):
-            found = "nothing" if values is None else type(values).__name__
-            raise MotorFileError(source, f"[{name}]", expected="a table", found=found)
-        self._values, self._name, self._source = values, name, source
-        self._known: set[str] = set()
-
-    def number(
-        self,
-        key: str,
-        ends: tuple[float, float],
-        expected: str = "",
-        *,
-        unit: str = "",
-        default: float | None = None,
-    ) -> float:
-        """Return a number above zero between the ends, which belong to it. `expected`: those in words."""
-        value = self._take(key, default)
-        low, high = ends
-        expected = expected or f"{low:g} to {high:g} {unit}"
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:
-            raise self._error(key, f"a number above zero, {expected}", value)
-        if not low * (1.0 - ROUNDING) <= value <= high * (1.0 + ROUNDING):
-            raise self._error(key, expected, value)
-        return float(value)
-
-    def ratio(self, key: str) -> float | None:
-        """Return a ratio of transformers, None where there is none."""
-        if self._take(key, None) is None:
-            return None
-        expected = "primary over secondary value such as 60 for 6600:110, or 1 where the values are primary"
-        return self.number(key, TRANSFORMER_RATIOS, expected)
-
-    def interval(self, key: str) -> tuple[float, float] | None:
-        value = self._take(key, None)
-        if value is None:
-            return None
-        if (
-            not isinstance(value, list)
-            or len(value) != 2
-            or any(isinstance(end, bool) or not isinstance(end, int | float) for end in value)
-            or not 0.0 < value[0] <= value[1] < inf
-        ):
-            raise self._error(key, "[low, high], two numbers above zero", value)
-        try:
-            return float(value[0]), float(value[1])
-        except OverflowError:
-            raise self._error(key, "numbers that a computer can hold", value) from None
-
-    def count(self, key: str, most: int) -> int:
-        value = self._take(key, None)
-        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
-            raise self._error(key, f"a whole number of 1 to {most}", value)
-        return value
-
-    def connection(self, key: str) -> Connection:
-        value = self._take(key, Connection.STAR.value)
-        try:
-            return Connection(str(value))
-        except ValueError:
-            raise self._error(key, '"star" or "delta"', value) from None
-
-    def source(self, key: str, default: ParametersSource) -> ParametersSource:
-        value = self._take(key, default.value)
-        try:
-            return ParametersSource(str(value))
-        except ValueError:
-            raise self._error(key, f"one of {', '.join(ParametersSource)}", value) from None
-
-    def names(self, *keys: str) -> tuple[str, str, str] | None:
-        self._known.update(keys)
-        given = [key for key in keys if key in self._values]
-        if not given:
-            return None
-        first, second, third = (self._name_of(key) for key in keys)
-        return first, second, third
-
-    def reject_unknown(self) -> None:
-        unknown = sorted(set(self._values) - self._known)
-        if unknown:
-            raise MotorFileError(
-                self._source,
-                f"[{self._name}] {unknown[0]}",
-                expected=f"one of {', '.join(sorted(self._known))}",
-                found="an unknown key",
-            )
-
-    def _name_of(self, key: str) -> str:
-        value = self._take(key, None)
-        if not isinstance(value, str) or not value:
-            raise self._error(key, "a channel name", value)
-        return value
-
-    def _take(self, key: str, default: object) -> object:
-        self._known.add(key)
-        return self._values.get(key, default)
-
-    def _error(self, key: str, expected: str, found: object) -> MotorFileError:
-        shown = "nothing" if found is None else _shown(found)
-        return MotorFileError(self._source, f"[{self._name}] {key}", expected=expected, found=shown)
-
-
-def _shown(value: object) -> str:
-    """Return a value for a message; TOML has integers of any length, of which Python prints only some."""
-    try:
-        text = repr(value)
-    except ValueError:
-        return "a number of thousands of digits"
-    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."

@@ -17,6 +17,11 @@ MOST_POLE_PAIRS = 100
 RATED_CURRENT_A = (0.01, 10e3)
 """Rated power over sqrt(3) times rated voltage [A]."""
 
+EXTRA_LOW_VOLTAGE_V = 100.0
+MOST_AT_EXTRA_LOW_VOLTAGE_A = 1500.0
+"""Motors of vehicles on batteries have at most so much. A voltage in kV looks like a lower one in V."""
+
+
 RESISTANCE_PU = (0.0005, 0.5)
 LEAKAGE_REACTANCE_PU = (0.005, 1.0)
 MAGNETISING_REACTANCE_PU = (0.1, 30.0)
@@ -69,13 +74,16 @@ def plausible_power(rated_voltage_V: float) -> Plausible:
     Plausible
         Range of `rated_power_W`.
     """
-    least, most = (sqrt(3.0) * rated_voltage_V * current for current in RATED_CURRENT_A)
+    least_A, most_A = RATED_CURRENT_A
+    if rated_voltage_V < EXTRA_LOW_VOLTAGE_V:
+        most_A = MOST_AT_EXTRA_LOW_VOLTAGE_A
+    least, most = (sqrt(3.0) * rated_voltage_V * current for current in (least_A, most_A))
     return Plausible(
         "rated_power_W",
         max(RATED_POWER_W[0], least),
         min(RATED_POWER_W[1], most),
         "W",
-        f"{RATED_CURRENT_A[0]:g} to {RATED_CURRENT_A[1]:g} A at {rated_voltage_V:g} V",
+        f"{least_A:g} to {most_A:g} A at {rated_voltage_V:g} V",
     )
 
 

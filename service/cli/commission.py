@@ -13,7 +13,8 @@ from core.commissioning.commissioning import commission
 from core.commissioning.errors import CommissioningError
 from core.commissioning.result import Commissioning, Estimate
 from core.machines.candidates import LoadLaw
-from core.machines.motor_file import MotorFileError, read_plate
+from core.machines.motor_file import read_plate
+from core.machines.motor_file_error import MotorFileError
 from core.machines.motor_file_writer import write_motor
 from core.recordings import RecordingError, read
 from service.cli.output import (

@@ -11,7 +11,8 @@ from rich.text import Text
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis
-from core.machines.motor_file import MotorFileError, read_motor
+from core.machines.motor_file import read_motor
+from core.machines.motor_file_error import MotorFileError
 from core.machines.parameters import ParametersSource
 from core.machines.typical import COMMISSION
 from core.recordings import Recording, RecordingError, read

@@ -1,9 +1,10 @@
 """What is wrong in the files and variables that configure the service, as values and in words."""
 
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass
 from difflib import get_close_matches
+from types import TracebackType
 
 ENVIRONMENT = "environment"
 
@@ -87,13 +88,24 @@ class Problems:
         """Keep more problems."""
         self._found.extend(problems)
 
-    @contextmanager
-    def collected(self) -> Iterator[None]:
+    def collected(self) -> AbstractContextManager[None, bool]:
         """Keep the problems that the block raises. What follows the block goes on without its result."""
-        try:
-            yield
-        except ConfigurationError as error:
-            self._found.extend(error.problems)
+        return _Collecting(self)
+
+
+class _Collecting(AbstractContextManager[None, bool]):
+    """A block whose ConfigurationError is kept, and ends the block alone."""
+
+    def __init__(self, problems: Problems) -> None:
+        self._problems = problems
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> bool:
+        if isinstance(error, ConfigurationError):
+            self._problems.extend(error.problems)
+            return True
+        return False
 
 
 def nearest(unknown: str, known: Iterable[str]) -> str | None:

@@ -11,14 +11,16 @@ from ipaddress import ip_address
 from pathlib import Path
 
 import scl
-from core.machines.motor_file import MotorFileError, motor_from_table
+from core.machines.motor_file import TABLES, motor_from_table
+from core.machines.motor_file_error import MotorFileError
+from core.machines.parameters import Motor
 from service.configuration.problems import Problem, Problems, nearest
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
 from service.configuration.settings import Settings
 from service.plant.binding import Binding, bindings
 from service.plant.errors import PlantError
 from service.plant.model import Bus, Plant, PlantMotor, Relay, Site
-from service.plant.motors_file import BusEntry, MotorsFile, read_motors_file
+from service.plant.motors_file import BusEntry, MotorEntry, MotorsFile, read_motors_file
 from service.plant.relay_entry import RelayEntry
 from service.plant.relays import read_own_scl, relay_of_ied, relay_without_scl, scl_problem
 from service.plant.sensor_classes import typical_sensors
@@ -100,20 +102,24 @@ def _plant(
             configuration = configuration.seen_from(subnetwork)
     except scl.SclError as error:
         problems.add(scl_problem(error))
+    if told is None:
         return None
-    if told is None or (configuration is None and not _describes_relays(told, problems)):
+    if scd_path is None and not _describes_relays(told, problems):
+        return None
+    if scd_path is not None and configuration is None:
+        _motors((), told, {}, problems)
         return None
     bound = bindings(configuration, told, problems)
     relays = _relays(bound, configuration, told, subnetwork, problems)
     _one_relay_an_address(relays.values(), configuration, told, problems)
-    motors = [motor for one in bound if (motor := _motor(one, told, relays, problems)) is not None]
+    motors = _motors(bound, told, relays, problems)
     sites: dict[str, Site] = {}
     for one in bound:
         sites.setdefault(one.site, Site(one.site, one.site_description))
     return Plant(
         sites=tuple(sites.values()),
         relays=tuple(relays.values()),
-        motors=tuple(motors),
+        motors=motors,
         buses=_buses({motor.name: motor.bus for motor in motors}, told, problems),
     )
 
@@ -160,23 +166,42 @@ def _relays(
     return relays
 
 
-def _motor(
-    one: Binding, told: MotorsFile, relays: Mapping[str, Relay], problems: Problems
-) -> PlantMotor | None:
-    entry = told.motors.get(one.motor)
-    if entry is None:
-        return None
-    relay = relays.get(one.relay)
-    typical = typical_sensors(relay.manufacturer, relay.type) if relay else typical_sensors("", "")
-    try:
-        motor = motor_from_table(entry.data, name=entry.name, source=str(told.path), typical=typical)
-    except MotorFileError as error:
-        problems.add(
-            Problem(str(told.path), f"motor {entry.name}: {error.field}", error.expected, error.found)
-        )
-        return None
+def _motors(
+    bound: Iterable[Binding], told: MotorsFile, relays: Mapping[str, Relay], problems: Problems
+) -> tuple[PlantMotor, ...]:
+    """Return the motors that have a relay. The data of all are read, for what is wrong in them."""
+    binding_of = {one.motor: one for one in bound}
+    data: dict[str, Motor] = {}
+    for entry in told.motors.values():
+        relay = relays.get(binding_of[entry.name].relay) if entry.name in binding_of else None
+        typical = typical_sensors(relay.manufacturer, relay.type) if relay else typical_sensors("", "")
+        try:
+            data[entry.name] = motor_from_table(
+                entry.data, name=entry.name, source=str(told.path), typical=typical
+            )
+        except MotorFileError as error:
+            problems.extend(_in_motor(each, entry, told) for each in (error, *error.others))
+    return tuple(
+        _plant_motor(one, told.motors[name], data[name]) for name, one in binding_of.items() if name in data
+    )
+
+
+def _plant_motor(one: Binding, entry: MotorEntry, motor: Motor) -> PlantMotor:
     description = one.motor_description if entry.description is None else entry.description
     return PlantMotor(motor, description, one.site, one.relay, entry.schedule, entry.bus or one.bus)
+
+
+def _in_motor(error: MotorFileError, entry: MotorEntry, told: MotorsFile) -> Problem:
+    """Return what is wrong in the data of a motor."""
+    table, bracket, key = error.field.removeprefix("[").partition("]")
+    path = (table, key.strip()) if bracket else (error.field,)
+    expected, meant = error.expected, error.nearest
+    if not bracket:
+        tables = ", ".join(f"[motor.{each}]" for each in TABLES)
+        expected = f"one of {', '.join(entry.keys)}, {tables}"
+        meant = nearest(error.field, [*entry.keys, *TABLES])
+    problem = told.problem("motor", entry.name, *path, expected=expected, found=error.found, nearest=meant)
+    return replace(problem, field=f"motor {entry.name}: {error.field}")
 
 
 def _buses(bus_of: Mapping[str, str | None], told: MotorsFile, problems: Problems) -> tuple[Bus, ...]:

@@ -26,6 +26,7 @@ class MotorEntry:
     relay: name of its relay; None where it names none.
     bus: the bus it names; None where it names none.
     is_sound: whether all of this could be read.
+    keys: that the table may have beside those of its data.
     """
 
     name: str
@@ -36,6 +37,7 @@ class MotorEntry:
     overrides: Overrides
     bus: str | None
     is_sound: bool
+    keys: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,8 +158,17 @@ def _motor_entry(table: PlantTable, name: str) -> MotorEntry:
     schedule = table.schedule()
     bus = table.text("bus", "the name of a bus")
     relay, overrides = _relay_of_motor(table)
-    is_sound = table.is_sound
-    return MotorEntry(name, table.rest(), description, relay, schedule, overrides, bus, is_sound)
+    return MotorEntry(
+        name,
+        data=table.rest(),
+        description=description,
+        relay=relay,
+        schedule=schedule,
+        overrides=overrides,
+        bus=bus,
+        is_sound=table.is_sound,
+        keys=table.keys,
+    )
 
 
 def _relay_of_motor(table: PlantTable) -> tuple[str | None, Overrides]:

@@ -67,6 +67,11 @@ class PlantTable:
         self._known.append(key)
         return self._values.pop(key, None)
 
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Return the keys that were looked for so far."""
+        return tuple(self._known)
+
     def rest(self) -> dict[str, object]:
         """Take all that was not taken yet."""
         rest, self._values = self._values, {}

@@ -11,6 +11,24 @@ commands = typer.Typer()
 
 
 @commands.command()
+def check(
+    config: Config = None,
+    *,
+    connect: Annotated[
+        bool, typer.Option("--connect", help="Also ask each relay what it offers: a line a relay.")
+    ] = False,
+    as_json: Json = False,
+) -> int:
+    """Tell all that is wrong in the settings, the motors file and the SCL files of a plant, at once.
+
+    Nothing is started, and no relay is triggered. The exit code is 1 where mcc serve would not start.
+    """
+    from service.cli.check import check_plant
+
+    return check_plant(config, connect=connect, as_json=as_json)
+
+
+@commands.command()
 def retention(
     config: Config = None,
     *,

@@ -1,0 +1,279 @@
+"""One table of a motor's file: typed values, and errors that name the key. Every error is kept."""
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from math import inf, isnan, nan
+from pathlib import Path
+
+from core.machines.motor_file_error import MotorFileError
+from core.machines.parameters import Connection, ParametersSource
+
+ROUNDING = 1e-6
+"""A value may lie so far beyond its ends, relatively: files have seven digits of it."""
+
+TRANSFORMER_RATIOS = (1e-4, 1e5)
+"""Also of clip-on sensors whose volts or millivolts the recording calls amperes, and of kV called V."""
+
+MOST_SHOWN = 60
+"""Of a value that is refused, so many characters are shown."""
+
+NOTHING = "nothing"
+UNKNOWN = "an unknown key"
+
+
+class MotorTable:
+    """One table of the file. A value that cannot be used is an error, and nan or a default stands for it.
+
+    Parameters
+    ----------
+    tables : mapping of str to object
+        All tables of the motor.
+    name : str
+        Name of this one.
+    source : pathlib.Path or str
+        Where the tables come from, for messages.
+    errors : list of MotorFileError
+        Gets the errors.
+    optional : bool
+        Whether the table may be missing.
+    """
+
+    def __init__(
+        self,
+        tables: Mapping[str, object],
+        name: str,
+        source: Path | str,
+        errors: list[MotorFileError],
+        *,
+        optional: bool = False,
+    ) -> None:
+        self._name, self._source, self._errors = name, source, errors
+        self._known: set[str] = set()
+        self._values: Mapping[str, object] = {}
+        values = tables.get(name, {} if optional else None)
+        if isinstance(values, Mapping):
+            self._values = values
+        else:
+            found = NOTHING if values is None else type(values).__name__
+            errors.append(MotorFileError(source, f"[{name}]", expected="a table", found=found))
+        self.is_there = isinstance(values, Mapping)
+
+    def number(
+        self,
+        key: str,
+        ends: tuple[float, float],
+        expected: str = "",
+        *,
+        unit: str = "",
+        default: float | None = None,
+    ) -> float:
+        """Take a number above zero between two ends.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+        ends : tuple of float
+            Least and largest value. Ends that are not known (nan) are not looked at.
+        expected : str, optional
+            The ends in words.
+        unit : str, optional
+            Unit of the value, where `expected` does not tell it.
+        default : float, optional
+            Value where the table has none.
+
+        Returns
+        -------
+        float
+            The number, nan in place of one that was refused.
+        """
+        value = self._take(key, default)
+        low, high = ends
+        expected = expected or f"{low:g} to {high:g} {unit}"
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:
+            self._refuse(
+                key, "a number above zero" if isnan(low) else f"a number above zero, {expected}", value
+            )
+            return nan
+        if value < low * (1.0 - ROUNDING) or value > high * (1.0 + ROUNDING):
+            self._refuse(key, expected, value)
+            return nan
+        try:
+            return float(value)
+        except OverflowError:  # where the ends are not known
+            return nan
+
+    def ratio(self, key: str) -> float | None:
+        """Take a ratio of transformers.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+
+        Returns
+        -------
+        float or None
+            The ratio, None where there is none.
+        """
+        if self._take(key, None) is None:
+            return None
+        expected = "primary over secondary value such as 60 for 6600:110, or 1 where the values are primary"
+        return self.number(key, TRANSFORMER_RATIOS, expected)
+
+    def interval(self, key: str) -> tuple[float, float] | None:
+        """Take an interval.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+
+        Returns
+        -------
+        tuple of float or None
+            Low and high end, None where there are none.
+        """
+        value = self._take(key, None)
+        if value is None:
+            return None
+        if (
+            not isinstance(value, list)
+            or len(value) != 2
+            or any(isinstance(end, bool) or not isinstance(end, int | float) for end in value)
+            or not 0.0 < value[0] <= value[1] < inf
+        ):
+            self._refuse(key, "[low, high], two numbers above zero", value)
+            return None
+        try:
+            return float(value[0]), float(value[1])
+        except OverflowError:
+            self._refuse(key, "numbers that a computer can hold", value)
+            return None
+
+    def count(self, key: str, most: int) -> int:
+        """Take a whole number from 1 on.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+        most : int
+            Largest number.
+
+        Returns
+        -------
+        int
+            The number, 1 in place of one that was refused.
+        """
+        value = self._take(key, None)
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= most:
+            self._refuse(key, f"a whole number of 1 to {most}", value)
+            return 1
+        return value
+
+    def connection(self, key: str) -> Connection:
+        """Take the connection of the windings.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+
+        Returns
+        -------
+        Connection
+            The connection, star by default.
+        """
+        value = self._take(key, Connection.STAR.value)
+        try:
+            return Connection(str(value))
+        except ValueError:
+            self._refuse(key, '"star" or "delta"', value)
+            return Connection.STAR
+
+    def source(self, key: str, default: ParametersSource) -> ParametersSource:
+        """Take where the parameters come from.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+        default : ParametersSource
+            Source where the table tells none.
+
+        Returns
+        -------
+        ParametersSource
+            The source.
+        """
+        value = self._take(key, default.value)
+        try:
+            return ParametersSource(str(value))
+        except ValueError:
+            self._refuse(key, f"one of {', '.join(ParametersSource)}", value)
+            return default
+
+    def names(self, *keys: str) -> tuple[str, str, str] | None:
+        """Take the names of three channels.
+
+        Parameters
+        ----------
+        *keys : str
+            Their keys.
+
+        Returns
+        -------
+        tuple of str or None
+            The names, None where the table has none of them.
+        """
+        self._known.update(keys)
+        if not any(key in self._values for key in keys):
+            return None
+        first, second, third = (self._name_of(key) for key in keys)
+        return first, second, third
+
+    def end(self) -> None:
+        """Tell of the keys that nobody asked for. A misspelt key is not told as missing too."""
+        for key in sorted(set(self._values) - self._known):
+            meant = get_close_matches(key.casefold(), {known.casefold() for known in self._known}, n=1)
+            near = next((known for known in self._known if [known.casefold()] == meant), None)
+            missing = f"[{self._name}] {near}"
+            self._errors[:] = [
+                error for error in self._errors if (error.field, error.found) != (missing, NOTHING)
+            ]
+            self._errors.append(
+                MotorFileError(
+                    self._source,
+                    f"[{self._name}] {key}",
+                    expected=f"one of {', '.join(sorted(self._known))}",
+                    found=UNKNOWN,
+                    nearest=near,
+                )
+            )
+
+    def _name_of(self, key: str) -> str:
+        value = self._take(key, None)
+        if isinstance(value, str) and value:
+            return value
+        self._refuse(key, "a channel name", value)
+        return ""
+
+    def _take(self, key: str, default: object) -> object:
+        self._known.add(key)
+        return self._values.get(key, default)
+
+    def _refuse(self, key: str, expected: str, found: object) -> None:
+        shown = NOTHING if found is None else _shown(found)
+        self._errors.append(
+            MotorFileError(self._source, f"[{self._name}] {key}", expected=expected, found=shown)
+        )
+
+
+def _shown(value: object) -> str:
+    """Return a value for a message; TOML has integers of any length, of which Python prints only some."""
+    try:
+        text = repr(value)
+    except ValueError:
+        return "a number of thousands of digits"
+    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."

@@ -1,0 +1,108 @@
+"""`mcc check`: all that is wrong in the files of a plant, and what its relays offer."""
+
+from pathlib import Path
+
+from rich.text import Text
+
+from service.cli.output import DONE, FAILED, one_line, print_document, progress, results
+from service.setup.check import CheckedPlant, check
+from service.setup.relay_survey import RelaySurvey, survey
+
+LATE_S = 1.0
+"""A clock that is further off is told in the line of its relay."""
+
+
+def check_plant(config: Path | None, *, connect: bool, as_json: bool) -> int:
+    """Check the files and print what is wrong; ask the relays if `connect`. Returns the exit code."""
+    checked = check(config)
+    answers: tuple[RelaySurvey, ...] = ()
+    if connect and checked.plant is not None and checked.settings is not None:
+        relays = checked.plant.relays
+        progress().print(
+            Text(f"asking {len(relays)} relays, {checked.settings.connect_timeout_s:g} s each ...")
+        )
+        answers = survey(relays, checked.settings, lambda answer: progress().print(Text(_line(answer))))
+    if as_json:
+        print_document(_document(checked, answers))
+    else:
+        _print(checked, answers)
+    unreachable = any(answer.unreachable is not None for answer in answers)
+    return FAILED if checked.problems or unreachable else DONE
+
+
+def _print(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> None:
+    console = results()
+    for problem in checked.problems:
+        console.print(Text(one_line(str(problem))), soft_wrap=True)
+    for warning in checked.warnings:
+        console.print(Text(f"warning: {one_line(warning)}", style="yellow"), soft_wrap=True)
+    for answer in answers:
+        console.print(Text(_line(answer)), soft_wrap=True)
+    if checked.problems:
+        number = len(checked.problems)
+        console.print(Text(f"{number} problem{'' if number == 1 else 's'}: mcc serve would not start"))
+    elif checked.plant is not None:
+        plant = checked.plant
+        console.print(
+            Text(
+                f"nothing is wrong: {len(plant.motors)} motors, {len(plant.relays)} relays, "
+                f"{len(plant.sites)} sites"
+            )
+        )
+
+
+def _line(answer: RelaySurvey) -> str:
+    """Return what a relay offers, in one line."""
+    relay, found = answer.relay, answer.acquisition
+    name = f"{relay.name} at {relay.host}:{relay.port}"
+    if answer.unreachable is not None or found is None:
+        return one_line(f"{name}: does not answer: {answer.unreachable}")
+    plate = " ".join((answer.name_plate or {}).values())
+    words = [
+        "answers" + (f" as {plate}" if plate else ""),
+        f"trigger {found.trigger}" if found.trigger else f"no trigger: {found.no_trigger}",
+        f"reports {found.report_controls[0]}" if found.report_controls else "no reports: it is polled",
+        f"{answer.recordings} recordings in {answer.folder}" if answer.folder else f"{answer.no_folder}",
+        _clock(answer.clock_offset_s),
+    ]
+    if answer.differences:
+        words.append(f"{answer.differences} names differ from its SCL file")
+    return one_line(f"{name}: {'; '.join(words)}")
+
+
+def _clock(offset_s: float | None) -> str:
+    if offset_s is None:
+        return "its clock is not known"
+    if abs(offset_s) < LATE_S:
+        return "its clock agrees with this one"
+    return f"its clock is {abs(offset_s):.1f} s {'ahead of' if offset_s > 0 else 'behind'} this one"
+
+
+def _document(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> dict[str, object]:
+    plant = checked.plant
+    return {
+        "problems": [{**problem.document(), "message": str(problem)} for problem in checked.problems],
+        "warnings": list(checked.warnings),
+        "motors": [] if plant is None else [motor.name for motor in plant.motors],
+        "relays": [] if plant is None else [relay.name for relay in plant.relays],
+        "asked": [_answer_document(answer) for answer in answers],
+    }
+
+
+def _answer_document(answer: RelaySurvey) -> dict[str, object]:
+    found = answer.acquisition
+    return {
+        "relay": answer.relay.name,
+        "host": answer.relay.host,
+        "port": answer.relay.port,
+        "reachable": answer.unreachable is None,
+        "reason": answer.unreachable,
+        "name_plate": dict(answer.name_plate or {}),
+        "logical_devices": [] if answer.offer is None else list(answer.offer.devices),
+        "trigger": None if found is None else found.trigger,
+        "report_control": next(iter(() if found is None else found.report_controls), None),
+        "differences": answer.differences,
+        "folder": answer.folder,
+        "recordings": answer.recordings,
+        "clock_offset_s": answer.clock_offset_s,
+    }

@@ -1,0 +1,134 @@
+"""`mcc check`: everything that is wrong, at once, and what the relays offer."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+import scl
+from service.cli.app import main
+from tests.service.plant.test_relay_tables import DEMO_MOTORS
+
+MOTORS = """
+[[relay]]
+name = "R-1"
+host = "127.0.0.1"
+port = 1
+
+[[motor]]
+name = "P-1"
+relay = "R-1"
+
+[motor.nameplate]
+rated_power_W = 4000
+rated_voltage_V = 400
+rated_frequency_Hz = 50
+pole_pairs = 2
+"""
+
+
+@pytest.fixture
+def config(tmp_path: Path) -> Path:
+    """The settings of a plant of one motor, whose relay is switched off."""
+    (tmp_path / "motors.toml").write_text(MOTORS, encoding="utf-8")
+    path = tmp_path / "mcc.toml"
+    path.write_text('motors = "motors.toml"\nconnect_timeout_s = 0.5\n', encoding="utf-8")
+    return path
+
+
+def test_a_plant_with_nothing_wrong(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--config", str(config)]) == 0
+    assert capsys.readouterr().out == "nothing is wrong: 1 motors, 1 relays, 1 sites\n"
+    assert main(["check", "--config", str(config), "--json"]) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert document == {"problems": [], "warnings": [], "motors": ["P-1"], "relays": ["R-1"], "asked": []}
+    assert sorted(file.name for file in config.parent.iterdir()) == ["mcc.toml", "motors.toml"]
+
+
+def test_everything_that_is_wrong_is_told_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = DEMO_MOTORS.read_text(encoding="utf-8")
+    for old, new in (
+        ("rotor_leakage_H = 0.0328", "rotor_leackage_H = 0.0328"),
+        ('name = "FAN-A2"\n', 'name = "FAN-A2"\nshedule = "30 6 * * *"\n'),
+        ("rated_voltage_V = 400", "rated_voltage_V = 0.4"),
+        ('name = "MILL-A3"', 'name = "PUMP-B3"'),
+    ):
+        assert old in text
+        text = text.replace(old, new, 1)
+    (tmp_path / "motors.toml").write_text(text, encoding="utf-8")
+    (tmp_path / "plant.scd").write_bytes(scl.DEMO_PLANT_SCD.read_bytes())
+    (tmp_path / "mcc.toml").write_text(
+        'scd = "plant.scd"\nmotors = "motors.toml"\nwrokers = 2\ndatabase_url = "nothing"\n'
+        'data_directory = "motors.toml"\n\n[relays.A1]\npassword_file = "none"\n',
+        encoding="utf-8",
+    )
+    monkeypatch.setenv("MCC_WROKERS", "4")
+    assert main(["check", "--config", str(tmp_path / "mcc.toml"), "--json"]) == 1
+    document = json.loads(capsys.readouterr().out)
+    found = {(problem["field"], problem["nearest"]) for problem in document["problems"]}
+    assert found == {
+        ("MCC_WROKERS", "MCC_WORKERS"),
+        ("wrokers", "workers"),
+        ("database_url", None),
+        ("data_directory", None),
+        ("recordings_directory", None),
+        ("relays.A1", None),
+        ("motor 6: name", None),
+        ("motor MILL-A3", None),
+        ("motor PUMP-A1: [parameters] rotor_leackage_H", "rotor_leakage_H"),
+        (
+            "motor FAN-A2: [nameplate] rated_voltage_V",
+            "rated_voltage_V = 400, for kV were given in place of V",
+        ),
+        ("motor FAN-A2: shedule", "schedule"),
+    }
+    lines = text.splitlines()
+    for problem in document["problems"]:
+        if problem["line"] is not None and problem["source"].endswith("motors.toml"):
+            key = problem["field"].split()[-1]
+            assert key in lines[problem["line"] - 1], problem
+    assert main(["check", "--config", str(tmp_path / "mcc.toml")]) == 1
+    told = capsys.readouterr().out.splitlines()
+    assert sorted(told[:-1]) == sorted(problem["message"] for problem in document["problems"])
+    assert told[-1] == "11 problems: mcc serve would not start"
+
+
+def test_serve_refuses_with_the_same_texts(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    motors = config.with_name("motors.toml")
+    motors.write_text(MOTORS.replace("port = 1", "port = 0").replace("400\n", "0.4\n"), encoding="utf-8")
+    assert main(["check", "--config", str(config)]) == 1
+    *told, _ = capsys.readouterr().out.splitlines()
+    assert len(told) == 2
+    assert main(["serve", "--config", str(config)]) == 1
+    refused = [line for line in capsys.readouterr().err.splitlines() if line.startswith("mcc: ")]
+    assert sorted(refused) == sorted(f"mcc: {line}" for line in told)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        ("mcc.toml", b"motors = ", "mcc.toml: file: expected valid TOML in UTF-8"),
+        ("mcc.toml", b"\xff\xfe", "mcc.toml: file: expected valid TOML in UTF-8"),
+        ("motors.toml", b"\xff\xfe", "motors.toml: file: expected valid TOML in UTF-8"),
+        ("motors.toml", None, "motors.toml: file: expected a TOML file with [[motor]] tables, found no file"),
+        ("mcc.toml", b'motors = "motors.toml"\nscd = "motors.toml"', "motors.toml: line 2: file: expected"),
+    ],
+)
+def test_files_that_cannot_be_read(
+    config: Path, name: str, content: bytes | None, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = config.with_name(name)
+    file.unlink()
+    if content is not None:
+        file.write_bytes(content)
+    assert main(["check", "--config", str(config)]) == 1
+    assert message in capsys.readouterr().out
+
+
+def test_a_relay_that_does_not_answer(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "--config", str(config), "--connect", "--json"]) == 1
+    (asked,) = json.loads(capsys.readouterr().out)["asked"]
+    assert (asked["relay"], asked["reachable"]) == ("R-1", False)
+    assert asked["reason"]
