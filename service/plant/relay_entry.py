@@ -55,13 +55,14 @@ def relay_entry(table: PlantTable, name: str) -> RelayEntry:
 def _host(table: PlantTable) -> str | None:
     expected = "an IP address or a host name"
     host = table.text("host", expected)
-    if host is None or _is_host(host):
+    if host is None or is_host(host):
         return host
     table.refuse("host", expected, host)
     return None
 
 
-def _is_host(host: str) -> bool:
+def is_host(host: str) -> bool:
+    """Tell whether a text is an IP address or a host name."""
     try:
         ip_address(host)
     except ValueError:

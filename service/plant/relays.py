@@ -76,6 +76,9 @@ def read_own_scl(entry: RelayEntry, told: MotorsFile, subnetwork: str | None) ->
     try:
         configuration = scl.read(file)
         if [ied.name for ied in configuration.ieds] == [TEMPLATE]:
+            if entry.host is None:
+                expected = f"the relay's address, which {file.name} cannot know: it is an ICD"
+                raise PlantError([told.problem("relay", entry.name, "host", expected=expected, found="none")])
             configuration = _named(file, entry.name)
         if subnetwork in [network.name for network in configuration.communication]:
             configuration = configuration.seen_from(str(subnetwork))

@@ -3,6 +3,8 @@
 import logging
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Literal
 
 import structlog
@@ -17,6 +19,17 @@ QUIETER = ("python_multipart",)
 
 LogFormat = Literal["auto", "text", "json"]
 """How a line of the log looks. auto: text where stderr is a terminal, JSON elsewhere."""
+
+
+@contextmanager
+def without_logs() -> Iterator[None]:
+    """Log nothing in the block: a command says by itself what a person needs to know."""
+    before = structlog.get_config()
+    structlog.configure(wrapper_class=structlog.make_filtering_bound_logger(logging.CRITICAL))
+    try:
+        yield
+    finally:
+        structlog.configure(**before)
 
 
 def configure_logging(process: str, log_format: LogFormat = "auto") -> None:

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from threading import Timer
 
 from core.units import NANOSECONDS_PER_SECOND
 from mms import Client, CredentialFileError, FunctionalConstraint, MmsError
@@ -22,9 +23,13 @@ from service.collector.session.clock_monitor import (
 from service.configuration.relay_access import AccessError, credentials
 from service.configuration.settings import Settings
 from service.plant import Acquisition, Offer, Relay, acquisition_from_offer, acquisition_from_scl, differences
+from service.process.logs import without_logs
 
 AT_A_TIME = 8
 """So many relays are asked at a time. Each gets one request after the other."""
+
+LONGEST_S = 60.0
+"""A relay that takes longer is left alone."""
 
 NAME_PLATE = ("vendor", "model", "serNum", "swRev")
 """These attributes of a name plate (IEC 61850-7-3, DPL) tell what a device is."""
@@ -66,7 +71,7 @@ def survey(
     on_answer: is told of each relay as soon as it has answered.
     """
     found: dict[str, RelaySurvey] = {}
-    with ThreadPoolExecutor(AT_A_TIME) as pool:
+    with without_logs(), ThreadPoolExecutor(AT_A_TIME) as pool:
         for future in as_completed([pool.submit(survey_relay, relay, settings) for relay in relays]):
             answer = future.result()
             found[answer.relay.name] = answer
@@ -86,7 +91,12 @@ def survey_relay(relay: Relay, settings: Settings) -> RelaySurvey:
             tls=own.tls,
             password=own.spoken_password,
         ) as client:
-            return _asked(relay, client, settings)
+            limit = Timer(LONGEST_S, client.abandon)
+            limit.start()
+            try:
+                return _asked(relay, client, settings)
+            finally:
+                limit.cancel()
     except (MmsError, CredentialFileError, AccessError) as error:
         return RelaySurvey(relay, unreachable=str(error))
 

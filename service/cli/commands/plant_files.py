@@ -11,6 +11,29 @@ commands = typer.Typer()
 
 
 @commands.command()
+def init(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of the new plant.")],
+    sources: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="SOURCE...",
+            help="An SCD; or a CID, IID or ICD of each relay; or addresses (HOST or HOST:PORT), "
+            "or a text file that lists them.",
+        ),
+    ] = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Write the files of a new plant to fill in: settings, and a motors file with its relays.
+
+    Relays whose addresses are given are asked what they are. Nothing is written over, nothing is triggered.
+    """
+    from service.cli.init import init_plant
+
+    init_plant(directory, sources or [], as_json=as_json)
+
+
+@commands.command()
 def check(
     config: Config = None,
     *,

@@ -1,0 +1,128 @@
+"""`mcc init`: the files of a new plant, from its SCL files or from what its relays answer."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.text import Text
+
+import scl
+from service.cli.output import (
+    WRONG_USE,
+    CommandError,
+    failing_clearly,
+    one_line,
+    print_document,
+    progress,
+    results,
+)
+from service.configuration.settings import Settings
+from service.plant import PlantError
+from service.plant.relay_entry import is_host
+from service.setup.check import check
+from service.setup.draft import (
+    MOST_RELAYS,
+    Draft,
+    draft_of_answers,
+    draft_of_files,
+    draft_of_scd,
+    relays_to_ask,
+)
+from service.setup.new_plant import SETTINGS, write_plant
+from service.setup.relay_survey import RelaySurvey, survey
+
+SCL_SUFFIXES = (".scd", ".cid", ".iid", ".icd", ".ssd", ".sed", ".xml")
+
+
+def init_plant(directory: Path, sources: Sequence[str], *, as_json: bool) -> None:
+    """Write the files. Raises CommandError where a source cannot be used, or a file is there already."""
+    with failing_clearly(scl.SclError, PlantError, OSError):
+        draft = _draft(sources)
+        written = write_plant(directory, draft)
+    problems = check(directory / SETTINGS).problems
+    if as_json:
+        print_document(
+            {
+                "written": [str(path) for path in written],
+                "relays": [relay.name for relay in draft.relays],
+                "left_out": list(draft.left_out),
+                "to_fill_in": [str(problem) for problem in problems],
+            }
+        )
+        return
+    console = results()
+    for path in written:
+        console.print(Text(f"wrote {path}"), soft_wrap=True)
+    for words in draft.left_out:
+        console.print(Text(f"left out: {one_line(words)}"), soft_wrap=True)
+    console.print(
+        Text(
+            f"{len(draft.relays)} relays; {len(problems)} values to fill in: "
+            f"mcc check --config {directory / SETTINGS} names them"
+        ),
+        soft_wrap=True,
+    )
+
+
+def _draft(sources: Sequence[str]) -> Draft:
+    files = [source for source in sources if _is_file(source)]
+    if not files:
+        return _asked(sources)
+    if len(files) < len(sources):
+        raise CommandError(
+            "expected SCL files, or addresses of relays, found both",
+            details={"type": "WrongUse"},
+            exit_code=WRONG_USE,
+        )
+    if len(files) == 1 and not _is_scl(Path(files[0])):
+        return _asked(_listed(Path(files[0])))
+    read = [scl.read(file) for file in files]
+    if len(read) == 1 and (read[0].feeders() or len(read[0].ieds) > 1):
+        return draft_of_scd(read[0])
+    return draft_of_files(read)
+
+
+def _is_file(source: str) -> bool:
+    return Path(source).exists() or Path(source).suffix.lower() in SCL_SUFFIXES or "/" in source
+
+
+def _is_scl(path: Path) -> bool:
+    """Tell whether a file is meant to be SCL, by its name or its beginning; others list addresses."""
+    if path.suffix.lower() in SCL_SUFFIXES or not path.is_file():
+        return True
+    with path.open("rb") as file:
+        return file.read(200).lstrip(b"\xef\xbb\xbf \t\r\n").startswith(b"<")
+
+
+def _listed(path: Path) -> list[str]:
+    """Return the addresses that a text file lists, one a line; # begins a comment."""
+    lines = [line.partition("#")[0].strip() for line in path.read_text(encoding="utf-8").splitlines()]
+    return [line for line in lines if line]
+
+
+def _asked(sources: Sequence[str]) -> Draft:
+    """Ask the relays at these addresses what they are."""
+    addresses = [_address(source) for source in sources]
+    if len(addresses) > MOST_RELAYS:
+        raise CommandError(f"expected at most {MOST_RELAYS} addresses, found {len(addresses)}")
+    relays = relays_to_ask(dict.fromkeys(addresses))
+    return draft_of_answers(survey(relays, Settings(), _tell))
+
+
+def _tell(answer: RelaySurvey) -> None:
+    words = "answers" if answer.unreachable is None else f"does not answer: {answer.unreachable}"
+    progress().print(Text(one_line(f"{answer.relay.host}:{answer.relay.port}: {words}")), soft_wrap=True)
+
+
+def _address(text: str) -> scl.Address:
+    """Read HOST, HOST:PORT or [IPv6]:PORT. Raises CommandError."""
+    host, colon, port = text.rpartition(":")
+    if not colon or ("]" not in host and ":" in host):
+        host, port = text, ""
+    host = host.removeprefix("[").removesuffix("]")
+    if not is_host(host) or (port and not (port.isdecimal() and 0 < int(port[:6]) < 65536)):
+        raise CommandError(
+            f"expected a file, or an address such as 10.20.1.11 or 10.20.1.11:102, found {text[:60]!r}",
+            details={"type": "WrongUse"},
+            exit_code=WRONG_USE,
+        )
+    return scl.Address(host, int(port)) if port else scl.Address(host)
