@@ -13,7 +13,7 @@ from core.machines.parameters import Motor, Nameplate
 from core.quality import currents, samples, supply
 from core.quality.circle_diagram import circle_diagram
 from core.quality.finding import QualityFinding, all_passed
-from core.quality.magnitude import magnitude
+from core.quality.magnitude import is_far_too_large, magnitude
 from core.quality.operation import is_small, operation
 from core.quality.steadiness import steadiness
 from core.signals.sequence import PhaseSequence
@@ -132,6 +132,9 @@ def _sampled(terminals: Terminals, motor: Motor) -> Iterator[Iterable[QualityFin
     """Yield groups of findings on the samples themselves and on what the motor does."""
     per_cycle = terminals.sample_rate_hz / motor.nameplate.rated_frequency_Hz
     yield samples.extent(terminals, motor.nameplate)
+    if not is_far_too_large(terminals, motor.nameplate):
+        yield samples.sampled_slowly(terminals.voltage_channels, terminals.voltages)
+        yield samples.sampled_slowly(terminals.current_channels, terminals.current_abc)
     yield magnitude(terminals, motor.nameplate)
     yield samples.holding(terminals.voltage_channels, terminals.voltages, per_cycle)
     if not is_small(terminals, motor):

@@ -55,12 +55,12 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
     QualityFinding
         A failure.
     """
-    amps = _swing(terminals.current_abc) / (sqrt(2.0) * rated_current_A(nameplate))
+    amps = _amps(terminals, nameplate)
     yield from _too_large("current", amps)
     if terminals.voltage_ab is None:
         volts = 1.0
     else:
-        volts = _swing(terminals.voltages) / (sqrt(2.0) * nameplate.rated_voltage_V)
+        volts = _volts(terminals, nameplate)
         yield from _too_large("voltage", volts)
     if volts < LEAST_SIGNAL and amps < LEAST_SIGNAL:
         yield finding(
@@ -78,6 +78,35 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
             "running", amps, NO_CURRENT, "of rated", passed=False,
             message="no current flows: the motor is switched off, or the current transformers are",
         )  # fmt: skip
+
+
+def is_far_too_large(terminals: Terminals, nameplate: Nameplate) -> bool:
+    """Tell whether samples are larger than any wrong ratio makes them: nothing can be computed of them.
+
+    Parameters
+    ----------
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Returns
+    -------
+    bool
+        Whether some are, or are no finite numbers.
+    """
+    volts = 0.0 if terminals.voltage_ab is None else _volts(terminals, nameplate)
+    return not (_amps(terminals, nameplate) <= HIGHEST_SIGNAL and volts <= HIGHEST_SIGNAL)
+
+
+def _amps(terminals: Terminals, nameplate: Nameplate) -> float:
+    """Return the swing of the currents over the rated one's."""
+    return _swing(terminals.current_abc) / (sqrt(2.0) * rated_current_A(nameplate))
+
+
+def _volts(terminals: Terminals, nameplate: Nameplate) -> float:
+    """Return the swing of the voltages over the rated one's."""
+    return _swing(terminals.voltages) / (sqrt(2.0) * nameplate.rated_voltage_V)
 
 
 def _too_large(name: str, share: float) -> Iterator[QualityFinding]:

@@ -37,6 +37,12 @@ DIPS_A_CYCLE = 0.8
 """Stretches at zero as frequent as this are a saturated transformer's, not a converter's."""
 COARSEST_LAG_CYCLES = 1 / 12
 """A waveform of so few converter steps that it stands still longer cannot be judged by its repeats."""
+FEWEST_STEPS = 8.0
+"""Steps of the converter in the greatest value from which on jumps tell held samples: a drive's pulses have
+fewer levels, between which they jump, too."""
+FEWEST_CHANGES, SHORTEST_PERIOD, REGULAR = 8, 4, 0.95
+"""How often channels must change together, after how many samples at least, and in which share of cases after
+as many, give or take one, to be told as sampled more slowly: steps of a converter come at any time."""
 DEAD = 0.03
 """Share of the greatest channel's swing: less is no signal, and for the check on missing phases to name."""
 RUN = 3
@@ -140,6 +146,42 @@ def holding(channels: tuple[Channel, ...], samples: Array, per_cycle: float) -> 
         )  # fmt: skip
 
 
+def sampled_slowly(channels: tuple[Channel, ...], samples: Array) -> Iterator[QualityFinding]:
+    """Check for samples that are repeated until the next one was taken; only failures are told.
+
+    Either the channels change together every so many samples and rest between. Or one jumps by several steps
+    of the converter and rests between: what is small, coarse or noisy rests, too, but moves by single steps.
+    Neither depends on ratios or on what the motor does, so that it may be asked before these are known.
+
+    Parameters
+    ----------
+    channels : tuple of Channel
+        The channels.
+    samples : ndarray, shape (channels, n)
+        Their samples, finite and far from the largest number.
+
+    Yields
+    ------
+    QualityFinding
+        A failure.
+    """
+    if (period := _common_period(samples)) > 0:
+        names = ", ".join(channel.name for channel in channels)
+        yield _slow(channels[0].name, 1.0 - 1.0 / period, f"{names} change together every {period} samples")
+        return
+    for channel, x in _alive(channels, samples):
+        share = _jumping_share(x)
+        if share > REPEATED_SHARE:
+            yield _slow(channel.name, share, f"{share:.1%} of {channel.name} repeat the sample before")
+
+
+def _slow(name: str, share: float, what: str) -> QualityFinding:
+    return finding(
+        f"held samples {name}", share, REPEATED_SHARE, "share", passed=False,
+        message=f"{what}: sampled more slowly than the file says",
+    )  # fmt: skip
+
+
 def _alive(channels: tuple[Channel, ...], samples: Array) -> Iterator[tuple[Channel, Array]]:
     swing = np.ptp(samples, axis=1) if samples.size else np.zeros(len(channels))
     for channel, x, its in zip(channels, samples, swing.tolist(), strict=True):
@@ -182,6 +224,32 @@ def _longest_stretch(x: Array, per_cycle: float) -> int:
     if np.count_nonzero(dips) > DIPS_A_CYCLE * x.size / per_cycle:
         counted &= ~dips
     return int((lengths - 1).max(initial=0, where=counted))
+
+
+def _common_period(samples: Array) -> int:
+    """Return the number of samples after which all channels change together; 0 where they do not."""
+    changes = np.flatnonzero((np.diff(samples, axis=1) != 0.0).any(axis=0))
+    if changes.size < FEWEST_CHANGES:
+        return 0
+    gaps = np.diff(changes)
+    period = int(np.median(gaps))
+    regular = np.count_nonzero(np.abs(gaps - period) <= 1)
+    return period if period >= SHORTEST_PERIOD and regular >= REGULAR * gaps.size else 0
+
+
+def _jumping_share(x: Array) -> float:
+    """Share of the flanks' samples equal to the one before, where the others are jumps of several steps."""
+    step, centred = _step(x), np.abs(x - x.mean())
+    greatest = float(centred.max())
+    if not FEWEST_STEPS * step <= greatest:
+        return 0.0
+    flank = (np.abs(x) > FLAT * greatest) & (centred < FLANK * greatest)
+    change = np.abs(np.diff(x))[flank[1:] & flank[:-1]]
+    equal, next_to = np.count_nonzero(change == 0.0), np.count_nonzero((change > 0.0) & (change < 1.5 * step))
+    jumps = change.size - equal - next_to
+    if jumps <= next_to or equal - next_to <= FEWEST_REPEATS:
+        return 0.0
+    return float((equal - next_to) / change.size)
 
 
 def _repeated_share(x: Array, per_cycle: float) -> float:
