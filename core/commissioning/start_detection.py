@@ -20,7 +20,8 @@ from core.machines.playback import DELAY_MARGIN_COLUMNS
 from core.machines.supply import supply
 from core.machines.winding_frame import to_winding_frame
 from core.quality import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE, rated_current_A, sampled_well
-from core.recordings import Recording
+from core.quality.ratios import current_advice, voltage_advice
+from core.recordings import Channel, Recording
 from core.signals.clarke import clarke
 from core.signals.errors import SignalError
 from core.signals.phasors import fundamental_frequency, fundamental_phasors
@@ -33,6 +34,8 @@ HIGHEST_VOLTAGE = 1.3
 """Highest voltage accepted, over the rated one."""
 LOWEST_INRUSH = 1.5
 """Least inrush of a start: the greatest current over the rated one, both as space vectors."""
+USUAL_INRUSH = (2.0, 12.0)
+"""Range of the inrush of most motors, over the rated current."""
 HIGHEST_INRUSH = 25.0
 """Highest inrush accepted. Motors draw up to 10 times, and the decaying direct part nearly doubles it."""
 FEWEST_CYCLES = 4.0
@@ -134,11 +137,13 @@ def start_of(
         )
     _check_samples(measured, nameplate, source)
     per_cycle = rate / nameplate.rated_frequency_Hz
-    onset = _onset(clarke(measured.current_abc), nameplate, per_cycle, source)
+    onset = _onset(clarke(measured.current_abc), nameplate, measured.current_channels, per_cycle, source)
     live = voltage_onset(measured.voltage_ab)
     hint = (onset - live) / rate if live > 0 and onset < live + per_cycle * 1.5 else None
     check_wiring(measured, nameplate, source, onset=onset, live=live, hint_s=hint)
-    frequency, sequence = _supply_of(measured.voltage_ab[:, live:], rate, nameplate, source)
+    frequency, sequence = _supply_of(
+        measured.voltage_ab[:, live:], rate, nameplate, measured.voltage_channels, source
+    )
     current_abc = measured.current_abc - quiet_offset(measured.current_abc, onset, per_cycle)
     # A busbar has no constant voltage. An offset of the channels would magnetise the model.
     whole = int(_whole_cycles(measured.voltage_ab.shape[1] - live, rate / frequency))
@@ -171,7 +176,9 @@ def _check_samples(measured: Terminals, nameplate: Nameplate, source: str) -> No
             )
 
 
-def _onset(current_ab: Array, nameplate: Nameplate, per_cycle: float, source: str) -> float:
+def _onset(
+    current_ab: Array, nameplate: Nameplate, channels: tuple[Channel, ...], per_cycle: float, source: str
+) -> float:
     length = np.hypot(current_ab[0], current_ab[1])
     inrush = float(length.max()) / (sqrt(3.0) * rated_current_A(nameplate))
     onset = current_onset(current_ab, per_cycle)
@@ -190,13 +197,16 @@ def _onset(current_ab: Array, nameplate: Nameplate, per_cycle: float, source: st
             expected="a motor at rest at the record's first sample: no current, then its start",
             found=found,
         )
+    rated = rated_current_A(nameplate)
+    usual = (USUAL_INRUSH[0] * rated, USUAL_INRUSH[1] * rated)
+    advice = current_advice(inrush * rated, usual, rated, channels)
     if inrush < LOWEST_INRUSH:
         raise CommissioningError(
             source,
             "start",
             expected=f"an inrush of at least {LOWEST_INRUSH:g} times the rated current",
             found=f"{inrush:.2f} times: no start, a start through a drive, or currents scaled wrongly: check "
-            "the current transformers' ratio and rated_power_W",
+            f"the current transformers' ratio and rated_power_W; {advice}",
         )
     if inrush > HIGHEST_INRUSH:
         raise CommissioningError(
@@ -204,7 +214,8 @@ def _onset(current_ab: Array, nameplate: Nameplate, per_cycle: float, source: st
             "start",
             expected=f"an inrush of at most {HIGHEST_INRUSH:g} times the rated current",
             found=f"{inrush:.0f} times: currents scaled wrongly, or another motor's nameplate: check the "
-            "current transformers' ratio, the units of the recording, rated_power_W and rated_voltage_V",
+            "current transformers' ratio, the units of the recording, rated_power_W and rated_voltage_V; "
+            f"{advice}",
         )
     duration = (length.size - onset) / per_cycle
     if duration < FEWEST_CYCLES:
@@ -217,7 +228,9 @@ def _onset(current_ab: Array, nameplate: Nameplate, per_cycle: float, source: st
     return max(0.0, onset)
 
 
-def _supply_of(live_ab: Array, rate: float, nameplate: Nameplate, source: str) -> tuple[float, PhaseSequence]:
+def _supply_of(
+    live_ab: Array, rate: float, nameplate: Nameplate, channels: tuple[Channel, ...], source: str
+) -> tuple[float, PhaseSequence]:
     try:
         frequency = fundamental_frequency(live_ab, rate)
     except SignalError as error:
@@ -240,7 +253,8 @@ def _supply_of(live_ab: Array, rate: float, nameplate: Nameplate, source: str) -
             source,
             "voltage",
             expected=f"{LOWEST_VOLTAGE:.0%} to {HIGHEST_VOLTAGE:.0%} of {nameplate.rated_voltage_V:g} V",
-            found=f"{share:.0%}: a soft starter, or voltages scaled wrongly",
+            found=f"{share:.2g} of it: a soft starter, or voltages scaled wrongly; "
+            + voltage_advice(share * nameplate.rated_voltage_V, nameplate, channels),
         )
     return frequency, phasors.sequence
 

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from core.quality.circle_diagram import CircleDiagram
 from core.quality.finding import QualityFinding, finding
+from core.quality.ratios import current_advice
 from core.quality.supply import Feed
+from core.recordings import Channel
 from core.signals.clarke import CLARKE
 from core.signals.phasors import harmonic_phasors
 from core.signals.sequence import SequencePhasors, sequence_phasors
@@ -69,16 +71,21 @@ class Currents:
         Of each phase the fundamental, the 2nd and the 3rd harmonic.
     phasors : SequencePhasors
         Symmetrical components of the fundamental.
-    names : tuple of str
-        Names of the channels.
+    channels : tuple of Channel
+        The channels.
     rms : float
         Greatest phase with everything in it, without its mean.
     """
 
     by_order: NDArray[np.complex128]
     phasors: SequencePhasors
-    names: tuple[str, ...]
+    channels: tuple[Channel, ...]
     rms: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the channels."""
+        return tuple(channel.name for channel in self.channels)
 
     @property
     def sizes(self) -> NDArray[np.float64]:
@@ -115,7 +122,7 @@ def currents_of(terminals: Terminals, frequency_hz: float) -> Currents:
     return Currents(
         by_order=by_order,
         phasors=sequence_phasors(CLARKE @ by_order[:, 0]),
-        names=tuple(channel.name for channel in terminals.current_channels),
+        channels=terminals.current_channels,
         rms=float(terminals.current_abc.std(axis=1).max()),
     )
 
@@ -172,11 +179,17 @@ def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     no_load, standstill = circle.at_no_load * feed.strong, circle.at_standstill * feed.strong
     small = _is_small(currents, feed, circle)
     limit = LEAST_OF_NO_LOAD * no_load if small else IMPOSSIBLE_OF_STANDSTILL * standstill
+    advice = current_advice(
+        currents.strong,
+        (no_load, max(no_load, circle.rated_current_A)),
+        circle.rated_current_A,
+        currents.channels,
+    )
     yield finding(
         "current", currents.strong, limit, "A", passed=not small and currents.strong <= limit,
         message=f"{currents.strong:.3g} A is {'less' if small else 'more'} than this motor can draw (no load "
         f"{no_load:.3g} A, locked rotor {standstill:.3g} A): a wrong ratio, secondary amperes, kA for A, "
-        "or another motor's nameplate",
+        f"or another motor's nameplate; {advice}",
     )  # fmt: skip
 
 

@@ -150,9 +150,12 @@ def _electrical(terminals: Terminals, feed: supply.Feed, motor: Motor) -> Iterat
     yield supply.drive(feed, terminals)
     yield samples.clipping(terminals.voltage_channels, terminals.voltages)
     yield supply.channels(feed, terminals)
-    yield supply.level(feed, nameplate)
     seen = currents.currents_of(terminals, feed.frequency_hz)
     circle = circle_diagram(motor, feed.frequency_hz)
+    voltage = list(supply.level(feed, terminals, nameplate))
+    if not all_passed(voltage):  # currents of a wrong ratio are told in the same go, at the rated voltage
+        voltage += currents.level(seen, supply.at_rated_voltage(feed, nameplate), circle)
+    yield voltage
     yield currents.running(seen, feed, circle)
     yield currents.phase_loss(seen, feed)
     yield currents.level(seen, feed, circle)

@@ -8,6 +8,8 @@ import numpy as np
 from core.machines.base import Array
 from core.machines.parameters import Nameplate
 from core.quality.finding import QualityFinding, finding
+from core.quality.ratios import voltage_cause
+from core.quality.supply import FREQUENCY_TOLERANCE, UNBALANCE, feed_of
 from core.signals.terminals import Terminals
 
 LEAST_SIGNAL, HIGHEST_SIGNAL = 0.005, 1e4
@@ -17,6 +19,10 @@ A motor that is switched off shows offsets and noise below it. No wrong ratio ca
 """
 NO_CURRENT = 1e-6
 """Share of the rated current that is too small to be explained by a wrong ratio or unit."""
+FAINTEST = 1e-4
+"""Share of the rated voltage below which no ratio or unit is thought of: kilovolts called volts have more."""
+CLEAN = 0.9
+"""Least share of the fundamental in the rms value of a voltage that is there, and only scaled wrongly."""
 EFFICIENCY_TIMES_POWER_FACTOR = 0.6
 """Value of small motors, from which the order of magnitude of the rated current is estimated."""
 
@@ -62,7 +68,13 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
     else:
         volts = _volts(terminals, nameplate)
         yield from _too_large("voltage", volts)
-    if volts < LEAST_SIGNAL and amps < LEAST_SIGNAL:
+    scaled = _cause_of_low_voltage(terminals, nameplate) if FAINTEST < volts < LEAST_SIGNAL else ""
+    if scaled:
+        yield finding(
+            "voltage", volts, LEAST_SIGNAL, "of rated", passed=False,
+            message=f"the voltages are a clean supply of {volts:.2g} of the rated one: {scaled}",
+        )  # fmt: skip
+    elif volts < LEAST_SIGNAL and amps < LEAST_SIGNAL:
         yield finding(
             "running", amps, LEAST_SIGNAL, "of rated", passed=False,
             message="neither voltage nor current: the motor is switched off",
@@ -107,6 +119,18 @@ def _amps(terminals: Terminals, nameplate: Nameplate) -> float:
 def _volts(terminals: Terminals, nameplate: Nameplate) -> float:
     """Return the swing of the voltages over the rated one's."""
     return _swing(terminals.voltages) / (sqrt(2.0) * nameplate.rated_voltage_V)
+
+
+def _cause_of_low_voltage(terminals: Terminals, nameplate: Nameplate) -> str:
+    """Return which ratio makes the rated voltage of a small one; "" where it is no clean supply."""
+    feed = feed_of(terminals, nameplate)
+    if isinstance(feed, QualityFinding) or feed.phasors.unbalance_factor > UNBALANCE:
+        return ""
+    if abs(feed.frequency_hz / nameplate.rated_frequency_Hz - 1.0) > FREQUENCY_TOLERANCE:
+        return ""
+    if float(np.abs(feed.channels).max()) < CLEAN * float(terminals.voltages.std(axis=1).max()):
+        return ""
+    return voltage_cause(sqrt(3.0) * feed.strong, nameplate, terminals.voltage_channels)
 
 
 def _too_large(name: str, share: float) -> Iterator[QualityFinding]:

@@ -1,7 +1,7 @@
 """Checks on the voltages: frequency, waveform, and every single channel."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,8 @@ from core.machines.base import Array
 from core.machines.parameters import Nameplate
 from core.quality.assumed_supply import assumed_voltage
 from core.quality.finding import QualityFinding, finding
+from core.quality.ratios import voltage_advice
+from core.recordings import Channel
 from core.signals.decimation import decimate
 from core.signals.errors import SignalError
 from core.signals.phasors import fundamental_frequency, fundamental_phasors
@@ -202,13 +204,15 @@ def channels(feed: Feed, terminals: Terminals) -> Iterator[QualityFinding]:
         yield _ratio(feed, terminals, names)
 
 
-def level(feed: Feed, nameplate: Nameplate) -> Iterator[QualityFinding]:
+def level(feed: Feed, terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFinding]:
     """Check that the voltage is near the rated one.
 
     Parameters
     ----------
     feed : Feed
         Frequency and phasors of the voltages.
+    terminals : Terminals
+        Currents and voltages at the motor's terminals.
     nameplate : Nameplate
         Rated values of the motor.
 
@@ -224,8 +228,31 @@ def level(feed: Feed, nameplate: Nameplate) -> Iterator[QualityFinding]:
     yield finding(
         "voltage", volts, LOWEST_VOLTAGE if low else HIGHEST_VOLTAGE, "of rated",
         passed=LOWEST_VOLTAGE <= volts <= HIGHEST_VOLTAGE,
-        message=f"{volts:.3g} of the rated voltage{_scaling_hint(float(volts))}",
+        message=f"{volts:.3g} of the rated voltage"
+        + _scaling_hint(float(volts), nameplate, terminals.voltage_channels),
     )  # fmt: skip
+
+
+def at_rated_voltage(feed: Feed, nameplate: Nameplate) -> Feed:
+    """Return the supply as it would be at rated voltage, for voltages whose ratio is not known.
+
+    Parameters
+    ----------
+    feed : Feed
+        Frequency and phasors of the voltages.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Returns
+    -------
+    Feed
+        The same with other phasors.
+    """
+    factor = nameplate.rated_voltage_V / (np.sqrt(3.0) * feed.strong)
+    phasors = replace(
+        feed.phasors, positive=factor * feed.phasors.positive, negative=factor * feed.phasors.negative
+    )
+    return replace(feed, phasors=phasors)
 
 
 def _ratio(feed: Feed, terminals: Terminals, names: list[str]) -> QualityFinding:
@@ -278,12 +305,13 @@ def _reversed(phasors: NDArray[np.complex128], terminals: Terminals) -> list[int
     return found
 
 
-def _scaling_hint(volts: float) -> str:
-    if abs(volts * np.sqrt(3.0) - 1.0) < 0.1 or abs(volts / np.sqrt(3.0) - 1.0) < 0.1:
+def _scaling_hint(share: float, nameplate: Nameplate, channels: tuple[Channel, ...]) -> str:
+    if abs(share * np.sqrt(3.0) - 1.0) < 0.1 or abs(share / np.sqrt(3.0) - 1.0) < 0.1:
         return ": line and phase voltages mixed up"
-    if volts < LOWEST_VOLTAGE:
-        return ": secondary volts or kV, a wrong ratio, or a motor being started or switched off"
-    return ": a wrong ratio or unit, or another motor's nameplate"
+    advice = voltage_advice(share * nameplate.rated_voltage_V, nameplate, channels)
+    if share < LOWEST_VOLTAGE:
+        return f": secondary volts or kV, a wrong ratio, or a motor being started or switched off; {advice}"
+    return f": a wrong ratio or unit, or another motor's nameplate; {advice}"
 
 
 def _pulses(share: float) -> QualityFinding:
@@ -314,7 +342,8 @@ def _strongest_line(voltage_ab: Array) -> float:
     reach = int(LINE_WIDTH_BINS)
     peak = int(np.argmax(energy[: n // 2]))
     half = energy[: n // 2]
-    return float(half[max(0, peak - reach) : peak + reach + 1].sum() / half.sum())
+    total = float(half.sum())
+    return float(half[max(0, peak - reach) : peak + reach + 1].sum()) / total if total > 0.0 else 0.0
 
 
 def _energy_beside_harmonics(voltage_ab: Array, frequency_hz: float, rate: float) -> float:
