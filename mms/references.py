@@ -34,8 +34,9 @@ class FunctionalConstraint(IntEnum):
 
 
 _NAME_LIMIT: Final = 64  # an MMS domain or item name (IEC 61850-8-1 clause 8)
-_LOGICAL_DEVICE = re.compile(r"[A-Za-z0-9_]{1,64}")
-_OBJECT = re.compile(r"([A-Za-z0-9_]{1,64})/([A-Za-z0-9_]+(?:[.$][A-Za-z0-9_]+|\([0-9]{1,5}\))*)")
+# ISO 9506 has no hyphens in names. Relays have: their engineers name devices and nodes.
+_LOGICAL_DEVICE = re.compile(r"[A-Za-z0-9_-]{1,64}")
+_OBJECT = re.compile(r"([A-Za-z0-9_-]{1,64})/([A-Za-z0-9_-]+(?:[.$][A-Za-z0-9_-]+|\([0-9]{1,5}\))*)")
 
 
 def logical_device(name: str) -> bytes:
@@ -58,7 +59,7 @@ def logical_device(name: str) -> bytes:
     """
     if not _LOGICAL_DEVICE.fullmatch(name):
         raise ValueError(
-            f"not a logical device name: {name!r} (letters, digits and _, at most {_NAME_LIMIT})"
+            f"not a logical device name: {name!r} (letters, digits, _ and -, at most {_NAME_LIMIT})"
         )
     return name.encode("ascii")
 
