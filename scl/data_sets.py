@@ -76,7 +76,7 @@ class DataSetReader:
         }
         for element, member in self._members:
             node = nodes.get((member.logical_device, member.logical_node))
-            if node is None or not node.holds(member.path, member.fc):
+            if node is None or not node.offers(member):
                 self._document.note(element, f"the data model has no {member.reference} [{member.fc}]")
 
     def _member(self, element: etree._Element, device: str) -> DataSetMember | None:

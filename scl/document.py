@@ -94,8 +94,8 @@ class Document:
         """
         self._add(self.findings, element, message, left_out=False)
 
-    def leave_out(self, element: etree._Element, reason: str | SclError) -> None:
-        """Add a finding that an element is left out of what is read.
+    def leave_out(self, element: etree._Element, reason: str | SclError, what: str = "left out") -> None:
+        """Add a finding that an element, or what belongs to it, is left out of what is read.
 
         Parameters
         ----------
@@ -103,12 +103,14 @@ class Document:
             The element.
         reason : str or SclError
             Why, in words, or the error that says what was expected and found, and where.
+        what : str
+            What is left out, in words.
         """
         if isinstance(reason, SclError):
             elsewhere = reason.element and reason.element != _excerpt(element)
             where = f" at line {reason.line}, {reason.element}" if elsewhere else ""
             reason = f"expected {reason.expected}, found {reason.found}{where}"
-        self._add(self.omissions, element, f"left out: {reason}", left_out=True)
+        self._add(self.omissions, element, f"{what}: {reason}", left_out=True)
 
     def _add(self, findings: list[Finding], element: etree._Element, message: str, *, left_out: bool) -> None:
         if len(findings) == MOST_FINDINGS:

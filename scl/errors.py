@@ -53,7 +53,7 @@ class Finding:
     message : str
         What is odd.
     left_out : bool
-        Whether the element is missing from what was read.
+        Whether the element, or what the message says of it, is missing from what was read.
     """
 
     line: int

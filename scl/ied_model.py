@@ -102,6 +102,46 @@ class LogicalNode:
         """
         return _has(self.find(path), constraint)
 
+    def offers(self, member: DataSetMember) -> bool:
+        """Tell whether the node has what a data set member names.
+
+        Parameters
+        ----------
+        member : DataSetMember
+            A member with data of this node.
+
+        Returns
+        -------
+        bool
+            False where the node has no such data of the constraint, or no such element of an array.
+        """
+        array = self.array_in(member.path)
+        return self.holds(member.path, member.fc) and (array is None or _is_in_array(member, *array))
+
+    def array_in(self, path: str) -> tuple[int, int] | None:
+        """Find the first array on a path below the node.
+
+        Parameters
+        ----------
+        path : str
+            Path such as "HA.phsAHar.cVal".
+
+        Returns
+        -------
+        tuple of int and int or None
+            Number of names down to the array, and of its elements; None where there is no array.
+        """
+        names = path.split(".")
+        found = self.find(names[0])
+        for depth, name in enumerate(names[1:], 2):
+            if isinstance(found, DataObject):
+                found = found.find(name)
+            elif found is not None:
+                found = next((each for each in found.attributes if each.name == name), None)
+            if found is not None and found.count:
+                return depth, found.count
+        return None
+
 
 @dataclass(frozen=True, slots=True)
 class PlacedObject:
@@ -291,10 +331,29 @@ class Ied:
         Returns
         -------
         DataObject or DataAttribute or None
-            What was found; None when the data model has no such data of the member's constraint.
+            What was found; None when the data model has no such data of the member's constraint, or no such
+            element of an array.
         """
-        found = self.find(f"{member.logical_device}/{member.logical_node}.{member.path}")
-        return found if _has(found, member.fc) else None
+        node = self.node_of(member)
+        return None if node is None or not node.offers(member) else node.find(member.path)
+
+    def node_of(self, member: DataSetMember) -> LogicalNode | None:
+        """Find the logical node of a data set member.
+
+        Parameters
+        ----------
+        member : DataSetMember
+            The member.
+
+        Returns
+        -------
+        LogicalNode or None
+            The node; None where the IED has none of its name.
+        """
+        for device in self.logical_devices:
+            if device.inst == member.logical_device:
+                return device.logical_node(member.logical_node)
+        return None
 
     def data_sets(self, *, covering: str | None = None) -> tuple[DataSet, ...]:
         """List data sets.
@@ -342,6 +401,13 @@ class Ied:
                     continue
                 if covering is None or (report.data_set is not None and report.data_set.covers(covering)):
                     yield report
+
+
+def _is_in_array(member: DataSetMember, depth: int, count: int) -> bool:
+    """Tell whether a member names an array, or with its index an element of it or a part of one."""
+    if member.index is None:
+        return depth == len(member.path.split("."))
+    return member.index < count
 
 
 def _has(found: DataObject | DataAttribute | None, constraint: FunctionalConstraint) -> bool:

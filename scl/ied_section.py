@@ -145,8 +145,7 @@ class IedSection:
         reference = f"{self._domains[device]}/{prefix}{ln_class}{inst}"
         if len(prefix + ln_class + inst) > LONGEST_NAME:
             raise document.error(element, f"a name of at most {LONGEST_NAME} characters", reference)
-        node_type = self._templates.node_type(element, ln_class, self._type)
-        self._count(element, node_type)
+        node_type = self._node_type(element, ln_class)
         parts = document.grouped(element)
         data_sets = self._data_sets.data_sets(parts["DataSet"], reference, device)
         blocks = ControlBlockReader(
@@ -170,6 +169,16 @@ class IedSection:
             sampled_value_controls=blocks.sampled_values(parts["SampledValueControl"]),
             setting_groups=blocks.setting_groups(parts["SettingControl"]),
         )
+
+    def _node_type(self, element: etree._Element, ln_class: str) -> NodeType:
+        """Return the node's type. A node without one still has its data sets and control blocks."""
+        try:
+            node_type = self._templates.node_type(element, ln_class, self._type)
+            self._count(element, node_type)
+        except SclError as error:
+            self._document.leave_out(element, error, "its data objects are left out")
+            return NodeType((), 0, 0)
+        return node_type
 
     def _count(self, element: etree._Element, node_type: NodeType) -> None:
         if self._attributes + node_type.attributes > MOST_ATTRIBUTES:

@@ -123,6 +123,13 @@ def model_text(scl: Scl, ied_name: str) -> str:
             expected="an access point with a Server and LDevices",
             found="none",
         )
+    if not any(node.data_objects for node in ied.logical_nodes()):
+        raise SclError(
+            scl.path,
+            element=f'<IED name="{ied_name}">',
+            expected="a logical node with data objects that a server can offer",
+            found="none: see the warnings of the file",
+        )
     lines: list[str] = []
     for line in _model(ied):
         if _is_too_long(line) or len(lines) >= MOST_LINES:
@@ -162,7 +169,7 @@ def _model(ied: Ied) -> Iterator[str]:
 
 def _node(ied: Ied, device: LogicalDevice, node: LogicalNode, domains: Mapping[str, str]) -> Iterator[str]:
     yield f"LN({node.name}){{"
-    if node.setting_groups is not None and node.ln_class == "LLN0":
+    if node.setting_groups is not None and node.name == "LLN0":
         yield f"SG({node.setting_groups.active} {node.setting_groups.number})"
     for data_object in node.data_objects:
         yield from _object(data_object, transient=False)
@@ -303,25 +310,15 @@ def _member(
     if ied.resolve(member) is None:
         return
     names = member.path.split(".")
-    array = _array_depth(ied, member, names)
-    words = ["$".join((member.logical_node, member.fc, *names[:array]))]
+    node = ied.node_of(member)
+    array = None if node is None or member.index is None else node.array_in(member.path)
+    depth = len(names) if array is None else array[0]
+    words = ["$".join((member.logical_node, member.fc, *names[:depth]))]
     if member.logical_device != device.inst:
         words[0] = f"{domains[member.logical_device]}/{words[0]}"
-    if member.index is not None and array is not None:
-        words += [str(member.index), "$".join(names[array:])]
+    if array is not None:
+        words += [str(member.index), "$".join(names[depth:])]
     yield f"DE({' '.join(words).rstrip()});"
-
-
-def _array_depth(ied: Ied, member: DataSetMember, names: list[str]) -> int | None:
-    """Count the names of a member's path down to the array of its index; None without an array."""
-    if member.index is None:
-        return None
-    node = f"{member.logical_device}/{member.logical_node}"
-    for depth in range(1, len(names) + 1):
-        found = ied.find(f"{node}.{'.'.join(names[:depth])}")
-        if found is not None and found.count:
-            return depth
-    return None
 
 
 def _report(report: ReportControl, *, owner: bool) -> Iterator[str]:

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 from benchmarks.corpus.kinds import files_of
-from benchmarks.corpus.outcomes import Examined, Reading
+from benchmarks.corpus.outcomes import Examined, Reading, Service
 from benchmarks.corpus.page import document, markdown
 from benchmarks.corpus.workers import MEMORY_BYTES, TIMEOUT_S, examine_all
 
@@ -45,7 +45,12 @@ def main() -> int:
         print(json.dumps(document(str(folder), found, files), indent=1, ensure_ascii=False))
     else:
         print(markdown(found, files), end="")
-    return 1 if any(one.outcome.reading is Reading.CRASHED for one in files) else 0
+    return 1 if any(_has_crashed(one) for one in files) else 0
+
+
+def _has_crashed(one: Examined) -> bool:
+    served = (each.service is Service.CRASHED for each in one.served)
+    return one.outcome.reading is Reading.CRASHED or any(served)
 
 
 def _shown(examining: Iterable[Examined], total: int) -> Iterator[Examined]:

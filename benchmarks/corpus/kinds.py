@@ -8,8 +8,9 @@ from pathlib import Path
 from benchmarks.corpus.comtrade_files import COMTRADE
 from benchmarks.corpus.event_reports import EVENT_REPORT
 from benchmarks.corpus.outcomes import Kind
+from benchmarks.corpus.scl_files import SCL
 
-KINDS: tuple[Kind, ...] = (COMTRADE, EVENT_REPORT)
+KINDS: tuple[Kind, ...] = (COMTRADE, EVENT_REPORT, SCL)
 
 
 @dataclass(frozen=True, slots=True)

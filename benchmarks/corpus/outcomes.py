@@ -1,5 +1,6 @@
 """What became of one file: how it was read, and whether another reader finds the same in it."""
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -47,14 +48,34 @@ class Comparison:
     notes: tuple[str, ...] = ()
 
 
+class Service(StrEnum):
+    """Whether ied-sim serves a relay of a file."""
+
+    WHOLE = "served whole"
+    """Its names are those of the file, as another reader lists them."""
+    IN_PART = "served in part"
+    NOT_SERVED = "not served"
+    NOT_TRIED = "not tried"
+    CRASHED = "crashed"
+
+
+@dataclass(frozen=True, slots=True)
+class Served:
+    """Whether one relay is served. notes: what is missing, or why it is not."""
+
+    relay: str
+    service: Service
+    notes: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, slots=True)
 class Kind:
     """A kind of file.
 
     suffixes: of the files that are read, in lower case. parts: suffixes of files that belong to one of those.
     read: reads one file; it raises only where the reader has a defect. compare: reads it with another reader
-    too, where the project's has read it. peer: name of the other reader. Both functions run in worker
-    processes, so they are defined at the top of a module.
+    too, where the project's has read it. peer: name of the other reader. serve: serves its relays, where the
+    project has read it. These functions run in worker processes, so they are defined at the top of a module.
     """
 
     name: str
@@ -63,6 +84,7 @@ class Kind:
     compare: Callable[[Path], Comparison] | None = None
     peer: str = ""
     parts: tuple[str, ...] = ()
+    serve: Callable[[Path], tuple[Served, ...]] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +96,12 @@ class Examined:
     outcome: Outcome
     comparison: Comparison
     seconds: float
+    served: tuple[Served, ...] = ()
+
+
+def alike(note: str) -> str:
+    """A note without names, references and figures: notes that differ in these only are alike."""
+    return re.sub(r"'[^']*'|\"[^\"]*\"|\S+/\S+|[-+]?\d[\d.e+-]*", "*", note)
 
 
 def shortened(text: str) -> str:

@@ -1,11 +1,10 @@
 """What a corpus run found, as Markdown and as one JSON document."""
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from benchmarks.corpus.kinds import KINDS, Found
-from benchmarks.corpus.outcomes import Agreement, Examined, Reading
+from benchmarks.corpus.outcomes import Agreement, Examined, Reading, Service, alike
 from benchmarks.reporting import table
 
 MOST_REASONS = 40
@@ -29,6 +28,10 @@ def document(folder: str, found: Found, files: Sequence[Examined]) -> dict[str, 
                 "agreement": str(one.comparison.agreement),
                 "differences": list(one.comparison.notes),
                 "seconds": round(one.seconds, 4),
+                "served": [
+                    {"relay": each.relay, "service": str(each.service), "notes": list(each.notes)}
+                    for each in one.served
+                ],
             }
             for one in files
         ],
@@ -53,6 +56,13 @@ def markdown(found: Found, files: Sequence[Examined]) -> str:
             ["Kind", "Other reader", *map(str, Agreement)],
             [[kind.name, kind.peer, *_agreements(_of_kind(files, kind.name))] for kind in compared],
         )
+    relays = Counter(each.service for one in files for each in one.served)
+    if relays:
+        lines += ["", "Relays of these files with a server, served by ied-sim:", ""]
+        lines += table(
+            ["Relays", *map(str, Service)],
+            [[str(relays.total()), *(str(relays[service]) for service in Service)]],
+        )
     lines += [
         "",
         f"Beside these there are {found.parts} files that belong to a recording or to none, and "
@@ -70,6 +80,17 @@ def markdown(found: Found, files: Sequence[Examined]) -> str:
             notes = ((one, note) for one in here for note in one.comparison.notes)
             title = f"{str(agreement).capitalize()}:"
             lines += ["", title, "", *_reasons(notes, "What is said, of the first file")]
+    for service in (Service.CRASHED, Service.NOT_SERVED, Service.IN_PART, Service.NOT_TRIED):
+        told = [
+            (one, note)
+            for one in files
+            for each in one.served
+            for note in each.notes
+            if each.service is service
+        ]
+        if told:
+            title = f"{str(service).capitalize()}:"
+            lines += ["", title, "", *_reasons(told, "What is said, of the first relay", "Relays")]
     return "\n".join(lines) + "\n"
 
 
@@ -82,6 +103,7 @@ def _counts(files: Sequence[Examined]) -> dict[str, object]:
         "files": len(files),
         "readings": dict(Counter(str(one.outcome.reading) for one in files)),
         "agreements": dict(Counter(str(one.comparison.agreement) for one in files)),
+        "relays": dict(Counter(str(each.service) for one in files for each in one.served)),
     }
 
 
@@ -95,7 +117,7 @@ def _agreements(files: Sequence[Examined]) -> Iterator[str]:
     return (str(counts[agreement]) for agreement in Agreement)
 
 
-def _reasons(notes: Iterable[tuple[Examined, str]], heading: str) -> list[str]:
+def _reasons(notes: Iterable[tuple[Examined, str]], heading: str, counted: str = "Files") -> list[str]:
     """Count alike notes, which differ in names and figures only; the first file of each is named."""
     first: dict[str, tuple[Examined, str]] = {}
     counts: Counter[str] = Counter()
@@ -110,12 +132,12 @@ def _reasons(notes: Iterable[tuple[Examined, str]], heading: str) -> list[str]:
     ]
     if rest := common[MOST_REASONS:]:
         rows.append([str(sum(count for _, count in rest)), f"{len(rest)} more, each rarer", ""])
-    return table(["Files", heading, "First file"], rows)
+    return table([counted, heading, "First file"], rows)
 
 
 def _pattern(note: str, path: str) -> str:
     note = note.replace(path.rsplit("/", 1)[-1], "")
-    return re.sub(r"'[^']*'|\"[^\"]*\"|[-+]?\d[\d.e+-]*", "*", note)
+    return alike(note)
 
 
 def _cell(text: str) -> str:

@@ -20,6 +20,8 @@ from benchmarks.corpus.outcomes import (
     Kind,
     Outcome,
     Reading,
+    Served,
+    Service,
     shortened,
 )
 
@@ -61,12 +63,19 @@ def examine_all(
                 if kind.compare is not None and outcome.reading in _COMPARED:
                     comparing = pool.schedule(kind.compare, args=(path,), timeout=timeout_s)
                     comparison = _answer(comparing, _not_compared, timeout_s)
+                served: tuple[Served, ...] = ()
+                if kind.serve is not None and outcome.reading in _COMPARED:
+                    serving = pool.schedule(kind.serve, args=(path,), timeout=timeout_s)
+                    served = _answer(serving, _not_served, timeout_s)
                 yield Examined(
                     path=_shown(path.relative_to(folder)),
                     kind=kind.name,
                     outcome=Outcome(outcome.reading, tuple(map(shortened, outcome.notes))),
                     comparison=Comparison(comparison.agreement, tuple(map(shortened, comparison.notes))),
                     seconds=seconds,
+                    served=tuple(
+                        Served(one.relay, one.service, tuple(map(shortened, one.notes))) for one in served
+                    ),
                 )
 
 
@@ -106,6 +115,10 @@ def _crashed(why: str, seconds: float) -> tuple[Outcome, float]:
 
 def _not_compared(why: str, _seconds: float) -> Comparison:
     return Comparison(Agreement.PEER_FAILS, (why,))
+
+
+def _not_served(why: str, _seconds: float) -> tuple[Served, ...]:
+    return (Served("", Service.CRASHED, (why,)),)
 
 
 def _shown(path: Path) -> str:

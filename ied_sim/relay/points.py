@@ -4,15 +4,14 @@ from collections.abc import Container
 
 from ied_sim.profiles.profile import Profile
 from ied_sim.relay.standard_points import fitted_points, is_operable
-from scl.data_model import DataAttribute, DataObject
+from scl.data_model import DataAttribute, DataObject, FunctionalConstraint
 from scl.ied_model import Ied
 
 _VALUE_ATTRIBUTES = frozenset({"stVal", "general", "instMag", "mag", "instCVal", "cVal"})
-
-
 _BOOLEAN = frozenset({"BOOLEAN"})
 _FLOAT = frozenset({"FLOAT32", "FLOAT64"})
 _NUMBERS = frozenset({"INT16", "INT24", "INT32", "INT64", "INT16U", "INT24U", "INT32U"})
+_PUBLISHED = frozenset({FunctionalConstraint.ST, FunctionalConstraint.MX})
 _STAMPS = {"q": "Quality", "t": "Timestamp"}
 
 
@@ -94,7 +93,12 @@ class RelayPoints:
     def has(self, reference: str, types: Container[str]) -> bool:
         """Tell whether the model has an attribute of one of the basic types."""
         found = self._ied.find(reference)
-        return isinstance(found, DataAttribute) and found.basic_type in types and not found.count
+        return (
+            isinstance(found, DataAttribute)
+            and found.basic_type in types
+            and found.fc in _PUBLISHED
+            and not found.count
+        )
 
     def report_ids(self) -> dict[str, str]:
         """Return the MMS reference of each report control block by its RptID."""

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from ied_sim.profiles.profile import Points
-from scl.data_model import DataAttribute, DataObject
+from scl.data_model import DataAttribute, DataObject, FunctionalConstraint
 from scl.ied_model import Ied, LogicalNode
 
 _STANDARD_NAMES: Final[Mapping[str, tuple[tuple[str, str], ...]]] = {
@@ -65,6 +65,8 @@ def is_operable(found: DataObject | DataAttribute | None) -> bool:
         and value.basic_type == "BOOLEAN"
         and isinstance(model, DataAttribute)
         and model.basic_type == "Enum"
+        and model.fc is FunctionalConstraint.CF
+        and value.fc is FunctionalConstraint.CO
     )
 
 

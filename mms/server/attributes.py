@@ -52,7 +52,7 @@ class Attributes:
             There is no such attribute.
         """
         node = self._model.node(reference, Node.DATA_ATTRIBUTE)
-        return decode(self._lib, self._lib.IedServer_getAttributeValue(self._server, node))
+        return decode(self._lib, self._value(reference, node))
 
     def update(self, values: Mapping[str, Value | Quality]) -> None:
         """Set attributes as one change. Times are set first, so that an event carries its own.
@@ -72,13 +72,20 @@ class Attributes:
         try:
             for reference in sorted(values, key=lambda name: not name.endswith(".t")):
                 node = self._model.node(reference, Node.DATA_ATTRIBUTE)
-                new = lib.MmsValue_clone(lib.IedServer_getAttributeValue(self._server, node))
+                new = lib.MmsValue_clone(self._value(reference, node))
                 prepared.append((node, new))
                 self._model.assign(reference, node, new, values[reference])
             self._apply(prepared)
         finally:
             for _, new in prepared:
                 lib.MmsValue_delete(new)
+
+    def _value(self, reference: str, node: int) -> int:
+        """Return the library's value. It keeps none of what is only operated (functional constraint CO)."""
+        value = self._lib.IedServer_getAttributeValue(self._server, node)
+        if not value:
+            raise ModelError(reference, "an attribute with a value", "one without (constraint CO, say)")
+        return int(value)
 
     def _apply(self, prepared: list[tuple[int, int]]) -> None:
         lib = self._lib

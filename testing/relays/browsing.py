@@ -33,6 +33,7 @@ class Contents:
 
 def contents_of_file(path: Path, ied_name: str) -> Contents:
     root = ET.parse(path).getroot()  # noqa: S314 (files of these tests and of their user)
+    _into_namespace(root)
     (ied,) = (each for each in _all(root, "IED") if each.get("name") == ied_name)
     devices = list(ied.iter(f"{NAMESPACE}LDevice"))
     domains = {
@@ -58,28 +59,49 @@ def contents_of_file(path: Path, ied_name: str) -> Contents:
     return contents
 
 
+def _into_namespace(root: ET.Element) -> None:
+    """Put the elements of a file with another spelling of the namespace, or with none, into it."""
+    own = root.tag.removesuffix("SCL")
+    if own == NAMESPACE:
+        return
+    for element in root.iter():
+        if isinstance(element.tag, str) and element.tag.startswith(own):
+            element.tag = NAMESPACE + element.tag[len(own) :]
+
+
 def _all(element: ET.Element, tag: str) -> list[ET.Element]:
     return element.findall(NAMESPACE + tag)
 
 
+def _members(definition: ET.Element | None, tag: str) -> list[ET.Element]:
+    """The members of a type; a type that the file lacks has none."""
+    return [] if definition is None else _all(definition, tag)
+
+
 class _Types:
     def __init__(self, root: ET.Element) -> None:
-        (section,) = _all(root, "DataTypeTemplates")
-        self._types = {(each.tag.removeprefix(NAMESPACE), each.get("id")): each for each in section}
-        self._nodes = {(each.get("id"), each.get("lnClass")): each for each in _all(section, "LNodeType")}
+        types = [each for section in _all(root, "DataTypeTemplates") for each in section]
+        self._types = {(each.tag.removeprefix(NAMESPACE), each.get("id")): each for each in types}
+        self._nodes = {
+            (each.get("id"), each.get("lnClass")): each
+            for each in types
+            if each.tag == f"{NAMESPACE}LNodeType"
+        }
 
     def of_node(self, node: ET.Element) -> Iterator[tuple[str, ...]]:
         """Constraint and names of every data attribute, and of every array, whose elements have no names."""
-        for member in _all(self._nodes[node.get("lnType"), node.get("lnClass")], "DO"):
+        type_id = node.get("lnType")
+        definition = self._nodes.get((type_id, node.get("lnClass")), self._types.get(("LNodeType", type_id)))
+        for member in _members(definition, "DO"):
             for constraint, path in self._of_object(member):
                 yield (constraint, member.get("name", ""), *path)
 
     def _of_object(self, user: ET.Element) -> Iterator[tuple[str, tuple[str, ...]]]:
-        definition = self._types["DOType", user.get("type")]
-        for part in _all(definition, "SDO"):
+        definition = self._types.get(("DOType", user.get("type")))
+        for part in _members(definition, "SDO"):
             for constraint, path in self._of_object(part):
                 yield constraint, (part.get("name", ""), *(() if part.get("count") else path))
-        for part in _all(definition, "DA"):
+        for part in _members(definition, "DA"):
             constraint = part.get("fc", "")
             for path in self._of_attribute(part):
                 yield constraint, path
@@ -91,7 +113,7 @@ class _Types:
         if attribute.get("bType") != "Struct" or attribute.get("count"):
             yield (name,)
             return
-        for part in _all(self._types["DAType", attribute.get("type")], "BDA"):
+        for part in _members(self._types.get(("DAType", attribute.get("type"))), "BDA"):
             for path in self._of_attribute(part):
                 yield (name, *path)
 
@@ -136,16 +158,21 @@ def served(text: str, updates: Mapping[str, mms.Value] | None = None) -> Iterato
 def contents_of_server(text: str) -> Contents:
     """What a server of this model text lists: GetNameList and the data sets' directories."""
     with _serving(text, {}) as port:
-        connection = Connection("127.0.0.1", port, connect_timeout_s=5, request_timeout_s=5)
-        contents = Contents()
-        with mms.Client(connection) as client:
-            for domain in client.logical_devices():
-                contents.names[domain] = {_to_block(name) for name in _variables(connection, domain)}
-                for node in client.logical_nodes(domain):
-                    reference = f"{domain}/{node}"
-                    for name in client.data_sets(reference):
-                        directory = client.data_set_directory(f"{reference}.{name}")
-                        contents.data_sets[f"{reference}.{name}"] = list(directory)
+        return contents_at("127.0.0.1", port)
+
+
+def contents_at(host: str, port: int) -> Contents:
+    """The same of a server that is there."""
+    connection = Connection(host, port, connect_timeout_s=5, request_timeout_s=5)
+    contents = Contents()
+    with mms.Client(connection) as client:
+        for domain in client.logical_devices():
+            contents.names[domain] = {_to_block(name) for name in _variables(connection, domain)}
+            for node in client.logical_nodes(domain):
+                reference = f"{domain}/{node}"
+                for name in client.data_sets(reference):
+                    directory = client.data_set_directory(f"{reference}.{name}")
+                    contents.data_sets[f"{reference}.{name}"] = list(directory)
     return contents
 
 

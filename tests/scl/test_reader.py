@@ -362,6 +362,18 @@ def test_harmonics_of_several_thousand_attributes_are_read(tmp_path: Path) -> No
     assert read_scl.ied("R1").find("R1LD0/GGIO1.HA.phsAHar.cVal.mag.f") is not None
 
 
+def test_a_node_without_a_type_still_has_its_data_sets_and_blocks(tmp_path: Path) -> None:
+    blocks = '<ReportControl name="R" datSet="D" confRev="1"/>'
+    node_zero = (
+        f'<LN0 lnClass="LLN0" inst="" lnType="gone"><DataSet name="D">{MEMBER}</DataSet>{blocks}</LN0>'
+    )
+    read_scl = read(tmp_path, node_zero=node_zero)
+    (report,) = read_scl.ied("R1").report_controls()
+    assert report.data_set is not None
+    assert report.data_set.members[0].path == "Ind1"
+    assert "its data objects are left out: expected a LNodeType" in messages(read_scl)
+
+
 def test_names_too_long_for_mms_are_left_out(tmp_path: Path) -> None:
     prefix = "A" * 45
     nodes = f'<LN prefix="{prefix}" lnClass="GGIO" inst="1" lnType="GGIO"/>'
