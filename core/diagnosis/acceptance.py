@@ -12,8 +12,11 @@ from core.diagnosis.case import LONGEST_RECORD_S, Case, case_of
 from core.diagnosis.errors import NoVoltagesError
 from core.diagnosis.fundamental import Fundamental, fundamental_of
 from core.machines.parameters import Motor
+from core.operation import Operation
 from core.quality import examine
-from core.quality.finding import QualityFinding, file_warning, finding
+from core.quality.finding import QualityFinding, all_passed, file_warning, finding
+from core.quality.operation import operation
+from core.quality.trip_signal import is_tripped
 from core.recordings import Quantity, Recording
 from core.signals.terminals import Terminals, terminals
 
@@ -49,11 +52,14 @@ class Acceptance:
         Whether no voltages were recorded, or none are used.
     accepted : Accepted or None
         The record; None where a check failed.
+    operation : Operation or None, optional
+        What the motor does in the whole recording; None where that cannot be told.
     """
 
     quality: tuple[QualityFinding, ...]
     voltages_assumed: bool
     accepted: Accepted | None
+    operation: Operation | None = None
 
 
 def accept(recording: Recording, motor: Motor, *, currents_only: bool = False) -> Acceptance:
@@ -125,13 +131,36 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
             expected="three phase voltages or two line voltages beside the currents",
             found="none: without them an unbalanced supply cannot be told from a fault",
         )
-    quality, passed = examine(measured, motor)
+    tripped = is_tripped(recording.digitals)
+    quality, passed = examine(measured, motor, tripped=tripped)
+    does = _operation(recording, motor, quality, tripped=tripped)
     if passed is None:
-        return Acceptance(tuple(quality), assumed, None)
+        return Acceptance(tuple(quality), assumed, None, does)
     rate, frequency = measured.sample_rate_hz, passed.frequency_hz
     case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
     case = replace(case, voltages_assumed=assumed)
-    return Acceptance(tuple(quality), assumed, Accepted(measured, case, fundamental_of(case)))
+    return Acceptance(tuple(quality), assumed, Accepted(measured, case, fundamental_of(case)), does)
+
+
+def _operation(
+    recording: Recording, motor: Motor, quality: list[QualityFinding], *, tripped: bool
+) -> Operation | None:
+    """Return what the motor does in the whole recording, of which only the end is diagnosed."""
+    found = list(quality)
+    if recording.duration_s > LONGEST_RECORD_S:
+        whole = terminals(
+            _currents_of(recording),
+            currents=motor.channels.currents,
+            current_ratio=motor.transformers.current_ratio,
+        )
+        if np.isfinite(whole.current_abc).all():
+            found += operation(whole, motor, tripped=tripped)
+    does = next((one.operation for one in found if one.operation is not None), None)
+    if does is Operation.NOT_RUNNING:
+        return does
+    if tripped:
+        return Operation.TRIP
+    return Operation.RUNNING if does is None and all_passed(quality) else does
 
 
 def _currents_of(recording: Recording) -> Recording:

@@ -1,6 +1,7 @@
 """Diagnosis of one recording: quality gate, global search, refinement, choice of hypothesis, verdict."""
 
 from collections.abc import Iterable
+from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
@@ -113,7 +114,9 @@ def diagnose_accepted(
     begun = perf_counter() if begun is None else begun
     _check_known(method, model)
     try:
-        result = _diagnosed(acceptance, method, model, baseline, begun)
+        result = replace(
+            _diagnosed(acceptance, method, model, baseline, begun), operation=acceptance.operation
+        )
         impossible = not_finite(result.as_dict())
     except (np.linalg.LinAlgError, ArithmeticError) as error:
         impossible = str(error)

@@ -6,6 +6,7 @@ from enum import StrEnum
 from math import isfinite
 from typing import Literal
 
+from core.operation import Operation
 from core.quality.finding import QualityFinding
 
 RELATIVE = "relative to a baseline of"
@@ -105,6 +106,8 @@ class Diagnosis:
         Model-free figures beside the fit.
     currents_only : bool, default False
         Whether the voltages are assumed and none were used.
+    operation : Operation or None, optional
+        What the motor does in the recording; None where that cannot be told.
     """
 
     verdict: Verdict
@@ -127,6 +130,7 @@ class Diagnosis:
     detection_limit: float | None = None
     indicators: Indicators | None = None
     currents_only: bool = False
+    operation: Operation | None = None
 
     @property
     def phase(self) -> Literal["a", "b", "c"] | None:
@@ -164,6 +168,7 @@ class Diagnosis:
             "speed_rpm": self.speed_rpm,
             "indicators": None if self.indicators is None else self.indicators.as_dict(),
             "currents_only": self.currents_only,
+            "operation": None if self.operation is None else str(self.operation),
         }
 
 

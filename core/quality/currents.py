@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.operation import Operation
 from core.quality.circle_diagram import CircleDiagram
 from core.quality.finding import QualityFinding, finding
 from core.quality.ratios import current_advice
@@ -57,6 +58,9 @@ STRONGLY_UNBALANCED = 0.05
 """Unbalance of a supply beyond which a motor that runs light looks as if two of its phases were exchanged."""
 LEAST_LAG_DEG, MOST_LAG_DEG = -20.0, 110.0
 """Range of the lag of the current: 0 to 90 degrees of a motor, widened by delays between channels."""
+
+LEAST_LAG_AT_REST_DEG = 45.0
+"""Least lag of a locked rotor's current: its power factor is 0.1 to 0.6, that of full load 0.7 and more."""
 
 _SIGNS = ((-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, -1.0))
 
@@ -154,9 +158,11 @@ def running(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Q
         "scaled 2 to 5 times too large); record while it runs for a diagnosis, or a start from before it on "
         "for `mcc commission`"
     )
+    does = Operation.NOT_RUNNING if off else Operation.START if _lags_as_at_rest(currents, feed) else None
     yield finding(
-        "running", share, MOST_OF_STANDSTILL, "of locked rotor", passed=not off and not stalled, message=why
-    )
+        "not-running" if off else "running", share, MOST_OF_STANDSTILL, "of locked rotor",
+        passed=not off and not stalled, message=why, operation=does,
+    )  # fmt: skip
 
 
 def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[QualityFinding]:
@@ -191,6 +197,15 @@ def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
         f"{no_load:.3g} A, locked rotor {standstill:.3g} A): a wrong ratio, secondary amperes, kA for A, "
         f"or another motor's nameplate; {advice}",
     )  # fmt: skip
+
+
+def _lags_as_at_rest(currents: Currents, feed: Feed) -> bool:
+    """Whether the current lags as a locked rotor's; that of a loaded motor, scaled too large, lags less."""
+    if feed.assumed:
+        return False
+    voltage, forward, _ = _in_the_sense_of(feed, currents)
+    lag = float(np.degrees(np.angle(voltage * forward.conjugate())))
+    return LEAST_LAG_AT_REST_DEG <= lag <= MOST_LAG_DEG
 
 
 def _is_small(currents: Currents, feed: Feed, circle: CircleDiagram) -> bool:

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from core.operation import Operation
+
 GREATEST_FIGURE = 1e30
 """Greatest figure of a finding. Greater ones are cut to it, because JSON has no infinity."""
 
@@ -26,6 +28,8 @@ class QualityFinding:
         Whether the check passed.
     message : str
         What a failure means, and what to do; or a warning.
+    operation : Operation or None, optional
+        What the motor does, where the check failed for that; None where something is wrong with the record.
     """
 
     name: str
@@ -34,6 +38,7 @@ class QualityFinding:
     unit: str
     passed: bool
     message: str
+    operation: Operation | None = None
 
     @property
     def is_warning(self) -> bool:
@@ -59,7 +64,14 @@ class QualityFinding:
 
 
 def finding(
-    name: str, value: float, limit: float, unit: str, *, passed: bool, message: str
+    name: str,
+    value: float,
+    limit: float,
+    unit: str,
+    *,
+    passed: bool,
+    message: str,
+    operation: Operation | None = None,
 ) -> QualityFinding:
     """Make the result of a check; the message is only said where it failed.
 
@@ -77,6 +89,8 @@ def finding(
         Whether the check passed.
     message : str
         What a failure means, and what to do.
+    operation : Operation or None, optional
+        What the motor does, where that is why the check fails.
 
     Returns
     -------
@@ -84,7 +98,15 @@ def finding(
         The finding.
     """
     shown = min(max(float(value), -GREATEST_FIGURE), GREATEST_FIGURE)
-    return QualityFinding(name, shown, float(limit), unit, bool(passed), "" if passed else message)
+    return QualityFinding(
+        name,
+        shown,
+        float(limit),
+        unit,
+        bool(passed),
+        "" if passed else message,
+        None if passed else operation,
+    )
 
 
 def file_warning(message: str) -> QualityFinding:

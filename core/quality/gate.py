@@ -39,7 +39,9 @@ class Passed:
     sequence: PhaseSequence
 
 
-def examine(terminals: Terminals, motor: Motor) -> tuple[list[QualityFinding], Passed | None]:
+def examine(
+    terminals: Terminals, motor: Motor, *, tripped: bool = False
+) -> tuple[list[QualityFinding], Passed | None]:
     """Run all checks, up to the first group with a failure.
 
     Parameters
@@ -48,6 +50,8 @@ def examine(terminals: Terminals, motor: Motor) -> tuple[list[QualityFinding], P
         Currents and voltages at the motor's terminals.
     motor : Motor
         Nameplate, parameters, channel names and limits of the motor.
+    tripped : bool, default False
+        Whether the relay's trip signal rises in the record.
 
     Returns
     -------
@@ -57,7 +61,7 @@ def examine(terminals: Terminals, motor: Motor) -> tuple[list[QualityFinding], P
         Supply of the record; None where a check failed.
     """
     found: list[QualityFinding] = []
-    for group in _sampled(terminals, motor):
+    for group in _sampled(terminals, motor, tripped=tripped):
         found += group
         if not all_passed(found):
             return found, None
@@ -128,18 +132,18 @@ def wired_well(terminals: Terminals, motor: Motor, *, timed: bool) -> list[Quali
     return found
 
 
-def _sampled(terminals: Terminals, motor: Motor) -> Iterator[Iterable[QualityFinding]]:
+def _sampled(terminals: Terminals, motor: Motor, *, tripped: bool) -> Iterator[Iterable[QualityFinding]]:
     """Yield groups of findings on the samples themselves and on what the motor does."""
     per_cycle = terminals.sample_rate_hz / motor.nameplate.rated_frequency_Hz
     yield samples.extent(terminals, motor.nameplate)
     if not is_far_too_large(terminals, motor.nameplate):
         yield samples.sampled_slowly(terminals.voltage_channels, terminals.voltages)
         yield samples.sampled_slowly(terminals.current_channels, terminals.current_abc)
+    yield operation(terminals, motor, tripped=tripped)
     yield magnitude(terminals, motor.nameplate)
     yield samples.holding(terminals.voltage_channels, terminals.voltages, per_cycle)
     if not is_small(terminals, motor):
         yield samples.holding(terminals.current_channels, terminals.current_abc, per_cycle)
-    yield operation(terminals, motor)
     yield samples.clipping(terminals.current_channels, terminals.current_abc)
 
 

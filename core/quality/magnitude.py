@@ -7,6 +7,7 @@ import numpy as np
 
 from core.machines.base import Array
 from core.machines.parameters import Nameplate
+from core.operation import Operation
 from core.quality.finding import QualityFinding, finding
 from core.quality.ratios import voltage_cause
 from core.quality.supply import FREQUENCY_TOLERANCE, UNBALANCE, feed_of
@@ -76,7 +77,7 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
         )  # fmt: skip
     elif volts < LEAST_SIGNAL and amps < LEAST_SIGNAL:
         yield finding(
-            "running", amps, LEAST_SIGNAL, "of rated", passed=False,
+            "not-running", amps, LEAST_SIGNAL, "of rated", passed=False, operation=Operation.NOT_RUNNING,
             message="neither voltage nor current: the motor is switched off",
         )  # fmt: skip
     elif volts < LEAST_SIGNAL:
@@ -87,7 +88,7 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
         )  # fmt: skip
     elif amps < NO_CURRENT:
         yield finding(
-            "running", amps, NO_CURRENT, "of rated", passed=False,
+            "not-running", amps, NO_CURRENT, "of rated", passed=False, operation=Operation.NOT_RUNNING,
             message="no current flows: the motor is switched off, or the current transformers are",
         )  # fmt: skip
 

@@ -86,5 +86,10 @@ def _why_milder(
 
 
 def is_stale(entry: ConditionEntry, now_ns: int, stale_after_ns: int) -> bool:
-    """Tell whether the latest record of a condition is too old, or there is none."""
-    return entry.as_of_ns is None or now_ns - entry.as_of_ns > stale_after_ns
+    """Tell whether the latest record of a condition is too old, or there is none.
+
+    A motor that stands makes no record that counts: what was known of it when it stopped is not stale.
+    """
+    if entry.as_of_ns is None:
+        return True
+    return now_ns - max(entry.as_of_ns, entry.stood_ns or entry.as_of_ns) > stale_after_ns

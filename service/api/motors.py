@@ -6,12 +6,15 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query
 
+from core.machines.parameters import ParametersSource
+from core.operation import Operation
 from service.api.condition_documents import condition_document
 from service.api.context import Context
 from service.api.document import Name
+from service.api.operations import offer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Health, ListedMotor, Motor, Recording, Site, TrendPoint
+from service.api.schemas import Health, ListedMotor, Motor, RecordedStarts, Recording, Site, TrendPoint
 from service.api.times import TimeParameter, rfc3339
 from service.condition.staleness import stale_after_ns
 from service.configuration.settings import Settings
@@ -85,11 +88,17 @@ def get_trend(
 
 @router.get("/motors/{name}/recordings", responses=problems(404), tags=["recordings"])
 def list_recordings_of_motor(
-    context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
+    context: Context,
+    name: Name,
+    operation: Annotated[Operation | None, Query(description="What the motor does in them.")] = None,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
 ) -> Page[Recording]:
     """Return the recordings of a motor, latest first."""
     context.repository.motor(name)
-    recordings = context.repository.recordings(motor=name, limit=limit, after=decode(cursor, int, str))
+    recordings = context.repository.recordings(
+        motor=name, operation=operation, limit=limit, after=decode(cursor, int, str)
+    )
     return page(recordings, Recording.model_validate)
 
 
@@ -106,6 +115,19 @@ def _point_of_condition(point: ConditionPoint, quantity: ConditionQuantity) -> T
         state=point.state,
         kind=point.kind,
         phase=point.phase,
+    )
+
+
+def _starts(health: MotorHealth) -> RecordedStarts | None:
+    """Return the starts that the motor's parameters follow from, with the command that estimates them."""
+    if health.starts is None:
+        return None
+    known = health.motor.parameters_source is ParametersSource.COMMISSIONED
+    number, latest_ns = health.starts.number, health.starts.latest_ns
+    return RecordedStarts(
+        number=number,
+        latest_time=rfc3339(latest_ns),
+        advice=None if known else offer(health.motor.name, number),
     )
 
 
@@ -143,4 +165,6 @@ def _health(health: MotorHealth, now_ns: int, settings: Settings) -> Health:
         link_reason=link.link_reason,
         last_success_time=None if link.last_success_ns is None else rfc3339(link.last_success_ns),
         last_recording=None if last is None else Recording.model_validate(last),
+        starts=_starts(health),
+        stood_time=None if health.condition.stood_ns is None else rfc3339(health.condition.stood_ns),
     )

@@ -12,6 +12,7 @@ from fastapi import APIRouter, Depends, File, Form, Query, Request, Response, Up
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
+from core.operation import Operation
 from core.recordings import Envelope, RecordingError, read_envelope
 from service.api.archive import archive_name, zipped
 from service.api.context import ApiContext, Context
@@ -39,13 +40,14 @@ def list_recordings(
     context: Context,
     motor: Annotated[str | None, Query(max_length=200)] = None,
     state: RecordingState | None = None,
+    operation: Annotated[Operation | None, Query(description="What the motor does in them.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[Recording]:
-    """Return recordings, of one motor or of all, in one state or in any, latest first."""
+    """Return recordings, of one motor or of all, in one state or in any, of any operation, latest first."""
     context.require_motor(motor)
     recordings = context.repository.recordings(
-        motor=motor, state=state, limit=limit, after=decode(cursor, int, str)
+        motor=motor, state=state, operation=operation, limit=limit, after=decode(cursor, int, str)
     )
     return page(recordings, Recording.model_validate)
 

@@ -11,6 +11,7 @@ from core.diagnosis import methods
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
+from core.operation import Operation
 from service.api.condition_schemas import Condition
 from service.api.document import Document, Listed, Person, Reason, RequestDocument
 from service.api.relay_schemas import RelayClock
@@ -92,7 +93,7 @@ class Diagnosis(Document):
     a, b, c. load_level: load torque over rated torque. ..._ci95: 95 % interval from noise, sensors and
     parameters. ..._scatter95: from the record's own scatter alone. speed_rpm: of the shaft, from the fit.
     detection_limit: nine of ten such recordings show a fault of that mu_f. currents_only: the voltages are
-    assumed.
+    assumed. operation: what the motor does in the recording.
     Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
@@ -117,6 +118,7 @@ class Diagnosis(Document):
     speed_rpm: float | None = None
     indicators: Indicators | None = None
     currents_only: bool = False
+    operation: Operation | None = None
 
 
 class EventReport(Document):
@@ -143,6 +145,8 @@ class EventReport(Document):
 class Recording(RelayClock):
     """A recording. `recorded_time` is the trigger time written in the record, known once it was read.
 
+    operation: what the motor does in it; null while nobody has looked, or it cannot be told.
+    operation_remark: why the motor's parameters cannot be estimated from this start.
     That time is the relay's; `clock_...` is the latest comparison of its clock when the recording was stored,
     null where that was not made within an hour of it.
     """
@@ -155,6 +159,8 @@ class Recording(RelayClock):
     size_bytes: int
     state: RecordingState
     reason: str | None
+    operation: Operation | None
+    operation_remark: str | None
     announced_time: Time = Field(validation_alias="announced_ns")
     fetched_time: Time | None = Field(validation_alias="fetched_ns")
     recorded_time: Time | None = Field(validation_alias="recorded_ns")
@@ -232,11 +238,24 @@ class DiagnosisRequest(RequestDocument):
     model: Model = DEFAULT_MODEL
 
 
+class RecordedStarts(Document):
+    """The starts of a motor from which its parameters can be estimated: how many, and the latest one's time.
+
+    advice: the command that does it; null where the motor's parameters were estimated already.
+    """
+
+    number: int
+    latest_time: Time = Field(validation_alias="latest_ns")
+    advice: str | None
+
+
 class Health(Document):
     """What is known of a motor now: its condition, the diagnosis of its latest recording, its relay's link.
 
     What is said of verdict, level, phase, load and reasons beside the condition repeats the diagnosis; null
-    and empty before the first one.
+    and empty before the first one. Recordings in which the motor stands, starts, stops or trips say nothing
+    of it, and are told by last_recording alone. starts: those among them that its parameters follow from.
+    stood_time: when the motor was last seen to stand still.
     """
 
     motor: str
@@ -259,6 +278,8 @@ class Health(Document):
     link_reason: str | None
     last_success_time: Time | None
     last_recording: Recording | None
+    starts: RecordedStarts | None
+    stood_time: Time | None
 
 
 class ListedMotor(Motor):

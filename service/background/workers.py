@@ -45,7 +45,9 @@ def background_workers(
     gateway_problem: why gateways of this service do not run; None while all do.  restart_delay_s: the longest
     pause before a gateway that ended is started again.
     """
-    scheduler = Scheduler(plant.motors, repository, buses=plant.buses)
+    scheduler = Scheduler(
+        plant.motors, repository, buses=plant.buses, metering_period_s=settings.metering_period_s
+    )
     housekeeping_ends, retention_ends = Event(), Event()
     keeper = Housekeeping(settings, repository, housekeeping_ends)
     retained = Retention(settings, repository, store, retention_ends)

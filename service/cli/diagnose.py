@@ -18,7 +18,7 @@ from core.machines.typical import COMMISSION
 from core.recordings import Recording, RecordingError, read
 from core.recordings.reading import mended_by
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, one_line, print_document, results
-from service.client.verdicts import detection, interval, level, load, verdict_text
+from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
 
 
 def diagnose_recording(
@@ -112,9 +112,16 @@ def _motor_file_beside(record: Path) -> Path:
     )
 
 
+def _verdict(diagnosis: Diagnosis) -> Text:
+    """Return the verdict; where the motor does not run all the time, what the recording shows instead."""
+    verdict = verdict_text(diagnosis.verdict)
+    does = OPERATIONS.get(str(diagnosis.operation))
+    return verdict if does is None else verdict.append(f" (the recording shows {does})")
+
+
 def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: Diagnosis) -> Table:
     table = Table(title=Text(record.name), title_justify="left", show_header=False)
-    table.add_row("verdict", verdict_text(diagnosis.verdict))
+    table.add_row("verdict", _verdict(diagnosis))
     if diagnosis.mu_f is not None:
         table.add_row("equivalent fault level", level(diagnosis.mu_f, diagnosis.mu_f_ci95))
         table.add_row("detection limit", detection(diagnosis.detection_limit))

@@ -19,6 +19,7 @@ from service.client.verdicts import (
     load,
     percent,
     reasons_of,
+    seen_in,
     to_the_second,
     verdict_text,
 )
@@ -128,6 +129,7 @@ def _latest_recording(health: Document) -> list[tuple[str, RenderableType]]:
             rows.append(("diagnosed recording", diagnosed))
     rows.append(("parameters", Text(str(health.get("parameters_source", "-")))))
     rows.append(("last recording", Text(NO_RECORDING if last is None else last)))
+    rows.extend(_starts(health))
     rows.append(("site, relay", Text(f"{health['site']}, {health['ied']}")))
     rows.append(("link", _link_with_reason(health)))
     return rows
@@ -140,9 +142,19 @@ def _last_recording(health: Document) -> str | None:
         return None
     when = to_the_second(last["recorded_time"] or last["announced_time"])
     if last["state"] == "diagnosed":
-        return when
+        return f"{when}{seen_in(last.get('operation'))}"
     reason = f": {one_line(str(last['reason']))}" if last["reason"] else ""
     return f"{when}, {last['state']}{reason}"
+
+
+def _starts(health: Document) -> list[tuple[str, RenderableType]]:
+    """Return the line of the starts that were recorded, and of what they are good for."""
+    starts = health.get("starts")
+    if not isinstance(starts, Mapping):
+        return []
+    if starts["advice"] is not None:
+        return [("starts", Text(one_line(str(starts["advice"]))))]
+    return [("starts", f"{starts['number']}, the latest {to_the_second(starts['latest_time'])}")]
 
 
 def _link(health: Document) -> Text:

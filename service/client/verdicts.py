@@ -12,6 +12,21 @@ def verdict_text(verdict: str, phase: object = None) -> Text:
     return Text(f"{verdict} {phase or ''}".strip(), style=VERDICT_COLOURS.get(verdict, ""))
 
 
+OPERATIONS = {
+    "not-running": "a motor that stands",
+    "start": "a start",
+    "stop": "a stop",
+    "trip": "a trip",
+}
+"""What is said of a recording in which the motor does not run all the time."""
+
+
+def seen_in(operation: object) -> str:
+    """Return in words what a motor does in a recording: ", a start"; nothing of one in which it runs."""
+    words = OPERATIONS.get(str(operation))
+    return "" if words is None else f", {words}"
+
+
 def level(mu_f: object, ci95: object) -> str:
     """Return a fault level in percent of the phase turns, with its 95 % interval; "-" where there is none."""
     if not isinstance(mu_f, int | float):

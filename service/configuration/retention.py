@@ -20,10 +20,12 @@ class RetentionSettings(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     keep_newest: int = Field(default=100, ge=1, le=1_000_000)
+    keep_starts: int = Field(default=10, ge=1, le=1_000)
     healthy_days: Days = None
     watch_days: Days = None
     fault_days: Days = None
     undiagnosable_days: Days = None
+    not_running_days: Days = None
     rejected_days: Days = None
     failed_days: Days = None
     superseded_diagnoses_days: Days = None

@@ -275,7 +275,7 @@ class JobRunner:
             case Rejected(reason):
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
-            case Diagnosed(diagnosis, recorded_ns, observation):
+            case Diagnosed(diagnosis, recorded_ns, observation, remark):
                 now_ns, left_out = time.time_ns(), None
                 try:
                     require_possible_time(recorded_ns, now_ns)
@@ -293,6 +293,7 @@ class JobRunner:
                         runner=self._id,
                         observation=observation,
                         left_out=left_out,
+                        operation_remark=remark,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")
@@ -305,6 +306,7 @@ class JobRunner:
                     recording=job.recording_id,
                     motor=claimed.motor,
                     verdict=str(diagnosis.verdict),
+                    operation=None if diagnosis.operation is None else str(diagnosis.operation),
                 )
 
     def _retry(self, claimed: ClaimedJob, error: str) -> None:

@@ -28,11 +28,14 @@ class Diagnosed:
     """Hold a diagnosis, the time of its record, and what the record tells of its motor's condition.
 
     recorded_ns: trigger time written in the record, UTC [ns].  observation: None where it tells nothing.
+    operation_remark: why the motor's parameters cannot be estimated from this start; None where they can, and
+    for other records.
     """
 
     diagnosis: Diagnosis
     recorded_ns: int
     observation: Observation | None = None
+    operation_remark: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

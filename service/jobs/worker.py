@@ -8,9 +8,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from core.commissioning.errors import CommissioningError
 from core.diagnosis.errors import DiagnosisError
 from core.machines.parameters import Motor
-from core.recordings import RecordingError, read
+from core.operation import Operation
+from core.recordings import Recording, RecordingError, read
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 
@@ -47,7 +49,21 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
         )
     except (RecordingError, DiagnosisError) as error:
         return Rejected(str(error))
-    return Diagnosed(examined.diagnosis, recording.trigger_time_ns, examined.observation)
+    remark = None
+    if examined.diagnosis.operation is Operation.START:
+        remark = _why_not_commissioned_from(recording, task.motor)
+    return Diagnosed(examined.diagnosis, recording.trigger_time_ns, examined.observation, remark)
+
+
+def _why_not_commissioned_from(recording: Recording, motor: Motor) -> str | None:
+    """Return why a motor's parameters cannot be estimated from a start; None where they can."""
+    from core.commissioning.start_detection import start_of
+
+    try:
+        start_of(recording, motor.nameplate, motor.channels)
+    except (RecordingError, CommissioningError) as error:
+        return f"{error.field}: expected {error.expected}, found {error.found}"
+    return None
 
 
 @lru_cache(maxsize=64)

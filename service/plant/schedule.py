@@ -14,17 +14,21 @@ FIELDS = 5
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """`expression`: minute, hour, day of the month, month, day of the week, as in cron; times are UTC."""
+    """`expression`: minute, hour, day of the month, month, day of the week, as in cron; times are UTC.
+
+    only_running: whether a motor that stands when it is due is left alone.
+    """
 
     expression: str
+    only_running: bool = False
 
     @classmethod
-    def parse(cls, expression: str) -> Self:
+    def parse(cls, expression: str, *, only_running: bool = False) -> Self:
         """Read a cron expression. Raises ValueError with what was expected."""
         words = expression.split()
         if len(words) != FIELDS:
             raise ValueError(f"{FIELDS} fields (minute, hour, day of the month, month, day of the week)")
-        schedule = cls(" ".join(words))
+        schedule = cls(" ".join(words), only_running)
         try:
             schedule.next_after(0)
         except CronSimError as error:

@@ -7,6 +7,7 @@ from service.configuration.problems import Problem, Problems, nearest
 from service.plant.schedule import Schedule
 
 LONGEST_TEXT = 200
+ONLY_RUNNING = "schedule_only_running"
 MOST_SHOWN = 60
 
 
@@ -54,10 +55,17 @@ class PlantTable:
     def schedule(self) -> Schedule | None:
         """Return when something is recorded; None where the table does not say."""
         expression = self.take("schedule")
+        only_running = self.flag(
+            ONLY_RUNNING, "true (a motor that stands when it is due is not recorded) or false"
+        )
         if expression is None:
+            if only_running:
+                self.refuse(ONLY_RUNNING, 'a schedule beside it, such as schedule = "30 6 * * MON"', None)
             return None
         try:
-            return Schedule.parse(expression if isinstance(expression, str) else "")
+            return Schedule.parse(
+                expression if isinstance(expression, str) else "", only_running=only_running
+            )
         except ValueError as error:
             self.refuse("schedule", str(error), expression)
             return None

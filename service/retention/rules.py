@@ -46,20 +46,24 @@ def rules(settings: Settings, repository: Repository, now_ns: int) -> tuple[Rule
 def _recording_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
     """Yield the rules of recordings, by verdict or, where there is none, by state."""
     kept = settings.retention
-    kinds: tuple[tuple[str, float | None, RecordingState, Verdict | None], ...] = (
-        ("healthy_days", kept.healthy_days, RecordingState.DIAGNOSED, Verdict.HEALTHY),
-        ("watch_days", kept.watch_days, RecordingState.DIAGNOSED, Verdict.WATCH),
-        ("fault_days", kept.fault_days, RecordingState.DIAGNOSED, Verdict.FAULT),
-        ("undiagnosable_days", kept.undiagnosable_days, RecordingState.DIAGNOSED, Verdict.UNDIAGNOSABLE),
-        ("rejected_days", kept.rejected_days, RecordingState.REJECTED, None),
-        ("failed_days", kept.failed_days, RecordingState.FAILED, None),
+    diagnosed, refused = RecordingState.DIAGNOSED, Verdict.UNDIAGNOSABLE
+    kinds: tuple[tuple[str, float | None, RecordingState, Verdict | None, bool], ...] = (
+        ("healthy_days", kept.healthy_days, diagnosed, Verdict.HEALTHY, False),
+        ("watch_days", kept.watch_days, diagnosed, Verdict.WATCH, False),
+        ("fault_days", kept.fault_days, diagnosed, Verdict.FAULT, False),
+        ("undiagnosable_days", kept.undiagnosable_days, diagnosed, refused, False),
+        ("not_running_days", kept.not_running_days, diagnosed, refused, True),
+        ("rejected_days", kept.rejected_days, RecordingState.REJECTED, None, False),
+        ("failed_days", kept.failed_days, RecordingState.FAILED, None, False),
     )
-    for name, days, state, verdict in kinds:
+    for name, days, state, verdict, says_nothing in kinds:
         setting = f"retention.{name}"
         if days is None:
             yield _keeping(setting)
             continue
-        expired = ExpiredRecordings(state, verdict, _before(now_ns, days), kept.keep_newest)
+        expired = ExpiredRecordings(
+            state, verdict, _before(now_ns, days), kept.keep_newest, kept.keep_starts, says_nothing
+        )
         forget = partial(_forget_recordings, repository, expired, f"older than {setting} = {days:g}", now_ns)
         yield Rule(setting, days, partial(repository.expired_recordings, expired), forget)
 

@@ -49,6 +49,8 @@ class RecordingRequestState(StrEnum):
     FETCHED = "fetched"
     DIAGNOSED = "diagnosed"
     FAILED = "failed"
+    SKIPPED = "skipped"
+    """A schedule that asks for running motors only came due while the motor stood: no relay was asked."""
 
 
 IN_THE_RELAY = (RecordingRequestState.TRIGGERED, RecordingRequestState.RECORDED)

@@ -11,6 +11,7 @@ from core.condition.kinds import Kind, State
 from core.condition.observation import VoltageChannels
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
+from core.operation import Operation
 from core.signals.sequence import PhaseSequence
 from service.storage.states import (
     AlarmKind,
@@ -73,6 +74,7 @@ class Base(DeclarativeBase):
         RecordingSource: _words(RecordingSource),
         DeletedBy: _words(DeletedBy),
         JobState: _words(JobState),
+        Operation: _words(Operation),
         Verdict: _words(Verdict),
         ParametersSource: _words(ParametersSource),
         State: _words(State),

@@ -78,6 +78,7 @@ class ConditionRow(Figures, Base):
     `Condition.as_dict()` gave; null before the first fold, as is as_of_ns.  standing: its standing asymmetry,
     for the other motors of its bus.  problem: why what came since is not folded; null while it is.
     rules: version of the rules by which all of it was judged; null before the first fold.
+    stood_ns: when the motor was last seen to stand still; null where it never was.
     """
 
     __tablename__ = "conditions"
@@ -92,6 +93,7 @@ class ConditionRow(Figures, Base):
     standing: Mapped[Mapping[str, object] | None]
     problem: Mapped[str | None]
     rules: Mapped[str | None]
+    stood_ns: Mapped[int | None]
 
 
 class ConditionChangeRow(Figures, Base):

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from sqlalchemy import ForeignKey, Index, String, text
+from sqlalchemy import ForeignKey, Index, String, false, text
 from sqlalchemy.orm import Mapped, mapped_column, relationship
 
 from core.diagnosis.verdict import Verdict
@@ -62,6 +62,8 @@ class DiagnosisRow(Base):
     """The result of one job. `current` marks the latest of a recording: that one is in the trend.
 
     ci95: from all causes; null in rows of versions that knew only the scatter.
+    says_nothing: whether the motor was seen to stand, start, stop or trip, and nothing of its winding: such a
+    result is none of the motor's, neither good nor bad.
     """
 
     __tablename__ = "diagnoses"
@@ -87,6 +89,7 @@ class DiagnosisRow(Base):
     method: Mapped[str]
     model: Mapped[str]
     document: Mapped[Mapping[str, object]]
+    says_nothing: Mapped[bool] = mapped_column(server_default=false())
 
     __table_args__ = (
         # All that a point of the trend needs: a row with its document lies on pages of its own.
@@ -94,6 +97,7 @@ class DiagnosisRow(Base):
             "ix_diagnoses_trend",
             "motor",
             "current",
+            "says_nothing",
             "recorded_ns",
             "id",
             "recording_id",

@@ -3,6 +3,7 @@
 from sqlalchemy import ForeignKey, Index, String, text
 from sqlalchemy.orm import Mapped, mapped_column
 
+from core.operation import Operation
 from service.storage.models.base import Base
 from service.storage.states import (
     ClockQuality,
@@ -14,6 +15,11 @@ from service.storage.states import (
 
 
 class RecordingRow(Base):
+    """A recording. operation: what the motor does in it; null while nobody has looked, or it cannot be told.
+
+    operation_remark: why the parameters of a motor cannot be estimated from this start; null where they can.
+    """
+
     __tablename__ = "recordings"
 
     id: Mapped[str] = mapped_column(String(36), primary_key=True)
@@ -34,6 +40,8 @@ class RecordingRow(Base):
     clock_uncertainty_ns: Mapped[int | None]
     clock_quality: Mapped[ClockQuality | None]
     clock_measured_ns: Mapped[int | None]
+    operation: Mapped[Operation | None]
+    operation_remark: Mapped[str | None]
 
     __table_args__ = (
         Index("ux_recordings_relay", "ied", "name", "digest", unique=True),
@@ -51,6 +59,8 @@ class RecordingRow(Base):
         Index("ix_recordings_motor_announced_ns_id", "motor", "announced_ns", "id"),
         Index("ix_recordings_state_announced_ns_id", "state", "announced_ns", "id"),
         Index("ix_recordings_motor_state_announced_ns_id", "motor", "state", "announced_ns", "id"),
+        Index("ix_recordings_operation_announced_ns_id", "operation", "announced_ns", "id"),
+        Index("ix_recordings_motor_operation_announced_ns_id", "motor", "operation", "announced_ns", "id"),
         Index("ix_recordings_digest", "digest"),
         Index("ix_recordings_motor_recorded_ns_id", "motor", "recorded_ns", "id"),
         Index(

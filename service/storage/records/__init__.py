@@ -28,7 +28,7 @@ from service.storage.records.diagnoses import (
     TrendPoint,
     interval_of,
 )
-from service.storage.records.health import MotorHealth
+from service.storage.records.health import MotorHealth, RecordedStarts
 from service.storage.records.measurements import Measurement, Sample
 from service.storage.records.pages import Cursor, Page
 from service.storage.records.plant import IedEntry, MotorEntry, SiteEntry
@@ -84,6 +84,7 @@ __all__ = [
     "Quantity",
     "Quarantine",
     "RecordObservation",
+    "RecordedStarts",
     "RecordingEntry",
     "RecordingFile",
     "RecordingRequest",

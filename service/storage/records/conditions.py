@@ -47,7 +47,8 @@ class ConditionEntry(ConditionFigures):
 
     version: how often it was folded; 0 where it never was.  document: `Condition.as_dict()`, with what was
     stale when it was made; None before the first fold.  as_of_ns: time of the latest record in it.
-    problem: why what came since is not folded; None while it is.
+    problem: why what came since is not folded; None while it is.  stood_ns: when the motor was last seen to
+    stand still; None where it never was.
     """
 
     motor: str
@@ -56,6 +57,7 @@ class ConditionEntry(ConditionFigures):
     as_of_ns: int | None
     document: Mapping[str, object] | None
     problem: str | None = None
+    stood_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

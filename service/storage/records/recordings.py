@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from core.operation import Operation
 from service.storage.states import (
     ClockQuality,
     RecordingRequestOrigin,
@@ -46,6 +47,8 @@ class RecordingEntry:
     recorded_ns: the trigger time written in the record, known once it was read, by the relay's clock.
     clock_...: the latest ClockReading of that relay when the recording was stored, None without one of
     about that time.
+    operation: what the motor does in it; None while nobody has looked, or it cannot be told.
+    operation_remark: why the parameters of a motor cannot be estimated from this start; None where they can.
     """
 
     id: str
@@ -66,6 +69,8 @@ class RecordingEntry:
     clock_uncertainty_ns: int | None
     clock_quality: ClockQuality | None
     clock_measured_ns: int | None
+    operation: Operation | None
+    operation_remark: str | None
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping
 from dataclasses import fields
 
-from sqlalchemy import select
+from sqlalchemy import or_, select, update
 from sqlalchemy.orm import Session
 
 from core.condition.kinds import Kind, State
@@ -52,6 +52,18 @@ def conditions_of(session: Session, motors: Collection[str] | None = None) -> Ma
     names = [field.name for field in fields(ConditionEntry)]
     rows = session.execute(query.order_by(ConditionRow.motor))
     return {row.motor: ConditionEntry(**dict(zip(names, row, strict=True))) for row in rows}
+
+
+def note_standstill(session: Session, motor: str, time_ns: int) -> None:
+    """Note that a motor was seen to stand still: that it makes no records is no wonder then."""
+    session.execute(
+        update(ConditionRow)
+        .where(
+            ConditionRow.motor == motor,
+            or_(ConditionRow.stood_ns.is_(None), ConditionRow.stood_ns < time_ns),
+        )
+        .values(stood_ns=time_ns)
+    )
 
 
 def new_condition(motor: str) -> ConditionRow:

@@ -9,7 +9,8 @@ from sqlalchemy.orm import Session, joinedload
 
 from core.condition.observation import Observation
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
-from core.diagnosis.verdict import Diagnosis, not_finite
+from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
+from core.operation import AT_REST, EXPECTED
 from core.units import NANOSECONDS_PER_SECOND
 from service.storage.errors import (
     NotFoundError,
@@ -21,6 +22,7 @@ from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, Recording
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
+from service.storage.repository.conditions import note_standstill
 from service.storage.repository.observations import keep_observation
 from service.storage.repository.recording_requests import diagnose_rows, fail_rows
 from service.storage.repository.recordings import new_job, require_room
@@ -116,12 +118,14 @@ class JobRows(Sessions):
         runner: str,
         observation: Observation | None = None,
         left_out: str | None = None,
+        operation_remark: str | None = None,
     ) -> bool:
         """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
 
         Again changes nothing. recorded_ns: trigger time written in the record.  observation: what the record
         tells of its motor's condition; None where it tells nothing.  left_out: why it does not count there,
-        for people. Returns False, and keeps nothing, where the job is not the runner's any more.
+        for people.  operation_remark: why the motor's parameters cannot be estimated from this start.
+        Returns False, and keeps nothing, where the job is not the runner's any more.
         Raises NotFoundError, UnstorableDiagnosisError.
         """
         with self._write() as session:
@@ -139,10 +143,14 @@ class JobRows(Sessions):
             recording.state = RecordingState.DIAGNOSED
             recording.reason = None if left_out is None else storable(left_out)
             recording.recorded_ns = recorded_ns
+            recording.operation = diagnosis.operation
+            recording.operation_remark = None if operation_remark is None else storable(operation_remark)
             withdraw_clock(recording)
             session.flush()
             diagnose_rows(session, recording.id, now_ns)
             keep_observation(session, recording.id, recording.motor, observation)
+            if diagnosis.operation in AT_REST:
+                note_standstill(session, recording.motor, min(recorded_ns, now_ns))
             return True
 
     def reject_recording(self, job_id: str, reason: str, *, now_ns: int, runner: str) -> None:
@@ -270,6 +278,7 @@ def _diagnosis_row(
         method=diagnosis.method,
         model=diagnosis.model,
         document=_document(diagnosis),
+        says_nothing=diagnosis.verdict is Verdict.UNDIAGNOSABLE and diagnosis.operation in EXPECTED,
     )
 
 

@@ -53,6 +53,22 @@ class MeasurementRows(Sessions):
                 ],
             )
 
+    def latest_sample(self, motor: str, *, since_ns: int) -> Measurement | None:
+        """Return what a motor's relay measured last, from a time on; None without anything."""
+        query = (
+            select(MeasurementRow.time_ns, MeasurementRow.samples, *_COLUMNS.values())
+            .where(
+                MeasurementRow.motor == motor,
+                MeasurementRow.step_s == AveragingStep.AS_SAMPLED.value,
+                MeasurementRow.time_ns >= since_ns,
+            )
+            .order_by(MeasurementRow.time_ns.desc())
+            .limit(1)
+        )
+        with self._read() as session:
+            row = session.execute(query).first()
+            return None if row is None else _measurement(*row)
+
     def average_measurements(self, *, now_ns: int) -> None:
         """Make the means of all intervals that are over and have none yet.
 

@@ -2,10 +2,11 @@
 
 from collections.abc import Sequence
 
-from sqlalchemy import Select, func, null, select, union_all
+from sqlalchemy import ColumnElement, Select, and_, func, null, select, union_all
 from sqlalchemy.orm import Session, aliased
 
 from core.diagnosis.verdict import Verdict
+from core.operation import Operation
 from service.storage.models import (
     DiagnosisRow,
     IedRow,
@@ -20,6 +21,7 @@ from service.storage.records import (
     MotorHealth,
     Page,
     Quantity,
+    RecordedStarts,
     RecordingEntry,
     TrendPoint,
     interval_of,
@@ -84,14 +86,17 @@ class MotorHealthRows(Sessions):
         to_ns: int | None = None,
         after: Cursor | None = None,
     ) -> Page[TrendPoint]:
-        """Return a figure of each recording, oldest first, from_ns <= time < to_ns. Raises NotFoundError."""
+        """Return a figure of each recording, oldest first, from_ns <= time < to_ns. Raises NotFoundError.
+
+        Recordings of a motor that stands, starts, stops or trips are not among them.
+        """
         # All of these columns are in the index: no row with its document is read.
         query = select(
             DiagnosisRow.recorded_ns,
             *_FIGURES[quantity],
             DiagnosisRow.verdict,
             DiagnosisRow.recording_id,
-        ).where(DiagnosisRow.motor == motor, DiagnosisRow.current)
+        ).where(DiagnosisRow.motor == motor, DiagnosisRow.current, DiagnosisRow.says_nothing.is_(False))
         if from_ns is not None:
             query = query.where(DiagnosisRow.recorded_ns >= from_ns)
         if to_ns is not None:
@@ -111,13 +116,14 @@ def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHea
     diagnosis = aliased(DiagnosisRow)
     latest_diagnosis = (
         select(diagnosis.id)
-        .where(diagnosis.motor == MotorRow.name, diagnosis.current)
+        .where(diagnosis.motor == MotorRow.name, diagnosis.current, diagnosis.says_nothing.is_(False))
         .order_by(diagnosis.recorded_ns.desc(), diagnosis.id.desc())
         .limit(1)
     )
     said = select(*_SAID).where(DiagnosisRow.id.in_(_for_each(names, latest_diagnosis)))
     diagnoses = {row.motor: LatestDiagnosis(*row) for row in session.execute(said)}
     recordings = _latest_recordings(session, names)
+    starts = _starts(session, names)
     conditions = conditions_of(session, names)
     links = select(*columns_of(IedEntry, IedRow)).where(IedRow.name.in_({motor.ied for motor in motors}))
     relays = {row.name: IedEntry(*row) for row in session.execute(links)}
@@ -128,6 +134,7 @@ def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHea
             condition=conditions[motor.name],
             diagnosis=diagnoses.get(motor.name),
             last_recording=recordings.get(motor.name),
+            starts=starts.get(motor.name),
         )
         for motor in motors
     )
@@ -159,6 +166,22 @@ def _latest_recordings(session: Session, motors: Sequence[str]) -> dict[str, Rec
         .order_by(time_ns, RecordingRow.id)
     )
     return {row.motor: RecordingEntry(*row) for row in session.execute(latest)}
+
+
+def _starts(session: Session, motors: Sequence[str]) -> dict[str, RecordedStarts]:
+    """Return the starts of each motor from which its parameters can be estimated."""
+    time_ns = func.coalesce(RecordingRow.recorded_ns, RecordingRow.announced_ns)
+    usable = (
+        select(RecordingRow.motor, func.count(), func.max(time_ns))
+        .where(RecordingRow.motor.in_(motors), is_usable_start())
+        .group_by(RecordingRow.motor)
+    )
+    return {motor: RecordedStarts(number, latest) for motor, number, latest in session.execute(usable)}
+
+
+def is_usable_start() -> ColumnElement[bool]:
+    """Return the condition that the parameters of a motor can be estimated from a recording."""
+    return and_(RecordingRow.operation == Operation.START, RecordingRow.operation_remark.is_(None))
 
 
 def _for_each(motors: Sequence[str], latest: Select[str]) -> Select[str]:

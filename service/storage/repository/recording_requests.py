@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 from service.storage.errors import OutOfServiceError, StateConflictError, TooManyWaitingError
 from service.storage.models import IedRow, LeaseRow, MotorRow, RecordingRequestRow
 from service.storage.records import Cursor, Page, RecordingRequest
+from service.storage.repository.conditions import note_standstill
 from service.storage.repository.leases import require_lease
 from service.storage.repository.sessions import (
     Order,
@@ -27,7 +28,11 @@ from service.storage.states import IN_THE_RELAY, RecordingRequestOrigin, Recordi
 from service.storage.texts import storable
 
 OPEN = (RecordingRequestState.REQUESTED, *IN_THE_RELAY)
-ENDED = (RecordingRequestState.DIAGNOSED, RecordingRequestState.FAILED)
+ENDED = (
+    RecordingRequestState.DIAGNOSED,
+    RecordingRequestState.FAILED,
+    RecordingRequestState.SKIPPED,
+)
 
 KIND = "event report"
 """Error messages call a recording request by this name."""
@@ -73,6 +78,32 @@ class RecordingRequestRows(Sessions):
             if not where.in_service or only(session, is_open) is not None:
                 return None
             return _request(session, where, RecordingRequestOrigin.SCHEDULE, key, now_ns)
+
+    def skip_recording(self, motor: str, reason: str, *, due_ns: int, now_ns: int) -> bool:
+        """Note that what a motor's schedule asks for at `due_ns` is not recorded, since the motor stands.
+
+        Returns False, and changes nothing, where that time was dealt with before or the motor left the plant.
+        Raises NotFoundError.
+        """
+        key = f"schedule {due_ns}"
+        with self._write() as session:
+            where = found(session, MotorRow, motor, "motor", lock=True)
+            if (
+                not where.in_service
+                or _of_key(session, motor, RecordingRequestOrigin.SCHEDULE, key) is not None
+            ):
+                return False
+            _request(
+                session,
+                where,
+                RecordingRequestOrigin.SCHEDULE,
+                key,
+                now_ns,
+                state=RecordingRequestState.SKIPPED,
+                reason=storable(reason),
+            )
+            note_standstill(session, motor, now_ns)
+            return True
 
     def recording_request(self, request_id: str) -> RecordingRequest:
         """Return a recording request by its id. Raises NotFoundError."""
@@ -190,14 +221,22 @@ def _of_key(
 
 
 def _request(
-    session: Session, motor: MotorRow, origin: RecordingRequestOrigin, key: str | None, now_ns: int
+    session: Session,
+    motor: MotorRow,
+    origin: RecordingRequestOrigin,
+    key: str | None,
+    now_ns: int,
+    *,
+    state: RecordingRequestState = RecordingRequestState.REQUESTED,
+    reason: str | None = None,
 ) -> RecordingRequest:
     row = RecordingRequestRow(
         id=str(uuid.uuid4()),
         motor=motor.name,
         ied=motor.ied,
         origin=origin,
-        state=RecordingRequestState.REQUESTED,
+        state=state,
+        reason=reason,
         idempotency_key=key,
         requested_ns=now_ns,
     )

@@ -7,6 +7,7 @@ from sqlalchemy import ColumnElement, delete, func, literal_column, select
 from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
+from core.operation import Operation
 from service.recording_store.store import StoredRecording
 from service.storage.errors import TooManyWaitingError
 from service.storage.models import (
@@ -117,13 +118,19 @@ class RecordingRows(Sessions):
         after: Cursor | None = None,
         motor: str | None = None,
         state: RecordingState | None = None,
+        operation: Operation | None = None,
     ) -> Page[RecordingEntry]:
-        """Return a page of recordings, of one motor or all, in one state or any, latest first."""
+        """Return a page of recordings, of one motor or all, in one state or any, latest first.
+
+        operation: only those in which the motor does this.
+        """
         query = select(*columns_of(RecordingEntry, RecordingRow))
         if motor is not None:
             query = query.where(RecordingRow.motor == motor)
         if state is not None:
             query = query.where(RecordingRow.state == state)
+        if operation is not None:
+            query = query.where(RecordingRow.operation == operation)
         order: Order = [RecordingRow.announced_ns, RecordingRow.id]
         with self._read() as session:
             return page_of(session, query, order, RecordingEntry, limit=limit, after=after, descending=True)

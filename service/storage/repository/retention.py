@@ -22,6 +22,7 @@ from service.storage.models import (
 )
 from service.storage.records import Amount, DeletedRows
 from service.storage.repository.deletions import delete_row, to_delete
+from service.storage.repository.motor_health import is_usable_start
 from service.storage.repository.recording_requests import ENDED
 from service.storage.repository.sessions import Sessions
 from service.storage.states import DeletedBy, JobState, RecordingState
@@ -34,13 +35,17 @@ class ExpiredRecordings:
     """Recordings in a state, with a verdict, that were first seen before a time.
 
     verdict: None for recordings of any verdict or none.  keep_newest: so many of each motor stay in any case,
-    counted by when they were seen and by when they were recorded.
+    counted by when they were seen and by when they were recorded.  keep_starts: so many of the starts of each
+    motor from which its parameters can be estimated stay in any case, the newest.  says_nothing: whether the
+    motor stands, starts, stops or trips in them.
     """
 
     state: RecordingState
     verdict: Verdict | None
     before_ns: int
     keep_newest: int
+    keep_starts: int = 0
+    says_nothing: bool = False
 
 
 class RetentionRows(Sessions):
@@ -218,8 +223,16 @@ def _expired(session: Session, motor: str, expired: ExpiredRecordings) -> Column
                 DiagnosisRow.recording_id == RecordingRow.id,
                 DiagnosisRow.current,
                 DiagnosisRow.verdict == expired.verdict,
+                DiagnosisRow.says_nothing.is_(expired.says_nothing),
             )
         )
+    kept_starts = (
+        select(RecordingRow.id)
+        .where(RecordingRow.motor == motor, is_usable_start())
+        .order_by(RecordingRow.announced_ns.desc(), RecordingRow.id.desc())
+        .limit(expired.keep_starts)
+    )
+    conditions.append(RecordingRow.id.not_in(session.scalars(kept_starts).all()))
     return and_(*conditions)
 
 

@@ -93,8 +93,9 @@ ORDER: list[tuple[str, str, Callable[[], Recording]]] = [
     ("a stop with the voltage", "stop", lambda: edited(
         stopped(steady()), VOLTAGES, np.linspace(1, 0, 6_000))),
     ("a locked rotor", "running: a start, or a stalled motor", lambda: locked(steady())),
-    ("off, voltage on", "running: there is no current", lambda: noisy_standstill(steady())),
-    ("all off", "running: neither voltage nor current", lambda: edited(steady(), CURRENTS + VOLTAGES, 0.0)),
+    ("off, voltage on", "not-running: there is no current", lambda: noisy_standstill(steady())),
+    ("all off", "not-running: there is neither voltage", lambda: edited(
+        steady(), CURRENTS + VOLTAGES, 0.0)),
     ("held samples", "held samples IB", lambda: repeated(steady(), [1], 40)),
     ("held samples everywhere", "held samples VA", lambda: repeated(steady(), CURRENTS + VOLTAGES, 40)),
     ("held samples at 42 Hz", "held samples V", lambda: repeated(at_frequency(42.0), VOLTAGES, 40)),

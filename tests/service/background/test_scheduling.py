@@ -11,7 +11,8 @@ from core.units import NANOSECONDS_PER_DAY
 from service.background.scheduling import LONGEST_DELAY_NS, Scheduler
 from service.plant import Bus, Schedule
 from service.storage import Repository
-from service.storage.records import RecordingRequest
+from service.storage.records import RecordingRequest, Sample
+from service.storage.states import RecordingRequestState
 from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 from tests.service.fixtures import database_url, engine, repository
 
@@ -154,3 +155,55 @@ def test_a_daily_time_is_the_next_of_its_kind(minute: int, hour: int, after_s: i
     days, passed_s = divmod(after_s, 86_400)
     expected_s = 86_400 * (days + (passed_s >= of_day_s)) + of_day_s
     assert Schedule.parse(f"{minute} {hour} * * *").next_after(after_s * SECOND_NS) == expected_s * SECOND_NS
+
+
+def only_running(repository: Repository) -> Scheduler:
+    pump, fan = two_motor_plant().motors
+    schedule = Schedule.parse("* * * * *", only_running=True)
+    return Scheduler([replace(pump, schedule=schedule), fan], repository, since_ns=NOW_NS)
+
+
+def measured(repository: Repository, time_ns: int, **currents_A: float) -> None:
+    repository.add_samples([Sample("PUMP-A1", time_ns, dict(currents_A))])
+
+
+def test_a_motor_that_stands_is_not_recorded_and_that_is_told(repository: Repository) -> None:
+    scheduled = only_running(repository)
+    measured(repository, DUE_NS - 5 * SECOND_NS, ia_A=0.001, ib_A=0.002, ic_A=0.0)
+    scheduled.request_due(DUE_NS)
+    (report,) = reports(repository)
+    assert report.state is RecordingRequestState.SKIPPED
+    assert report.reason is not None
+    assert report.reason.startswith("the motor stands: its relay measures 0.002 A")
+    assert repository.open_recording_requests("A1_SEL710") == ()
+    assert repository.condition("PUMP-A1").stood_ns == DUE_NS
+    assert repository.counts().recording_requests[RecordingRequestState.SKIPPED] == 1
+
+
+def test_a_motor_that_runs_is_recorded(repository: Repository) -> None:
+    measured(repository, DUE_NS - 5 * SECOND_NS, ia_A=1.2, ib_A=1.2, ic_A=1.1)
+    only_running(repository).request_due(DUE_NS)
+    assert [report.state for report in reports(repository)] == [RecordingRequestState.REQUESTED]
+
+
+@pytest.mark.parametrize("values", [{"power_W": 0.0}, {}], ids=["no currents", "nothing"])
+def test_a_motor_of_which_no_current_is_known_is_recorded(
+    repository: Repository, values: dict[str, float]
+) -> None:
+    measured(repository, DUE_NS - 5 * SECOND_NS, **values)
+    only_running(repository).request_due(DUE_NS)
+    assert [report.state for report in reports(repository)] == [RecordingRequestState.REQUESTED]
+
+
+def test_old_values_tell_nothing(repository: Repository) -> None:
+    measured(repository, DUE_NS - 5 * MINUTE_NS, ia_A=0.0, ib_A=0.0, ic_A=0.0)
+    only_running(repository).request_due(DUE_NS)
+    assert [report.state for report in reports(repository)] == [RecordingRequestState.REQUESTED]
+
+
+def test_two_services_skip_once(repository: Repository) -> None:
+    first, second = only_running(repository), only_running(repository)
+    measured(repository, DUE_NS, ia_A=0.0)
+    first.request_due(DUE_NS)
+    second.request_due(DUE_NS)
+    assert len(reports(repository)) == 1

@@ -190,7 +190,7 @@ def test_without_settings_everything_is_kept(
 ) -> None:
     uploaded(repository, store, 0, fault())
     uploaded(repository, store, 1, None)
-    assert RetentionSettings().model_dump(exclude={"keep_newest"}, exclude_none=True) == {}
+    assert RetentionSettings().model_dump(exclude={"keep_newest", "keep_starts"}, exclude_none=True) == {}
     assert apply(Settings(data_directory=tmp_path), repository, 3000) == {}
     assert len(left(repository)) == 2
 
