@@ -186,14 +186,11 @@ def test_a_motor_may_have_a_schedule(motors: Path) -> None:
     assert plant.motor("FAN-A2").schedule == Schedule("30 6 * * MON")
     assert plant.motor("PUMP-A1").schedule is None
     only_running = 'name = "FAN-A2"\nschedule_only_running = true\n'
+    when = Schedule("30 6 * * MON", only_running=True)
     motors.write_text(text.replace('name = "FAN-A2"', f'{only_running}schedule = "30 6 * * MON"'))
-    assert read_plant(settings(motors)).motor("FAN-A2").schedule == Schedule(
-        "30 6 * * MON", only_running=True
-    )
+    assert read_plant(settings(motors)).motor("FAN-A2").schedule == when
     motors.write_text(text.replace('name = "FAN-A2"', only_running))
-    with pytest.raises(
-        PlantError, match="motor FAN-A2: schedule_only_running: expected a schedule beside it"
-    ):
+    with pytest.raises(PlantError, match="schedule_only_running: expected a schedule beside it"):
         read_plant(settings(motors))
     motors.write_text(text.replace('name = "FAN-A2"', 'name = "FAN-A2"\nschedule = "at dawn"'))
     with pytest.raises(PlantError, match=r"motor FAN-A2: schedule: expected 5 fields.*found 'at dawn'"):

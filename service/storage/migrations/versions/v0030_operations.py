@@ -64,9 +64,8 @@ def upgrade() -> None:
         "diagnoses", sa.Column("says_nothing", sa.Boolean(), nullable=False, server_default=sa.false())
     )
     op.add_column("conditions", sa.Column("stood_ns", sa.BigInteger(), nullable=True))
-    database = op.get_bind().dialect.name
-    for statement in (OPERATIONS, SAYS_NOTHING, UNUSABLE):
-        op.execute(sa.text(_escaped(statement.format(reason=REASON[database], true=TRUE[database]))))
+    for statement in statements(op.get_bind().dialect.name):
+        op.execute(statement)
     for name, columns in INDEXES.items():
         op.create_index(name, "recordings", [*columns])
     op.drop_index(TREND, table_name="diagnoses")
@@ -85,6 +84,14 @@ def downgrade() -> None:
     op.drop_column("diagnoses", "says_nothing")
     for name in ("operation_remark", "operation"):
         op.drop_column("recordings", name)
+
+
+def statements(database: str) -> list[sa.TextClause]:
+    """Return what takes over what older diagnoses say in words."""
+    return [
+        sa.text(_escaped(statement.format(reason=REASON[database], true=TRUE[database])))
+        for statement in (OPERATIONS, SAYS_NOTHING, UNUSABLE)
+    ]
 
 
 def _escaped(statement: str) -> str:

@@ -1,0 +1,157 @@
+"""What a motor does in its recordings: kept with them, and counted among the bad ones nowhere."""
+
+from dataclasses import replace
+
+import pytest
+from sqlalchemy import Engine, text
+
+from core.diagnosis.verdict import Diagnosis, Verdict
+from core.operation import Operation
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from service.storage.repository.retention import ExpiredRecordings
+from service.storage.states import RecordingState
+from testing.service.job_runner import RUNNER
+from testing.service.plants import NOW_NS, SECOND_NS, fault
+
+MOTOR = "PUMP-A1"
+
+
+def of(operation: Operation | None) -> Diagnosis:
+    if operation is Operation.RUNNING:
+        return replace(fault(), operation=operation)
+    return replace(
+        fault(), verdict=Verdict.UNDIAGNOSABLE, mu_f=None, mu_f_ci95=None, theta_f=None, operation=operation
+    )
+
+
+class Recorded:
+    """Recordings of a motor, one a second."""
+
+    def __init__(self, repository: Repository, store: RecordingStore) -> None:
+        self.repository, self._store, self._number = repository, store, 0
+
+    def add(self, operation: Operation | None, remark: str | None = None) -> str:
+        self._number += 1
+        now_ns = NOW_NS + self._number * SECOND_NS
+        stored = self._store.store({f"E{self._number}.CFF": str(self._number).encode()})
+        added = self.repository.add_recording(stored, motor=MOTOR, now_ns=now_ns)
+        claimed = self.repository.claim_job(now_ns=now_ns, runner=RUNNER)
+        assert claimed is not None
+        self.repository.finish_job(
+            claimed.job.id,
+            of(operation),
+            recorded_ns=now_ns,
+            now_ns=now_ns,
+            runner=RUNNER,
+            operation_remark=remark,
+        )
+        return added.recording.id
+
+
+@pytest.fixture
+def recorded(repository: Repository, store: RecordingStore) -> Recorded:
+    return Recorded(repository, store)
+
+
+def test_recordings_are_listed_by_what_the_motor_does(recorded: Recorded) -> None:
+    running, start, unknown = (recorded.add(each) for each in (Operation.RUNNING, Operation.START, None))
+    found = recorded.repository.recordings(limit=10, operation=Operation.START).items
+    assert [(one.id, one.operation) for one in found] == [(start, Operation.START)]
+    assert recorded.repository.recording(running).operation is Operation.RUNNING
+    assert recorded.repository.recording(unknown).operation is None
+
+
+def test_a_motor_that_stands_keeps_its_latest_verdict(recorded: Recorded) -> None:
+    running = recorded.add(Operation.RUNNING)
+    for other in (Operation.START, Operation.STOP, Operation.TRIP, Operation.NOT_RUNNING):
+        latest = recorded.add(other)
+    health = recorded.repository.health(MOTOR)
+    assert health.diagnosis is not None
+    assert health.diagnosis.recording_id == running
+    assert health.last_recording is not None
+    assert health.last_recording.id == latest
+    assert [point.recording_id for point in recorded.repository.trend(MOTOR, "mu_f", limit=9).items] == [
+        running
+    ]
+
+
+def test_a_record_that_is_bad_is_the_latest(recorded: Recorded) -> None:
+    recorded.add(Operation.RUNNING)
+    bad = recorded.add(None)
+    health = recorded.repository.health(MOTOR)
+    assert health.diagnosis is not None
+    assert (health.diagnosis.recording_id, health.diagnosis.verdict) == (bad, Verdict.UNDIAGNOSABLE)
+
+
+def test_only_starts_that_can_be_used_are_offered(recorded: Recorded) -> None:
+    assert recorded.repository.health(MOTOR).starts is None
+    recorded.add(Operation.START, "a soft starter")
+    assert recorded.repository.health(MOTOR).starts is None
+    recorded.add(Operation.START)
+    recorded.add(Operation.START)
+    starts = recorded.repository.health(MOTOR).starts
+    assert starts is not None
+    assert (starts.number, starts.latest_ns) == (2, NOW_NS + 3 * SECOND_NS)
+
+
+def test_a_motor_is_known_to_have_stood(recorded: Recorded) -> None:
+    recorded.add(Operation.START)
+    assert recorded.repository.condition(MOTOR).stood_ns is None
+    recorded.add(Operation.NOT_RUNNING)
+    recorded.add(Operation.RUNNING)
+    assert recorded.repository.condition(MOTOR).stood_ns == NOW_NS + 2 * SECOND_NS
+
+
+def test_retention_keeps_the_newest_starts(recorded: Recorded) -> None:
+    old, kept = recorded.add(Operation.START), recorded.add(Operation.START)
+    standing = recorded.add(Operation.NOT_RUNNING)
+    refused = recorded.add(None)
+    recorded.add(Operation.RUNNING)
+    for says_nothing, deleted in ((True, {old, standing}), (False, {refused})):
+        expired = ExpiredRecordings(
+            RecordingState.DIAGNOSED,
+            Verdict.UNDIAGNOSABLE,
+            NOW_NS + 60 * SECOND_NS,
+            keep_newest=1,
+            keep_starts=1,
+            says_nothing=says_nothing,
+        )
+        before = {one.id for one in recorded.repository.recordings(limit=10).items}
+        recorded.repository.forget_recordings(MOTOR, 10, expired=expired, reason="old", now_ns=NOW_NS)
+        left = {one.id for one in recorded.repository.recordings(limit=10).items}
+        assert before - left == deleted
+        assert kept in left
+
+
+def test_older_diagnoses_tell_what_they_said_in_words(recorded: Recorded, engine: Engine) -> None:
+    """What the migration does with rows of an earlier version."""
+    from service.storage.migrations.versions import v0030_operations as migration
+
+    reasons = {
+        "start: the motor starts, its current comes and reaches 6 times the rated one: ...": ("start", None),
+        "start: the motor runs up, its current falls": ("start", "diagnose this recording again"),
+        "stop: the motor is switched off within the record": ("stop", None),
+        "running: there is no current at the supply's frequency": ("not-running", None),
+        "frequency: 42 Hz": (None, None),
+    }
+    ids = [recorded.add(None) for _ in reasons]
+    running = recorded.add(Operation.RUNNING)
+    with engine.begin() as connection:
+        for recording_id, reason in zip(ids, reasons, strict=True):
+            connection.execute(
+                text("UPDATE diagnoses SET document = :document WHERE recording_id = :id"),
+                {"document": f'{{"reasons": ["{reason}"]}}', "id": recording_id},
+            )
+        connection.execute(text("UPDATE recordings SET operation = NULL"))
+        for statement in migration.statements(engine.dialect.name):
+            connection.execute(statement)
+    for recording_id, (operation, remark) in zip(ids, reasons.values(), strict=True):
+        entry = recorded.repository.recording(recording_id)
+        assert entry.operation == operation
+        assert (entry.operation_remark or "").startswith(remark or "")
+        assert (entry.operation_remark is None) == (remark is None)
+    assert recorded.repository.recording(running).operation is Operation.RUNNING
+    health = recorded.repository.health(MOTOR)
+    assert health.diagnosis is not None
+    assert health.diagnosis.recording_id == running
