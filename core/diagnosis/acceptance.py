@@ -20,6 +20,9 @@ from core.quality.trip_signal import is_tripped
 from core.recordings import Quantity, Recording
 from core.signals.terminals import Terminals, terminals
 
+LONGEST_START_S = 30.0
+"""What the motor does is looked for in so much of a record, at its end: heavy fans take as long to start."""
+
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
@@ -149,8 +152,12 @@ def _operation(
     found = list(quality)
     if recording.duration_s > LONGEST_RECORD_S:
         whole = terminals(
-            _currents_of(recording),
+            recording,
             currents=motor.channels.currents,
+            phase_voltages=motor.channels.phase_voltages,
+            line_voltages=motor.channels.line_voltages,
+            longest_s=LONGEST_START_S,
+            voltage_ratio=motor.transformers.voltage_ratio,
             current_ratio=motor.transformers.current_ratio,
         )
         if np.isfinite(whole.current_abc).all():

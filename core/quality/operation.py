@@ -8,7 +8,6 @@ are lost from a motor that is switched off.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from core.quality.circle_diagram import CircleDiagram, circle_diagram
 from core.quality.currents import CLEAN, COMPUTED_SUM, LEAST_OF_NO_LOAD
 from core.quality.finding import QualityFinding, finding
 from core.quality.magnitude import LEAST_SIGNAL, is_far_too_large
+from core.quality.samples import FEWEST_SAMPLES_A_CYCLE
 from core.signals.clarke import CLARKE
 from core.signals.phasors import fundamental_phasors
 from core.signals.sequence import sequence_phasors
@@ -127,24 +127,22 @@ def course_of(current_abc: Array, per_cycle: float) -> Course | None:
         The course; None where the record is too short for one, or has no current at all.
     """
     edges = np.floor(np.arange(int(current_abc.shape[1] / per_cycle) + 1) * per_cycle).astype(np.int64)
-    if edges.size <= FEWEST_CYCLES or per_cycle < FEWEST_CYCLES:
+    if edges.size <= FEWEST_CYCLES:
         return None
-    turn = np.exp(-2j * np.pi * np.arange(current_abc.shape[1]) / per_cycle)
-    rms, fundamental, stuck = [], [], []
-    for first, last in pairwise(edges):
-        part = current_abc[:, first:last]
-        mean = part.mean(axis=1, keepdims=True)
-        rms.append(float(np.sqrt(np.mean((part - mean) ** 2))))
-        phasors = ((part - mean) * turn[first:last]).mean(axis=1)
-        fundamental.append(float(np.sqrt(2.0 * np.mean(np.abs(phasors) ** 2))))
-        stuck.append(float(np.abs(mean).max()) if float(np.ptp(part, axis=1).max()) == 0.0 else 0.0)
-    course = np.array(rms)
+    x, first, length = current_abc[:, : edges[-1]], edges[:-1], np.diff(edges)
+    mean = np.add.reduceat(x, first, axis=1) / length
+    square = np.add.reduceat(x**2, first, axis=1) / length
+    course = np.sqrt(np.maximum(square - mean**2, 0.0).mean(axis=0))
     if course.max() == 0.0:
         return None
-    waves = np.array(fundamental)
-    at_rest = (course < MOST_NOISE * course.max()) & (waves < NO_CURRENT * course.max())
+    turn = np.exp(-2j * np.pi * np.arange(edges[-1]) / per_cycle)
+    offset = mean * np.add.reduceat(turn, first)
+    phasors = (np.add.reduceat(x * turn, first, axis=1) - offset) / length
+    waves = np.sqrt(2.0 * np.mean(np.abs(phasors) ** 2, axis=0))
+    swing = (np.maximum.reduceat(x, first, axis=1) - np.minimum.reduceat(x, first, axis=1)).max(axis=0)
     # A converter that froze shows one value, and not all three phases cross zero at once.
-    at_rest &= np.array(stuck) < FROZEN * course.max()
+    frozen = (swing == 0.0) & (np.abs(mean).max(axis=0) > FROZEN * course.max())
+    at_rest = (course < MOST_NOISE * course.max()) & (waves < NO_CURRENT * course.max()) & ~frozen
     return Course(course, waves, at_rest, edges)
 
 
@@ -186,9 +184,9 @@ def operation(terminals: Terminals, motor: Motor, *, tripped: bool = False) -> I
     QualityFinding
         A failure, with what the motor does.
     """
-    if is_far_too_large(terminals, motor.nameplate):
-        return
     per_cycle = terminals.sample_rate_hz / motor.nameplate.rated_frequency_Hz
+    if per_cycle < FEWEST_SAMPLES_A_CYCLE or is_far_too_large(terminals, motor.nameplate):
+        return
     circle = circle_diagram(motor, motor.nameplate.rated_frequency_Hz)
     course = course_of(terminals.current_abc, per_cycle)
     if course is not None and course.is_clean and course.is_rest.any() | _runs_up(course, motor, circle):
