@@ -120,7 +120,7 @@ def test_one_odd_ied_does_not_keep_a_plant_from_starting(
 def test_a_file_without_a_relay_to_serve_says_why(tmp_path: Path) -> None:
     text = scl_text(node_zero="", nodes="")
     document = scl.read(write_scl(tmp_path / "relay.icd", text))
-    with pytest.raises(SimulatorError, match=r"no relay to serve: R1: .*no data attribute"):
+    with pytest.raises(SimulatorError, match=r"no relay to serve: R1: .*logical node with data objects"):
         Simulator(document, {}, files=tmp_path, addresses={"R1": Address(LOOPBACK, free_port())})
     with pytest.raises(SimulatorError, match=r"R1: .*found none; --host and --port give it an address"):
         Simulator(scl.read(write_scl(tmp_path / "no.cid", scl_text(communication=""))), {}, files=tmp_path)
@@ -148,3 +148,43 @@ def test_a_control_whose_model_the_file_leaves_open_can_be_operated(tmp_path: Pa
     with simulated(path, tmp_path / "files", "RELAY_2") as (_, clients):
         clients["RELAY_2"].operate("RELAY_2PRO/FLTRDRE1.RcdTrg", value=True)
         wait_until(lambda: clients["RELAY_2"].files("EVENTS"), "a record")
+
+
+ARRAYS = TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="HA" type="HMV"/>').replace(
+    '<DOType id="MV"',
+    '<DOType id="HMV" cdc="HMV"><SDO name="har" type="MV" count="64"/></DOType><DOType id="MV"',
+)
+
+
+@pytest.mark.parametrize(
+    ("member", "served"),
+    [
+        ('doName="HA.har" daName="mag.f" ix="63"', 1),
+        ('doName="HA.har" daName="mag.f" ix="64"', 0),
+        ('doName="HA.har" daName="mag.f"', 0),
+        ('doName="HA.har"', 1),
+    ],
+)
+def test_members_beyond_an_array_are_not_served(tmp_path: Path, member: str, served: int) -> None:
+    """The MMS library dies of reading an element that an array has not."""
+    data_set = f'<DataSet name="D"><FCDA lnClass="GGIO" lnInst="1" {member} fc="MX"/></DataSet>'
+    node_zero = f'<LN0 lnClass="LLN0" inst="" lnType="LLN0">{data_set}</LN0>'
+    path = write_scl(tmp_path / "relay.cid", scl_text(templates=ARRAYS, node_zero=node_zero))
+    with simulated(path, tmp_path / "files", "R1") as (_, clients):
+        assert len(clients["R1"].read_data_set("R1LD0/LLN0.D")) == served
+
+
+def test_a_status_of_a_wrong_constraint_is_not_published(tmp_path: Path) -> None:
+    """The MMS library has no value for what is only operated."""
+    quality = '<DA name="q" bType="Quality" fc="ST"'
+    shape = SHAPES["edition-2.iid"].replace(quality, quality.replace("ST", "CO"))
+    path = write_scl(tmp_path / "relay.iid", shape)
+    with simulated(path, tmp_path / "files", "RELAY_2") as (_, clients):
+        assert clients["RELAY_2"].read("RELAY_2PRO/FLTRDRE1.RcdMade.stVal", FunctionalConstraint.ST) is False
+
+
+def test_an_ied_and_devices_with_hyphens_are_served(tmp_path: Path) -> None:
+    text = scl_text(device='inst="BAY-1"').replace('"R1"', '"MCC-R1"')
+    path = write_scl(tmp_path / "relay.cid", text)
+    with simulated(path, tmp_path / "files", "MCC-R1") as (_, clients):
+        assert clients["MCC-R1"].read("MCC-R1BAY-1/GGIO1.Ind1.stVal", FunctionalConstraint.ST) is False
