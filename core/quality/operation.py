@@ -49,6 +49,8 @@ BALANCED = 3.0
 THREE_WIRES = 0.05
 """Most that the currents of three wires leave in their sum, over the greatest; hum leaves more."""
 FEWEST_CYCLES = 3
+LARGEST_OFFSET_A = 1e12
+"""Currents beyond are none, however little they change, and leave no digits to compute with."""
 RECORD_AGAIN = "record again while it runs"
 WHAT_TO_DO = (
     "`mcc commission` estimates the motor's parameters from such a record; a diagnosis needs one of steady "
@@ -186,6 +188,8 @@ def operation(terminals: Terminals, motor: Motor, *, tripped: bool = False) -> I
     """
     per_cycle = terminals.sample_rate_hz / motor.nameplate.rated_frequency_Hz
     if per_cycle < FEWEST_SAMPLES_A_CYCLE or is_far_too_large(terminals, motor.nameplate):
+        return
+    if float(np.abs(terminals.current_abc).max()) > LARGEST_OFFSET_A:
         return
     circle = circle_diagram(motor, motor.nameplate.rated_frequency_Hz)
     course = course_of(terminals.current_abc, per_cycle)
