@@ -15,6 +15,7 @@ from core.commissioning.start import Start
 from core.commissioning.unknowns import HIGHEST_LOAD, LOWEST_LOAD
 from core.machines.parameters import Motor
 from core.quality import circle_diagram
+from core.quantity_text import plain, with_unit
 
 USUAL_PULL_OUT, POSSIBLE_PULL_OUT = (2.0, 5.0), (0.8, 10.0)
 """Pull-out over rated torque. IEC 60034-1 asks for 1.6 at least; catalogues of cage motors have 2 to 4."""
@@ -147,22 +148,23 @@ def _torque_and_inrush(motor: Motor, starts: Sequence[StartFound]) -> list[str]:
     circle = circle_diagram(motor, plate.rated_frequency_Hz)
     pull_out = circle.pull_out_torque_Nm / plate.rated_torque_Nm
     locked = plate.rated_voltage_V**2 * circle.at_standstill / plate.rated_power_W
+    power = with_unit(plate.rated_power_W, "W", 6)
     said = (
-        f"{pull_out:.2g} times the rated torque at pull-out and {locked:.2g} VA per rated watt with the "
-        "rotor locked"
+        f"{plain(pull_out, 2)} times the rated torque at pull-out and {with_unit(locked, 'VA', 2)} per rated "
+        "watt with the rotor locked"
     )
     if not (_within(pull_out, POSSIBLE_PULL_OUT) and _within(locked, POSSIBLE_LOCKED)):
         raise CommissioningError(
             ", ".join(start.record for start in starts),
             "nameplate",
-            expected=f"a motor of {plate.rated_power_W:g} W: {_text(USUAL_PULL_OUT)} times the rated torque "
-            f"at pull-out, {_text(USUAL_LOCKED)} VA per rated watt with the rotor locked",
+            expected=f"a motor of {power}: {_text(USUAL_PULL_OUT)} times the rated torque at pull-out, "
+            f" {_text(USUAL_LOCKED)} VA per rated watt with the rotor locked",
             found=f"{said}: {CHECK}",
         )
     if _within(pull_out, USUAL_PULL_OUT) and _within(locked, USUAL_LOCKED):
         return []
     return [
-        f"nameplate: {said} is unusual for a motor of {plate.rated_power_W:g} W ({_text(USUAL_PULL_OUT)} "
+        f"nameplate: {said} is unusual for a motor of {power} ({_text(USUAL_PULL_OUT)} "
         f"and {_text(USUAL_LOCKED)}); {CHECK}"
     ]
 
@@ -182,30 +184,33 @@ def _compared_with_motor_file(
         if abs(common) > limit:
             return [_ratio(common, inertia, known=INERTIA in off)]
     far = [
-        f"{name} ({exp(one):.2g} times)" for name, one in off.items() if abs(one) > log(prior.spread[name])
+        f"{name} ({plain(exp(one), 2)} times)"
+        for name, one in off.items()
+        if abs(one) > log(prior.spread[name])
     ]
     if far:
         return [f"motor file: the recording contradicts its {', '.join(far)}: is it this motor's? {CHECK}"]
     if abs(inertia) > log(OTHER_INERTIA) and max(map(abs, impedances), default=inf) < log(ALIKE):
         return [
-            f"motor file: the inertia is {exp(inertia):.2g} times the file's, all else alike: the load's "
-            "inertia counts, and pole_pairs squared does; check both"
+            f"motor file: the inertia is {plain(exp(inertia), 2)} times the file's, all else alike: the "
+            "load's inertia counts, and pole_pairs squared does; check both"
         ]
     return []
 
 
 def _ratio(common: float, inertia: float, *, known: bool) -> str:
-    said = f"motor file: all impedances are {exp(common):.3g} times the file's"
+    said = f"motor file: all impedances are {plain(exp(common))} times the file's"
     near = log(ALIKE)
     if known and abs(inertia + common) < near:
         return (
-            f"{said} and the inertia {exp(inertia):.3g} times: the recorded currents are {exp(-common):.3g} "
-            "times the true ones; check the current transformers' ratio and the units of the recording"
+            f"{said} and the inertia {plain(exp(inertia))} times: the recorded currents are "
+            f"{plain(exp(-common))} times the true ones; check the current transformers' ratio and the "
+            "units of the recording"
         )
     if known and abs(inertia - common) < near:
         return (
-            f"{said}, and the inertia too: the recorded voltages are {exp(common):.3g} times the true ones; "
-            "check the voltage transformers' ratio"
+            f"{said}, and the inertia too: the recorded voltages are {plain(exp(common))} times the true "
+            "ones; check the voltage transformers' ratio"
         )
     if abs(abs(common) - log(DELTA_FOR_STAR)) < near:
         return f"{said}, as if star were delta: check connection in [nameplate]"

@@ -21,6 +21,7 @@ from core.machines.supply import supply
 from core.machines.winding_frame import to_winding_frame
 from core.quality import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE, rated_current_A, sampled_well
 from core.quality.ratios import current_advice, voltage_advice
+from core.quantity_text import plain, with_unit
 from core.recordings import Channel, Recording
 from core.signals.clarke import clarke
 from core.signals.errors import SignalError
@@ -171,8 +172,8 @@ def _check_samples(measured: Terminals, nameplate: Nameplate, source: str) -> No
             raise CommissioningError(
                 source,
                 finding.name,
-                expected=f"a limit of {finding.limit:g} {finding.unit}",
-                found=f"{finding.value:g}: {finding.message}",
+                expected=f"a limit of {plain(finding.limit, 6)} {finding.unit}",
+                found=f"{plain(finding.value, 6)}: {finding.message}",
             )
 
 
@@ -252,8 +253,9 @@ def _supply_of(
         raise CommissioningError(
             source,
             "voltage",
-            expected=f"{LOWEST_VOLTAGE:.0%} to {HIGHEST_VOLTAGE:.0%} of {nameplate.rated_voltage_V:g} V",
-            found=f"{share:.2g} of it: a soft starter, or voltages scaled wrongly; "
+            expected=f"{LOWEST_VOLTAGE:.0%} to {HIGHEST_VOLTAGE:.0%} of "
+            f"{with_unit(nameplate.rated_voltage_V, 'V', 6)}",
+            found=f"{plain(share, 2)} of it: a soft starter, or voltages scaled wrongly; "
             + voltage_advice(share * nameplate.rated_voltage_V, nameplate, channels),
         )
     return frequency, phasors.sequence

@@ -13,6 +13,7 @@ from core.commissioning.errors import CommissioningError
 from core.commissioning.prior import prior_of
 from core.machines.parameters import Motor, Nameplate
 from core.quality import wired_well
+from core.quantity_text import plain
 from core.signals.terminals import Terminals
 
 INRUSH_CYCLES = 1.0
@@ -68,5 +69,5 @@ def check_wiring(
                 finding.name,
                 expected=f"currents and voltages of one motor, each in its place (limit {finding.limit:g} "
                 f"{finding.unit})",
-                found=f"{finding.value:.3g}: {finding.message}",
+                found=f"{plain(finding.value)}: {finding.message}",
             )

@@ -13,6 +13,7 @@ from core.diagnosis.tolerance import PARAMETERS, Systematic
 from core.diagnosis.verdict import Verdict
 from core.machines.typical import TYPICAL_REASON
 from core.quality.finding import QualityFinding, finding
+from core.quantity_text import plain
 
 PHASES = ("a", "b", "c")
 USUAL_OFFSET_CYCLES = 1 / 80
@@ -85,7 +86,7 @@ def _judged(
             "if they were recorded together, nameplate, ratios or parameters are not this motor's"
         )
     path = fit.value(PATH_RATIO)
-    bridged = f", bridged by {path:.2g} times the turns' own resistance" if path > 0.0 else ""
+    bridged = f", bridged by {plain(path, 2)} times the turns' own resistance" if path > 0.0 else ""
     explained = is_explained(explanation, tolerance)
     edges = {LOAD_LEVEL, TIME_OFFSET}.intersection(fit.at_bound)
     if edges:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from core.machines.motor_file_error import MotorFileError
 from core.machines.parameters import Connection, ParametersSource
+from core.quantity_text import plain
 
 ROUNDING = 1e-6
 """A value may lie so far beyond its ends, relatively: files have seven digits of it."""
@@ -89,7 +90,7 @@ class MotorTable:
         """
         value = self._take(key, default)
         low, high = ends
-        expected = expected or f"{low:g} to {high:g} {unit}"
+        expected = expected or f"{plain(low, 6)} to {plain(high, 6)} {unit}"
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 < value < inf:
             self._refuse(
                 key, "a number above zero" if isnan(low) else f"a number above zero, {expected}", value

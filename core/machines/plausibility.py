@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from math import sqrt
 
 from core.machines.parameters import MAGNETISING_OVER_SELF, Nameplate
+from core.quantity_text import plain
 
 RATED_POWER_W = (10.0, 100e6)
 RATED_VOLTAGE_V = (10.0, 50e3)
@@ -58,7 +59,7 @@ class Plausible:
 
     def __str__(self) -> str:
         """Return the range in words."""
-        return f"{self.least:.3g} to {self.most:.3g} {self.unit} ({self.because})"
+        return f"{plain(self.least)} to {plain(self.most)} {self.unit} ({self.because})"
 
 
 def plausible_power(rated_voltage_V: float) -> Plausible:
@@ -83,7 +84,7 @@ def plausible_power(rated_voltage_V: float) -> Plausible:
         max(RATED_POWER_W[0], least),
         min(RATED_POWER_W[1], most),
         "W",
-        f"{least_A:g} to {most_A:g} A at {rated_voltage_V:g} V",
+        f"{plain(least_A, 6)} to {plain(most_A, 6)} A at {plain(rated_voltage_V, 6)} V",
     )
 
 

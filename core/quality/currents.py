@@ -11,6 +11,7 @@ from core.quality.circle_diagram import CircleDiagram
 from core.quality.finding import QualityFinding, finding
 from core.quality.ratios import current_advice
 from core.quality.supply import Feed
+from core.quantity_text import with_unit
 from core.recordings import Channel
 from core.signals.clarke import CLARKE
 from core.signals.phasors import harmonic_phasors
@@ -184,6 +185,7 @@ def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     """
     no_load, standstill = circle.at_no_load * feed.strong, circle.at_standstill * feed.strong
     small = _is_small(currents, feed, circle)
+    drawn = f"no load {with_unit(no_load, 'A')}, locked rotor {with_unit(standstill, 'A')}"
     limit = LEAST_OF_NO_LOAD * no_load if small else IMPOSSIBLE_OF_STANDSTILL * standstill
     advice = current_advice(
         currents.strong,
@@ -193,8 +195,8 @@ def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     )
     yield finding(
         "current", currents.strong, limit, "A", passed=not small and currents.strong <= limit,
-        message=f"{currents.strong:.3g} A is {'less' if small else 'more'} than this motor can draw (no load "
-        f"{no_load:.3g} A, locked rotor {standstill:.3g} A): a wrong ratio, secondary amperes, kA for A, "
+        message=f"{with_unit(currents.strong, 'A')} is {'less' if small else 'more'} than this motor can "
+        f"draw ({drawn}): a wrong ratio, secondary amperes, kA for A, "
         f"or another motor's nameplate; {advice}",
     )  # fmt: skip
 

@@ -11,6 +11,7 @@ from core.operation import Operation
 from core.quality.finding import QualityFinding, finding
 from core.quality.ratios import voltage_cause
 from core.quality.supply import FREQUENCY_TOLERANCE, UNBALANCE, feed_of
+from core.quantity_text import plain
 from core.signals.terminals import Terminals
 
 LEAST_SIGNAL, HIGHEST_SIGNAL = 0.005, 1e4
@@ -73,7 +74,7 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
     if scaled:
         yield finding(
             "voltage", volts, LEAST_SIGNAL, "of rated", passed=False,
-            message=f"the voltages are a clean supply of {volts:.2g} of the rated one: {scaled}",
+            message=f"the voltages are a clean supply of {plain(volts, 2)} of the rated one: {scaled}",
         )  # fmt: skip
     elif volts < LEAST_SIGNAL and amps < LEAST_SIGNAL:
         yield finding(
@@ -83,8 +84,8 @@ def magnitude(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFin
     elif volts < LEAST_SIGNAL:
         yield finding(
             "voltage", volts, LEAST_SIGNAL, "of rated", passed=False,
-            message=f"current flows but the voltages are {volts:.2g} of rated: transformers off, fuses blown "
-            "or a wrong ratio or unit; without voltages, --currents-only gives a hint",
+            message=f"current flows but the voltages are {plain(volts, 2)} of rated: transformers off, fuses "
+            "blown or a wrong ratio or unit; without voltages, --currents-only gives a hint",
         )  # fmt: skip
     elif amps < NO_CURRENT:
         yield finding(
@@ -138,7 +139,7 @@ def _too_large(name: str, share: float) -> Iterator[QualityFinding]:
     if share > HIGHEST_SIGNAL:
         yield finding(
             name, share, HIGHEST_SIGNAL, "of rated", passed=False,
-            message=f"the samples reach {share:.3g} times the rated value: wrong ratio or unit",
+            message=f"the samples reach {plain(share)} times the rated value: wrong ratio or unit",
         )  # fmt: skip
 
 

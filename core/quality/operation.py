@@ -20,6 +20,7 @@ from core.quality.currents import CLEAN, COMPUTED_SUM, LEAST_OF_NO_LOAD
 from core.quality.finding import QualityFinding, finding
 from core.quality.magnitude import LEAST_SIGNAL, is_far_too_large
 from core.quality.samples import FEWEST_SAMPLES_A_CYCLE
+from core.quantity_text import plain
 from core.signals.clarke import CLARKE
 from core.signals.phasors import fundamental_phasors
 from core.signals.sequence import sequence_phasors
@@ -228,9 +229,9 @@ def _switching(
     else:
         kind, least, limit = Operation.START, last / greatest, RUN_UP
         message = (
-            f"the motor runs up, its current falls from {greatest / circle.rated_current_A:.2g} times the "
-            f"rated one to {last / first:.0%} of that: record while it runs for a diagnosis, or a start from "
-            "before it on for `mcc commission`"
+            f"the motor runs up, its current falls from "
+            f"{plain(greatest / circle.rated_current_A, 2)} times the rated one to {last / first:.0%} "
+            "of that: record while it runs for a diagnosis, or a start from before it on for `mcc commission`"
         )
     yield finding(
         str(kind), least, limit, "of the greatest current", passed=False, message=message, operation=kind
@@ -258,10 +259,11 @@ def _beginning(course: Course, over_rated: float, motor: Motor, *, from_rest: bo
     if from_rest and not course.is_direct:
         return (
             "the motor starts through a soft starter, a drive or a reduced voltage: its current rises slowly "
-            f"and reaches {over_rated:.2g} times the rated one; {NOT_DIRECT}"
+            f"and reaches {plain(over_rated, 2)} times the rated one; {NOT_DIRECT}"
         )
     return (
-        f"the motor starts, its current comes and reaches {over_rated:.2g} times the rated one: {WHAT_TO_DO}"
+        f"the motor starts, its current comes and reaches {plain(over_rated, 2)} times the rated one: "
+        f"{WHAT_TO_DO}"
     )
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from core.machines.base import Array
 from core.machines.parameters import Nameplate
 from core.quality.finding import QualityFinding, finding
+from core.quantity_text import plain, with_unit
 from core.recordings import Channel
 from core.signals.terminals import Terminals
 
@@ -74,7 +75,7 @@ def extent(terminals: Terminals, nameplate: Nameplate) -> Iterator[QualityFindin
     yield finding(
         "sample rate", per_cycle, FEWEST_SAMPLES_A_CYCLE if slow else MOST_SAMPLES_A_CYCLE, "samples a cycle",
         passed=FEWEST_SAMPLES_A_CYCLE <= per_cycle <= MOST_SAMPLES_A_CYCLE,
-        message=f"{per_cycle:.4g} samples a cycle are too {'few' if slow else 'many'}: expected "
+        message=f"{plain(per_cycle, 4)} samples a cycle are too {'few' if slow else 'many'}: expected "
         f"{FEWEST_SAMPLES_A_CYCLE:g} to {MOST_SAMPLES_A_CYCLE:g}",
     )  # fmt: skip
     both = (terminals.current_abc, terminals.voltages)
@@ -106,7 +107,7 @@ def clipping(channels: tuple[Channel, ...], samples: Array) -> Iterator[QualityF
             at_full = float(np.mean(np.abs(x) >= AT_FULL_SCALE * channel.full_scale))
             if at_full > CLIPPED_SHARE or share <= limit:
                 share, limit = at_full, CLIPPED_SHARE
-                where = f"its full scale of {channel.full_scale:g} {channel.unit}"
+                where = f"its full scale of {with_unit(channel.full_scale, channel.unit, 6)}"
         yield finding(
             f"clipping {channel.name}", share, limit, "share", passed=share <= limit,
             message=f"{channel.name} sits at {where} for {share:.1%} of the record: its crests are cut off; "

@@ -11,6 +11,7 @@ from core.machines.parameters import Nameplate
 from core.quality.assumed_supply import assumed_voltage
 from core.quality.finding import QualityFinding, finding
 from core.quality.ratios import voltage_advice
+from core.quantity_text import plain
 from core.recordings import Channel
 from core.signals.decimation import decimate
 from core.signals.errors import SignalError
@@ -228,7 +229,7 @@ def level(feed: Feed, terminals: Terminals, nameplate: Nameplate) -> Iterator[Qu
     yield finding(
         "voltage", volts, LOWEST_VOLTAGE if low else HIGHEST_VOLTAGE, "of rated",
         passed=LOWEST_VOLTAGE <= volts <= HIGHEST_VOLTAGE,
-        message=f"{volts:.3g} of the rated voltage"
+        message=f"{plain(volts)} of the rated voltage"
         + _scaling_hint(float(volts), nameplate, terminals.voltage_channels),
     )  # fmt: skip
 

@@ -6,7 +6,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-from rich.table import Table
 from rich.text import Text
 
 from core.commissioning.commissioning import commission
@@ -16,6 +15,7 @@ from core.machines.candidates import LoadLaw
 from core.machines.motor_file import read_plate
 from core.machines.motor_file_error import MotorFileError
 from core.machines.motor_file_writer import write_motor
+from core.quantity_text import plain, with_unit
 from core.recordings import RecordingError, read
 from service.cli.output import (
     WRONG_USE,
@@ -26,6 +26,7 @@ from service.cli.output import (
     progress,
     results,
 )
+from service.client.tables import FittedTable
 
 
 def commission_motor(
@@ -103,13 +104,13 @@ def _heading(records: Sequence[Path], found: Commissioning) -> str:
     return "\n".join(lines)
 
 
-def _table(output: Path, found: Commissioning) -> Table:
-    table = Table(title=Text(output.name), title_justify="left")
+def _table(output: Path, found: Commissioning) -> FittedTable:
+    table = FittedTable(title=Text(output.name), title_justify="left")
     for heading in ("quantity", "value", "95 % interval", "remark"):
         table.add_column(heading)
     for name, one in found.parameters.items():
         table.add_row(
-            name, f"{one.value:.5g}", _interval(one), Text(f"fixed: {one.fixed}" if one.fixed else "")
+            name, plain(one.value, 5), _interval(one), Text(f"fixed: {one.fixed}" if one.fixed else "")
         )
     for start in found.starts:
         table.add_section()
@@ -121,7 +122,10 @@ def _table(output: Path, found: Commissioning) -> Table:
             "time offset", f"{start.time_offset_s.value * 1e6:.1f} us", _interval(start.time_offset_s, 1e6)
         )
         table.add_row(
-            "residual", f"{start.residual_rms_A:.4g} A rms", "", f"{start.residual_share:.2%} of the current"
+            "residual",
+            f"{with_unit(start.residual_rms_A, 'A', 4)} rms",
+            "",
+            f"{start.residual_share:.2%} of the current",
         )
     table.add_section()
     table.add_row("effort", f"{found.evaluations} simulations", "", f"{found.compute_seconds:.1f} s")
@@ -135,7 +139,7 @@ def _table(output: Path, found: Commissioning) -> Table:
 
 
 def _interval(one: Estimate, scale: float = 1.0) -> str:
-    return f"{one.ci95[0] * scale:.5g} .. {one.ci95[1] * scale:.5g}" if one.ci95 else ""
+    return f"{plain(one.ci95[0] * scale, 5)} .. {plain(one.ci95[1] * scale, 5)}" if one.ci95 else ""
 
 
 @contextmanager

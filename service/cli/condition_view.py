@@ -5,11 +5,11 @@ from itertools import groupby, pairwise
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
 from rich.text import Text
 
 from service.cli.output import facts_table, one_line, results
 from service.client.conditions import cause, condition_lines, state_text
+from service.client.tables import FittedTable
 from service.client.verdicts import percent, to_the_second
 
 Document = Mapping[str, object]
@@ -35,7 +35,9 @@ def print_condition(
 ) -> None:
     """Print a condition, its course record by record, and the records that were not used, with reasons."""
     console = results()
-    console.print(Text(f"{one_line(str(condition['motor']))}: ", style="bold") + state_text(condition))
+    console.print(
+        Text(f"{one_line(str(condition['motor']))}: ", style="bold") + state_text(condition), soft_wrap=True
+    )
     console.print(Text(str(condition["advice"])), soft_wrap=True)
     console.print()
     console.print(facts_table(condition_lines(condition)[SAID_FIRST:]))
@@ -52,7 +54,7 @@ def _print_course(console: Console, history: Sequence[Document]) -> None:
         blocks = BARS if console.encoding.casefold().startswith("utf") else PLAIN_BARS
         console.print(Text(f"Level over {len(levels)} records, 0 to {percent(top)} %"), soft_wrap=True)
         console.print(Text(f"{INDENT}|{_bars(levels, top, blocks)}|"), soft_wrap=True)
-    table = Table(box=SIMPLE_HEAD)
+    table = FittedTable(box=SIMPLE_HEAD)
     for heading in ("from", "records", "condition", "level", "change"):
         table.add_column(heading)
     turns = [[*turn] for _, turn in groupby(history, key=lambda entry: (entry["state"], cause(entry)))]

@@ -4,7 +4,6 @@ import getpass
 from itertools import islice
 
 from rich.box import SIMPLE_HEAD
-from rich.table import Table
 from rich.text import Text
 
 from core.condition.events import ENDING
@@ -21,6 +20,7 @@ from service.cli.output import (
 )
 from service.client.conditions import condition_lines, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.tables import FittedTable
 from service.client.verdicts import level, to_the_second
 
 MOST_CHANGES = 1000
@@ -62,7 +62,7 @@ def list_notes(url: str, motor: str, *, as_json: bool) -> None:
     if as_json:
         print_document({"notes": notes})
         return
-    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+    table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("time", "kind", "by"):
         table.add_column(heading)
     table.add_column("text", max_width=READABLE_WIDTH)
@@ -109,8 +109,8 @@ def _notes(service: ServiceClient, motor: str) -> "islice[Document]":
     return islice(service.items(f"/motors/{segment(motor)}/notes", limit="1000"), MOST_CHANGES)
 
 
-def _history_table(changes: list[Document], notes: dict[object, Document]) -> Table:
-    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+def _history_table(changes: list[Document], notes: dict[object, Document]) -> FittedTable:
+    table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     table.add_column("time", no_wrap=True)
     table.add_column("condition")
     table.add_column("level", no_wrap=True)

@@ -6,12 +6,12 @@ from datetime import UTC, datetime
 
 from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, Progress, TextColumn
-from rich.table import Table
 from rich.text import Text
 
 from service.cli.output import progress, results
 from service.client.conditions import condition_of, state_text
 from service.client.rest_client import Document, ServiceClient
+from service.client.tables import FittedTable
 from service.client.verdicts import level
 from service.demo.month import Month
 from service.demo.plant import DemoPlant
@@ -92,9 +92,11 @@ def conditions_of(service: ServiceClient) -> dict[str, Document]:
     }
 
 
-def conditions_table(motors: Sequence[DemoMotor], conditions: Mapping[str, Document]) -> Table:
+def conditions_table(motors: Sequence[DemoMotor], conditions: Mapping[str, Document]) -> FittedTable:
     """Return a table of every motor's condition beside its truth."""
-    shown = Table(title="Conditions and truth", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
+    shown = FittedTable(
+        title="Conditions and truth", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True
+    )
     for heading in ("motor", "truth", "condition", "level", "since"):
         shown.add_column(heading)
     for motor in motors:

@@ -1,12 +1,12 @@
 """`mcc demo-status`: the conditions of a demo plant beside the truth, and whether they are right."""
 
 from rich.box import SIMPLE_HEAD
-from rich.table import Table
 from rich.text import Text
 
 from service.cli.output import failing_clearly, one_line, print_document, results
 from service.client.conditions import state_text
 from service.client.rest_client import ServiceClient, ServiceError
+from service.client.tables import FittedTable
 from service.client.verdicts import level, verdict_text
 from service.demo.results import truth_text
 from service.demo.status import MotorStatus, ask_plant
@@ -22,7 +22,7 @@ def show_demo(url: str, *, as_json: bool) -> None:
     if as_json:
         print_document({"motors": [motor.as_dict() for motor in motors], "right": right, "judged": judged})
         return
-    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+    table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("motor", "truth", "condition", "level", "latest verdict", "link"):
         table.add_column(heading)
     for motor in motors:

@@ -5,7 +5,6 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from rich.table import Table
 from rich.text import Text
 
 from core.diagnosis.errors import DiagnosisError
@@ -15,9 +14,11 @@ from core.machines.motor_file import read_motor
 from core.machines.motor_file_error import MotorFileError
 from core.machines.parameters import ParametersSource
 from core.machines.typical import COMMISSION
+from core.quantity_text import with_unit
 from core.recordings import Recording, RecordingError, read
 from core.recordings.reading import mended_by
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, one_line, print_document, results
+from service.client.tables import FittedTable
 from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
 
 
@@ -119,8 +120,8 @@ def _verdict(diagnosis: Diagnosis) -> Text:
     return verdict if does is None else verdict.append(f" (the recording shows {does})")
 
 
-def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: Diagnosis) -> Table:
-    table = Table(title=Text(record.name), title_justify="left", show_header=False)
+def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: Diagnosis) -> FittedTable:
+    table = FittedTable(title=Text(record.name), title_justify="left", show_header=False)
     table.add_row("verdict", _verdict(diagnosis))
     if diagnosis.mu_f is not None:
         table.add_row("equivalent fault level", level(diagnosis.mu_f, diagnosis.mu_f_ci95))
@@ -136,7 +137,7 @@ def _table(record: Path, motor_file: Path, source: ParametersSource, diagnosis: 
             "scatter of the level", f"{interval(diagnosis.mu_f_scatter95)} % (95 %, this record's own)"
         )
     if diagnosis.residual_rms_A is not None:
-        table.add_row("residual", f"{diagnosis.residual_rms_A:.4g} A rms")
+        table.add_row("residual", f"{with_unit(diagnosis.residual_rms_A, 'A', 4)} rms")
     table.add_row("model, method", f"{diagnosis.model}, {diagnosis.method}")
     table.add_row("effort", f"{diagnosis.evaluations} evaluations, {diagnosis.compute_seconds:.3f} s")
     table.add_row("motor file", Text(str(motor_file)))

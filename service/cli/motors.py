@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import RenderableType
-from rich.table import Table
 from rich.text import Text
 
 from core.machines.parameters import ParametersSource
@@ -12,6 +11,7 @@ from core.machines.typical import COMMISSION
 from service.cli.output import facts_table, failing_clearly, one_line, print_document, results
 from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.tables import FittedTable
 from service.client.verdicts import (
     detection,
     interval,
@@ -55,9 +55,9 @@ def show_health(url: str, motor: str, *, as_json: bool) -> None:
     results().print(facts_table(lines, _latest_recording(health), title=motor))
 
 
-def motors_table(healths: Sequence[Document]) -> Table:
+def motors_table(healths: Sequence[Document]) -> FittedTable:
     """Return the table of `mcc motors`; 80 columns hold all of it. Raises ServiceError."""
-    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+    table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     table.add_column("motor", no_wrap=True)
     table.add_column("condition")
     table.add_column("level %", justify="right", no_wrap=True)

@@ -1,23 +1,26 @@
 """What a command prints: results on stdout, everything else on stderr, an error as one line."""
 
 import json
+import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 
 from rich.console import Console, RenderableType
-from rich.table import Table
 from rich.text import Text
 
+from service.client.tables import FittedTable
 from service.configuration.problems import ConfigurationError
 
 DONE, FAILED, WRONG_USE = 0, 1, 2
 
-UNLIMITED_WIDTH = 10_000
-"""A file has this many columns; tables use only what they need."""
+PIPED_WIDTH = 80
+"""A table has so many columns in a file or a pipe, where the variable COLUMNS says nothing."""
+
+LEAST_WIDTH = 40
 
 READABLE_WIDTH = 100
-"""Longer texts in a table are wrapped, also in a file."""
+"""Longer texts in a table are wrapped, however wide the terminal."""
 
 DETAILS = ("path", "source", "host", "operation", "line", "element", "field", "expected", "found")
 """These attributes of the project's errors tell a program where to look."""
@@ -64,17 +67,17 @@ def one_line(text: str) -> str:
 
 
 def results() -> Console:
-    """Return the console of the results.
-
-    A terminal limits the width. A file or a pipe does not, so that no figure is cut off there.
-    """
-    width = None if sys.stdout.isatty() else UNLIMITED_WIDTH
+    """Return the console of the results: as wide as the terminal, or as COLUMNS says."""
+    columns = os.environ.get("COLUMNS", "")
+    width = max(int(columns), LEAST_WIDTH) if columns.isdecimal() and len(columns) < 6 else None
+    if width is None and not sys.stdout.isatty():
+        width = PIPED_WIDTH
     return Console(file=sys.stdout, highlight=False, width=width)
 
 
-def facts_table(*parts: Iterable[tuple[str, RenderableType]], title: str | None = None) -> Table:
+def facts_table(*parts: Iterable[tuple[str, RenderableType]], title: str | None = None) -> FittedTable:
     """Return a table of names with what they are; a line between the parts. With a title it has a frame."""
-    table = Table(title=None if title is None else Text(title), title_justify="left", show_header=False)
+    table = FittedTable(title=None if title is None else Text(title), title_justify="left", show_header=False)
     if title is None:
         table.box, table.padding = None, (0, 2, 0, 0)
     table.add_column(no_wrap=True)

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
-from rich.table import Table
 from rich.text import Text
 
 from service.cli.output import failing_clearly, one_line, print_document, results
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.tables import FittedTable
 
 _USED = (
     ("trigger", "trigger"),
@@ -28,7 +28,7 @@ def show_relay(url: str, relay: str, *, as_json: bool) -> None:
     if as_json:
         print_document(ied)
         return
-    table = Table(title=Text(relay), title_justify="left", show_header=False)
+    table = FittedTable(title=Text(relay), title_justify="left", show_header=False)
     for name, value in _lines(ied):
         table.add_row(name, Text(one_line(value)))
     results().print(table)

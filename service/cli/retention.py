@@ -6,12 +6,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
-from rich.table import Table
 from rich.text import Text
 from sqlalchemy.exc import SQLAlchemyError
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.cli.output import failing_clearly, print_document, progress, results
+from service.client.tables import FittedTable
 from service.configuration.settings import Settings, SettingsError
 from service.recording_store.store import RecordingStore
 from service.recording_store.unknown_folders import APART, Folder, UnknownFolders
@@ -102,7 +102,7 @@ def _print_unknown(unknown: list[Folder], *, dry_run: bool) -> None:
 
 
 def _print_table(outcomes: list[Outcome], *, dry_run: bool) -> None:
-    table = Table(box=SIMPLE_HEAD, collapse_padding=True)
+    table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     table.add_column("rule", no_wrap=True)
     for heading in ("days", "rows" if dry_run else "deleted", "MB"):
         table.add_column(heading, justify="right")

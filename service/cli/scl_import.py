@@ -4,13 +4,13 @@ from pathlib import Path
 
 from rich.box import SIMPLE_HEAD
 from rich.console import RenderableType
-from rich.table import Table
 from rich.text import Text
 
 import scl
 from scl import Address, Scl, SclError
 from scl.ied_model import Ied
 from service.cli.output import failing_clearly, one_line, print_document, results
+from service.client.tables import FittedTable
 from service.plant.recognition import recognise
 
 
@@ -30,9 +30,9 @@ def show_scl(file: Path, *, as_json: bool) -> None:
     console.print(_relays(document))
     for ied in document.ieds:
         for words in recognise(ied).missing:
-            console.print(Text(f"{ied.name}: not recognised: {words}"))
+            console.print(Text(f"{ied.name}: not recognised: {words}"), soft_wrap=True)
     for warning in _warnings(document):
-        console.print(Text(f"warning: {one_line(warning)}", style="yellow"))
+        console.print(Text(f"warning: {one_line(warning)}", style="yellow"), soft_wrap=True)
 
 
 def describe(document: Scl) -> dict[str, object]:
@@ -114,7 +114,7 @@ def _usable_address(document: Scl, ied_name: str) -> Address | None:
 def _motors(document: Scl) -> RenderableType:
     if not document.feeders():
         return Text('no motors: no ConductingEquipment type="MOT" with an LNode of its relay')
-    table = Table(title="Motors", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
+    table = FittedTable(title="Motors", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
     feeders = document.feeders()
     knows_buses = any(feeder.bus for feeder in feeders)
     for heading in ("site", "bay", "motor", "description", "relay", *(["bus"] if knows_buses else [])):
@@ -125,9 +125,9 @@ def _motors(document: Scl) -> RenderableType:
     return table
 
 
-def _relays(document: Scl) -> Table:
+def _relays(document: Scl) -> FittedTable:
     """Return the table of relays; references leave out the relay's name at their beginning."""
-    table = Table(title="Relays", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
+    table = FittedTable(title="Relays", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("relay\nmake", "address"):
         table.add_column(heading, no_wrap=True)
     for heading in ("devices", "reports"):

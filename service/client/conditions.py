@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from rich.text import Text
 
+from core.quantity_text import plain
 from service.client.rest_client import Document, ServiceError
 from service.client.verdicts import level, percent, to_the_second
 
@@ -88,7 +89,7 @@ def _growth(condition: Document) -> str:
     growth, forecast = condition["growth_per_day"], condition["forecast"]
     if not isinstance(growth, int | float):
         return "no trend"
-    words = f"{100 * growth:.3g} % a day"
+    words = f"{plain(100 * growth)} % a day"
     if not isinstance(forecast, Mapping):
         return words
     days = forecast["days"]
@@ -96,8 +97,8 @@ def _growth(condition: Document) -> str:
         return f"not certain, {words} at best guess; it may never reach {percent(forecast['limit'])} %"
     low, middle, high = days
     return (
-        f"{words}; {percent(forecast['limit'])} % in about {middle:.3g} days, "
-        f"in eight of ten cases {low:.3g} to {high:.3g}"
+        f"{words}; {percent(forecast['limit'])} % in about {plain(middle)} days, "
+        f"in eight of ten cases {plain(low)} to {plain(high)}"
     )
 
 

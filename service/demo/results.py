@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rich.box import SIMPLE_HEAD
-from rich.table import Table
 from rich.text import Text
 
+from core.quantity_text import plain
 from service.client.rest_client import Document
+from service.client.tables import FittedTable
 from service.client.verdicts import interval, load, percent, verdict_text
 from service.demo.truth import Truth
 
@@ -66,9 +67,9 @@ def slowest(motors: Sequence[DemoMotor]) -> float | None:
     return max((seconds for seconds in times if seconds is not None), default=None)
 
 
-def table(motors: Sequence[DemoMotor]) -> Table:
+def table(motors: Sequence[DemoMotor]) -> FittedTable:
     """Return a table of every motor's diagnoses beside its truth."""
-    shown = Table(
+    shown = FittedTable(
         title="Diagnoses and truth",
         title_justify="left",
         caption=FOOTNOTE,
@@ -93,12 +94,12 @@ def table(motors: Sequence[DemoMotor]) -> Table:
 
 def truth_text(truth: Truth) -> str:
     """Return the truth in words: "5 % b, load 0.65"."""
-    return f"{condition_text(truth)}, load {truth.load_level:.3g}"
+    return f"{condition_text(truth)}, load {plain(truth.load_level)}"
 
 
 def condition_text(truth: Truth) -> str:
     """Return what is wrong with the motor and its channels in words: "5 % b", "healthy, VB -0.4 %"."""
-    words = ["healthy" if truth.phase is None else f"{100 * truth.mu_f:.3g} % {truth.phase}"]
+    words = ["healthy" if truth.phase is None else f"{plain(100 * truth.mu_f)} % {truth.phase}"]
     words += [f"{name} {100 * channel.gain:+.2g} %" for name, channel in truth.channels.items()]
     return ", ".join(words)
 

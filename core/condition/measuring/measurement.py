@@ -7,6 +7,7 @@ from typing import NamedTuple
 from core.condition.errors import ObservationError
 from core.condition.observation import Observation
 from core.machines.parameters import Connection, MachineParameters, Motor
+from core.quantity_text import plain, with_unit
 
 WARM = 1.2
 """Resistance of a winding at work over that of the motor's file, where it is that of a cold one."""
@@ -144,7 +145,8 @@ def measure(observation: Observation, motor: Motor, scale_ohm: float, elapsed_s:
         )
     if scale_ohm * abs(i1) < LEAST_CURRENT:
         raise ObservationError(
-            f"positive_current_A is {abs(I1):.3g} A at {abs(V1):.4g} V: expected that of a running motor"
+            f"positive_current_A is {with_unit(abs(I1), 'A')} at {with_unit(abs(V1), 'V', 4)}: "
+            "expected that of a running motor"
         )
     f = observation.frequency_hz
     Z2n = negative_impedance(motor.parameters, f, slip_of(motor.parameters, f, 1.0 / i1))
@@ -215,7 +217,7 @@ def check(observation: Observation) -> None:
     lowest, highest = FREQUENCIES_HZ
     if not lowest <= observation.frequency_hz <= highest:
         raise ObservationError(
-            f"frequency_hz is {observation.frequency_hz:.4g}: expected {lowest:g} Hz to {highest:g} Hz"
+            f"frequency_hz is {plain(observation.frequency_hz, 4)}: expected {lowest:g} Hz to {highest:g} Hz"
         )
     if observation.scatter < 0.0:
         raise ObservationError(f"scatter is {observation.scatter}: expected a variance, not below 0")

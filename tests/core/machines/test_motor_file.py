@@ -113,7 +113,7 @@ def test_what_the_file_does_not_say_of_the_sensors_is_typical_of_the_relay() -> 
             "[sensors] voltage_gain",
             "0.0001 to 0.1 as a fraction",
         ),
-        ("_s = 10e-6", "_s = 10", "[sensors] current_delay_s", "1e-07 to 0.0005 s (25e-6 is +-25 us)"),
+        ("_s = 10e-6", "_s = 10", "[sensors] current_delay_s", "0.0000001 to 0.0005 s (25e-6 is +-25 us)"),
         ("voltage_gain", "gain", "[sensors] gain", "one of current_delay_s, current_gain, voltage_delay_s"),
         ("fault_level = 0.01", "fault_level = 3", "[limits] fault_level", "a fraction of at most 0.2"),
         (
@@ -149,8 +149,8 @@ def test_what_the_file_does_not_say_of_the_sensors_is_typical_of_the_relay() -> 
             "[parameters] rotor_leakage_H",
             " H (0.005 to 1 ",
         ),
-        ("= 800", "= 0.8", "[nameplate] rated_power_W", "10 to 6.58e+06 W (0.01 to 10000 A at 380 V)"),
-        ("= 380", "= 3.8e5", "[nameplate] rated_voltage_V", "10 to 50000 V"),
+        ("= 800", "= 0.8", "[nameplate] rated_power_W", "10 to 6,580,000 W (0.01 to 10000 A at 380 V)"),
+        ("= 380", "= 3.8e5", "[nameplate] rated_voltage_V", "10 to 50,000 V"),
         ("= 50", "= 5", "[nameplate] rated_frequency_Hz", "10 to 400 Hz"),
         (
             "pole_pairs = 2",

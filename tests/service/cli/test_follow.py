@@ -219,7 +219,7 @@ def test_events_come_from_a_file_too_with_the_motor_as_it_is_then(
         ("--event", "yesterday=rewound"),
         ("--event", "2026-01-31T12:00:00Z=polished"),
         ("--event", "2026-01-31T12:00:00Z=parameters-edited:as commissioned"),
-        ("--events", "[[event]]\ntime = 2026-01-31\nkind = 'rewound'\n"),
+        ("--events", "[[event]]\ntime = 2026-01\nkind = 'rewound'\n"),
         ("--events", "[[event]]\ntime = 2026-01-31T12:00:00Z\nkind = 3\n"),
         ("--events", "[[event]]\ntime = 2026-01-31T12:00:00Z\nkind = 'rewound'\nwho = 'me'\n"),
         ("--events", "[[event]]\ntime = 2026-01-31T12:00:00Z\nkind = 'parameters-edited'\n"),

@@ -104,7 +104,10 @@ def test_results_stand_beside_the_truth() -> None:
     assert slowest(motors[1:]) is None
 
 
-def test_no_figure_is_cut_off_where_there_is_no_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_figure_is_cut_off_where_there_is_no_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
     motor = DemoMotor("M" * 100, "FACTORY_A", Truth(mu_f=0.05, theta_f=1, load_level=0.65))
     motor.diagnoses.append(DemoDiagnosis(DIAGNOSIS, 1.5))
     results().print(table([motor]))
