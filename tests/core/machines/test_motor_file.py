@@ -149,7 +149,7 @@ def test_what_the_file_does_not_say_of_the_sensors_is_typical_of_the_relay() -> 
             "[parameters] rotor_leakage_H",
             " H (0.005 to 1 ",
         ),
-        ("= 800", "= 0.8", "[nameplate] rated_power_W", "10 to 6,580,000 W (0.01 to 10000 A at 380 V)"),
+        ("= 800", "= 0.8", "[nameplate] rated_power_W", "10 to 6,580,000 W (0.01 to 10,000 A at 380 V)"),
         ("= 380", "= 3.8e5", "[nameplate] rated_voltage_V", "10 to 50,000 V"),
         ("= 50", "= 5", "[nameplate] rated_frequency_Hz", "10 to 400 Hz"),
         (
