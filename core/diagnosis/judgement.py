@@ -2,6 +2,7 @@
 
 from core.diagnosis.case import Case
 from core.diagnosis.hypotheses import Explanation, is_another_asymmetry, is_explained
+from core.diagnosis.parameter_check import check_parameters
 from core.diagnosis.refinement import (
     FAULT_LEVEL,
     LOAD_LEVEL,
@@ -9,12 +10,15 @@ from core.diagnosis.refinement import (
     TIME_OFFSET,
     Fit,
 )
-from core.diagnosis.tolerance import PARAMETERS, Systematic
+from core.diagnosis.tolerance import Systematic, negative_impedance_deviation
 from core.diagnosis.verdict import Verdict
 from core.machines.typical import TYPICAL_REASON
 from core.quality.finding import QualityFinding, finding
 from core.quantity_text import plain
 
+PARAMETERS_DO_NOT_FIT = "the parameters do not fit"
+"""So begins the reason of a record that is no more than this."""
+COMMISSION_IT = "commission this motor (mcc commission), and check nameplate and ratios"
 PHASES = ("a", "b", "c")
 USUAL_OFFSET_CYCLES = 1 / 80
 """Offset in cycles (250 us at 50 Hz) up to which sensors and parameters within 10 % account for it."""
@@ -80,7 +84,9 @@ def _judged(
     offset = fit.value(TIME_OFFSET)
     # An offset is only defined where voltages were recorded.
     late = 0.0 if case.voltages_assumed else abs(offset) * case.frequency_hz
-    if late > USUAL_OFFSET_CYCLES:
+    unusual = is_unusual(fit, case)
+    check = None if case.voltages_assumed else check_parameters(explanation.record, case.motor)
+    if unusual:
         figures.append(
             f"the currents lie {offset * 1e6:.0f} us behind the voltages, more than one relay's channels do: "
             "if they were recorded together, nameplate, ratios or parameters are not this motor's"
@@ -113,10 +119,36 @@ def _judged(
             f"shorted turns in phase {phase} cannot be excluded: {level}, limit {limit:.2%}{bridged}",
             *figures,
         ]
+    # Shorted turns below a high limit draw a current of their own.
+    if check is not None and low <= 0.0 and (check.contradicts or (unusual and check.needs_offset)):
+        return Verdict.WATCH, [
+            f"{PARAMETERS_DO_NOT_FIT}: {check.reason}; {COMMISSION_IT}. No shorted turns are seen above the "
+            f"limit of {limit:.2%}",
+            *figures,
+        ]
     return Verdict.HEALTHY, [
         f"no shorted turns seen above the limit of {limit:.2%}: best fit {level}",
         *figures,
     ]
+
+
+def is_unusual(fit: Fit, case: Case) -> bool:
+    """Tell whether a fit has an offset that sensors and parameters hardly account for.
+
+    Parameters
+    ----------
+    fit : Fit
+        The fit.
+    case : Case
+        The record in the winding frame.
+
+    Returns
+    -------
+    bool
+        Whether it does; an offset is only defined where voltages were recorded.
+    """
+    offset = abs(fit.value(TIME_OFFSET)) * case.frequency_hz
+    return not case.voltages_assumed and offset > USUAL_OFFSET_CYCLES
 
 
 def identified(explanation: Explanation) -> QualityFinding:
@@ -151,5 +183,5 @@ def _unknowns(case: Case, fit: Fit) -> str:
         f"({fit.value(TIME_OFFSET) * 1e6:+.0f} us){path}; held and only bounded, by standard deviations: the "
         f"channels' ratios (voltages {sensors.voltage_deviation(frequency):.1%} each, currents "
         f"{sensors.current_deviation(frequency):.1%}), the motor's resistances and inductances "
-        f"({PARAMETERS:.0%} of its negative-sequence impedance)"
+        f"({negative_impedance_deviation(case.motor):.0%} of its negative-sequence impedance)"
     )

@@ -16,18 +16,11 @@ from core.diagnosis.fundamental import Fundamental, axis_phasors, components
 from core.diagnosis.refinement import Fit
 from core.machines.base import Array, StatorModel
 from core.machines.candidates import Candidates
+from core.machines.parameters import ParameterTolerances
 from core.machines.running import SteadyRunning
 from core.machines.winding_frame import to_winding_frame
 
-PARAMETER = 0.1 / sqrt(3.0)
-"""Standard deviation of each resistance and inductance: within 10 %, uniformly."""
-PARAMETER_NAMES = (
-    "stator_resistance_ohm",
-    "rotor_resistance_ohm",
-    "stator_leakage_H",
-    "rotor_leakage_H",
-    "stator_self_inductance_H",
-)
+PARAMETER_NAMES = ParameterTolerances.names()
 AXES = tuple(np.array([np.cos(angle), np.sin(angle)]) for angle in (0.0, 2.0 * pi / 3.0, 4.0 * pi / 3.0))
 """Axes of the phases a, b, c on the Clarke axes."""
 CONFIDENCE_QUANTILE = NormalDist().inv_cdf(0.975)
@@ -164,7 +157,9 @@ class _Machine:
         """Components of the current on other voltages, or with one parameter a standard deviation greater."""
         motor = self._case.motor
         if parameter is not None:
-            value = getattr(motor.parameters, parameter) * (1.0 + PARAMETER)
+            # Every error within the tolerance is as likely as another.
+            deviation = getattr(motor.tolerances, parameter) / sqrt(3.0)
+            value = getattr(motor.parameters, parameter) * (1.0 + deviation)
             motor = replace(motor, parameters=replace(motor.parameters, **{parameter: value}))
         at = replace(self.at, fault_level=np.zeros(1)) if healthy else self.at
         running = SteadyRunning(self._model, motor, self._case.supply.angular_frequency, axis_phasors(volts))

@@ -13,7 +13,7 @@ from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.fundamental import fundamental_of
 from core.diagnosis.hypotheses import Explanation, explain, is_explained
 from core.diagnosis.indicators import indicators
-from core.diagnosis.judgement import identified, judge
+from core.diagnosis.judgement import PARAMETERS_DO_NOT_FIT, identified, is_unusual, judge
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.propagation import Known, deviation, errors_of, of_the_likeliest_winding, widened
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
@@ -159,11 +159,13 @@ def _diagnosed(
     if baseline is not None:
         reasons.append(baseline.reason)
     explained = is_explained(explanation, tolerance)
-    named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and explained)
+    only_parameters = reasons[0].startswith(PARAMETERS_DO_NOT_FIT)
+    named = verdict is Verdict.FAULT or (verdict is Verdict.WATCH and explained and not only_parameters)
     # Load and speed are those of the accepted hypothesis; an insignificant level would bias them. They do not
     # depend on the motor's limit: a level below a high limit is there all the same.
     faulted = named or (explained and level_ci95[0] > 0.0)
-    running = fit if faulted else explanation.healthy
+    # At light load a healthy machine may come nearest with an offset that no relay has.
+    running = fit if faulted or is_unusual(explanation.healthy, case) else explanation.healthy
     return Diagnosis(
         verdict=verdict,
         mu_f=max(0.0, fit.value(FAULT_LEVEL)),

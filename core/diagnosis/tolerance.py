@@ -15,11 +15,12 @@ from core.diagnosis.case import Case
 from core.diagnosis.propagation import CONFIDENCE_QUANTILE, Known
 from core.diagnosis.refinement import FAULT_LEVEL, Fit
 from core.machines.candidates import Candidates
+from core.machines.parameters import Motor, ParameterTolerances
 from core.machines.playback import Playback
 
 PARAMETERS = 0.06
-"""Standard deviation of the machine's negative-sequence impedance: within 10 %, uniformly. Windings warm up,
-data sheets round off."""
+"""Standard deviation of the negative-sequence impedance of a machine whose parameters are within the usual
+tolerance of 10 %, uniformly. Windings warm up, data sheets round off."""
 
 FALSE_ALARM_QUANTILE = NormalDist().inv_cdf(1.0 - 0.001 / 3.0)
 """Standard errors that none of three windings' levels exceeds in 999 of 1,000 healthy records."""
@@ -127,12 +128,28 @@ def systematic(case: Case, playback: Playback, fit: Fit, known: Known) -> System
     sensors = hypot(current_ratio, voltage_ratio * V_forward * per_volt) / sqrt(3.0)
     backward = hypot(
         (1.0 - known.share) * sensors,
-        PARAMETERS * abs(V_unknown) * per_volt,
+        negative_impedance_deviation(case.motor) * abs(V_unknown) * per_volt,
         known.supply_unbalance * V_forward * per_volt,
         known.error_A / forward,
     )
     # Only the part of a complex error that lies along the fault's own current looks like a fault.
     return Systematic(backward=backward, level=backward / sqrt(2.0) / per_level)
+
+
+def negative_impedance_deviation(motor: Motor) -> float:
+    """Return the standard deviation of a machine's negative-sequence impedance.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor, with the tolerances of its parameters.
+
+    Returns
+    -------
+    float
+        Relative deviation: `PARAMETERS` where all tolerances are the usual ones.
+    """
+    return PARAMETERS * (_weighted(motor, motor.tolerances) / _weighted(motor, ParameterTolerances()))
 
 
 def backward_voltage(forward: complex, backward: complex) -> complex:
@@ -149,6 +166,17 @@ def backward_voltage(forward: complex, backward: complex) -> complex:
         The phasor so seen [V].
     """
     return backward * forward / abs(forward)
+
+
+def _weighted(motor: Motor, tolerances: ParameterTolerances) -> float:
+    """Root of the sum of squares of the tolerances, each weighed by its part in the impedance [ohm]."""
+    machine, w = motor.parameters, motor.nameplate.rated_angular_frequency
+    return hypot(
+        tolerances.stator_resistance_ohm * machine.stator_resistance_ohm,
+        tolerances.rotor_resistance_ohm * machine.rotor_resistance_ohm / 2.0,
+        tolerances.stator_leakage_H * w * machine.stator_leakage_H,
+        tolerances.rotor_leakage_H * w * machine.rotor_leakage_H,
+    )
 
 
 def _negative_sequence_impedance(case: Case) -> float:

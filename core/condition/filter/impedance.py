@@ -53,13 +53,16 @@ def impedance_alone(state: FilterState) -> tuple[Array, Array]:
     kept = slice(4, 7)
     if state.records == 0.0:  # there is no record yet by which E and the impedance could hang together
         return state.x[kept].copy(), state.P[kept, kept].copy()
-    usual = np.diag([IMPEDANCE**2, IMPEDANCE**2, TEMPERATURE**2])
+    widest = max(
+        IMPEDANCE**2, float(state.P0[4, 4])
+    )  # more than usual where the file's parameters are doubtful
+    usual = np.diag([widest, widest, TEMPERATURE**2])
     information = np.linalg.inv(state.P)
     without = information.copy()
     without[:2, :2] -= np.linalg.inv(state.P0[:2, :2])
     if np.linalg.eigvalsh(without)[0] <= 0.0:  # the filter has forgotten more than its prior told
         return np.zeros(3), usual
     spread = np.linalg.inv(without)
-    if np.any(np.diag(spread)[4:6] >= IMPEDANCE**2):
+    if np.any(np.diag(spread)[4:6] >= widest):
         return np.zeros(3), usual
     return (spread @ (information @ state.x))[kept], spread[kept, kept]

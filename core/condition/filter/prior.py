@@ -7,6 +7,7 @@ import numpy as np
 
 from core.condition.measuring.signatures import terminal_turn, voltage_channels
 from core.condition.observation import VoltageChannels
+from core.diagnosis.tolerance import negative_impedance_deviation
 from core.machines.base import Array
 from core.machines.parameters import Motor
 
@@ -15,7 +16,8 @@ OWN_VOLTAGE = 0.001
 OWN_CURRENT = 0.002
 """Standard deviation of what a sound motor adds in proportion to its current (complex magnitude)."""
 IMPEDANCE = 0.15
-"""Standard deviation of the real and of the imaginary part of Z2's error over |Z2|."""
+"""Standard deviation of the real and of the imaginary part of Z2's error over |Z2|, where the parameters are
+within the usual tolerance."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,11 +32,14 @@ class Prior:
         Covariance of what a sound winding adds.
     current : float
         Standard deviation of each part of C: sqrt(s_I^2/3 + 0.002^2) / sqrt 2.
+    impedance : float
+        Standard deviation of each part of Z2's error over |Z2|.
     """
 
     channels: Array
     own: Array
     current: float
+    impedance: float
 
     @property
     def voltage(self) -> Array:
@@ -73,4 +78,5 @@ def prior_of(motor: Motor, channels: VoltageChannels) -> Prior:
         channels=spread,
         own=0.5 * OWN_VOLTAGE**2 * np.eye(2),
         current=sqrt(0.5) * hypot(sensors.current_deviation(f) / sqrt(3.0), OWN_CURRENT),
+        impedance=max(IMPEDANCE, negative_impedance_deviation(motor)),
     )

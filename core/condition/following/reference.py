@@ -4,7 +4,7 @@ import numpy as np
 
 from core.condition.filter.impedance import impedance_alone, move_impedance
 from core.condition.filter.kalman import TEMPERATURE
-from core.condition.filter.prior import IMPEDANCE, Prior, prior_of
+from core.condition.filter.prior import Prior, prior_of
 from core.condition.following.direction_state import DirectionState
 from core.condition.following.folding import restart
 from core.condition.measuring.measurement import negative_impedance
@@ -48,7 +48,7 @@ def restart_reference(state: DirectionState, prior: Prior, *, keep_impedance: bo
         Whether what is known of the impedance is kept.
     """
     kalman, header = state.filter, state.header
-    errors = np.array([0.0] * 2 + [prior.current] * 2 + [IMPEDANCE] * 2 + [TEMPERATURE])
+    errors = np.array([0.0] * 2 + [prior.current] * 2 + [prior.impedance] * 2 + [TEMPERATURE])
     x, P = np.zeros(7), np.diag(errors**2)
     P[:2, :2] = prior.voltage
     if keep_impedance:

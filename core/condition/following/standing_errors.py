@@ -153,7 +153,7 @@ def _of_records(
     known = P[:2, :2] - slope @ P[4:6, :2].copy()
     usual, usual_spread = _without_prior(x[:2] - slope @ x[4:6], known, prior)
     slope, _ = _without_prior(slope, known, prior)
-    usual_spread += IMPEDANCE**2 * slope @ slope.T
+    usual_spread += max(IMPEDANCE**2, state.P0[4, 4]) * slope @ slope.T
     if np.trace(usual_spread) < np.trace(spread):
         found, spread = usual, usual_spread
     prior += edited

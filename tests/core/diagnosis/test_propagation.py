@@ -1,6 +1,7 @@
 """The interval that people read: each cause moves level and load as told, and verdicts agree with it."""
 
 from dataclasses import replace
+from math import sqrt
 
 import numpy as np
 import pytest
@@ -10,7 +11,6 @@ from core.diagnosis.fundamental import fundamental_of
 from core.diagnosis.hypotheses import explain
 from core.diagnosis.methods import DEFAULT_METHOD
 from core.diagnosis.propagation import (
-    PARAMETER,
     PARAMETER_NAMES,
     Known,
     errors_of,
@@ -93,7 +93,7 @@ def test_every_cause_moves_level_and_load_as_told(motor: Motor, reverse: bool) -
         if number < len(CHANNELS):
             other = with_channel_error(record, number)
         else:
-            value = getattr(motor.parameters, cause) * (1.0 + PARAMETER)
+            value = getattr(motor.parameters, cause) * (1.0 + 0.1 / sqrt(3.0))
             true_motor = replace(motor, parameters=replace(motor.parameters, **{cause: value}))
             other = recording(operation(true_motor, reverse=reverse), noise=1e-5)
         after = refined(case(other, motor, reverse=reverse), before.candidate)
