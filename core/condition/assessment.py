@@ -153,6 +153,29 @@ class Reference:
 
 
 @dataclass(frozen=True, slots=True)
+class ParameterError:
+    """A parameter of the file that the records contradict.
+
+    Parameters
+    ----------
+    name : str
+        Its symbol, or "leakage" for both leakages.
+    error : float
+        The motor's parameter over that of the file, less one.
+    deviation : float
+        Standard deviation of that.
+    """
+
+    name: str
+    error: float
+    deviation: float
+
+    def __str__(self) -> str:
+        """Return it in words."""
+        return f"{self.name} about {self.error:+.0%} (+-{NORMAL_95 * self.deviation:.0%})"
+
+
+@dataclass(frozen=True, slots=True)
 class Assessment:
     """All that the records so far tell.
 
@@ -181,6 +204,8 @@ class Assessment:
         The standing score, which stays while that falls by little; 0 where it is not held.
     seen_by : str or None
         Recorder and direction of rotation of the records that tell it, where the latest record has others.
+    parameter_errors : tuple of ParameterError
+        Parameters of the motor's file that the records contradict.
     """
 
     as_of_ns: int
@@ -194,6 +219,7 @@ class Assessment:
     called_above: float = 0.0
     held_score: float = 0.0
     seen_by: str | None = None
+    parameter_errors: tuple[ParameterError, ...] = ()
 
     def told_later(self, as_of_ns: int, seen_by: str) -> "Assessment":
         """Return the same assessment as of a later record, which belongs to another reference.

@@ -19,12 +19,6 @@ from core.machines.current_locus import current_locus
 from core.machines.parameters import Connection, MachineParameters, Motor, ParameterTolerances
 from core.machines.sensors import SensorClass
 
-IN_WORDS = {
-    "stator_resistance_ohm": "R_s",
-    "leakage": "leakage",
-    "stator_self_inductance_H": "L_s",
-}
-"""Unknowns that the circle depends on; the two leakages do nearly the same to it."""
 TOGETHER = 0.7
 """Share of the tolerances' sum that counts: parameters are rarely all wrong in the same direction."""
 CHANCE = 1.96

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from core.condition.assessment import Assessment, Declared, Level, Reference
+from core.condition.assessment import Assessment, Declared, Level, ParameterError, Reference
 from core.condition.bus.differences import same_transformer
 from core.condition.bus.neighbours import Neighbour, StandingEstimate
 from core.condition.changes.alarm import Alarm
@@ -21,6 +21,7 @@ from core.condition.following.standing_errors import SUSPECTED, StandingErrors, 
 from core.condition.following.standing_on_bus import StandingOnBus
 from core.condition.following.start import fold_start
 from core.condition.measuring.measurement import measure
+from core.condition.measuring.parameter_fit import add_record, counts, parameter_errors
 from core.condition.observation import Observation
 from core.condition.severity import level_in_all, level_of, of_one_fault, stands_out
 from core.machines.parameters import Motor
@@ -49,6 +50,7 @@ class Direction:
         self._expected_of = (motor, state.header.voltage_channels)
         self._expectations = expectations_of(*self._expected_of, state.header.scale_ohm)
         self._explanation = Explanation(state, self._expectations)
+        self._parameter_errors: tuple[ParameterError, ...] | None = None
 
     @property
     def sequence(self) -> PhaseSequence:
@@ -125,6 +127,9 @@ class Direction:
             header.recorder, header.voltage_channels = observation.recorder, observation.voltage_channels
             restart_reference(state, self._expect(motor).prior, keep_impedance=known)
         header.as_of_ns = observation.time_ns
+        if header.alarm is None and counts(state.figures["records"]):
+            add_record(state.parameter_fits[0], observation, motor)
+            self._parameter_errors = None
         if state.figures["records"] < START:
             if not header.start:
                 header.since_ns = observation.time_ns
@@ -163,6 +168,7 @@ class Direction:
         declared = self._shown(motor) if event.kind is EventKind.REFERENCE_RESTARTED else None
         if event.kind is EventKind.PARAMETERS_EDITED or edited != motor:
             self._edit(motor, edited)
+        self._parameter_errors = None
         prior = self._expectations.prior
         if event.kind is EventKind.RECORDER_CHANGED:
             restart_reference(state, prior, keep_impedance=True)
@@ -221,6 +227,7 @@ class Direction:
             unconfirmed=records > START and bool(figures["surprise"] > UNCONFIRMED),
             called_above=0.0 if header.called is None else header.called.above,
             held_score=0.0 if standing.from_bus else held(standing.score, header.held_score),
+            parameter_errors=self._errors_of_parameters(motor),
         )
 
     def standing_estimate(self, motor: Motor) -> StandingEstimate:
@@ -238,6 +245,12 @@ class Direction:
         """
         errors = self.state.header.standing or self._errors()
         return self._on_bus.estimate(motor, self._expectations.prior, errors)
+
+    def _errors_of_parameters(self, motor: Motor) -> tuple[ParameterError, ...]:
+        """Return the parameters that the records contradict; computed anew after a record that counts."""
+        if self._parameter_errors is None:
+            self._parameter_errors = parameter_errors(self.state.parameter_fits[0], motor)
+        return self._parameter_errors
 
     def _expect(self, motor: Motor) -> Expectations:
         """Return what is expected of the motor, which is computed anew only where its file is another."""

@@ -16,6 +16,7 @@ from core.condition.filter.state import (
     FilterState,
 )
 from core.condition.following.header import Header
+from core.condition.measuring.parameter_fit import PARAMETER_FIT
 from core.signals.sequence import PhaseSequence
 
 
@@ -43,6 +44,8 @@ class DirectionState:
         Side channels.
     recent : array of Recent
         Latest records.
+    parameter_fits : array of PARAMETER_FIT, shape (1,)
+        What the records tell of the parameters in the motor's file.
     """
 
     def __init__(self, sequence: PhaseSequence) -> None:
@@ -54,6 +57,7 @@ class DirectionState:
         self.bank: Any = np.zeros(CANDIDATES, CANDIDATE)
         self.sides: Any = np.zeros(SIDES, SIDE)
         self.recent: Any = np.zeros(RECENT, RECENT_RECORD)
+        self.parameter_fits: Any = np.zeros(1, PARAMETER_FIT)
 
     def packed(self) -> tuple[dict[str, Any], bytes]:
         """Return the state as a header of text and numbers as they lie in memory.
@@ -112,4 +116,4 @@ class DirectionState:
 
     @property
     def _arrays(self) -> tuple[Any, ...]:
-        return self.filters, self.sides, self.bank, self.recent
+        return self.filters, self.sides, self.bank, self.recent, self.parameter_fits

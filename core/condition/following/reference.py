@@ -56,6 +56,7 @@ def restart_reference(state: DirectionState, prior: Prior, *, keep_impedance: bo
     kalman.x0[:], kalman.P0[:] = x, P
     kalman.current_deviation = prior.current
     restart(state.filters, state.sides)
+    state.parameter_fits[:] = 0
     header.start.clear()
     header.accepted, header.declared = False, None
     header.alarm = header.standing = header.kept = header.gone = header.called = None
@@ -77,5 +78,7 @@ def edit_impedance(state: DirectionState, motor: Motor, edited: Motor) -> None:
     before = negative_impedance(motor.parameters, frequency_hz) / scale_ohm
     after = negative_impedance(edited.parameters, frequency_hz) / scale_ohm
     start = state.header.start
+    if motor.parameters != edited.parameters:
+        state.parameter_fits[:] = 0
     move_impedance(state.filter, before, after)
     start[:] = [record._replace(y=record.y + (before - after) * record.j2) for record in start]

@@ -15,6 +15,10 @@ COMMISSION_ME = (
     f"{COMMISSION}. Give the motor its own parameters: mcc commission from a recorded start, or mcc "
     "parameters from its data sheet."
 )
+COMMISSION_AGAIN = (
+    "Commission this motor (mcc commission), or check its nameplate, parameters and ratios: {} of its file "
+    "do not fit its records."
+)
 FAULT_URGENCY = (
     "Stop the motor at the next opportunity, within days: shorted turns run hot and take others with them."
 )
@@ -142,6 +146,7 @@ def advice(
     candidates: Iterable[Kind] = (),
     is_gone: bool = False,
     is_typical: bool = False,
+    misfits: Iterable[str] = (),
 ) -> str:
     """Say what to check first, how urgent it is, and what would make it surer.
 
@@ -159,6 +164,8 @@ def advice(
         Whether it has vanished.
     is_typical : bool, optional
         Whether nothing but the motor's nameplate is known.
+    misfits : iterable of str, optional
+        Parameters of the motor's file that the records contradict.
 
     Returns
     -------
@@ -170,6 +177,14 @@ def advice(
             return COMMISSION_ME
         told = advice(state, kind, phase=phase, candidates=candidates, is_gone=is_gone)
         return f"{told} {COMMISSION_ME}"
+    wrong = tuple(misfits)
+    if wrong:
+        told = (
+            ""
+            if state is State.HEALTHY
+            else advice(state, kind, phase=phase, candidates=candidates, is_gone=is_gone)
+        )
+        return f"{told} {COMMISSION_AGAIN.format(', '.join(wrong))}".strip()
     if state is State.HEALTHY:
         return " ".join(HEALTHY)
     if state is State.UNKNOWN:

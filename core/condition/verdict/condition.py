@@ -10,6 +10,7 @@ from core.condition.assessment import (
     Assessment,
     Declared,
     Level,
+    ParameterError,
     Phase,
     Reference,
 )
@@ -247,8 +248,9 @@ def condition_of(
             candidates=verdict.candidates,
             is_gone=is_gone,
             is_typical=motor.is_typical,
+            misfits=[one.name for one in assessment.parameter_errors],
         ),
-        reasons=(*_of_parameters(motor), *reasons_of(assessment, limit, ahead)),
+        reasons=(*_of_parameters(motor, assessment.parameter_errors), *reasons_of(assessment, limit, ahead)),
     )
 
 
@@ -275,8 +277,17 @@ def _unknown(motor: Motor, ended_by: Event | None) -> Condition:
     )
 
 
-def _of_parameters(motor: Motor) -> tuple[str, ...]:
-    return (TYPICAL_REASON,) if motor.is_typical else ()
+def _of_parameters(motor: Motor, errors: tuple[ParameterError, ...] = ()) -> tuple[str, ...]:
+    if motor.is_typical:
+        return (TYPICAL_REASON,)
+    if not errors:
+        return ()
+    names = ", ".join(one.name for one in errors)
+    figures = "; ".join(str(one) for one in errors)
+    return (
+        f"the parameters in the motor's file do not fit its records ({names}): commission this motor. Of the "
+        f"file's, the motor has {figures}",
+    )
 
 
 def _since(assessment: Assessment, limit: float) -> int | None:
