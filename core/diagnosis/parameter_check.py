@@ -146,8 +146,10 @@ def slopes_of_sensors(
 
     Returns
     -------
-    gain, offset : float
-        Per relative error of the currents' ratio, and per second of delay [1/s], as shares of the current.
+    gain : float
+        Per relative error of the currents' ratio, as a share of the current.
+    offset : float
+        Per second of delay of the currents, as a share of the current [1/s].
     """
     here, size = distance_from_circle(machine, admittance, angular_frequency), abs(admittance)
     grown = distance_from_circle(machine, admittance * (1.0 + GAIN_STEP), angular_frequency)
