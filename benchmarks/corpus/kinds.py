@@ -15,13 +15,15 @@ KINDS: tuple[Kind, ...] = (COMTRADE, EVENT_REPORT, SCL)
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """The files of a folder. parts: files beside those that are read. others: files of no kind.
+    """The files of a folder.
 
-    unreadable: folders that could not be listed.
+    parts: files that belong to one of those that are read. orphans: parts of nothing. others: files of no
+    kind. unreadable: folders that could not be listed.
     """
 
     files: tuple[tuple[Path, Kind], ...]
     parts: int
+    orphans: tuple[Path, ...]
     others: int
     unreadable: tuple[str, ...]
 
@@ -31,17 +33,26 @@ def files_of(folder: Path) -> Found:
     by_suffix = {suffix: kind for kind in KINDS for suffix in kind.suffixes}
     part_suffixes = {suffix for kind in KINDS for suffix in kind.parts}
     files: list[tuple[Path, Kind]] = []
+    parts: list[Path] = []
     unreadable: list[str] = []
-    parts = others = 0
+    others = 0
     for path in _regular_files(folder, unreadable):
         suffix = path.suffix.casefold()
         if suffix in by_suffix:
             files.append((path, by_suffix[suffix]))
         elif suffix in part_suffixes:
-            parts += 1
+            parts.append(path)
         else:
             others += 1
-    return Found(tuple(sorted(files, key=lambda one: str(one[0]))), parts, others, tuple(unreadable))
+    records = {_record_of(path) for path, kind in files if kind.parts}
+    orphans = tuple(sorted(path for path in parts if _record_of(path) not in records))
+    files.sort(key=lambda one: str(one[0]))
+    return Found(tuple(files), len(parts) - len(orphans), orphans, others, tuple(unreadable))
+
+
+def _record_of(path: Path) -> tuple[Path, str]:
+    """What the files of one record have in common, in any case of the letters."""
+    return path.parent, path.stem.casefold()
 
 
 def _regular_files(folder: Path, unreadable: list[str]) -> Iterator[Path]:

@@ -4,9 +4,10 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
 from benchmarks.corpus.kinds import KINDS, Found
-from benchmarks.corpus.outcomes import Agreement, Examined, Reading, Service, alike
+from benchmarks.corpus.outcomes import Agreement, Examined, Reading, Service, alike, shortened
 from benchmarks.reporting import table
 
+MOST_ORPHANS = 10
 MOST_REASONS = 40
 """Rows of a table of reasons; what is rarer is counted together."""
 
@@ -17,6 +18,7 @@ def document(folder: str, found: Found, files: Sequence[Examined]) -> dict[str, 
         "folder": folder,
         "kinds": {kind.name: _counts(_of_kind(files, kind.name)) for kind in KINDS},
         "parts": found.parts,
+        "orphans": [shortened(str(path)) for path in found.orphans],
         "others": found.others,
         "unreadable_folders": list(found.unreadable),
         "files": [
@@ -65,9 +67,12 @@ def markdown(found: Found, files: Sequence[Examined]) -> str:
         )
     lines += [
         "",
-        f"Beside these there are {found.parts} files that belong to a recording or to none, and "
-        f"{found.others} of other kinds.",
+        f"Beside these there are {found.parts} files that belong to them and {found.others} of other kinds.",
     ]
+    if found.orphans:
+        names = ", ".join(shortened(path.name) for path in found.orphans[:MOST_ORPHANS])
+        more = ", ..." if len(found.orphans) > MOST_ORPHANS else ""
+        lines.append(f"{len(found.orphans)} are of recordings without a configuration: {_cell(names)}{more}.")
     lines += [f"Not listed: {folder}" for folder in found.unreadable]
     for reading in (Reading.CRASHED, Reading.REFUSED, Reading.LENIENT, Reading.WARNED):
         here = [one for one in files if one.outcome.reading is reading]

@@ -29,6 +29,10 @@ TIMEOUT_S = 60.0
 MEMORY_BYTES = 2 << 30
 """Beyond what a worker takes before it reads anything."""
 
+AT_ONCE = 16
+"""Files whose outcomes are waited for together."""
+MOST_NOTES = 20
+
 _COMPARED = (Reading.READ, Reading.WARNED, Reading.LENIENT)
 _PAGE = resource.getpagesize()
 
@@ -49,34 +53,44 @@ def examine_all(
         initargs=(memory_bytes,),
         context=multiprocessing.get_context("spawn"),
     )
-    with pool:
-        begun: list[tuple[Path, Kind, Future[tuple[Outcome, float]]]] = []
-        at_a_time = 64
-        for first in range(0, len(files), at_a_time):
-            begun = [
-                (path, kind, pool.schedule(_read, args=(path, kind.read), timeout=timeout_s))
-                for path, kind in files[first : first + at_a_time]
+    try:
+        for first in range(0, len(files), AT_ONCE):
+            some = files[first : first + AT_ONCE]
+            reading = [pool.schedule(_read, args=(path, kind.read), timeout=timeout_s) for path, kind in some]
+            outcomes = [_answer(future, _crashed, timeout_s) for future in reading]
+            sound = [outcome.reading in _COMPARED for outcome, _ in outcomes]
+            comparing = [
+                pool.schedule(kind.compare, args=(path,), timeout=timeout_s)
+                if kind.compare and read
+                else None
+                for (path, kind), read in zip(some, sound, strict=True)
             ]
-            for path, kind, future in begun:
-                outcome, seconds = _answer(future, _crashed, timeout_s)
+            serving = [
+                pool.schedule(kind.serve, args=(path,), timeout=timeout_s) if kind.serve and read else None
+                for (path, kind), read in zip(some, sound, strict=True)
+            ]
+            for k, (path, kind) in enumerate(some):
+                outcome, seconds = outcomes[k]
+                compared, serves = comparing[k], serving[k]
                 comparison = Comparison(Agreement.NOT_COMPARED)
-                if kind.compare is not None and outcome.reading in _COMPARED:
-                    comparing = pool.schedule(kind.compare, args=(path,), timeout=timeout_s)
-                    comparison = _answer(comparing, _not_compared, timeout_s)
+                if compared is not None:
+                    comparison = _answer(compared, _not_compared, timeout_s)
                 served: tuple[Served, ...] = ()
-                if kind.serve is not None and outcome.reading in _COMPARED:
-                    serving = pool.schedule(kind.serve, args=(path,), timeout=timeout_s)
-                    served = _answer(serving, _not_served, timeout_s)
+                if serves is not None:
+                    served = _answer(serves, _not_served, timeout_s)
                 yield Examined(
                     path=_shown(path.relative_to(folder)),
                     kind=kind.name,
-                    outcome=Outcome(outcome.reading, tuple(map(shortened, outcome.notes))),
-                    comparison=Comparison(comparison.agreement, tuple(map(shortened, comparison.notes))),
+                    outcome=Outcome(outcome.reading, _notes(outcome.notes)),
+                    comparison=Comparison(comparison.agreement, _notes(comparison.notes)),
                     seconds=seconds,
                     served=tuple(
                         Served(one.relay, one.service, tuple(map(shortened, one.notes))) for one in served
                     ),
                 )
+    finally:  # also of a run that is ended by Ctrl-C
+        pool.stop()  # type: ignore[no-untyped-call]  # pebble annotates the rest of its pool
+        pool.join()
 
 
 def _prepare(memory_bytes: int) -> None:
@@ -119,6 +133,10 @@ def _not_compared(why: str, _seconds: float) -> Comparison:
 
 def _not_served(why: str, _seconds: float) -> tuple[Served, ...]:
     return (Served("", Service.CRASHED, (why,)),)
+
+
+def _notes(notes: Sequence[str]) -> tuple[str, ...]:
+    return tuple(map(shortened, notes[:MOST_NOTES]))
 
 
 def _shown(path: Path) -> str:

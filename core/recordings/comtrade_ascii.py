@@ -67,7 +67,7 @@ def decode_ascii(
         repairs.mend(_fault(section.path, lines, announced), "blank lines are passed over")
         lines -= text.blank_lines
     analog, states = len(configuration.analog), len(configuration.status_names)
-    samples = _sample_count(section.path, lines, announced, repairs)
+    samples = _whole_lines(section.path, text, lines, configuration, repairs)
     if samples * (1 + analog + states) > text.characters:  # a line is no shorter than its commas
         raise RecordingError(
             section.path,
@@ -98,16 +98,21 @@ def decode_ascii(
 
 @dataclass(frozen=True, slots=True)
 class _Text:
-    """What an ASCII file holds before its padding; `blank_lines` are among the `lines`."""
+    """What an ASCII file holds before its padding; `blank_lines` are among the `lines`.
+
+    unfinished: filled fields of a last line that has no line end, None where the last line has one.
+    """
 
     lines: int
     blank_lines: int
     characters: int
+    unfinished: int | None
 
     @classmethod
     def of(cls, section: DataSection) -> "_Text":
         """Count, without keeping any of it."""
         lines = blank = characters = read = read_blank = read_characters = 0
+        last = b""
         for block in _blocks(section):
             stripped = list(map(bytes.strip, block))
             blank_here = stripped.count(b"")
@@ -118,10 +123,13 @@ class _Text:
                 lines = read + end
                 blank = read_blank + stripped[:end].count(b"")
                 characters = read_characters + sum(map(len, block[:end])) + end
+            last = block[-1]
             read += len(block)
             read_blank += blank_here
             read_characters += sum(map(len, block)) + len(block)
-        return cls(lines, blank, characters)
+        filled = last.count(b",") + bool(last.rpartition(b",")[2].strip(_END))
+        unfinished = filled if last.strip(_END) else None
+        return cls(lines, blank, characters, unfinished)
 
 
 def _blocks(section: DataSection) -> Iterator[list[bytes]]:
@@ -150,6 +158,27 @@ def _blocks(section: DataSection) -> Iterator[list[bytes]]:
                 yield [b"".join(begun), *rest[:-1]]
                 begun, begun_bytes = [rest[-1]], len(rest[-1])
     yield [b"".join(begun)]
+
+
+def _whole_lines(path: Path, text: _Text, lines: int, configuration: Configuration, repairs: Repairs) -> int:
+    """Return the number of lines to read: all, or those there are without a last one that was cut.
+
+    A state has one digit, so that a last line that ends with one is whole; a value may have lost some.
+    """
+    announced, states = configuration.sample_count, len(configuration.status_names)
+    columns = 2 + len(configuration.analog) + states
+    short = lines < announced and states == 0
+    cut = text.unfinished is not None and (short or text.unfinished < columns)
+    if not cut or not 1 < lines <= announced:
+        return _sample_count(path, lines, announced, repairs)
+    fault = RecordingError(
+        path,
+        f"line {lines}",
+        expected=f"{columns} fields and a line end, on {announced} lines",
+        found=f"the end of the file behind field {text.unfinished}",
+    )
+    repairs.mend(fault, f"{lines - 1} samples are read")
+    return lines - 1
 
 
 def _sample_count(path: Path, lines: int, announced: int, repairs: Repairs) -> int:

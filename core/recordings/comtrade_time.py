@@ -251,7 +251,8 @@ def _tell_turns(path: Path, stamps: NDArray[np.float64], span: int | None, repai
     count = int(np.count_nonzero(_turns(stamps[np.isfinite(stamps)], span)))
     if count:
         repairs.warn(
-            f"{path.name}: the time stamps start again {count} times, after {span} steps: counted on"
+            f"{path.name}: the time stamps start again {count} time{'s' * (count > 1)}, after {span} steps: "
+            "counted on"
         )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.corpus import kinds, workers
+from benchmarks.corpus import kinds, made_files, workers
 from benchmarks.corpus.__main__ import main
 from benchmarks.corpus.kinds import files_of
 from benchmarks.corpus.outcomes import Agreement, Comparison, Kind, Outcome, Reading
@@ -67,7 +67,8 @@ def test_every_file_gets_its_row(
     assert "data file" in files["deep/lonely.cfg"]["notes"][0]
     assert files["sound.CFG"]["agreement"] == "differs as documented"
     assert files["sound.CFG"]["differences"] == ["values in primary SI units"]
-    assert (found["parts"], found["others"]) == (3, 1)
+    assert (found["parts"], found["others"]) == (2, 1)
+    assert [Path(name).name for name in found["orphans"]] == ["other.dat"]
     assert run(tmp_path, monkeypatch) == 0
     shown = capsys.readouterr().out
     assert "| COMTRADE | 3 | 1 | 0 | 1 | 1 | 0 |" in shown
@@ -100,3 +101,26 @@ def test_no_folder_is_wrong_use(
 ) -> None:
     assert run(tmp_path / "none", monkeypatch) == 2
     assert "expected a folder" in capsys.readouterr().err
+
+
+def test_made_files_are_read_as_their_names_say(tmp_path: Path) -> None:
+    """One file of each kind that the pages tell of; the peer agrees wherever it reads one."""
+    made_files.write(tmp_path)
+    found = files_of(tmp_path)
+    examined = {one.path: one for one in workers.examine_all(found.files, tmp_path)}
+    readings = {name: one.outcome.reading for name, one in examined.items()}
+    folder = "beside the standard"
+    assert {r for name, r in readings.items() if name.startswith("sound/")} == {Reading.READ}
+    assert Reading.REFUSED not in {r for name, r in readings.items() if name.startswith(folder)}
+    warned = {name.split("/")[1] for name, r in readings.items() if r is Reading.WARNED}
+    assert warned == {
+        f"{name}.CFG"
+        for name in (
+            "constant spare channel", "constant spare channel without a ratio", "constant channel of 24",
+            "revision 2000", "revision 1998", *made_files.STAMPS,
+        )
+    }  # fmt: skip
+    agreements = {one.comparison.agreement for one in examined.values()}
+    assert Agreement.DIFFERS not in agreements
+    assert Reading.CRASHED not in readings.values()
+    assert [path.name for path in found.orphans] == ["no configuration.DAT"]

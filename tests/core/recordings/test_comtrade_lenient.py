@@ -60,6 +60,29 @@ def test_a_cut_file_keeps_its_whole_samples(tmp_path: Path, record: ComtradeFile
     np.testing.assert_array_equal(recording.samples, whole.samples[:, :3])
 
 
+@pytest.mark.parametrize("kept", [10, -5, -2, -1])
+def test_a_line_that_was_cut_is_no_sample(tmp_path: Path, kept: int) -> None:
+    path = ASCII.write(tmp_path)
+    whole = read(path)
+    lines = ASCII.data().split(b"\r\n")
+    path.with_suffix(".dat").write_bytes(b"\r\n".join([*lines[:3], lines[3][:kept]]))
+    recording = mended(path, "3 samples are read")
+    np.testing.assert_array_equal(recording.samples, whole.samples[:, :3])
+
+
+def test_a_value_that_may_have_lost_digits_is_none(tmp_path: Path) -> None:
+    record = ASCII.but(counts="4,4A,0D", status=())
+    path = record.write(tmp_path)
+    path.with_suffix(".dat").write_bytes(b"\r\n".join(record.data().split(b"\r\n")[:4]))
+    assert mended(path, "3 samples are read").samples.shape == (4, 3)
+
+
+def test_a_last_line_of_too_few_fields_is_left_out(tmp_path: Path) -> None:
+    path = ASCII.write(tmp_path)
+    path.with_suffix(".dat").write_bytes(ASCII.data()[:-8])
+    assert mended(path, "4 samples are read").samples.shape == (4, 4)
+
+
 def test_a_trigger_that_was_cut_off_is_left_out(tmp_path: Path) -> None:
     path = RECORD_1999.write(tmp_path)
     path.with_suffix(".dat").write_bytes(RECORD_1999.data()[:20])
