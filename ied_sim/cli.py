@@ -16,6 +16,7 @@ import scl
 from core.units import NANOSECONDS_PER_SECOND
 from ied_sim import warm_up
 from ied_sim.errors import ScenarioError, SimulatorError, TableError
+from ied_sim.plant_files import HIGHEST_PORT, consecutive_addresses, read_plant
 from ied_sim.profiles.profile import DEFAULT, read_profile, shipped
 from ied_sim.profiles.standalone import IED_NAME, standalone
 from ied_sim.relay.configuration import RelayConfiguration
@@ -27,9 +28,6 @@ from scl import Address
 
 HOST = "127.0.0.1"
 PORT = 10102
-HIGHEST_PORT = 65535
-
-log = logging.getLogger(__name__)
 
 app = typer.Typer(add_completion=False, context_settings={"help_option_names": ["-h", "--help"]})
 
@@ -50,7 +48,8 @@ def _print_profiles(wanted: bool) -> None:
 @app.command()
 def ied_sim(
     scd: Annotated[
-        Path | None, typer.Option("--scd", help="SCL file of any make with the relays: SCD, CID, IID or ICD.")
+        list[Path] | None,
+        typer.Option("--scd", help="SCL file of any make (SCD, CID, IID, ICD); may be given again."),
     ] = None,
     profile: Annotated[
         str | None,
@@ -68,7 +67,7 @@ def ied_sim(
         int | None,
         typer.Option(
             min=1,
-            max=65535,
+            max=HIGHEST_PORT,
             help=f"Port to listen at, in place of the file's; each further relay one higher; default {PORT}.",
         ),
     ] = None,
@@ -101,12 +100,12 @@ def ied_sim(
     ] = False,
 ) -> None:
     """Serve simulated motor relays over IEC 61850 MMS until interrupted."""
-    if scd is None and profile is None:
+    if not scd and profile is None:
         raise typer.BadParameter("give --scd or --profile")
     logging.basicConfig(stream=sys.stderr, level=logging.INFO, format="%(levelname)s %(name)s: %(message)s")
     try:
-        if scd is not None:
-            document = _read(scd)
+        if scd:
+            document = read_plant(scd)
         else:
             name = ied[0] if ied else IED_NAME
             document = standalone(read_profile(profile or DEFAULT), name, Address(host or HOST, port or PORT))
@@ -121,7 +120,7 @@ def ied_sim(
             _say(json.dumps(told if len(told) > 1 else told[0]))
             return
         given = host is not None or port is not None
-        addresses = _addresses(document, names, host or HOST, port or PORT) if given else {}
+        addresses = consecutive_addresses(document, names, host or HOST, port or PORT) if given else {}
         _serve(document, names, scenarios, files, clock, addresses)
     except (SimulatorError, TableError, scl.SclError, OSError) as error:
         typer.echo(f"ied-sim: {error}", err=True)
@@ -131,25 +130,6 @@ def ied_sim(
 def main() -> None:
     """Entry point of the command."""
     app()
-
-
-def _read(path: Path) -> scl.Scl:
-    """Read an SCL file, and log what the reader left out of it. Raises SclError."""
-    document = scl.read(path)
-    for warning in document.warnings:
-        if warning.left_out:
-            log.warning("%s: %s", path.name, warning)
-    return document
-
-
-def _addresses(document: scl.Scl, names: list[str], host: str, port: int) -> dict[str, Address]:
-    """Return an address for each relay with a server: one port after the other. Raises SclError."""
-    serving = [name for name in dict.fromkeys(names) if document.ied(name).logical_devices]
-    if port + len(serving) - 1 > HIGHEST_PORT:
-        raise SimulatorError(
-            f"{len(serving)} relays from port {port} on: there are only {HIGHEST_PORT} ports"
-        )
-    return {name: Address(host, port + number) for number, name in enumerate(serving)}
 
 
 def _scenarios(document: scl.Scl, path: Path | None, profile: str) -> dict[str, RelayConfiguration]:

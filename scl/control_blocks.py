@@ -106,7 +106,7 @@ class ControlBlockReader:
         return tuple(self._log(name, element) for name, element in self._named(elements))
 
     def goose(self, elements: list[etree._Element]) -> tuple[GooseControl, ...]:
-        """Read GOOSE controls. GSSE, the forerunner of GOOSE, carries no data set and is passed over.
+        """Read GOOSE controls. GSSE, the forerunner of GOOSE, carries no data set and is left out.
 
         Parameters
         ----------
@@ -118,7 +118,12 @@ class ControlBlockReader:
         tuple of GooseControl
             The GOOSE controls that clients can address.
         """
-        kept = (element for element in elements if element.get("type", "GOOSE") == "GOOSE")
+        kept = []
+        for element in elements:
+            if element.get("type") == "GSSE":
+                self._document.leave_out(element, "GSSE, the forerunner of GOOSE, carries no data set")
+            else:
+                kept.append(element)
         return tuple(self._goose(name, element) for name, element in self._named(kept))
 
     def sampled_values(self, elements: list[etree._Element]) -> tuple[SampledValueControl, ...]:

@@ -79,9 +79,20 @@ class DataSetReader:
             if node is None or not node.offers(member):
                 self._document.note(element, f"the data model has no {member.reference} [{member.fc}]")
 
+    def _inst(self, element: etree._Element) -> str:
+        """Return the inst of a member's logical device. Some files write the name of the domain."""
+        named = element.get("ldInst", "")
+        if named in self._domains:
+            return named
+        found = next((inst for inst, domain in self._domains.items() if domain == named), None)
+        if found is None:
+            return named
+        self._document.note(element, f"ldInst={named!r} is the name of a domain: taken as {found!r}")
+        return found
+
     def _member(self, element: etree._Element, device: str) -> DataSetMember | None:
         document = self._document
-        inst = element.get("ldInst") or device
+        inst = self._inst(element) or device
         constraint = element.get("fc", "")
         if inst not in self._domains:
             document.leave_out(element, f"no LDevice {inst!r} in this IED")

@@ -88,6 +88,9 @@ def _differences(wanted: Contents, found: Contents) -> Iterator[str]:
     ):
         if names:
             yield f"{len(names)} names {words}: {', '.join(sorted(names)[:MOST_NAMES])}"
-    changed = [each for each, members in wanted.data_sets.items() if found.data_sets.get(each) != members]
-    if changed:
-        yield f"{len(changed)} data sets with other members: {', '.join(sorted(changed)[:MOST_NAMES])}"
+    for data_set, members in wanted.data_sets.items():
+        served = found.data_sets.get(data_set, [])
+        if lost := [member for member in members if member not in served]:
+            yield f"{data_set} without {len(lost)} members: {', '.join(lost[:MOST_NAMES])}"
+        elif served != members:
+            yield f"{data_set} with other members: {', '.join(served[:MOST_NAMES])}"

@@ -4,7 +4,7 @@ A profile names the points of its kind of relay. A point that a relay's model la
 names that IEC 61850-7-4 and the SEL-700 family give it. So a relay of any make can be served.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Final
 
 from ied_sim.profiles.profile import Points
@@ -29,6 +29,12 @@ _STANDARD_NAMES: Final[Mapping[str, tuple[tuple[str, str], ...]]] = {
 }
 """By key of `Points`: name or class of the logical node, and the data object."""
 
+_BESIDE: Final[Mapping[str, tuple[str, ...]]] = {
+    "metering": ("PhV", "PPV", "Hz", "TotW"),
+    "sequence": ("SeqV",),
+}
+"""Data objects beside: of several nodes that one is taken that has most of them."""
+
 _CONTROLS: Final = frozenset({"trigger", "pulse", "start", "stop", "clear"})
 _NODES: Final = frozenset({"pulse", "metering", "sequence"})
 """Keys whose points are whole logical nodes."""
@@ -46,7 +52,7 @@ def fitted_points(ied: Ied, points: Points) -> dict[str, object]:
         wanted = given if isinstance(given, tuple) else () if given is None else (given,)
         held = tuple(reference for reference in wanted if _holds(nodes, key, reference))
         if held != wanted:
-            found = held or tuple(_candidates(nodes, key))[:1]
+            found = held or _candidates(nodes, key)[:1]
             fitted[key] = found if isinstance(given, tuple) else next(iter(found), None)
     if points.reports is not None and points.reports not in _buffered_reports(ied, None):
         told = fitted.get("record_made", points.record_made) or fitted.get("trip", points.trip)
@@ -93,12 +99,17 @@ def _serves(key: str, found: DataObject | DataAttribute | None) -> bool:
     return is_operable(found) if key in _CONTROLS else isinstance(found, DataObject)
 
 
-def _candidates(nodes: Mapping[str, LogicalNode], key: str) -> Iterator[str]:
-    """Iterate over what a model has under the standard names of a point."""
-    for name, data_object in _STANDARD_NAMES[key]:
-        for place, node in nodes.items():
-            if name in (node.name, node.ln_class) and _serves(key, node.find(data_object)):
-                yield place if key in _NODES else f"{place}.{data_object}"
+def _candidates(nodes: Mapping[str, LogicalNode], key: str) -> tuple[str, ...]:
+    """Return what a model has under the standard names of a point, the best first."""
+    found = [
+        (place, data_object)
+        for name, data_object in _STANDARD_NAMES[key]
+        for place, node in nodes.items()
+        if name in (node.name, node.ln_class) and _serves(key, node.find(data_object))
+    ]
+    beside = _BESIDE.get(key, ())
+    found.sort(key=lambda each: sum(nodes[each[0]].find(name) is None for name in beside))
+    return tuple(place if key in _NODES else f"{place}.{data_object}" for place, data_object in found)
 
 
 def _buffered_reports(ied: Ied, told: str | None) -> list[str]:

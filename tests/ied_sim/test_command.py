@@ -11,6 +11,7 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -20,11 +21,13 @@ from ied_sim.errors import SimulatorError
 from ied_sim.profiles.profile import shipped
 from ied_sim.scenario.scenario import healthy_reference
 from ied_sim.simulator import Simulator
-from mms import Client
+from mms import Client, FunctionalConstraint
 from scl import Address
 from testing.ports import free_port
+from testing.relays.simulated import fetch, names, recordings
 from testing.waiting import wait_until
 from tests.scl.documents import NODE_ZERO, scl_text, write_scl
+from tests.scl.vendor_shapes import SHAPES
 
 DEMO_SCENARIO = Path(__file__).parents[2] / "service" / "demo" / "scenario.toml"
 RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")
@@ -203,7 +206,32 @@ def test_relays_without_an_address_are_served_at_consecutive_ports(tmp_path: Pat
             assert client.logical_devices() == ["R2LD0"]
         process.terminate()
         _, told = process.communicate(timeout=20)
-    assert 'relays.cid: line 8: <LN inst="2" lnClass="GGIO" lnType="gone">: left out: expected a LN' in told
+    assert 'relays.cid: line 8: <LN inst="2" lnClass="GGIO" lnType="gone">: its data objects are left' in told
+
+
+def test_cids_of_several_relays_are_served_together(tmp_path: Path) -> None:
+    """One of them has an IED name that another one has."""
+    first, second = tmp_path / "feeder.cid", tmp_path / "relay.iid"
+    write_scl(first, SHAPES["edition-1.cid"])
+    write_scl(second, SHAPES["edition-2.iid"])
+    write_scl(tmp_path / "copy.cid", SHAPES["edition-1.cid"])
+    port = free_port_pair()
+    files = ("--scd", first, "--scd", second, "--scd", tmp_path / "copy.cid")
+    with serving(*files, "--port", str(port)) as (process, lines):
+        assert lines == [f"FEEDER_1 127.0.0.1 {port}", f"RELAY_2 127.0.0.1 {port + 1}", "ready"]
+        process.terminate()
+        _, told = process.communicate(timeout=20)
+    assert "copy.cid: FEEDER_1 is not served: another file has an IED of this name" in told
+
+
+def test_of_much_that_is_left_out_the_terminal_tells_some(tmp_path: Path) -> None:
+    odd = "".join(f'<LN lnClass="GGIO" inst="{n}" lnType="gone"/>' for n in range(2, 60))
+    path = write_scl(tmp_path / "odd.cid", scl_text(nodes=odd))
+    code, _, _ = run("--scd", path, "--truth")
+    assert code == 0
+    told = run_process("--scd", path, "--truth")[2]
+    assert told.count("its data objects are left out") == 20
+    assert "odd.cid: 38 more are left out: mcc import-scl lists them" in told
 
 
 def free_port_pair() -> int:
@@ -248,3 +276,48 @@ def test_the_profiles_are_listed() -> None:
     listed = CliRunner().invoke(app, ["--profiles"])
     assert listed.exit_code == 0
     assert [line.split()[0] for line in listed.output.splitlines()] == list(shipped())
+
+
+VENDOR_SCENARIO = """
+[[motor]]
+ied = "FEEDER_1"
+[motor.nameplate]
+rated_power_W = 250000
+rated_voltage_V = 3300
+rated_frequency_Hz = 50
+pole_pairs = 2
+connection = "star"
+[motor.parameters]
+stator_resistance_ohm = 0.335
+rotor_resistance_ohm = 0.345
+stator_leakage_H = 0.00885
+rotor_leakage_H = 0.00885
+stator_self_inductance_H = 0.385
+inertia_kgm2 = 4.6
+[motor.load]
+level = 0.7
+[motor.recorder]
+pre_trigger_s = 0.04
+post_trigger_s = 0.08
+"""
+
+
+def test_a_maker_s_cid_is_served_with_a_motor_of_a_scenario(tmp_path: Path) -> None:
+    """Its remote bit makes a record of the scenario's motor, and its MMXU meters the same currents."""
+    cid = write_scl(tmp_path / "feeder.cid", SHAPES["edition-1.cid"])
+    scenario = write_scl(tmp_path / "scenario.toml", VENDOR_SCENARIO)
+    port = free_port()
+    with serving("--scd", cid, "--port", str(port), "--scenario", scenario) as (process, lines):
+        assert lines == [f"FEEDER_1 127.0.0.1 {port}", "ready"]
+        with Client.connect("127.0.0.1", port) as client:
+            client.operate("FEEDER_1CON/RBGGIO1.SPCSO01", value=True)
+            wait_until(lambda: names(client, "EVENTS"), "a record")
+            (record,) = recordings(fetch(client, "EVENTS", tmp_path / "fetched"))
+            metered = client.read("FEEDER_1MET/METMMXU1.A.phsA.cVal.mag.f", FunctionalConstraint.MX)
+        process.terminate()
+        assert process.wait(20) == 0
+    currents = np.sqrt(np.mean(record.samples[:3] ** 2, axis=1))
+    assert currents == pytest.approx([metered] * 3, rel=0.05)
+    assert 30 < currents[0] < 60
+    line_voltage = np.sqrt(3 * np.mean(record.samples[3] ** 2))
+    assert line_voltage == pytest.approx(3300, rel=0.02)

@@ -231,6 +231,13 @@ def test_logs_settings_and_goose(tmp_path: Path) -> None:
             },
             "ix='i' is no number",
         ),
+        (
+            {
+                "node_zero": '<LN0 lnType="LLN0"><DataSet name="D">'
+                '<FCDA ldInst="R1LD0" lnClass="GGIO" lnInst="1" doName="Ind1" fc="ST"/></DataSet></LN0>'
+            },
+            "ldInst='R1LD0' is the name of a domain: taken as 'LD0'",
+        ),
         ({"communication": COMMUNICATION.replace("R1", "R7")}, "names an IED this file does not hold"),
     ],
 )
@@ -284,6 +291,11 @@ MEMBER = '<FCDA lnClass="GGIO" lnInst="1" doName="Ind1" fc="ST"/>'
             "one LDevice of each inst",
         ),
         ({"nodes": f'{NODES}</LDevice><LDevice inst="9" ldName="R1LD0">'}, "LDevice", "one LDevice of each"),
+        (
+            {"node_zero": '<LN0 lnType="LLN0"><GSEControl name="G" type="GSSE" appID="x"/></LN0>'},
+            "GSEControl",
+            "GSSE",
+        ),
         ({"services": '</IED><IED name="R1"/><IED name="R2">'}, "IED", "a second IED of this name"),
         ({"services": '</IED><IED/><IED name="R2">'}, "IED", "expected an attribute name"),
         ({"services": '</IED><IED name="Ä/1"/><IED name="R2">'}, "IED", "name of 1 to 64 letters"),
@@ -295,7 +307,7 @@ def test_what_cannot_be_used_is_left_out_and_named(
     read_scl = read(tmp_path, **parts)
     (finding,) = (each for each in read_scl.warnings if each.left_out)
     assert finding.element.startswith(f"<{place}")
-    assert f"left out: {'' if 'second' in reason else 'expected '}" in finding.message
+    assert "left out: " in finding.message
     assert reason in finding.message
     lines = read_scl.path.read_text(encoding="utf-8").splitlines()
     assert f"<{place}" in lines[finding.line - 1]

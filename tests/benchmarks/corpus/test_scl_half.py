@@ -59,7 +59,7 @@ def test_relays_in_part_and_not_at_all_have_a_reason(tmp_path: Path) -> None:
     text = scl_text(node_zero=NODE_ZERO.replace("/>", f">{member}</LN0>")).replace("</IED>", f"</IED>{EMPTY}")
     in_part, not_served = serve_relays(write_scl(tmp_path / "plant.scd", text))
     assert (in_part.relay, in_part.service) == ("R1", Service.IN_PART)
-    assert in_part.notes == ("1 data sets with other members: R1LD0/LLN0.D",)
+    assert in_part.notes == ("R1LD0/LLN0.D without 1 members: R1LD0/GGIO9.Ind1[ST]",)
     assert (not_served.relay, not_served.service) == ("R2", Service.NOT_SERVED)
     assert "a logical node with data objects" in not_served.notes[0]
 
