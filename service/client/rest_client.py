@@ -1,7 +1,7 @@
 """A client of the service's REST API, for the command line and the demo."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from http import HTTPStatus
 from types import TracebackType
 from typing import Self
@@ -11,6 +11,7 @@ import httpx
 
 API = "/api/v1"
 TIMEOUT_S = 30.0
+DISPOSITION = "Content-Disposition"
 
 Document = Mapping[str, object]
 
@@ -111,6 +112,37 @@ class ServiceClient:
         path = f"{API}/motors/{segment(motor)}/reference"
         return _document(self._request("POST", path, {}, document=restart))
 
+    def upload(self, motor: str, files: Mapping[str, bytes]) -> tuple[Document, bool]:
+        """Store the files of one recording, and return it, and whether it is new. Raises ServiceError."""
+        parts = [("files", (name, content)) for name, content in files.items()]
+        response = self._request("POST", f"{API}/recordings", {}, form={"motor": motor}, files=parts)
+        return _document(response), response.status_code == HTTPStatus.CREATED
+
+    def download(self, recording_id: str) -> tuple[str, bytes]:
+        """Return the name and the content of a recording's archive. Raises ServiceError."""
+        response = self._request("GET", f"{API}/recordings/{segment(recording_id)}/file", {})
+        named = re.search(r'filename="([A-Za-z0-9_-][A-Za-z0-9._-]*)"', response.headers.get(DISPOSITION, ""))
+        return named[1] if named else f"{segment(recording_id)}.zip", response.content
+
+    def request_diagnosis(self, recording_id: str, *, method: str, model: str) -> Document:
+        """Ask for another diagnosis of a recording. Raises ServiceError."""
+        path = f"{API}/recordings/{segment(recording_id)}/diagnoses"
+        return _document(self._request("POST", path, {}, document={"method": method, "model": model}))
+
+    def diagnosis(self, run: Document) -> Document:
+        """Return a diagnosis that was asked for, as it is now. Raises ServiceError."""
+        recording, run_id = segment(str(run["recording_id"])), segment(str(run["id"]))
+        return self.get(f"/recordings/{recording}/diagnoses/{run_id}")
+
+    def set_baseline(self, motor: str, wanted: Document) -> Document:
+        """Replace a motor's baseline, and return it. Raises ServiceError."""
+        path = f"{API}/motors/{segment(motor)}/baseline"
+        return _document(self._request("PUT", path, {}, document=wanted))
+
+    def drop_baseline(self, motor: str, said: Mapping[str, str]) -> None:
+        """Forget a motor's baseline; `said`: why and by whom. Raises ServiceError."""
+        self._request("DELETE", f"{API}/motors/{segment(motor)}/baseline", said)
+
     def recording_request(self, request_id: str) -> Document:
         """Return a recording request, with its present state. Raises ServiceError."""
         return self.get(f"/event-reports/{segment(request_id)}")
@@ -123,9 +155,13 @@ class ServiceClient:
         headers: Mapping[bytes, bytes] | None = None,
         *,
         document: Document | None = None,
+        form: Mapping[str, str] | None = None,
+        files: Sequence[tuple[str, tuple[str, bytes]]] | None = None,
     ) -> httpx.Response:
         try:
-            response = self._http.request(method, path, params=query, headers=headers, json=document)
+            response = self._http.request(
+                method, path, params=query, headers=headers, json=document, data=form, files=files
+            )
         except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
             raise ServiceError(
                 f"no service answers at {self._url} ({error}); start it with mcc serve"

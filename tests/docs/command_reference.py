@@ -21,12 +21,19 @@ def commands() -> Iterator[tuple[str, typer.core.TyperCommand]]:
     """Yield each command with the words that start it, in the order of its program's help."""
     group = typer.main.get_command(service.cli.app.app)
     assert isinstance(group, typer.core.TyperGroup)
-    for name, command in group.commands.items():
-        assert isinstance(command, typer.core.TyperCommand)
-        yield f"mcc {name}", command
+    yield from _commands_of("mcc", group)
     alone = typer.main.get_command(ied_sim.cli.app)
     assert isinstance(alone, typer.core.TyperCommand)
     yield "ied-sim", alone
+
+
+def _commands_of(words: str, group: typer.core.TyperGroup) -> Iterator[tuple[str, typer.core.TyperCommand]]:
+    for name, command in group.commands.items():
+        if isinstance(command, typer.core.TyperGroup):
+            yield from _commands_of(f"{words} {name}", command)
+        else:
+            assert isinstance(command, typer.core.TyperCommand)
+            yield f"{words} {name}", command
 
 
 def lines(name: str, command: typer.core.TyperCommand) -> Iterator[str]:

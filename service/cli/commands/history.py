@@ -1,0 +1,205 @@
+"""Commands on what a running service has kept: trends, alarms, recordings, their diagnoses and baselines."""
+
+from math import isfinite
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
+from service.cli.commands.options import DEFAULT_URL, Json, Url
+
+commands = typer.Typer()
+
+MotorName = Annotated[str, typer.Argument(metavar="MOTOR", help="The motor's name.")]
+OneMotor = Annotated[str | None, typer.Argument(metavar="[MOTOR]", help="Only this motor's.")]
+RecordingIds = Annotated[
+    list[str], typer.Argument(metavar="RECORDING...", help="Ids, as mcc recordings shows them.")
+]
+Csv = Annotated[bool, typer.Option("--csv", help="Print rows of comma-separated values with a heading.")]
+Limit = Annotated[int, typer.Option("--limit", min=1, max=100_000, help="Show so many, the latest.")]
+Reason = Annotated[str | None, typer.Option(metavar="TEXT", help="Why; it is kept.")]
+By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
+Quantity = Literal["mu_f", "theta_f", "load_level", "condition_level", "change"]
+State = Literal["announced", "fetched", "diagnosed", "rejected", "failed"]
+
+
+class DefaultGroup(typer.core.TyperGroup):
+    """A group of commands whose first one is run where none is named."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the words after the group's name."""
+        if not args or (args[0] not in self.commands and args[0] != "--help"):
+            args = [next(iter(self.commands)), *args]
+        return super().parse_args(ctx, args)
+
+
+@commands.command()
+def trend(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    quantity: Annotated[
+        Quantity,
+        typer.Option(
+            help="mu_f, theta_f and load_level are what each recording says by itself; condition_level and "
+            "change what the motor's condition says from it on."
+        ),
+    ] = "mu_f",
+    from_: Annotated[str | None, typer.Option("--from", metavar="TIME", help="First time or date.")] = None,
+    to: Annotated[
+        str | None, typer.Option("--to", metavar="TIME", help="First time or date not to be included.")
+    ] = None,
+    limit: Limit = 100,
+    *,
+    as_csv: Csv = False,
+    as_json: Json = False,
+) -> None:
+    """Show one figure for each recording of a motor, oldest first."""
+    from service.cli.trend import show_trend
+
+    show_trend(url, motor, quantity, first=from_, end=to, limit=limit, as_csv=as_csv, as_json=as_json)
+
+
+@commands.command()
+def alarms(
+    motor: OneMotor = None,
+    url: Url = DEFAULT_URL,
+    relay: Annotated[
+        str | None, typer.Option(metavar="RELAY", help="Only this relay's and its motors'.")
+    ] = None,
+    limit: Limit = 100,
+    *,
+    cleared: Annotated[bool, typer.Option("--all", help="Also those that are over.")] = False,
+    as_csv: Csv = False,
+    as_json: Json = False,
+) -> None:
+    """Show what somebody has to look after at relays and motors, latest first."""
+    from service.cli.alarms import show_alarms
+
+    show_alarms(url, motor, relay, cleared=cleared, limit=limit, as_csv=as_csv, as_json=as_json)
+
+
+recordings = typer.Typer(cls=DefaultGroup, help="List recordings that the service has, or download one.")
+commands.add_typer(recordings, name="recordings")
+
+
+@recordings.command("list")
+def list_recordings(
+    motor: OneMotor = None,
+    url: Url = DEFAULT_URL,
+    state: Annotated[State | None, typer.Option(help="Only those in this state.")] = None,
+    limit: Limit = 100,
+    *,
+    as_csv: Csv = False,
+    as_json: Json = False,
+) -> None:
+    """List recordings, latest first."""
+    from service.cli.stored_recordings import show_recordings
+
+    show_recordings(url, motor, state, limit=limit, as_csv=as_csv, as_json=as_json)
+
+
+@recordings.command()
+def download(
+    recording: Annotated[
+        str, typer.Argument(metavar="RECORDING", help="The recording's id, as mcc recordings shows it.")
+    ],
+    url: Url = DEFAULT_URL,
+    output: Annotated[
+        Path | None,
+        typer.Option(metavar="PATH", help="File or folder (default: MOTOR_TIME.zip in this folder)."),
+    ] = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Save the files of a recording in a ZIP archive, as they came from the relay."""
+    from service.cli.stored_recordings import download_recording
+
+    download_recording(url, recording, output, as_json=as_json)
+
+
+@commands.command()
+def upload(
+    motor: MotorName,
+    files: Annotated[
+        list[Path],
+        typer.Argument(metavar="FILE...", help="One recording: .CFG and .DAT, or .CFF, or .CEV."),
+    ],
+    url: Url = DEFAULT_URL,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Give the service a recording of a motor; it is diagnosed as if its relay had made it."""
+    from service.cli.stored_recordings import upload_recording
+
+    upload_recording(url, motor, files, as_json=as_json)
+
+
+@commands.command()
+def rediagnose(
+    recordings: RecordingIds,
+    url: Url = DEFAULT_URL,
+    method: Method = DEFAULT_METHOD,
+    model: Model = DEFAULT_MODEL,
+    wait: Annotated[
+        float, typer.Option(metavar="SECONDS", min=0, help="Wait this long for the diagnoses.")
+    ] = 60.0,
+    *,
+    as_csv: Csv = False,
+    as_json: Json = False,
+) -> None:
+    """Diagnose stored recordings again, with the motor's parameters and baseline of today."""
+    from service.cli.rediagnose import rediagnose_recordings
+
+    if not isfinite(wait):
+        raise typer.BadParameter(f"--wait: expected a number of seconds, found {wait}")
+    rediagnose_recordings(
+        url, recordings, method.value, model.value, wait_s=wait, as_csv=as_csv, as_json=as_json
+    )
+
+
+baseline = typer.Typer(
+    cls=DefaultGroup, help="Show, choose or drop the healthy recordings that a motor is compared with."
+)
+commands.add_typer(baseline, name="baseline")
+
+
+@baseline.command("show")
+def show_baseline(
+    motor: MotorName, url: Url = DEFAULT_URL, *, as_csv: Csv = False, as_json: Json = False
+) -> None:
+    """Show the recordings of a motor's baseline, oldest first."""
+    from service.cli.baseline import show_baseline
+
+    show_baseline(url, motor, as_csv=as_csv, as_json=as_json)
+
+
+@baseline.command("set")
+def set_baseline(
+    motor: MotorName,
+    recordings: RecordingIds,
+    url: Url = DEFAULT_URL,
+    reason: Reason = None,
+    by: By = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Choose at least three recordings known to be healthy; those in doubt need a reason."""
+    from service.cli.baseline import set_baseline
+
+    set_baseline(url, motor, recordings, reason=reason, by=by, as_json=as_json)
+
+
+@baseline.command("drop")
+def drop_baseline(
+    motor: MotorName,
+    url: Url = DEFAULT_URL,
+    reason: Reason = None,
+    by: By = None,
+    *,
+    as_json: Json = False,
+) -> None:
+    """Have a motor compared with no baseline any more; its recordings stay."""
+    from service.cli.baseline import drop_baseline
+
+    drop_baseline(url, motor, reason=reason, by=by, as_json=as_json)

@@ -1,0 +1,171 @@
+"""`mcc trend`, `alarms`, `recordings`, `upload`, `rediagnose`, `baseline`: against the API on a real port."""
+
+import csv
+import io
+import json
+import zipfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from service.api import ApiContext, create_app
+from service.cli.app import main
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from service.storage.states import AlarmKind
+from testing.service.conditions import FAULT, tell
+from testing.service.job_runner import RUNNER
+from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy
+from testing.service.small_record import CFG, DAT
+from tests.service.api.serving import serving
+from tests.service.fixtures import database_url, engine, repository, store
+
+__all__ = ["database_url", "engine", "repository", "store"]
+
+Mcc = Callable[..., str]
+FORMULA = "=1+1 the relay's"
+
+
+@pytest.fixture
+def recorded(repository: Repository, store: RecordingStore) -> list[str]:
+    """Four recordings of PUMP-A1, a second apart: three healthy ones, then a fault."""
+    ids = []
+    for k, diagnosis in enumerate([healthy(), healthy(), healthy(), fault(0.02)]):
+        stored = store.store({f"E{k}.CFF": b"samples %d" % k})
+        added = repository.add_recording(stored, motor="PUMP-A1", now_ns=NOW_NS + k)
+        claimed = repository.claim_job(now_ns=NOW_NS + k, runner=RUNNER)
+        assert claimed is not None
+        recorded_ns = NOW_NS + k * SECOND_NS
+        repository.finish_job(
+            claimed.job.id, diagnosis, recorded_ns=recorded_ns, now_ns=recorded_ns, runner=RUNNER
+        )
+        ids.append(added.recording.id)
+    return ids
+
+
+@pytest.fixture
+def client(repository: Repository, store: RecordingStore, tmp_path: Path) -> Iterator[httpx.Client]:
+    with serving(create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))) as client:
+        yield client
+
+
+@pytest.fixture
+def mcc(client: httpx.Client, capsys: pytest.CaptureFixture[str]) -> Mcc:
+    """Run a command against the service; returns what it prints."""
+
+    def run(*words: str, ends: int = 0) -> str:
+        assert main([*words, "--url", str(client.base_url)]) == ends
+        output = capsys.readouterr()
+        return output.err if ends else output.out
+
+    return run
+
+
+def rows(text: str) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def test_a_trend(mcc: Mcc, recorded: list[str]) -> None:
+    table = mcc("trend", "PUMP-A1").splitlines()
+    assert [line.split()[0] for line in table if line.strip()][2:] == ["2025-10-09"] * 4
+    assert f"2.00 % [1.60..2.40] 2.10 fault {recorded[3]}" in " ".join(table[-2].split())
+    found = json.loads(mcc("trend", "PUMP-A1", "--json"))["points"]
+    assert [point["recording_id"] for point in found] == recorded
+    [last] = rows(mcc("trend", "PUMP-A1", "--csv", "--limit", "1"))
+    assert (last["time"], last["value"], last["recording_id"]) == (found[3]["time"], "0.02", recorded[3])
+    assert float(last["ci95_low"]) == found[3]["ci95"][0]
+    load = mcc("trend", "PUMP-A1", "--quantity", "load_level", "--from", "2025-10-09", "--to", "2025-10-10")
+    assert load.count("0.480 [0.460..0.500]") == 4
+    assert mcc("trend", "PUMP-A1", "--from", "2025-10-10") == "no points\n"
+    assert "did you mean 'PUMP-A1'?" in mcc("trend", "pump-a1", ends=1)
+
+
+def test_the_trend_of_a_condition(mcc: Mcc, repository: Repository) -> None:
+    tell(repository, FAULT)
+    assert mcc("trend", "PUMP-A1", "--quantity", "condition_level") == "no points\n"
+
+
+def test_alarms(mcc: Mcc, repository: Repository) -> None:
+    assert mcc("alarms") == "no alarms\n"
+    repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "X.CFG", FORMULA, now_ns=NOW_NS)
+    over = repository.raise_alarm("A2_SEL710", AlarmKind.RELAY_DIFFERS, "trigger", "none", now_ns=NOW_NS)
+    repository.clear_alarms("A2_SEL710", [over.id], now_ns=NOW_NS + SECOND_NS)
+    shown = mcc("alarms")
+    assert "A1_SEL710" in shown
+    assert f"X.CFG: {FORMULA}" in shown
+    assert "A2_SEL710" not in shown
+    assert "2025-10-09 08:53:21 UTC" in mcc("alarms", "--all")
+    assert mcc("alarms", "--relay", "A2_SEL710") == "no alarms\n"
+    assert mcc("alarms", "FAN-A2", "--all") == "no alarms\n"
+    [alarm] = rows(mcc("alarms", "--csv"))
+    assert (alarm["ied"], alarm["kind"], alarm["cleared_time"]) == ("A1_SEL710", "file-refused", "")
+    assert alarm["reason"] == f"'{FORMULA}", "a spreadsheet would compute it"
+    assert json.loads(mcc("alarms", "--json"))["alarms"][0]["reason"] == FORMULA
+
+
+@pytest.mark.parametrize("words", [("recordings",), ("recordings", "list")])
+def test_recordings_are_listed(mcc: Mcc, recorded: list[str], words: tuple[str, ...]) -> None:
+    shown = mcc(*words)
+    assert [line.split()[-1] for line in shown.splitlines()[3:] if line.strip()] == recorded[::-1]
+    assert "diagnosed" in shown
+    assert mcc(*words, "FAN-A2") == "no recordings\n"
+    assert mcc(*words, "--state", "failed") == "no recordings\n"
+    assert [row["id"] for row in rows(mcc(*words, "PUMP-A1", "--csv", "--limit", "2"))] == recorded[:1:-1]
+    assert len(json.loads(mcc(*words, "--json"))["recordings"]) == 4
+    assert "expected one of --csv and --json" in mcc(*words, "--csv", "--json", ends=2)
+
+
+def test_a_recording_comes_and_goes(
+    mcc: Mcc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, client: httpx.Client
+) -> None:
+    for name, content in (("EVENT.CFG", CFG), ("EVENT.DAT", DAT)):
+        (tmp_path / name).write_bytes(content)
+    files = (str(tmp_path / "EVENT.CFG"), str(tmp_path / "EVENT.DAT"))
+    added = json.loads(mcc("upload", "FAN-A2", *files, "--json"))
+    assert added["motor"] == "FAN-A2"
+    assert "was there already" in mcc("upload", "FAN-A2", *files)
+    assert "expected a file" in mcc("upload", "FAN-A2", str(tmp_path / "NONE.CFF"), ends=1)
+    assert "the .DAT file that belongs to" in mcc("upload", "FAN-A2", files[0], ends=1)
+    monkeypatch.chdir(tmp_path)
+    saved = Path(json.loads(mcc("recordings", "download", added["id"], "--json"))["file"])
+    assert saved.name.startswith("FAN-A2_20")
+    assert saved.suffix == ".zip"
+    with zipfile.ZipFile(saved) as archive:
+        assert {name: archive.read(name) for name in archive.namelist()} == {
+            "EVENT.CFG": CFG,
+            "EVENT.DAT": DAT,
+        }
+    assert "File exists" in mcc("recordings", "download", added["id"], ends=1), "nothing is overwritten"
+    (tmp_path / "other").mkdir()
+    mcc("recordings", "download", added["id"], "--output", str(tmp_path / "other"))
+    assert (tmp_path / "other" / saved.name).read_bytes()[:2] == b"PK"
+
+
+def test_recordings_are_diagnosed_again(mcc: Mcc, recorded: list[str], repository: Repository) -> None:
+    shown = mcc("rediagnose", recorded[0], recorded[1], "--wait", "0")
+    assert " ".join(shown.split()).count("queued") == 2
+    [run] = json.loads(mcc("rediagnose", recorded[3], "--wait", "0", "--json"))["diagnoses"]
+    assert (run["state"], run["recording_id"]) == ("queued", recorded[3])
+    claimed = repository.claim_job(now_ns=NOW_NS * 2, runner=RUNNER)
+    assert claimed is not None
+    assert claimed.job.recording_id in recorded
+    unknown = "00000000-0000-4000-8000-000000000000"
+    assert "there is no recording" in mcc("rediagnose", unknown, ends=1)
+
+
+def test_a_baseline_is_chosen_and_dropped(mcc: Mcc, recorded: list[str]) -> None:
+    assert mcc("baseline", "PUMP-A1") == "no baseline\n"
+    assert "3 recordings are its baseline" in mcc(
+        "baseline", "set", "PUMP-A1", *recorded[:3], "--reason", "new"
+    )
+    shown = mcc("baseline", "PUMP-A1")
+    assert [line.split()[-1] for line in shown.splitlines()[3:6]] == recorded[:3]
+    assert ": new (" in shown
+    assert [row["id"] for row in rows(mcc("baseline", "show", "PUMP-A1", "--csv"))] == recorded[:3]
+    assert "in doubt" in mcc("baseline", "set", "PUMP-A1", *recorded[1:], ends=1), "one shows a fault"
+    assert json.loads(mcc("baseline", "PUMP-A1", "--json"))["reason"] == "new"
+    assert "no baseline any more" in mcc("baseline", "drop", "PUMP-A1")
+    assert json.loads(mcc("baseline", "PUMP-A1", "--json"))["recordings"] == []
