@@ -114,6 +114,7 @@ def _recording(
         samples=samples,
         sample_rate_hz=base.rate_hz,
         start_time_ns=configuration.start_time_ns,
+        has_time_code=configuration.has_time_code,
         channels=channels_of(configuration, roles),
         trigger_index=trigger_index(path, configuration, base, samples.shape[1], repairs),
         nominal_frequency_hz=configuration.nominal_frequency_hz,

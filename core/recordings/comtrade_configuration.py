@@ -101,6 +101,8 @@ class Configuration:
     start_time_ns, trigger_time_ns : int or None
         UTC [ns since 1970]. The editions of 1991 and 1999 know no time zone: their times are taken as UTC.
         None where a lenient reader found no time.
+    has_time_code : bool
+        Whether the file tells how far its times are ahead of UTC (2013, 7.4.11).
     data_format : str
         Format of the data file.
     time_stamp_unit_s : float
@@ -117,6 +119,7 @@ class Configuration:
     sample_count: int
     start_time_ns: int | None
     trigger_time_ns: int | None
+    has_time_code: bool
     data_format: str
     time_stamp_unit_s: float
 
@@ -169,6 +172,7 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
     time_multiplier = 1.0 if revision == 1991 else _time_multiplier(lines, repairs, needed=not rates)
     if edition is None and revision == 1999 and lines.fields_ahead():
         revision = 2013  # nothing else has lines behind the time multiplier
+    has_time_code = revision >= 2013 and lines.fields_ahead() > 0
     ahead_ns = utc_offset_ns(lines, repairs) if revision >= 2013 else 0
     for line in lines.remaining():
         if any(line.fields):
@@ -187,6 +191,7 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
         sample_count=sample_count,
         start_time_ns=None if start.ns is None or ahead_ns is None else start.ns - ahead_ns,
         trigger_time_ns=None if trigger.ns is None or ahead_ns is None else trigger.ns - ahead_ns,
+        has_time_code=has_time_code,
         data_format=data_format,
         time_stamp_unit_s=time_multiplier * time_base_s,
     )

@@ -130,7 +130,7 @@ class Digitals:
 class Recording:
     """Samples of one event, as the relay measured them.
 
-    Recordings that differ only in `source` are the same.
+    Recordings that differ only in `source` and `has_time_code` are the same.
 
     Parameters
     ----------
@@ -139,7 +139,8 @@ class Recording:
     sample_rate_hz : float
         Sampling rate [Hz]; where `instants_s` is given, the first of the rates, or the typical one.
     start_time_ns : int or None
-        UTC of the first sample [ns since 1970]; None where a lenient reader found no time.
+        UTC of the first sample [ns since 1970]; None where a lenient reader found no time. Times of a file
+        that does not tell how far they are ahead of UTC are taken as UTC.
     channels : tuple of Channel
         The channels, one a row.
     trigger_index : int or None, optional
@@ -159,6 +160,8 @@ class Recording:
         What a lenient reader mended, in words; empty for a file that was sound.
     warnings : tuple of str, optional
         What departs from the standard without a change of any value, in words.
+    has_time_code : bool, default False
+        Whether the file tells how far its times are ahead of UTC.
     source : str, optional
         File it was read from, for messages.
     """
@@ -175,6 +178,7 @@ class Recording:
     instants_s: NDArray[np.float64] | None = None
     repairs: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    has_time_code: bool = field(default=False, compare=False)
     source: str = field(default="recording", compare=False)
 
     def __post_init__(self) -> None:

@@ -1,6 +1,7 @@
 """What one simulated relay is given: its motor, kind and settings, what it does wrong, whom it lets in."""
 
 from dataclasses import dataclass, field
+from zoneinfo import ZoneInfo
 
 from ied_sim.misbehaviour import Misbehaviour
 from ied_sim.motor.plant import MotorPlant
@@ -47,6 +48,8 @@ class RelayConfiguration:
         Time between updates of the metered values.
     metering_refresh_s : float
         Longest time until unchanged values are published again.
+    time_zone : zoneinfo.ZoneInfo or None
+        Zone in which records and reports have their times; None for UTC.
     """
 
     plant: MotorPlant
@@ -59,6 +62,7 @@ class RelayConfiguration:
     access: Access = field(default_factory=Access)
     metering_period_s: float = 1.0
     metering_refresh_s: float = 30.0
+    time_zone: ZoneInfo | None = None
 
     def truth(self, time_s: float) -> dict[str, object]:
         """Return the motor's true condition at a time since the scenario's beginning.

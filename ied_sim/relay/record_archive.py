@@ -63,7 +63,7 @@ class RecordArchive:
                 record,
                 self._header(record, capture.kind, metering),
                 self._summary(record, capture.kind, targets, metering),
-                utc_offset_min=round((self._misbehaviour_state.number(Kind.LOCAL_TIME) or 0.0) / 60),
+                utc_offset_min=self._clock.ahead_ns(capture.time_ns) // (60 * NANOSECONDS_PER_SECOND),
                 grow_s=self._misbehaviour_state.number(Kind.GROWING_FILE) or 0.0,
             )
         self.last_number = number
@@ -91,7 +91,7 @@ class RecordArchive:
         """Return the .HDR file: the relay's event summary in plain text."""
         seconds, nanoseconds = divmod(record.trigger_time_ns, NANOSECONDS_PER_SECOND)
         trigger = datetime.fromtimestamp(seconds, UTC).strftime("%Y-%m-%d %H:%M:%S")
-        zone = "local" if self._misbehaviour_state.is_on(Kind.LOCAL_TIME) else "UTC"
+        zone = "local" if self._clock.is_local else "UTC"
         return (
             f"RELAY     {self._origin.relay}\r\n"
             f"FID       {self._origin.firmware}\r\n"

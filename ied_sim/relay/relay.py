@@ -96,7 +96,7 @@ class Relay:
         if self._points.departures is not None:
             log.warning("%s: %s", ied_name, self._points.departures)
         self.misbehaviour_state = MisbehaviourState(configuration.misbehaviour, clock.running_s)
-        self._clock = RelayClock(clock, self.misbehaviour_state)
+        self._clock = RelayClock(clock, self.misbehaviour_state, configuration.time_zone)
         self._word = RelayWord()
         self._acting = threading.Lock()
         """Held while a control or a trip does its work: one at a time, whichever thread it is on."""

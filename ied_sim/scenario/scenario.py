@@ -180,6 +180,7 @@ def _relay_scenario(
         protection=section.protection.settings(),
         misbehaviour=tuple(each.misbehaviour() for each in section.misbehaviour),
         load_profile_s=section.recorder.load_profile_s,
+        time_zone=section.recorder.time_zone,
         access=_access(path, section),
     )
 

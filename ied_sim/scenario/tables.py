@@ -5,6 +5,7 @@ docs/reference/scenario.md explains them to users.
 
 from math import inf
 from typing import Annotated, Self
+from zoneinfo import ZoneInfo
 
 from pydantic import Field, model_validator
 
@@ -77,6 +78,7 @@ class RecorderTable(Table):
     post_trigger_s: Annotated[float, Field(gt=0, le=30)] | None = None
     capacity: Annotated[int, Field(ge=1, le=10_000)] | None = None
     load_profile_s: Annotated[float, Field(ge=1)] = 60.0
+    time_zone: ZoneInfo | None = None
 
 
 class TriggersTable(Table):

@@ -3,6 +3,7 @@
 import shutil
 import time
 from collections.abc import AsyncIterator
+from dataclasses import replace
 from http import HTTPStatus
 from pathlib import PurePosixPath
 from typing import Annotated
@@ -144,9 +145,16 @@ def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
     entry = context.repository.recording(recording_id)
     path = context.store.entry(_digest(entry))
     try:
-        return read_envelope(path, intervals_within(points, context.settings.max_waveform_values))
+        envelope = read_envelope(path, intervals_within(points, context.settings.max_waveform_values))
     except RecordingError as error:
         raise ProblemError(HTTPStatus.CONFLICT, f"the recording cannot be read: {error}") from error
+    if entry.recorded_ns is None:
+        return envelope
+    # The file may have local time; its diagnosis found out the UTC.
+    ahead_ns = envelope.trigger_time_ns - entry.recorded_ns
+    return replace(
+        envelope, start_time_ns=envelope.start_time_ns - ahead_ns, trigger_time_ns=entry.recorded_ns
+    )
 
 
 def _upload(

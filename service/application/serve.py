@@ -167,6 +167,7 @@ def _parts(
             lease_s=settings.lease_s,
         ),
         installation=installation_id(settings.data_directory),
+        time_zones=plant.time_zones(),
         conditions=conditions,
         prepare_worker=prepare_worker,
         is_ending=lambda: termination.is_asked,

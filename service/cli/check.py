@@ -8,6 +8,9 @@ from service.cli.output import DONE, FAILED, one_line, print_document, progress,
 from service.setup.check import CheckedPlant, check
 from service.setup.relay_survey import RelaySurvey, survey
 
+QUARTER_S, ZONE_TOLERANCE_S = 900.0, 60.0
+"""Time zones differ by quarters of an hour."""
+
 LATE_S = 1.0
 """A clock that is further off is told in the line of its relay."""
 
@@ -75,7 +78,11 @@ def _clock(offset_s: float | None) -> str:
         return "its clock is not known"
     if abs(offset_s) < LATE_S:
         return "its clock agrees with this one"
-    return f"its clock is {abs(offset_s):.1f} s {'ahead of' if offset_s > 0 else 'behind'} this one"
+    off = f"its clock is {abs(offset_s):.1f} s {'ahead of' if offset_s > 0 else 'behind'} this one"
+    quarters = round(offset_s / QUARTER_S)
+    if quarters and abs(offset_s - quarters * QUARTER_S) < ZONE_TOLERANCE_S:
+        off += ": if it runs in local time, set time_zone"
+    return off
 
 
 def _document(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> dict[str, object]:

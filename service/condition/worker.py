@@ -5,7 +5,7 @@ waits for a worker does not wait long. A worker that is killed loses the transac
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from time import monotonic, time_ns
 
@@ -102,6 +102,8 @@ def _observed(task: ObserveTask) -> Iterator[tuple[str, Observation | None]]:
             recording = read(task.store.entry(one.digest), most_values=MOST_VALUES)
             observation = observe(recording, task.motor)
             if observation is not None:
+                # The file may have local time; its diagnosis found out the UTC.
+                observation = replace(observation, time_ns=one.recorded_ns)
                 require_possible_time(observation.time_ns, time_ns())
             yield one.recording_id, observation
         except (RecordingError, DiagnosisError, RecordingStoreError, ImpossibleTimeError) as error:

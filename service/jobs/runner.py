@@ -17,6 +17,7 @@ from structlog.typing import FilteringBoundLogger
 from core.machines.parameters import Motor
 from service.condition.record_times import ImpossibleTimeError, require_possible_time
 from service.condition.work import ConditionTask, ConditionWork
+from service.jobs.relay_time import TriggeredRecord, note_relay_time
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
 from service.jobs.worker_process import follow_service
@@ -72,15 +73,20 @@ class JobRunner:
         *,
         limits: JobLimits,
         installation: str,
+        time_zones: Mapping[str, str] | None = None,
         conditions: ConditionWork | None = None,
         prepare_worker: Callable[[], None] = follow_service,
         poll_period_s: float = 0.2,
         is_ending: Callable[[], bool] = lambda: False,
     ) -> None:
-        """conditions: what workers do that have nothing to diagnose. is_ending: workers are not needed."""
+        """time_zones: of the clocks of relays that do not run in UTC, by motor (IANA names).
+
+        conditions: what workers do that have nothing to diagnose. is_ending: workers are not needed.
+        """
         self._repository = repository
         self._store = store
         self._motors = motors
+        self._time_zones = {} if time_zones is None else time_zones
         self._task = task
         self._limits = limits
         self._installation = installation
@@ -220,7 +226,15 @@ class JobRunner:
         except OSError as error:  # the store's disk or its permissions, which somebody may mend
             self._retry(claimed, str(error))
             return True
-        task = DiagnosisTask(entry, motor, job.method, job.model, baseline)
+        task = DiagnosisTask(
+            entry,
+            motor,
+            job.method,
+            job.model,
+            baseline,
+            time_zone=self._time_zones.get(claimed.motor),
+            near_ns=claimed.announced_ns if claimed.triggered_ns is None else claimed.triggered_ns,
+        )
         try:
             future = self._pool.schedule(self._task, task, self._limits.job_timeout_s)
         except NoWorkersError:
@@ -275,7 +289,7 @@ class JobRunner:
             case Rejected(reason):
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
-            case Diagnosed(diagnosis, recorded_ns, observation, remark):
+            case Diagnosed(diagnosis, recorded_ns, observation, remark, has_time_code):
                 now_ns, left_out = time.time_ns(), None
                 try:
                     require_possible_time(recorded_ns, now_ns)
@@ -301,6 +315,16 @@ class JobRunner:
                 if not kept:
                     log.warning("a diagnosis came after the lease was lost", recording=job.recording_id)
                     return
+                is_first = not claimed.is_repetition  # a repetition tells of the clock as it was
+                if is_first and claimed.ied is not None and claimed.triggered_ns is not None:
+                    record = TriggeredRecord(
+                        claimed.ied,
+                        self._time_zones.get(claimed.motor),
+                        recorded_ns,
+                        claimed.triggered_ns,
+                        has_time_code,
+                    )
+                    note_relay_time(self._repository, record, now_ns)
                 log.info(
                     "recording diagnosed",
                     recording=job.recording_id,

@@ -14,6 +14,8 @@ class DiagnosisTask:
     """Name a recording to diagnose, by the file a reader starts from, its motor, and how to do it.
 
     baseline: files of the motor's healthy recordings, whose standing asymmetry is taken off; or none.
+    time_zone: IANA name of the zone in which the relay's clock runs; None for UTC.
+    near_ns: UTC near which the record was made: its trigger, or else when it was first seen [ns].
     """
 
     entry: Path
@@ -21,6 +23,8 @@ class DiagnosisTask:
     method: str
     model: str
     baseline: tuple[Path, ...] = ()
+    time_zone: str | None = None
+    near_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,12 +34,14 @@ class Diagnosed:
     recorded_ns: trigger time written in the record, UTC [ns].  observation: None where it tells nothing.
     operation_remark: why the motor's parameters cannot be estimated from this start; None where they can, and
     for other records.
+    has_time_code: whether the record tells how far its times are ahead of UTC.
     """
 
     diagnosis: Diagnosis
     recorded_ns: int
     observation: Observation | None = None
     operation_remark: str | None = None
+    has_time_code: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,14 @@ behind them, are imported where the work is done: without them the service start
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
+from zoneinfo import ZoneInfo
 
 from core.commissioning.errors import CommissioningError
 from core.diagnosis.errors import DiagnosisError
 from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import Recording, RecordingError, read
+from core.recordings.local_time import in_utc
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 
@@ -40,6 +42,8 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
 
     try:
         recording = read(task.entry, most_values=MOST_VALUES)
+        if task.time_zone is not None:
+            recording = in_utc(recording, ZoneInfo(task.time_zone), task.near_ns)
         examined = examine(
             recording,
             task.motor,
@@ -52,7 +56,13 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
     remark = None
     if examined.diagnosis.operation is Operation.START:
         remark = _why_not_commissioned_from(recording, task.motor)
-    return Diagnosed(examined.diagnosis, recording.trigger_time_ns, examined.observation, remark)
+    return Diagnosed(
+        examined.diagnosis,
+        recording.trigger_time_ns,
+        examined.observation,
+        remark,
+        recording.has_time_code,
+    )
 
 
 def _why_not_commissioned_from(recording: Recording, motor: Motor) -> str | None:

@@ -105,6 +105,11 @@ class Plant:
         """Return a relay by its name. Raises KeyError."""
         return {relay.name: relay for relay in self.relays}[name]
 
+    def time_zones(self) -> dict[str, str]:
+        """Return the zones of the relays' clocks that do not run in UTC, by motor."""
+        zones = {relay.name: relay.time_zone for relay in self.relays if relay.time_zone is not None}
+        return {motor.name: zones[motor.relay] for motor in self.motors if motor.relay in zones}
+
     def motor_of(self, relay: str) -> PlantMotor:
         """Return the motor that a relay protects. Raises KeyError."""
         return {motor.relay: motor for motor in self.motors}[relay]

@@ -21,6 +21,7 @@ class AlarmKind(StrEnum):
     DAILY_LIMIT = "daily-limit"
     QUARANTINED = "quarantined"
     RELAY_DIFFERS = "relay-differs"
+    TIME_ZONE = "time-zone"
     CONDITION_WATCH = "condition-watch"
     CONDITION_FAULT = "condition-fault"
 

@@ -194,11 +194,12 @@ class FoldResult:
 
 @dataclass(frozen=True, slots=True)
 class ToObserve:
-    """A recording that is yet to be observed, and the digest of its files."""
+    """A recording that is yet to be observed, the digest of its files, and its time."""
 
     recording_id: str
     motor: str
     digest: str
+    recorded_ns: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,12 +30,22 @@ class Job:
 @dataclass(frozen=True, slots=True)
 class ClaimedJob:
     """A job with what the worker needs: the motor's name, the digest of the recording's files, and those of
-    the motor's baseline."""
+    the motor's baseline.
+
+    ied: the relay that made the recording; None of an upload.
+    triggered_ns: when that relay was triggered for it; None where the service did not ask for it.
+    announced_ns: when the recording was first seen.
+    is_repetition: whether somebody asked for another diagnosis of a recording.
+    """
 
     job: Job
     motor: str
     digest: str
     baseline: tuple[str, ...] = ()
+    ied: str | None = None
+    triggered_ns: int | None = None
+    announced_ns: int = 0
+    is_repetition: bool = False
 
 
 @dataclass(frozen=True, slots=True)

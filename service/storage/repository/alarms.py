@@ -29,6 +29,18 @@ class AlarmRows(Sessions):
             found(session, IedRow, relay, "relay", lock=True)
             return alarm(raised(session, relay, kind, subject, reason, now_ns))
 
+    def clear_alarms_of(self, relay: str, kind: AlarmKind, *, now_ns: int) -> None:
+        """Clear the standing alarms of a kind about a relay; no change without any."""
+        standing = select(AlarmRow.id).where(
+            AlarmRow.ied == relay, AlarmRow.kind == kind, AlarmRow.cleared_ns.is_(None)
+        )
+        with self._read() as session:
+            if session.scalars(standing.limit(1)).first() is None:
+                return
+        with self._write() as session:
+            clear_standing(session, relay, kind, now_ns)
+            forget_cleared(session, AlarmRow.ied == relay, AlarmRow.motor.is_(None))
+
     def clear_alarms(self, relay: str, alarm_ids: Collection[str], *, now_ns: int) -> None:
         """Clear alarms; those that were cleared before stay as they are."""
         with self._write() as session:

@@ -18,7 +18,7 @@ from service.storage.errors import (
     StateConflictError,
     UnstorableDiagnosisError,
 )
-from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, RecordingRow
+from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, RecordingRequestRow, RecordingRow
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
@@ -97,7 +97,21 @@ class JobRows(Sessions):
                 )
             healthy = baseline_rows(session, recording.motor)
             digests = tuple(one.digest for one in healthy if one.digest is not None)
-            return ClaimedJob(job(row), recording.motor, recording.digest, digests)
+            triggered_ns = session.scalar(
+                select(func.max(RecordingRequestRow.triggered_ns)).where(
+                    RecordingRequestRow.recording_id == recording.id
+                )
+            )
+            return ClaimedJob(
+                job(row),
+                recording.motor,
+                recording.digest,
+                digests,
+                ied=recording.ied,
+                triggered_ns=triggered_ns,
+                announced_ns=recording.announced_ns,
+                is_repetition=row.priority == JobPriority.REPETITION,
+            )
 
     def release_job(self, job_id: str, *, runner: str) -> None:
         """Put a running job of the runner back as if it had not been claimed. Raises NotFoundError."""

@@ -129,7 +129,12 @@ class ObservationRows(Sessions):
     def recordings_to_observe(self, motor: str, limit: int) -> tuple[ToObserve, ...]:
         """Return some of a motor's recordings that are yet to be observed, oldest first."""
         query = (
-            select(RecordingRow.id, RecordingRow.motor, RecordingRow.digest)
+            select(
+                RecordingRow.id,
+                RecordingRow.motor,
+                RecordingRow.digest,
+                UnobservedRecordingRow.recorded_ns,
+            )
             .join(UnobservedRecordingRow, UnobservedRecordingRow.recording_id == RecordingRow.id)
             .where(UnobservedRecordingRow.motor == motor)
             .order_by(UnobservedRecordingRow.recorded_ns, UnobservedRecordingRow.recording_id)
@@ -137,8 +142,8 @@ class ObservationRows(Sessions):
         )
         with self._read() as session:
             return tuple(
-                ToObserve(recording_id, motor, digest)
-                for recording_id, motor, digest in session.execute(query)
+                ToObserve(recording_id, motor, digest, recorded_ns)
+                for recording_id, motor, digest, recorded_ns in session.execute(query)
                 if digest is not None
             )
 

@@ -11,6 +11,7 @@ import pytest
 from core.diagnosis.verdict import Verdict
 from core.recordings import Channel, Quantity, Recording
 from core.recordings.comtrade_writer import write
+from core.time_stamps import nanoseconds
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Rejected
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
@@ -53,6 +54,18 @@ def test_a_record_is_diagnosed_as_of_its_trigger(tmp_path: Path) -> None:
     assert isinstance(outcome, Diagnosed)
     assert outcome.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000
     assert (outcome.diagnosis.method, outcome.diagnosis.model) == ("hcpa", "split-winding")
+
+
+def test_a_record_in_local_time_is_diagnosed_as_of_utc(tmp_path: Path) -> None:
+    local = replace(recording(), start_time_ns=nanoseconds("2026-10-25T02:30:00Z"))
+    entry = write(tmp_path / "EVENT", local)
+    near_ns = nanoseconds("2026-10-25T01:30:02Z")
+    outcome = diagnose_recording(replace(task(entry), time_zone="Europe/Berlin", near_ns=near_ns))
+    assert isinstance(outcome, Diagnosed)
+    assert outcome.recorded_ns == nanoseconds("2026-10-25T01:30:00.1Z")
+    assert outcome.observation is None or outcome.observation.time_ns == outcome.recorded_ns
+    told = [finding.message for finding in outcome.diagnosis.quality]
+    assert "time: 2026-10-25 02:30:00 is there twice in Europe/Berlin: the second is taken" in told
 
 
 def test_a_recording_that_would_not_fit_into_memory_is_rejected(
