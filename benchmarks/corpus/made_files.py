@@ -98,6 +98,9 @@ def _all() -> Iterator[tuple[str, Files]]:
     yield "sound/event report", {".CEV": report}
     for name, edit in BESIDE_THE_STANDARD.items():
         yield f"beside the standard/{name}", _edited(record, edit)
+    text = _pair(record, 1999, "ASCII")
+    doubled = text[".DAT"].replace(b"\r\n", b"\r\n\r\n")
+    yield "beside the standard/blank lines", {**text, ".DAT": doubled}
     for name, edit in OF_2013.items():
         yield f"beside the standard/{name}", _edited(record, edit, 2013)
     for name, (stamps, decimals) in STAMPS.items():
@@ -221,7 +224,6 @@ def _damaged(record: Recording, report: bytes) -> Iterator[tuple[str, Files]]:
     yield "damaged/data cut off", {**sound, ".DAT": sound[".DAT"][:-1005]}
     yield "damaged/bytes too many", {**sound, ".DAT": sound[".DAT"] + b"\x00" * 9}
     yield "damaged/lines cut off", {**text, ".DAT": text[".DAT"][:20_000]}
-    yield "damaged/blank lines", {**text, ".DAT": text[".DAT"].replace(b"\r\n", b"\r\n\r\n")}
     yield "damaged/configuration cut off", {**sound, ".CFG": sound[".CFG"][:200]}
     yield "damaged/no data", {".CFG": sound[".CFG"]}
     yield "damaged/no configuration", {".DAT": sound[".DAT"]}

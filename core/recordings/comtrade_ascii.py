@@ -35,7 +35,8 @@ def decode_ascii(
 ) -> Sink:
     """Read the samples of an ASCII file.
 
-    A lenient reader takes the lines there are, up to the number announced.
+    Blank lines are passed over where the others are as many as announced. A lenient reader takes the lines
+    there are, up to the number announced.
 
     Parameters
     ----------
@@ -64,8 +65,12 @@ def decode_ascii(
     announced, lines = configuration.sample_count, text.lines
     without_blanks = lines != announced and text.blank_lines > 0
     if without_blanks:
-        repairs.mend(_fault(section.path, lines, announced), "blank lines are passed over")
+        fault = _fault(section.path, lines, announced)
         lines -= text.blank_lines
+        if lines == announced:
+            repairs.warn(f"{fault}: the {text.blank_lines} blank lines are passed over")
+        else:
+            repairs.mend(fault, "blank lines are passed over")
     analog, states = len(configuration.analog), len(configuration.status_names)
     samples = _whole_lines(section.path, text, lines, configuration, repairs)
     if samples * (1 + analog + states) > text.characters:  # a line is no shorter than its commas

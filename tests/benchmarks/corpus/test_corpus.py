@@ -117,7 +117,7 @@ def test_made_files_are_read_as_their_names_say(tmp_path: Path) -> None:
         f"{name}.CFG"
         for name in (
             "constant spare channel", "constant spare channel without a ratio", "constant channel of 24",
-            "revision 2000", "revision 1998", *made_files.STAMPS,
+            "revision 2000", "revision 1998", "blank lines", *made_files.STAMPS,
         )
     }  # fmt: skip
     agreements = {one.comparison.agreement for one in examined.values()}

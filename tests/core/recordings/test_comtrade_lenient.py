@@ -95,10 +95,18 @@ def test_bytes_behind_the_last_sample_are_no_samples(tmp_path: Path) -> None:
     assert mended(path, "found 97 bytes: 5 samples are read").samples.shape == (4, 5)
 
 
-def test_blank_lines_are_passed_over(tmp_path: Path) -> None:
+def test_blank_lines_are_passed_over_where_the_others_add_up(tmp_path: Path) -> None:
     path = ASCII.write(tmp_path)
-    path.with_suffix(".dat").write_bytes(ASCII.data().replace(b"\r\n", b"\r\n\r\n"))
-    assert mended(path, "blank lines are passed over").samples.shape == (4, 5)
+    sound = read(path)
+    doubled = ASCII.data().replace(b"\r\n", b"\r\n\r\n")
+    path.with_suffix(".dat").write_bytes(doubled)
+    recording = read(path)
+    np.testing.assert_array_equal(recording.samples, sound.samples)
+    (warning,) = recording.warnings
+    assert "expected 5 lines, one a sample, found 9 lines: the 4 blank lines are passed over" in warning
+    lines = doubled.split(b"\r\n")
+    path.with_suffix(".dat").write_bytes(b"\r\n".join(lines[:7]))
+    assert mended(path, "blank lines are passed over", "4 samples are read").samples.shape == (4, 4)
 
 
 def test_a_skew_beyond_a_sample_is_left(tmp_path: Path) -> None:

@@ -159,7 +159,7 @@ def test_unknown_data_format(tmp_path: Path) -> None:
         (b"1500", b"\x001500", "line 3, field 4"),
         (b"1500", b"15\xb200", "line 3, field 4"),
         (b"1500", b"\x0c1500", "text: expected numbers, commas and line ends"),
-        (b"\r\n2,", b"\r\n\r\n2,", "expected 5 lines, one a sample, found 6"),
+        (b"\r\n2,", b"\r\n1,2\r\n2,", "expected 5 lines, one a sample, found 6"),
         (b"-2000,1500,500,6,0,1", b"-2000,1500,500,6,0,2", "line 3, field 8: expected a status of 0 or 1"),
         (b"-2000,1500,500,6,0,1", b"-2000,1500,500,6,0,", "line 3, field 8: expected a status"),
         (b"3,2000", b",2000", "sample 3, number: expected 3"),
