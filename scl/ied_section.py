@@ -3,7 +3,7 @@
 from lxml import etree
 
 from scl.control_blocks import ControlBlockReader
-from scl.data_model import DataAttribute, DataObject
+from scl.data_model import DataObject
 from scl.data_sets import DataSetReader
 from scl.document import Document
 from scl.errors import SclError
@@ -177,7 +177,7 @@ class IedSection:
             self._count(element, node_type)
         except SclError as error:
             self._document.leave_out(element, error, "its data objects are left out")
-            return NodeType((), 0, 0)
+            return NodeType()
         return node_type
 
     def _count(self, element: etree._Element, node_type: NodeType) -> None:
@@ -192,36 +192,22 @@ class IedSection:
         self, element: etree._Element, domain: str, node: str, node_type: NodeType
     ) -> tuple[DataObject, ...]:
         """Return the data objects whose attributes all have names that clients can use."""
-        before = len(f"{domain}/{node}.")
-        if before + node_type.characters <= LONGEST_NAME:
+        before_path, before_listed = len(f"{domain}/{node}."), len(f"{node}$ST$")
+        if before_path + node_type.characters <= LONGEST_NAME:
             return node_type.data_objects
         kept = []
-        for data_object in node_type.data_objects:
-            name = f"{node}$ST${_longest(data_object, '$', with_elements=False)}"
-            reference = f"{domain}/{node}.{_longest(data_object, '.', with_elements=True)}"
-            if len(name) <= LONGEST_NAME and len(reference) <= LONGEST_REFERENCE:
+        for data_object, (path, listed) in zip(node_type.data_objects, node_type.extents, strict=True):
+            name, reference = before_listed + listed, before_path + path
+            if name <= LONGEST_NAME and reference <= LONGEST_REFERENCE:
                 kept.append(data_object)
                 continue
-            long = name if len(name) > LONGEST_NAME else reference
             self._document.leave_out(
-                element, f"the name {long} of {len(long)} characters is too long for MMS"
+                element,
+                f"its longest MMS name has {name} characters and its longest reference {reference}, "
+                f"with at most {LONGEST_NAME} and {LONGEST_REFERENCE} allowed",
+                f"{data_object.name} is left out",
             )
         return tuple(kept)
-
-
-def _longest(member: DataObject | DataAttribute, separator: str, *, with_elements: bool) -> str:
-    """Return the longest path of an object.
-
-    The list of MMS names ends at an array. References go on, with the number of the element.
-    """
-    children: tuple[DataObject | DataAttribute, ...] = member.attributes
-    if isinstance(member, DataObject):
-        children += member.objects
-    if member.count and not with_elements:
-        children = ()
-    below = [_longest(child, separator, with_elements=with_elements) for child in children]
-    own = f"{member.name}({member.count - 1})" if member.count and with_elements else member.name
-    return separator.join(filter(None, (own, max(below, key=len, default=""))))
 
 
 def _node_name(document: Document, element: etree._Element) -> tuple[str, str, str]:

@@ -45,23 +45,27 @@ class _UnboundedTypeError(SclError):
 class _Extent:
     """Size of a type: its attributes, its levels, and the characters of its longest path.
 
-    `attributes` counts every element of an array, `written` counts an array once.
+    `attributes` counts every element of an array, `written` counts an array once. `characters` has the paths
+    to what elements of arrays hold, "har(12).cVal"; `listed` has those of MMS names, which end at an array.
     """
 
     attributes: int = 0
     written: int = 0
     depth: int = 1
     characters: int = 0
+    listed: int = 0
 
     def plus(self, name: str, count: int, part: "_Extent | None") -> "_Extent":
         """Return the extent with one more member: a name, its array elements, and the extent of its type."""
         elements = max(count, 1)
-        part = part or _Extent(depth=0, characters=-1)
+        part = part or _Extent(depth=0, characters=-1, listed=-1)
+        index = f"({count - 1})" if count else ""
         return _Extent(
             attributes=self.attributes + elements * (1 + part.attributes),
             written=self.written + 1 + part.written,
             depth=max(self.depth, 1 + part.depth),
-            characters=max(self.characters, len(name) + 1 + part.characters),
+            characters=max(self.characters, len(name + index) + 1 + part.characters),
+            listed=max(self.listed, len(name) if count else len(name) + 1 + part.listed),
         )
 
 
@@ -83,15 +87,19 @@ class NodeType:
     ----------
     data_objects : tuple of DataObject
         Its data objects.
+    extents : tuple of tuple of int and int
+        For each of them the characters of the longest path below the node, as in references and as in lists
+        of MMS names.
     attributes : int
         Number of their attributes, those of every array element counted.
     characters : int
-        Length of the longest path below the node.
+        The longest of all paths.
     """
 
-    data_objects: tuple[DataObject, ...]
-    attributes: int
-    characters: int
+    data_objects: tuple[DataObject, ...] = ()
+    extents: tuple[tuple[int, int], ...] = ()
+    attributes: int = 0
+    characters: int = 0
 
 
 class Templates:
@@ -160,17 +168,23 @@ class Templates:
 
     def _node(self, definition: etree._Element) -> NodeType:
         objects: list[DataObject] = []
-        extent = _Extent()
+        extents: list[_Extent] = []
         for name, member in self._named(definition, "DO"):
             try:
                 part = self._resolve("DOType", member, ())
-                self._check(member, _Extent().plus(name, 0, part.extent))
+                extent = _Extent().plus(name, 0, part.extent)
+                self._check(member, extent)
             except SclError as error:
                 self._document.leave_out(member, error)
                 continue
-            extent = extent.plus(name, 0, part.extent)
+            extents.append(extent)
             objects.append(self._data_object(name, 0, member, part))
-        return NodeType(tuple(objects), extent.attributes, extent.characters)
+        return NodeType(
+            data_objects=tuple(objects),
+            extents=tuple((extent.characters, extent.listed) for extent in extents),
+            attributes=sum(extent.attributes for extent in extents),
+            characters=max((extent.characters for extent in extents), default=0),
+        )
 
     def _definition(self, node: etree._Element, ln_class: str, ied_type: str) -> etree._Element:
         """Return the LNodeType that a node names. Types of several classes and IED types may share an id."""
