@@ -22,7 +22,7 @@ from service.plant.errors import PlantError
 from service.plant.model import Bus, Plant, PlantMotor, Relay, Site
 from service.plant.motors_file import BusEntry, MotorEntry, MotorsFile, read_motors_file
 from service.plant.relay_entry import RelayEntry
-from service.plant.relays import read_own_scl, relay_of_ied, relay_without_scl, scl_problem
+from service.plant.relays import omissions, read_own_scl, relay_of_ied, relay_without_scl, scl_problem
 from service.plant.sensor_classes import typical_sensors
 
 NOTHING_TOLD = BusEntry(schedule=None, common_voltage_transformer=False)
@@ -98,6 +98,8 @@ def _plant(
         told = read_motors_file(motors_path, problems)
     try:
         configuration = None if scd_path is None else scl.read(scd_path)
+        if configuration is not None:
+            problems.warnings.extend(omissions(configuration))
         if configuration is not None and subnetwork is not None:
             configuration = configuration.seen_from(subnetwork)
     except scl.SclError as error:
@@ -157,7 +159,9 @@ def _relays(
             if configuration is not None and one.relay in ieds:
                 relay = relay_of_ied(configuration, ieds[one.relay], one.site, entry, motor.overrides)
             elif entry.scl is not None:
-                relay = relay_of_ied(*read_own_scl(entry, told, subnetwork), one.site, entry, motor.overrides)
+                own = read_own_scl(entry, told, subnetwork)
+                problems.warnings.extend(omissions(own[0]))
+                relay = relay_of_ied(*own, one.site, entry, motor.overrides)
             elif one.relay in told.relays:
                 relay = relay_without_scl(entry, one.site, told, motor.overrides)
             else:

@@ -1,5 +1,6 @@
 """Relays as the plant's files describe them: an IED of the SCD, one of its own SCL file, or an address."""
 
+import re
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -15,6 +16,8 @@ from service.plant.offer import offer_from_scl
 from service.plant.overrides import Overrides
 from service.plant.recognition import recognise
 from service.plant.relay_entry import RelayEntry
+
+MOST_OMISSIONS = 20
 
 TEMPLATE = "TEMPLATE"
 """The IED of an ICD has this name, which says that its own is yet to be given (IEC 61850-6)."""
@@ -92,6 +95,15 @@ def read_own_scl(entry: RelayEntry, told: MotorsFile, subnetwork: str | None) ->
     raise PlantError([told.problem("relay", entry.name, "scl", expected=expected, found=found)])
 
 
+def omissions(configuration: scl.Scl) -> list[str]:
+    """Return what is left out of an SCL file, in words; of very much the beginning."""
+    left_out = [str(warning) for warning in configuration.warnings if warning.left_out]
+    told = [f"{configuration.path.name}: {warning}" for warning in left_out[:MOST_OMISSIONS]]
+    if more := left_out[MOST_OMISSIONS:]:
+        told.append(f"{configuration.path.name}: {len(more)} more are left out: mcc import-scl lists them")
+    return told
+
+
 def scl_problem(error: scl.SclError) -> Problem:
     """Return what is wrong in an SCL file."""
     line = "" if error.line is None else f"line {error.line}: "
@@ -99,7 +111,13 @@ def scl_problem(error: scl.SclError) -> Problem:
 
 
 def _named(file: Path, name: str) -> scl.Scl:
-    """Read an ICD as if its IED had the relay's name: logical devices are called by it. Raises SclError."""
+    """Read an ICD as if its IED had the relay's name: logical devices are called by it. Raises SclError.
+
+    A relay may be called R-1 or 3UF7, which no IED may (IEC 61850-6). What its devices are really called, the
+    relay says.
+    """
+    word = re.sub(r"[^A-Za-z0-9_]", "_", name)
+    name = word if word[:1].isalpha() else f"R{word}"
     with TemporaryDirectory() as folder:
         instance = Path(folder) / file.name
         scl.instantiate(file, instance, name)

@@ -132,3 +132,25 @@ def test_a_relay_that_does_not_answer(config: Path, capsys: pytest.CaptureFixtur
     (asked,) = json.loads(capsys.readouterr().out)["asked"]
     assert (asked["relay"], asked["reachable"]) == ("R-1", False)
     assert asked["reason"]
+
+
+def test_what_is_left_out_of_a_relay_s_file_is_a_warning(
+    config: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The relay has a trigger of its own type, and one odd data object: the plant is none the worse."""
+    icd = scl.SEL710_ICD.read_text(encoding="utf-8")
+    odd = icd.replace(
+        "<LNodeType ",
+        '<LNodeType id="Odd" lnClass="GGIO"><DO name="Ind1" type="gone"/></LNodeType><LNodeType ',
+        1,
+    )
+    odd = odd.replace("</LDevice>", '<LN lnClass="GGIO" inst="9" lnType="Odd"/></LDevice>', 1)
+    (config.parent / "R-1.icd").write_text(odd, encoding="utf-8")
+    motors = config.parent / "motors.toml"
+    text = motors.read_text(encoding="utf-8")
+    motors.write_text(text.replace('name = "R-1"', 'name = "R-1"\nscl = "R-1.icd"'), encoding="utf-8")
+    assert main(["check", "--config", str(config)]) == 0
+    told = capsys.readouterr().out
+    assert "warning: R-1.icd: line " in told
+    assert '<DO name="Ind1" type="gone">: left out: expected a DOType with id="gone"' in told
+    assert "nothing is wrong: 1 motors" in told
