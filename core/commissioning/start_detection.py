@@ -20,6 +20,7 @@ from core.machines.playback import DELAY_MARGIN_COLUMNS
 from core.machines.supply import supply
 from core.machines.winding_frame import to_winding_frame
 from core.quality import FREQUENCY_TOLERANCE, LOWEST_VOLTAGE, rated_current_A, sampled_well
+from core.quality.operation import Course, course_of
 from core.quality.ratios import current_advice, voltage_advice
 from core.quantity_text import plain, with_unit
 from core.recordings import Channel, Recording
@@ -139,6 +140,7 @@ def start_of(
     _check_samples(measured, nameplate, source)
     per_cycle = rate / nameplate.rated_frequency_Hz
     onset = _onset(clarke(measured.current_abc), nameplate, measured.current_channels, per_cycle, source)
+    _check_direct(course_of(measured.current_abc, per_cycle), nameplate, source)
     live = voltage_onset(measured.voltage_ab)
     hint = (onset - live) / rate if live > 0 and onset < live + per_cycle * 1.5 else None
     check_wiring(measured, nameplate, source, onset=onset, live=live, hint_s=hint)
@@ -175,6 +177,28 @@ def _check_samples(measured: Terminals, nameplate: Nameplate, source: str) -> No
                 expected=f"a limit of {plain(finding.limit, 6)} {finding.unit}",
                 found=f"{plain(finding.value, 6)}: {finding.message}",
             )
+
+
+def _check_direct(course: Course | None, nameplate: Nameplate, source: str) -> None:
+    """Check that the motor is switched on once, at full voltage, and stays on: only that can be played."""
+    if course is None:
+        return
+    if course.is_rest[-1]:
+        found = "a motor that is switched off again within it: record all of a start"
+    elif course.interruption is not None:
+        at_s = course.interruption / nameplate.rated_frequency_Hz
+        found = (
+            f"a current that is interrupted {at_s:.2f} s after the recording's beginning, as from star to "
+            "delta: such a start is not supported"
+        )
+    elif not course.is_direct:
+        found = (
+            "a current that rises slowly, as through a soft starter, a drive or a reduced voltage: such a "
+            "start is not supported"
+        )
+    else:
+        return
+    raise CommissioningError(source, "start", expected="one direct start", found=found)
 
 
 def _onset(

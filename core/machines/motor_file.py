@@ -124,7 +124,7 @@ def read_plate(path: Path | str) -> Plate:
         If the file is missing or unreadable, a value is missing or impossible, or a key is unknown.
     """
     path = Path(path)
-    return _plate_from_table(_table_of(path), name=path.stem, source=path)
+    return plate_from_table(_table_of(path), name=path.stem, source=path)
 
 
 def motor_from_table(
@@ -156,7 +156,7 @@ def motor_from_table(
     MotorFileError
         If a value is missing or impossible, or a key is unknown.
     """
-    return _plate_from_table(table, name=name, source=source, typical=typical).motor
+    return plate_from_table(table, name=name, source=source, typical=typical).motor
 
 
 def _table_of(path: Path) -> dict[str, object]:
@@ -172,9 +172,32 @@ def _table_of(path: Path) -> dict[str, object]:
         ) from error
 
 
-def _plate_from_table(
+def plate_from_table(
     table: Mapping[str, object], *, name: str, source: Path | str, typical: SensorClass = DEFAULT_SENSORS
 ) -> Plate:
+    """Read the tables of a motor's file as they are.
+
+    Parameters
+    ----------
+    table : mapping of str to object
+        The tables, as tomllib reads them.
+    name : str
+        Name of the motor.
+    source : pathlib.Path or str
+        Where the tables come from, for messages.
+    typical : SensorClass, optional
+        Class of the motor's relay, for what [sensors] does not say.
+
+    Returns
+    -------
+    Plate
+        What the file says.
+
+    Raises
+    ------
+    MotorFileError
+        If a value is missing or impossible, or a key is unknown.
+    """
     errors: list[MotorFileError] = []
     plate = _plate(table, name, source, typical, errors)
     figures = [number for number, error in enumerate(errors) if _is_of_a_figure(error)]

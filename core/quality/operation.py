@@ -49,6 +49,8 @@ BALANCED = 3.0
 """Least ratio of a sequence to what is beside it from which small currents are a motor's, scaled wrongly."""
 THREE_WIRES = 0.05
 """Most that the currents of three wires leave in their sum, over the greatest; hum leaves more."""
+MUCH = 0.15
+"""Share of the greatest current above which a cycle has much of it."""
 FEWEST_CYCLES = 3
 LARGEST_OFFSET_A = 1e12
 """Currents beyond are none, however little they change, and leave no digits to compute with."""
@@ -97,18 +99,22 @@ class Course:
 
     @property
     def interruption(self) -> int | None:
-        """The first cycle without current between others with it; None without one."""
-        flowing = np.flatnonzero(~self.is_rest)
-        within = np.flatnonzero(self.is_rest[: flowing[-1]]) if flowing.size else flowing
-        within = within[within > flowing[0]] if within.size else within
+        """The first cycle without current between others with much of it; None without one."""
+        much = self._much
+        within = np.flatnonzero(self.is_rest[: much[-1]])
+        within = within[within > much[0]]
         return int(within[0]) if within.size else None
 
     @property
     def is_direct(self) -> bool:
         """Whether the current comes at once, as it does on a direct start, and not by steps or a ramp."""
-        flowing = np.flatnonzero(~self.is_rest)
-        second = int(flowing[0]) + 1
+        second = int(self._much[0]) + 1
         return second >= self.rms_A.size or bool(self.rms_A[second] > DIRECT * self.greatest_A)
+
+    @property
+    def _much(self) -> NDArray[np.int64]:
+        """The cycles whose current is no noise, whatever there is of it."""
+        return np.flatnonzero(self.rms_A > MUCH * self.greatest_A)
 
 
 def course_of(current_abc: Array, per_cycle: float) -> Course | None:

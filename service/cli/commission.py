@@ -40,12 +40,12 @@ def commission_motor(
     motor's file cannot be used or written or is one of the files read, or where the recordings determine no
     parameter at all.
     """
-    law = None if load == "auto" else LoadLaw[load.upper()]
+    law = load_law(load)
     _check_output(output, nameplate, records)
     with failing_clearly(RecordingError, MotorFileError, CommissioningError, OSError):
         plate = read_plate(nameplate)
         recordings = [read(record) for record in records]
-        with _bar() as advance:
+        with progress_bar() as advance:
             found = commission(recordings, plate, load_law=law, progress=advance)
         if not found.identifiable:
             raise CommandError(
@@ -61,7 +61,7 @@ def commission_motor(
     if as_json:
         print_document({**found.as_dict(), "output": str(output)})
     else:
-        results().print(_table(output, found))
+        results().print(commissioning_table(output, found))
     for warning in found.warnings:
         print_warning(warning)
 
@@ -104,7 +104,13 @@ def _heading(records: Sequence[Path], found: Commissioning) -> str:
     return "\n".join(lines)
 
 
-def _table(output: Path, found: Commissioning) -> FittedTable:
+def load_law(name: str) -> LoadLaw | None:
+    """Return the law of the load of a name; None for the one that fits best."""
+    return None if name == "auto" else LoadLaw[name.upper()]
+
+
+def commissioning_table(output: Path, found: Commissioning) -> FittedTable:
+    """Return what was found as a table. output: the file that it is written to."""
     table = FittedTable(title=Text(output.name), title_justify="left")
     for heading in ("quantity", "value", "95 % interval", "remark"):
         table.add_column(heading)
@@ -143,7 +149,7 @@ def _interval(one: Estimate, scale: float = 1.0) -> str:
 
 
 @contextmanager
-def _bar() -> Iterator[Callable[[float, str], None]]:
+def progress_bar() -> Iterator[Callable[[float, str], None]]:
     """Show a progress bar on stderr, if that is a terminal."""
     console = progress()
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())

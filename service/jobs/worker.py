@@ -70,7 +70,7 @@ def _why_not_commissioned_from(recording: Recording, motor: Motor) -> str | None
     from core.commissioning.start_detection import start_of
 
     try:
-        start_of(recording, motor.nameplate, motor.channels)
+        start_of(recording, motor.nameplate, motor.channels, transformers=motor.transformers)
     except (RecordingError, CommissioningError) as error:
         return f"{error.field}: expected {error.expected}, found {error.found}"
     return None

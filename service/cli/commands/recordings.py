@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
-from service.cli.commands.options import Json
+from service.cli.commands.options import DEFAULT_URL, Json, Url
 from service.process.garbage_collection import collection_paused
 
 commands = typer.Typer()
@@ -138,25 +138,80 @@ def follow(
 @commands.command()
 def commission(
     records: Annotated[
-        list[Path],
+        list[Path] | None,
         typer.Argument(metavar="RECORD...", help="Recordings of the motor's starts, each from before it on."),
-    ],
+    ] = None,
     nameplate: Annotated[
-        Path,
+        Path | None,
         typer.Option(
             metavar="MOTOR.toml", help="The motor: its nameplate table, and parameters if any are known."
         ),
-    ],
+    ] = None,
     output: Annotated[
-        Path, typer.Option(metavar="MOTOR.toml", help="Where to write the motor with what was found.")
-    ],
+        Path | None,
+        typer.Option(metavar="MOTOR.toml", help="Where to write the motor with what was found."),
+    ] = None,
+    from_service: Annotated[
+        str | None,
+        typer.Option(metavar="MOTOR", help="Use the latest starts of this motor that a service recorded."),
+    ] = None,
+    recording: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="ID", help="With --from-service: this recording instead; may be given repeatedly."
+        ),
+    ] = None,
+    write: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="MOTORS.toml",
+            help="With --from-service: the plant's motors file. What was found is written into the motor's "
+            "table; all else stays, and the file as it was is kept beside it (.bak).",
+        ),
+    ] = None,
     load: Annotated[
         Load, typer.Option(help="How the load torque grows with speed; auto: as fits best.")
     ] = Load.AUTO,
+    url: Url = DEFAULT_URL,
     *,
+    despite_warnings: Annotated[
+        bool,
+        typer.Option(
+            "--despite-warnings",
+            help="With --from-service: write parameters that are unusual for a motor of this rating, too.",
+        ),
+    ] = False,
     as_json: Json = False,
 ) -> None:
-    """Estimate a motor's parameters, with intervals, from recordings of its start."""
+    """Estimate a motor's parameters, with intervals, from recordings of its start.
+
+    Either from files (RECORD... --nameplate MOTOR.toml --output MOTOR.toml), or from what a running service
+    has recorded (--from-service MOTOR --write MOTORS.toml).
+    """
+    if from_service is not None:
+        if records or nameplate is not None or output is not None:
+            raise typer.BadParameter("--from-service takes no RECORD, --nameplate or --output")
+        if write is None:
+            raise typer.BadParameter("--from-service needs --write MOTORS.toml, the plant's motors file")
+        from service.cli.commission_from_service import commission_from_service
+
+        commission_from_service(
+            url,
+            from_service,
+            write,
+            recordings=recording or [],
+            load=load.value,
+            despite_warnings=despite_warnings,
+            as_json=as_json,
+        )
+        return
+    if write is not None or recording or despite_warnings:
+        raise typer.BadParameter("--write, --recording and --despite-warnings go with --from-service MOTOR")
+    if not records or nameplate is None or output is None:
+        raise typer.BadParameter(
+            "expected RECORD... --nameplate MOTOR.toml --output MOTOR.toml, or --from-service MOTOR --write "
+            "MOTORS.toml"
+        )
     from service.cli.commission import commission_motor
 
     commission_motor(records, nameplate, output, load=load.value, as_json=as_json)
