@@ -4,7 +4,7 @@ import zipfile
 from io import BytesIO
 from pathlib import Path, PurePosixPath
 
-from service.client.rest_client import ServiceClient, ServiceError, segment
+from service.client.rest_client import ServiceClient, ServiceError
 
 MOST_BYTES = 256 * 1024 * 1024
 MOST_FILES = 16
@@ -17,8 +17,8 @@ def download_recording(service: ServiceClient, recording_id: str, folder: Path) 
 
     Raises ServiceError, also for an archive that is none or too large; OSError.
     """
-    path = f"/recordings/{segment(recording_id)}/file"
-    archive = service.download(path, most_bytes=MOST_BYTES)
+    path = f"/recordings/{recording_id}/file"
+    _name, archive = service.download(recording_id)
     try:
         files = _unpacked(archive)
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError) as error:

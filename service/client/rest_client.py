@@ -79,24 +79,6 @@ class ServiceClient:
                 return
             cursor = {"cursor": following}
 
-    def download(self, path: str, *, most_bytes: int) -> bytes:
-        """Get a file below /api/v1. Raises ServiceError, also for one that is larger."""
-        try:
-            with self._http.stream("GET", f"{API}{path}") as response:
-                if not response.is_success:
-                    response.read()
-                    raise ServiceError(_problem(response), status=response.status_code)
-                content = bytearray()
-                for part in response.iter_bytes():
-                    content += part
-                    if len(content) > most_bytes:
-                        raise ServiceError(
-                            f"{_asked(response)}: expected at most {most_bytes} bytes, found more"
-                        )
-                return bytes(content)
-        except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
-            raise self._no_answer(error) from error
-
     def request_recording(self, motor: str, *, idempotency_key: str | None = None) -> Document:
         """Request a recording of the motor; the same key again requests nothing new.
 
@@ -181,13 +163,12 @@ class ServiceClient:
                 method, path, params=query, headers=headers, json=document, data=form, files=files
             )
         except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
-            raise self._no_answer(error) from error
+            raise ServiceError(
+                f"no service answers at {self._url} ({error}); start it with mcc serve"
+            ) from error
         if response.is_success:
             return response
         raise ServiceError(_problem(response), status=response.status_code)
-
-    def _no_answer(self, error: Exception) -> ServiceError:
-        return ServiceError(f"no service answers at {self._url} ({error}); start it with mcc serve")
 
 
 def without_credentials(url: str) -> str:
