@@ -10,9 +10,6 @@ LEAST_WIDTH = 2
 WORD_WIDTH = 12
 """They keep their longest word up to so many characters before others stay whole."""
 
-BETWEEN = 2
-"""Characters between two columns, at least."""
-
 UNLIMITED = 10_000
 
 
@@ -24,8 +21,11 @@ class FittedTable(Table):
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         """Render the table within the width of the options."""
-        room = options.max_width - BETWEEN * len(self.columns)
-        found = [(_measured(column, console, options), column) for column in self.columns]
+        wide = options.update(width=UNLIMITED)
+        found = [(_measured(column, console, wide), column) for column in self.columns]
+        whole = self.__rich_measure__(console, wide).maximum
+        alone = sum(min(measured.maximum, column.max_width or UNLIMITED) for measured, column in found)
+        room = options.max_width - (whole - alone)
         found.sort(key=lambda each: (not each[1].no_wrap, each[0].maximum))
         for number, (measured, column) in enumerate(found, start=1):
             word = LEAST_WIDTH if column.no_wrap else WORD_WIDTH
@@ -39,6 +39,5 @@ class FittedTable(Table):
 
 def _measured(column: Column, console: Console, options: ConsoleOptions) -> Measurement:
     """Return how wide a column is at its longest word, and where nothing wraps."""
-    wide = options.update(width=UNLIMITED)
-    cells = [Measurement.get(console, wide, cell) for cell in (column.header, *column.cells)]
+    cells = [Measurement.get(console, options, cell) for cell in (column.header, *column.cells)]
     return Measurement(max(cell.minimum for cell in cells), max(cell.maximum for cell in cells))
