@@ -41,7 +41,7 @@ def commission_motor(
     parameter at all.
     """
     law = load_law(load)
-    _check_output(output, nameplate, records)
+    check_output(output, nameplate, records)
     with failing_clearly(RecordingError, MotorFileError, CommissioningError, OSError):
         plate = read_plate(nameplate)
         recordings = [read(record) for record in records]
@@ -66,7 +66,7 @@ def commission_motor(
         print_warning(warning)
 
 
-def _check_output(output: Path, nameplate: Path, records: Sequence[Path]) -> None:
+def check_output(output: Path, nameplate: Path, records: Sequence[Path]) -> None:
     """Raise CommandError (wrong use) where the output cannot be written or is one of the files read."""
     folder = output.parent
     if output.is_dir():

@@ -1,0 +1,402 @@
+"""Parameters from a catalogue: efficiency, power factor, currents, torques and speed, but no impedances.
+
+The equivalent circuit has fewer parameters than it has consequences, and a catalogue gives some of these. A
+weighted least-squares fit finds the circuit that comes nearest to them and to what is typical of the rating,
+after Pedra and Corcoles, whose estimation from manufacturer data minimises the same relative errors. Each
+figure weighs by what IEC 60034-1 (table of tolerances) lets one motor differ from its catalogue. What the
+catalogue leaves open keeps the width of typical parameters, so intervals are as wide as they have to be.
+
+With the rotor locked, the cage's current crowds to the top of its bars and the leakage paths saturate: R_r'
+is then k_R times, the leakage k_X times that of a running motor. Both are unknowns, too. Losses beside those
+of the windings are a share of all losses, half of them in the core, half at the shaft.
+
+References
+----------
+J. Pedra, F. Corcoles: Estimation of induction motor double-cage model parameters from manufacturer data, IEEE
+Transactions on Energy Conversion 19 (2004) 310-317. K. Lee, S. Frank, P. K. Sen, L. G. Polese, M. Alahmad, C.
+Waters: Estimation of induction motor equivalent circuit parameters from nameplate data, North American Power
+Symposium 2012. IEC 60034-1, clause 12.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from math import exp, hypot, log, pi, sqrt
+
+import numpy as np
+
+from core.commissioning.data_sheet import DATA_SHEET, INERTIA_TOLERANCE, positive
+from core.commissioning.errors import CommissioningError
+from core.machines.base import Array
+from core.machines.parameters import MachineParameters, Nameplate
+from core.machines.typical import FACTORS, typical_parameters
+
+FEWEST = 3
+"""Figures of a catalogue without which typical parameters are as good."""
+NORMAL_95 = 1.96
+LEAST_HALF_WIDTH = 0.05
+"""Of an interval: no catalogue is of one motor alone."""
+SPLIT = 0.15
+"""Standard deviation of the logarithm of either leakage beside their mean: no catalogue tells the ratio."""
+ROUNDING_RPM = 0.5
+SLIPS = np.geomspace(2e-3, 1.0, 300)
+"""At which the greatest torque is looked for."""
+
+LARGEST_RATED_SLIP = 0.5
+LEAST_SPEED = 1e-3
+"""A fit on its way may try a slip of one, at which no rated torque is."""
+
+R_S, R_R, X_L, X_M, SKIN, SATURATION, OTHER, SLIP = range(8)
+PRIOR_OF_OTHERS = {
+    SKIN: (log(1.6), 0.45),
+    SATURATION: (log(0.85), 0.15),
+    OTHER: (log(0.45), 0.3),
+}
+"""Logarithms with standard deviations: k_R, k_X, and the share of the losses that are not of the windings."""
+
+
+@dataclass(frozen=True, slots=True)
+class CatalogueData:
+    """Figures of a catalogue at rated voltage, frequency and power; None where it has none.
+
+    Parameters
+    ----------
+    efficiency, power_factor : float or None, optional
+        As fractions.
+    rated_current_A : float or None, optional
+        Line current, rms [A].
+    rated_speed_rpm : float or None, optional
+        Speed [rpm].
+    locked_rotor_current : float or None, optional
+        Over the rated current.
+    locked_rotor_torque, breakdown_torque : float or None, optional
+        Over the rated torque.
+    stator_resistance_ohm : float or None, optional
+        Of a winding at work, where it was measured [ohm].
+    """
+
+    efficiency: float | None = None
+    power_factor: float | None = None
+    rated_current_A: float | None = None
+    rated_speed_rpm: float | None = None
+    locked_rotor_current: float | None = None
+    locked_rotor_torque: float | None = None
+    breakdown_torque: float | None = None
+    stator_resistance_ohm: float | None = None
+
+    @property
+    def given(self) -> dict[str, float]:
+        """Figures that are given, by name."""
+        return {
+            field.name: value for field in fields(self) if (value := getattr(self, field.name)) is not None
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Compared:
+    """A figure of the catalogue beside that of the circuit found.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    given : float or None
+        What the catalogue says; None where it says nothing.
+    computed : float
+        What the circuit gives.
+    deviations : float or None
+        Their difference in standard deviations of what the standard allows.
+    """
+
+    name: str
+    given: float | None
+    computed: float
+    deviations: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class CircuitFound:
+    """The equivalent circuit that comes nearest to a catalogue.
+
+    Parameters
+    ----------
+    parameters : MachineParameters
+        Parameters of a winding.
+    intervals : dict of str to tuple of float
+        95 % intervals by parameter.
+    compared : tuple of Compared
+        All figures, given or not, beside those of the circuit.
+    """
+
+    parameters: MachineParameters
+    intervals: dict[str, tuple[float, float]]
+    compared: tuple[Compared, ...]
+
+
+def circuit_from_catalogue(
+    data: CatalogueData, nameplate: Nameplate, *, inertia_kgm2: float | None = None
+) -> CircuitFound:
+    """Find the equivalent circuit that comes nearest to a catalogue.
+
+    Parameters
+    ----------
+    data : CatalogueData
+        The figures.
+    nameplate : Nameplate
+        Rated values of the motor.
+    inertia_kgm2 : float or None, optional
+        Inertia of motor and load; typical of the rating if None [kg m^2].
+
+    Returns
+    -------
+    CircuitFound
+        Parameters, intervals and residuals.
+
+    Raises
+    ------
+    CommissioningError
+        If a figure is impossible, or there are too few.
+    """
+    from scipy.optimize import least_squares  # its import takes longer than the fit
+
+    _check(data, nameplate)
+    middle, deviation = _prior(nameplate)
+    figures = _Figures(data, nameplate)
+
+    def residuals(x: Array) -> Array:
+        return np.concatenate([(x - middle) / deviation, figures.residuals(x)])
+
+    fit = least_squares(residuals, middle, x_scale=deviation, xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    slopes = np.asarray(fit.jac, dtype=np.float64)
+    spread = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
+    base_ohm, w = nameplate.base_impedance_ohm, nameplate.rated_angular_frequency
+    typical = typical_parameters(nameplate)
+    R_s, R_r, X_l, X_m = np.exp(fit.x[:4]).tolist()
+    parameters = MachineParameters.from_magnetising_inductance(
+        stator_resistance_ohm=R_s * base_ohm,
+        rotor_resistance_ohm=R_r * base_ohm,
+        stator_leakage_H=X_l * base_ohm / w,
+        rotor_leakage_H=X_l * base_ohm / w,
+        magnetising_inductance_H=X_m * base_ohm / w,
+        inertia_kgm2=typical.parameters.inertia_kgm2 if inertia_kgm2 is None else inertia_kgm2,
+    )
+    leakage = hypot(float(spread[X_L]), SPLIT)
+    widths = {
+        "stator_resistance_ohm": float(spread[R_S]),
+        "rotor_resistance_ohm": float(spread[R_R]),
+        "stator_leakage_H": leakage,
+        "rotor_leakage_H": leakage,
+        "stator_self_inductance_H": float(spread[X_M]),
+    }
+    intervals = {}
+    for name, one in widths.items():
+        value = getattr(parameters, name)
+        factor = exp(max(NORMAL_95 * one, LEAST_HALF_WIDTH))
+        intervals[name] = (value / factor, value * factor)
+    if inertia_kgm2 is None:
+        intervals["inertia_kgm2"] = typical.intervals["inertia_kgm2"]
+    else:
+        intervals["inertia_kgm2"] = (
+            inertia_kgm2 * (1 - INERTIA_TOLERANCE),
+            inertia_kgm2 * (1 + INERTIA_TOLERANCE),
+        )
+    return CircuitFound(parameters, intervals, figures.compared(fit.x))
+
+
+def figures_of(machine: MachineParameters, data: CatalogueData, nameplate: Nameplate) -> tuple[Compared, ...]:
+    """Hold a circuit that is known against the figures of a catalogue.
+
+    Parameters
+    ----------
+    machine : MachineParameters
+        Parameters of a winding.
+    data : CatalogueData
+        The figures; none need be given.
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Returns
+    -------
+    tuple of Compared
+        All figures of the circuit at rated output, beside those given.
+
+    Raises
+    ------
+    CommissioningError
+        If a figure is impossible, or the circuit cannot bear its rated torque.
+    """
+    from scipy.optimize import brentq
+
+    _check(data, nameplate, fewest=0)
+    base_ohm, w = nameplate.base_impedance_ohm, nameplate.rated_angular_frequency
+    x, _ = _prior(nameplate)
+    x[[R_S, R_R, X_M]] = np.log(
+        [
+            machine.stator_resistance_ohm / base_ohm,
+            machine.rotor_resistance_ohm / base_ohm,
+            w * machine.magnetising_inductance_H / base_ohm,
+        ]
+    )
+    x[X_L] = log(w * (machine.stator_leakage_H + machine.rotor_leakage_H) / 2.0 / base_ohm)
+
+    def output(slip: float) -> float:
+        x[SLIP] = log(slip)
+        return performance(x)["output"] - 1.0
+
+    slips = [slip for slip in SLIPS.tolist() if slip < LARGEST_RATED_SLIP and output(slip) >= 0.0]
+    if not slips:
+        raise CommissioningError(
+            DATA_SHEET,
+            "impedances",
+            expected="a motor that bears its rated torque",
+            found="one that does not: check unit, base and which values these are",
+        )
+    x[SLIP] = log(brentq(output, 1e-6, slips[0]))
+    return _Figures(data, nameplate).compared(x)
+
+
+def performance(x: Array) -> dict[str, float]:
+    """Compute what a catalogue says from a circuit, per unit of rated voltage and power.
+
+    Parameters
+    ----------
+    x : ndarray, shape (8,)
+        Logarithms of R_s, R_r', X_ls = X_lr', X_m (per unit of V^2 / P), k_R, k_X, the share of the losses
+        that are not of the windings, and the rated slip.
+
+    Returns
+    -------
+    dict of str to float
+        Output, efficiency, power factor, current, and locked and greatest currents and torques over the
+        rated ones.
+    """
+    R_s, R_r, X_l, X_m, skin, saturation, other, slip = np.exp(x).tolist()
+    current, rotor = _currents(R_s, R_r / slip, X_l, X_m)
+    copper = R_s * abs(current) ** 2 + R_r * abs(rotor) ** 2
+    further = copper * other / max(1.0 - other, 1e-3)
+    torque = abs(rotor) ** 2 * R_r / slip
+    output = torque * (1.0 - slip) - further / 2.0
+    power = current.real + further / 2.0
+    line = abs(current + further / 2.0)
+    at_shaft = output / max(1.0 - slip, LEAST_SPEED)
+    locked, of_rotor = _currents(R_s, R_r * skin, X_l * saturation, X_m)
+    torques = [_torque(R_s, R_r, X_l * sqrt(saturation), X_m, skin, one) for one in SLIPS.tolist()]
+    return {
+        "output": output,
+        "efficiency": output / power,
+        "power_factor": power / line,
+        "rated_current_A": line,
+        "rated_speed_rpm": 1.0 - slip,
+        "locked_rotor_current": abs(locked) / line,
+        "locked_rotor_torque": abs(of_rotor) ** 2 * R_r * skin / at_shaft,
+        "breakdown_torque": max(torques) / at_shaft,
+        "stator_resistance_ohm": R_s,
+    }
+
+
+class _Figures:
+    """The figures of a catalogue, with what one motor may differ from them."""
+
+    def __init__(self, data: CatalogueData, nameplate: Nameplate) -> None:
+        self._given = data.given
+        synchronous = 60.0 * nameplate.rated_frequency_Hz / nameplate.pole_pairs
+        self._scale = {
+            "rated_current_A": nameplate.rated_power_W / (sqrt(3.0) * nameplate.rated_voltage_V),
+            "rated_speed_rpm": synchronous,
+            "stator_resistance_ohm": nameplate.base_impedance_ohm,
+        }
+        slip_rpm = synchronous - self._given.get("rated_speed_rpm", 0.0)
+        self._compare: dict[str, tuple[Callable[[float], float], float]] = {
+            "efficiency": (lambda one: log(max(1.0 - one, 1e-4)), 0.08),
+            "power_factor": (lambda one: one, 0.015),
+            "rated_current_A": (log, 0.03),
+            "rated_speed_rpm": (lambda one: log(max(1.0 - one, 1e-5)), hypot(0.1, ROUNDING_RPM / slip_rpm)),
+            "locked_rotor_current": (log, 0.08),
+            "locked_rotor_torque": (log, 0.12),
+            "breakdown_torque": (log, 0.08),
+            "stator_resistance_ohm": (log, 0.05),
+        }
+
+    def residuals(self, x: Array) -> Array:
+        """Return rated output, then each figure given, over their standard deviations."""
+        computed = performance(x)
+        rest = [self._deviations(name, computed[name]) for name in self._given]
+        return np.array([(computed["output"] - 1.0) / 0.003, *rest])
+
+    def compared(self, x: Array) -> tuple[Compared, ...]:
+        """Return all figures beside those of a circuit, in their own units."""
+        computed = performance(x)
+        return tuple(
+            Compared(
+                name,
+                self._given.get(name),
+                computed[name] * self._scale.get(name, 1.0),
+                self._deviations(name, computed[name]) if name in self._given else None,
+            )
+            for name in self._compare
+        )
+
+    def _deviations(self, name: str, computed: float) -> float:
+        measure, deviation = self._compare[name]
+        return (measure(computed) - measure(self._given[name] / self._scale.get(name, 1.0))) / deviation
+
+
+def _prior(nameplate: Nameplate) -> tuple[Array, Array]:
+    """Return the logarithms that are typical of the rating, and their standard deviations."""
+    typical, base_ohm = typical_parameters(nameplate).parameters, nameplate.base_impedance_ohm
+    w = 2.0 * pi * nameplate.rated_frequency_Hz
+    R_r = typical.rotor_resistance_ohm / base_ohm
+    middle = [
+        log(typical.stator_resistance_ohm / base_ohm),
+        log(R_r),
+        log(w * typical.stator_leakage_H / base_ohm),
+        log(w * typical.magnetising_inductance_H / base_ohm),
+        *(PRIOR_OF_OTHERS[k][0] for k in (SKIN, SATURATION, OTHER)),
+        log(R_r),
+    ]
+    names = ("stator_resistance_ohm", "rotor_resistance_ohm", "stator_leakage_H", "stator_self_inductance_H")
+    deviation = [log(FACTORS[name]) / 2.0 for name in names]
+    deviation += [PRIOR_OF_OTHERS[k][1] for k in (SKIN, SATURATION, OTHER)]
+    return np.array(middle), np.array([*deviation, 1.0])
+
+
+def _currents(R_s: float, rotor_resistance: float, X_l: float, X_m: float) -> tuple[complex, complex]:
+    """Return the currents of stator and rotor at rated voltage, per unit."""
+    rotor, magnetising = complex(rotor_resistance, X_l), 1j * X_m
+    current = 1.0 / (complex(R_s, X_l) + magnetising * rotor / (magnetising + rotor))
+    return current, current * magnetising / (magnetising + rotor)
+
+
+def _torque(R_s: float, R_r: float, X_l: float, X_m: float, skin: float, slip: float) -> float:
+    """Return the torque at a slip; the cage's resistance grows with its frequency."""
+    resistance = R_r * (1.0 + (skin - 1.0) * slip)
+    return abs(_currents(R_s, resistance / slip, X_l, X_m)[1]) ** 2 * resistance / slip
+
+
+def _check(data: CatalogueData, nameplate: Nameplate, *, fewest: int = FEWEST) -> None:
+    """Raise CommissioningError for figures that no motor has, and too few."""
+    for name, value in data.given.items():
+        positive(name, value)
+    for name in ("efficiency", "power_factor"):
+        value = getattr(data, name)
+        if value is not None and not 0.3 <= value < 1.0:
+            raise CommissioningError(
+                DATA_SHEET, name, expected="30 to below 100 %", found=f"{100.0 * value:g} %"
+            )
+    synchronous = 60.0 * nameplate.rated_frequency_Hz / nameplate.pole_pairs
+    speed = data.rated_speed_rpm
+    if speed is not None and not 0.8 * synchronous < speed < synchronous:
+        raise CommissioningError(
+            DATA_SHEET,
+            "rated speed",
+            expected=f"{0.8 * synchronous:g} to {synchronous:g} rpm, below the synchronous speed of "
+            f"{nameplate.pole_pairs} pole pairs at {nameplate.rated_frequency_Hz:g} Hz",
+            found=f"{speed:g} rpm",
+        )
+    if len(data.given) < fewest:
+        raise CommissioningError(
+            DATA_SHEET,
+            "figures",
+            expected=f"at least {fewest} figures of the catalogue: rated speed, rated current, power factor, "
+            "efficiency, locked-rotor current and torque, breakdown torque",
+            found=", ".join(data.given) or "none",
+        )

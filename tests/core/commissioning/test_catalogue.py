@@ -1,0 +1,127 @@
+"""Circuits from catalogues: published motors are found again, within the intervals."""
+
+from math import sqrt
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from core.commissioning.catalogue import CatalogueData, circuit_from_catalogue, figures_of
+from core.commissioning.errors import CommissioningError
+from core.machines.parameters import MachineParameters, Nameplate
+from tests.core.machines.test_typical import PUBLISHED, Published
+
+PUMP = Nameplate(450e3, 3300.0, 50.0, 1)
+COMPLETE = CatalogueData(0.958, 0.90, 92.0, 2972.0, 5.5, 0.7, 2.6)
+
+
+def steady(machine: MachineParameters, nameplate: Nameplate, slip: float) -> tuple[complex, float]:
+    """Current of a winding and air-gap power of all three at rated voltage, from the meshes' equations."""
+    w = nameplate.rated_angular_frequency
+    X_m = w * machine.magnetising_inductance_H
+    stator = complex(machine.stator_resistance_ohm, w * machine.stator_leakage_H + X_m)
+    rotor = complex(machine.rotor_resistance_ohm / slip, w * machine.rotor_leakage_H + X_m)
+    volts = nameplate.rated_voltage_V / (1.0 if nameplate.connection == "delta" else sqrt(3.0))
+    currents = np.linalg.solve(np.array([[stator, -1j * X_m], [-1j * X_m, rotor]]), [volts, 0.0])
+    power = 3.0 * abs(currents[1]) ** 2 * machine.rotor_resistance_ohm / slip
+    return complex(currents[0]), float(power)
+
+
+def catalogue_of(published: Published, further: float) -> CatalogueData:
+    """What a catalogue would say; further: losses that are not of the windings, over those that are."""
+    nameplate, machine = published.nameplate, published.parameters
+    volts = nameplate.rated_voltage_V / (1.0 if nameplate.connection == "delta" else sqrt(3.0))
+    line = sqrt(3.0) if nameplate.connection == "delta" else 1.0
+
+    def losses(slip: float) -> float:
+        current, power = steady(machine, nameplate, slip)
+        return further * (3.0 * machine.stator_resistance_ohm * abs(current) ** 2 + slip * power)
+
+    def short_of(slip: float) -> float:
+        return steady(machine, nameplate, slip)[1] * (1.0 - slip) - losses(slip) / 2 - nameplate.rated_power_W
+
+    slip = float(brentq(short_of, 1e-5, 0.08))
+    current, _power = steady(machine, nameplate, slip)
+    current += losses(slip) / 2.0 / (3.0 * volts)
+    taken = 3.0 * volts * current.real
+    locked, at_standstill = steady(machine, nameplate, 1.0)
+    greatest = max(steady(machine, nameplate, one)[1] for one in np.geomspace(1e-3, 1.0, 400))
+    rated = nameplate.rated_power_W / (1.0 - slip)
+    synchronous = 60.0 * nameplate.rated_frequency_Hz / nameplate.pole_pairs
+    return CatalogueData(
+        efficiency=round(nameplate.rated_power_W / taken, 3),
+        power_factor=round(current.real / abs(current), 2),
+        rated_current_A=line * abs(current),
+        rated_speed_rpm=round(synchronous * (1.0 - slip)),
+        locked_rotor_current=round(abs(locked) / abs(current), 1),
+        locked_rotor_torque=round(max(at_standstill / rated, 0.1), 1),
+        breakdown_torque=round(greatest / rated, 1),
+    )
+
+
+@pytest.mark.parametrize("published", PUBLISHED, ids=lambda one: f"{one.nameplate.rated_power_W:.0f} W")
+def test_published_motors_lie_within_the_intervals_of_their_own_catalogue(published: Published) -> None:
+    for further in (0.5, 1.0):
+        found = circuit_from_catalogue(catalogue_of(published, further), published.nameplate)
+        for name, (low, high) in found.intervals.items():
+            assert low <= getattr(published.parameters, name) <= high, (further, name)
+        narrow = found.intervals["rotor_resistance_ohm"]
+        assert narrow[1] / narrow[0] < 1.6
+        assert max(abs(one.deviations or 0.0) for one in found.compared) < 1.0
+
+
+def test_the_circuit_found_has_the_figures_that_it_is_said_to_have() -> None:
+    found = circuit_from_catalogue(COMPLETE, PUMP)
+    computed = {one.name: one.computed for one in found.compared}
+    slip = 1.0 - computed["rated_speed_rpm"] / 3000.0
+    current, power = steady(found.parameters, PUMP, slip)
+    volts = 3300.0 / sqrt(3.0)
+    # Half of the further losses are in the core, half at the shaft.
+    further = 2.0 * (power * (1.0 - slip) - 450e3)
+    copper = 3.0 * found.parameters.stator_resistance_ohm * abs(current) ** 2 + slip * power
+    line = current + further / 2.0 / (3.0 * volts)
+    assert 0.2 < further / (copper + further) < 0.7
+    assert abs(line) == pytest.approx(computed["rated_current_A"], rel=5e-3)
+    assert line.real / abs(line) == pytest.approx(computed["power_factor"], abs=2e-3)
+    assert 450e3 / (3.0 * volts * line.real) == pytest.approx(computed["efficiency"], abs=2e-3)
+    again = figures_of(found.parameters, COMPLETE, PUMP)
+    assert {one.name: one.given for one in again} == {one.name: one.given for one in found.compared}
+    assert {one.name: one.computed for one in again}["power_factor"] == pytest.approx(
+        computed["power_factor"], abs=0.02
+    )
+
+
+def test_fewer_figures_leave_wider_intervals() -> None:
+    few = CatalogueData(rated_speed_rpm=2972.0, rated_current_A=92.0, power_factor=0.90)
+    wide, narrow = (circuit_from_catalogue(one, PUMP).intervals for one in (few, COMPLETE))
+    for name in ("stator_resistance_ohm", "stator_leakage_H"):
+        assert wide[name][1] / wide[name][0] > 1.1 * narrow[name][1] / narrow[name][0]
+
+
+def test_a_measured_resistance_is_kept() -> None:
+    measured = CatalogueData(0.958, 0.90, 92.0, 2972.0, 5.5, 0.7, 2.6, stator_resistance_ohm=0.23)
+    found = circuit_from_catalogue(measured, PUMP)
+    assert found.parameters.stator_resistance_ohm == pytest.approx(0.23, rel=0.03)
+    low, high = found.intervals["stator_resistance_ohm"]
+    assert high / low < 1.25
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (CatalogueData(efficiency=0.958, power_factor=0.9), "at least 3 figures .* found efficiency, power"),
+        (CatalogueData(efficiency=0.00958), "efficiency: expected 30 to below 100 %, found 0.958 %"),
+        (CatalogueData(rated_speed_rpm=1486.0), "rated speed: expected 2400 to 3000 rpm, .* 1 pole pairs"),
+        (CatalogueData(rated_current_A=-92.0), "rated_current_A: expected a number above zero"),
+    ],
+)
+def test_impossible_figures_and_too_few_are_refused(data: CatalogueData, words: str) -> None:
+    with pytest.raises(CommissioningError, match=words):
+        circuit_from_catalogue(data, PUMP)
+
+
+def test_a_circuit_that_cannot_bear_its_rated_torque_is_refused() -> None:
+    machine = circuit_from_catalogue(COMPLETE, PUMP).parameters
+    weak = MachineParameters(*(20.0 * getattr(machine, name) for name in machine.__dataclass_fields__))
+    with pytest.raises(CommissioningError, match="a motor that bears its rated torque"):
+        figures_of(weak, CatalogueData(), PUMP)

@@ -1,0 +1,116 @@
+"""`mcc parameters`: files, stdout and JSON, and what is said of a data sheet that cannot be."""
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from core.machines.motor_file_writer import write_motor
+from core.machines.parameters import ChannelNames
+from service.cli import main
+from testing.machines.motors import LARGE, REFERENCE
+
+IMPEDANCES = ["--r1", "8.4", "--r2", "8.2", "--x1", "10.304", "--x2", "10.304", "--xm", "206.26"]
+CATALOGUE = ["--efficiency", "94.2", "--power-factor", "0.87", "--rated-speed", "1480"]
+
+
+@pytest.fixture
+def plate(tmp_path: Path) -> Path:
+    """The thesis's motor, in star."""
+    return write_motor(tmp_path / "plate.toml", REFERENCE)
+
+
+@pytest.fixture
+def delta(tmp_path: Path) -> Path:
+    """A motor of 37 kW in delta."""
+    return write_motor(tmp_path / "delta.toml", LARGE)
+
+
+def document(words: list[str], capsys: pytest.CaptureFixture[str]) -> dict[str, Any]:
+    assert main(["parameters", "--json", *words]) == 0
+    found: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return found
+
+
+def test_impedances_in_ohm_give_the_thesis_motor(plate: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = document(["--nameplate", str(plate), *IMPEDANCES], capsys)
+    assert found["parameters"]["stator_self_inductance_H"]["value"] == pytest.approx(0.4377, rel=1e-3)
+    assert found["parameters"]["stator_leakage_H"]["value"] == pytest.approx(0.0328, rel=1e-3)
+    assert found["magnetising_inductance_H"] == pytest.approx(0.65655, rel=1e-3)
+    assert found["parameters_source"] == "data-sheet"
+    assert found["warnings"] == []
+    assert found["output"] is None
+
+
+def test_without_an_output_the_file_goes_to_stdout(plate: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["parameters", "--nameplate", str(plate), *IMPEDANCES]) == 0
+    printed = tomllib.loads(capsys.readouterr().out)
+    assert printed["parameters"]["source"] == "data-sheet"
+    assert set(printed["intervals"]) == set(printed["parameters"]) - {"source"}
+
+
+def test_the_file_keeps_what_the_nameplate_file_has_beside(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    names = ChannelNames(currents=("I1", "I2", "I3"))
+    plate = write_motor(tmp_path / "plate.toml", LARGE)
+    plate.write_text(f'{plate.read_text("utf-8")}\n[channels]\nia = "I1"\nib = "I2"\nic = "I3"\n', "utf-8")
+    output = tmp_path / "FAN.toml"
+    words = ["--nameplate", str(plate), "--output", str(output), *CATALOGUE]
+    assert main(["parameters", *words]) == 0
+    shown = capsys.readouterr().out
+    assert "rated speed" in shown
+    assert max(map(len, shown.splitlines())) <= 80
+    written = tomllib.loads(output.read_text("utf-8"))
+    assert tuple(written["channels"].values()) == names.currents
+
+
+def test_data_that_contradict_the_impedances_are_warned_of(
+    delta: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    machine = LARGE.parameters
+    w = LARGE.nameplate.rated_angular_frequency
+    of_windings = {
+        "--r1": machine.stator_resistance_ohm,
+        "--r2": machine.rotor_resistance_ohm,
+        "--x1": w * machine.stator_leakage_H,
+        "--xm": w * machine.magnetising_inductance_H,
+    }
+    words = [word for name, value in of_windings.items() for word in (name, f"{value:.6g}")]
+    words += ["--nameplate", str(delta), "--rated-current", "65"]
+    assert document([*words, "--values", "winding"], capsys)["warnings"] == []
+    # A third of the impedances: three times the current with the rotor locked.
+    wrong = document([*words, "--values", "delta", "--locked-rotor-current", "7"], capsys)
+    assert wrong["warnings"] == []
+    star = document([*words, "--values", "star", "--locked-rotor-current", "7"], capsys)
+    assert "locked-rotor current" in " ".join(star["warnings"])
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], "at least 3 figures"),
+        (["--r1", "8.4", "--x1", "10.3"], "no --r2, --xm"),
+        ([*IMPEDANCES, "--terminal-resistance", "16.8"], "--r1 or --terminal-resistance, found both"),
+        ([*IMPEDANCES, "--unit", "pu"], "--base-VA"),
+        ([*IMPEDANCES, "--inertia", "0"], "inertia: expected a number above zero"),
+        (["--efficiency", "0.95", "--power-factor", "0.8", "--rated-speed", "1420"], "found 0.95 %"),
+    ],
+)
+def test_what_cannot_be_is_wrong_use_and_writes_nothing(
+    plate: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+) -> None:
+    output = plate.with_name("out.toml")
+    assert main(["parameters", "--nameplate", str(plate), "--output", str(output), *words]) == 2
+    assert said in capsys.readouterr().err
+    assert not output.exists()
+
+
+def test_figures_that_no_motor_has_are_refused(plate: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    output = plate.with_name("out.toml")
+    words = ["--r1", "0.0084", "--r2", "8.2", "--x1", "10.3", "--xm", "206"]
+    assert main(["parameters", "--nameplate", str(plate), "--output", str(output), *words]) == 1
+    assert "stator_resistance_ohm" in capsys.readouterr().err
+    assert not output.exists()
