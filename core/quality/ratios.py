@@ -108,15 +108,38 @@ def current_advice(
     least, most = plausible_A
     if amps <= 0.0 or least <= amps <= most:
         return ""
-    applied = channels[0].applied_ratio if channels else 1.0
-    written = amps / applied
-    for ratio, why in _of_the_file(channels, ("amperes", "kiloamperes")):
-        if least <= written * ratio <= most:
-            return _advice("current_ratio", ratio, why)
+    if cause := current_cause(amps, plausible_A, channels):
+        return cause
+    written = amps / (channels[0].applied_ratio if channels else 1.0)
     usual = " or ".join(_usual(least / written, most / written, rated_A))
     example = f", such as {usual}" if usual else ""
     ends = f"{least / written:.3g} to {most / written:.3g}"
     return f"a current_ratio of {ends} in {PLACE} would explain it{example}"
+
+
+def current_cause(amps: float, plausible_A: tuple[float, float], channels: tuple[Channel, ...]) -> str:
+    """Tell which ratio would make a current one that the motor draws, where there is a reason for it.
+
+    Parameters
+    ----------
+    amps : float
+        Current as it was read, rms [A].
+    plausible_A : tuple of float
+        Least and greatest current of the motor in this operation, rms [A].
+    channels : tuple of Channel
+        The current channels.
+
+    Returns
+    -------
+    str
+        What explains the current, and the key to write; "" where nothing does.
+    """
+    least, most = plausible_A
+    written = amps / (channels[0].applied_ratio if channels else 1.0)
+    for ratio, why in _of_the_file(channels, ("amperes", "kiloamperes")):
+        if least <= written * ratio <= most:
+            return _advice("current_ratio", ratio, why)
+    return ""
 
 
 def _of_the_file(channels: tuple[Channel, ...], units: tuple[str, str]) -> Iterator[tuple[float, str]]:

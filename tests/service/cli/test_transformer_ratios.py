@@ -114,6 +114,10 @@ CASES = {
         of(PUMP, CURRENT_RATIO), ("100,5,P", "3300,110,P"), None, "current_ratio = 20 in",
         Transformers(current_ratio=20.0),
     ),
+    "S and a small ratio, primary": Case(
+        of(PUMP), ("60,10,S", "3300,3300,P"), None, "multiplied by a ratio of 6:1, but are primary",
+        Transformers(current_ratio=1.0),
+    ),
     "kilovolts called volts": Case(
         of(PUMP, 1.0, 1000.0), ("1,1,P", "1,1,P"), "voltage_ratio = 1000 in", None,
         Transformers(voltage_ratio=1000.0),
