@@ -19,6 +19,8 @@ from core.quantity_text import plain
 PARAMETERS_DO_NOT_FIT = "the parameters do not fit"
 """So begins the reason of a record that is no more than this."""
 COMMISSION_IT = "commission this motor (mcc commission), and check nameplate and ratios"
+MOST_LOAD = 1.25
+"""Load level beyond which the load is not believed: motors are made for 1, with a service factor of 1.15."""
 PHASES = ("a", "b", "c")
 USUAL_OFFSET_CYCLES = 1 / 80
 """Offset in cycles (250 us at 50 Hz) up to which sensors and parameters within 10 % account for it."""
@@ -151,7 +153,41 @@ def is_unusual(fit: Fit, case: Case) -> bool:
     return not case.voltages_assumed and offset > USUAL_OFFSET_CYCLES
 
 
-def identified(explanation: Explanation) -> QualityFinding:
+def with_load(
+    verdict: Verdict, reasons: list[str], load_ci95: tuple[float, float], advice: str
+) -> tuple[Verdict, list[str]]:
+    """Judge the load: more than a motor bears for long is a sign that the record or the nameplate is not its.
+
+    Parameters
+    ----------
+    verdict : Verdict
+        The verdict without it.
+    reasons : list of str
+        Its reasons.
+    load_ci95 : tuple of float
+        95 % interval of the load level from all causes.
+    advice : str
+        Which ratio would explain the currents; "" for none.
+
+    Returns
+    -------
+    verdict : Verdict
+        The verdict, which is not "healthy" with such a load.
+    reasons : list of str
+        Its reasons.
+    """
+    if load_ci95[0] <= MOST_LOAD:
+        return verdict, reasons
+    load = (
+        f"a load of {load_ci95[0]:.2f} to {load_ci95[1]:.2f} times the rated torque is more than a motor "
+        f"bears for long: {advice or 'check nameplate and ratios'}"
+    )
+    if verdict is Verdict.HEALTHY:
+        return Verdict.WATCH, [load, *reasons]
+    return verdict, [*reasons[:1], load, *reasons[1:]]
+
+
+def identified(explanation: Explanation, advice: str) -> QualityFinding:
     """Check that the fits ended somewhere.
 
     That is a machine that can run so, with unknowns that the record tells apart.
@@ -160,6 +196,8 @@ def identified(explanation: Explanation) -> QualityFinding:
     ----------
     explanation : Explanation
         The hypothesis that explains the currents best.
+    advice : str
+        Which ratio would explain the currents; "" for none.
 
     Returns
     -------
@@ -170,7 +208,8 @@ def identified(explanation: Explanation) -> QualityFinding:
     return finding(
         "identifiability", unsound, 0, "fits", passed=unsound == 0,
         message="no steady running of this motor comes near the record, or the record does not tell load, "
-        "level and offset apart: nameplate and parameters, or the recording, are not this motor's",
+        "level and offset apart: nameplate and parameters, or the recording, are not this motor's"
+        + (f"; {advice}" if advice else ""),
     )  # fmt: skip
 
 

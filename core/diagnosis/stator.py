@@ -13,7 +13,7 @@ from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.fundamental import fundamental_of
 from core.diagnosis.hypotheses import Explanation, explain, is_explained
 from core.diagnosis.indicators import indicators
-from core.diagnosis.judgement import PARAMETERS_DO_NOT_FIT, identified, is_unusual, judge
+from core.diagnosis.judgement import PARAMETERS_DO_NOT_FIT, identified, is_unusual, judge, with_load
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.propagation import Known, deviation, errors_of, of_the_likeliest_winding, widened
 from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
@@ -27,6 +27,7 @@ from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
 from core.quality.assumed_supply import SUPPLY_UNBALANCE
 from core.quality.finding import QualityFinding
+from core.quality.scale import current_scale_advice
 from core.recordings import Recording
 
 MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
@@ -143,7 +144,8 @@ def _diagnosed(
     starts = search(case, playback.model, method)
     known = _known(baseline, SUPPLY_UNBALANCE if assumed else 0.0)
     explanation = explain(case, phasors, playback.model, starts, known)
-    quality.append(identified(explanation))
+    advice = current_scale_advice(accepted.terminals, motor)
+    quality.append(identified(explanation, advice))
     if not quality[-1].passed:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
     fit = explanation.fit
@@ -166,6 +168,8 @@ def _diagnosed(
     faulted = named or (explained and level_ci95[0] > 0.0)
     # At light load a healthy machine may come nearest with an offset that no relay has.
     running = fit if faulted or is_unusual(explanation.healthy, case) else explanation.healthy
+    load_ci95 = _load_interval(case, playback, explanation, known, faulted=faulted)
+    verdict, reasons = with_load(verdict, reasons, load_ci95, advice)
     return Diagnosis(
         verdict=verdict,
         mu_f=max(0.0, fit.value(FAULT_LEVEL)),
@@ -181,7 +185,7 @@ def _diagnosed(
         model=str(model),
         method=str(method),
         mu_f_scatter95=_not_below_zero(fit.interval(FAULT_LEVEL)),
-        load_level_ci95=_load_interval(case, playback, explanation, known, faulted=faulted),
+        load_level_ci95=load_ci95,
         load_level_scatter95=running.interval(LOAD_LEVEL),
         speed_rpm=_speed_rpm(case, playback, running),
         detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),

@@ -44,6 +44,22 @@ class CircleDiagram:
         """Greatest admittance, that of the locked rotor [S]."""
         return float(abs(self.admittance[-1]))
 
+    def running_range_A(self, phase_voltage_V: float) -> tuple[float, float]:
+        """Return the currents of a motor that runs.
+
+        Parameters
+        ----------
+        phase_voltage_V : float
+            Voltage phase to neutral, rms [V].
+
+        Returns
+        -------
+        tuple of float
+            From no load to rated load, rms [A].
+        """
+        no_load = self.at_no_load * phase_voltage_V
+        return no_load, max(no_load, self.rated_current_A)
+
     def lag_deg(self, admittance: float) -> float:
         """Return by how much the current lags the voltage where the machine draws as much.
 

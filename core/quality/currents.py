@@ -159,7 +159,7 @@ def running(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Q
         "scaled 2 to 5 times too large); record while it runs for a diagnosis, or a start from before it on "
         "for `mcc commission`"
     )
-    cause = current_cause(currents.strong, _plausible_A(feed, circle), currents.channels)
+    cause = current_cause(currents.strong, circle.running_range_A(feed.strong), currents.channels)
     if stalled and cause:
         why += f"; {cause}"
     does = Operation.NOT_RUNNING if off else Operation.START if _lags_as_at_rest(currents, feed) else None
@@ -190,20 +190,14 @@ def level(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Qua
     small = _is_small(currents, feed, circle)
     drawn = f"no load {with_unit(no_load, 'A')}, locked rotor {with_unit(standstill, 'A')}"
     limit = LEAST_OF_NO_LOAD * no_load if small else IMPOSSIBLE_OF_STANDSTILL * standstill
-    plausible_A = _plausible_A(feed, circle)
-    advice = current_advice(currents.strong, plausible_A, circle.rated_current_A, currents.channels)
+    running_A = circle.running_range_A(feed.strong)
+    advice = current_advice(currents.strong, running_A, circle.rated_current_A, currents.channels)
     yield finding(
         "current", currents.strong, limit, "A", passed=not small and currents.strong <= limit,
         message=f"{with_unit(currents.strong, 'A')} is {'less' if small else 'more'} than this motor can "
         f"draw ({drawn}): a wrong ratio, secondary amperes, kA for A, "
         f"or another motor's nameplate; {advice}",
     )  # fmt: skip
-
-
-def _plausible_A(feed: Feed, circle: CircleDiagram) -> tuple[float, float]:
-    """From no load to the rated current [A]."""
-    no_load = circle.at_no_load * feed.strong
-    return no_load, max(no_load, circle.rated_current_A)
 
 
 def _lags_as_at_rest(currents: Currents, feed: Feed) -> bool:

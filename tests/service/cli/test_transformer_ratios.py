@@ -142,6 +142,22 @@ def test_the_ratio_that_explains_the_values_is_named_and_makes_the_diagnosis(
     assert found["load_level"] == pytest.approx(LOAD, abs=0.01)
 
 
+def test_a_load_that_no_motor_bears_is_not_healthy_but_a_ratio(
+    written: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Three times the currents are those of another load, as far as the equations go."""
+    path = written(of(PUMP), "60,20,S", "3300,3300,P")
+    found = diagnosed(capsys, path, PUMP)
+    assert found["verdict"] == "watch"
+    assert (
+        "is more than a motor bears for long: they were multiplied by a ratio of 3:1" in found["reasons"][0]
+    )
+    assert "current_ratio = 1 in" in found["reasons"][0]
+    small = diagnosed(capsys, written(of(PUMP), "20,60,S", "3300,3300,P"), PUMP)
+    assert small["verdict"] == "undiagnosable"
+    assert "current_ratio = 1 in" in small["reasons"][0]
+
+
 def test_secondary_values_of_a_high_voltage_are_no_motor_that_stands(
     written: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
