@@ -1,5 +1,7 @@
 """The verdict and its reasons: the fits compared with the effects of noise, sensors and parameters."""
 
+from collections.abc import Callable
+
 from core.diagnosis.case import Case
 from core.diagnosis.hypotheses import Explanation, is_another_asymmetry, is_explained
 from core.diagnosis.parameter_check import check_parameters
@@ -154,7 +156,7 @@ def is_unusual(fit: Fit, case: Case) -> bool:
 
 
 def with_load(
-    verdict: Verdict, reasons: list[str], load_ci95: tuple[float, float], advice: str
+    verdict: Verdict, reasons: list[str], load_ci95: tuple[float, float], advice: Callable[[], str]
 ) -> tuple[Verdict, list[str]]:
     """Judge the load: more than a motor bears for long is a sign that the record or the nameplate is not its.
 
@@ -166,8 +168,8 @@ def with_load(
         Its reasons.
     load_ci95 : tuple of float
         95 % interval of the load level from all causes.
-    advice : str
-        Which ratio would explain the currents; "" for none.
+    advice : callable
+        Returns which ratio would explain the currents; "" for none. It is asked only where it is told.
 
     Returns
     -------
@@ -180,14 +182,14 @@ def with_load(
         return verdict, reasons
     load = (
         f"a load of {load_ci95[0]:.2f} to {load_ci95[1]:.2f} times the rated torque is more than a motor "
-        f"bears for long: {advice or 'check nameplate and ratios'}"
+        f"bears for long: {advice() or 'check nameplate and ratios'}"
     )
     if verdict is Verdict.HEALTHY:
         return Verdict.WATCH, [load, *reasons]
     return verdict, [*reasons[:1], load, *reasons[1:]]
 
 
-def identified(explanation: Explanation, advice: str) -> QualityFinding:
+def identified(explanation: Explanation, advice: Callable[[], str]) -> QualityFinding:
     """Check that the fits ended somewhere.
 
     That is a machine that can run so, with unknowns that the record tells apart.
@@ -196,8 +198,8 @@ def identified(explanation: Explanation, advice: str) -> QualityFinding:
     ----------
     explanation : Explanation
         The hypothesis that explains the currents best.
-    advice : str
-        Which ratio would explain the currents; "" for none.
+    advice : callable
+        Returns which ratio would explain the currents; "" for none. It is asked only where it is told.
 
     Returns
     -------
@@ -205,11 +207,12 @@ def identified(explanation: Explanation, advice: str) -> QualityFinding:
         The finding.
     """
     unsound = sum(not fit.is_sound for fit in (explanation.fit, explanation.healthy))
+    ratio = advice() if unsound else ""
     return finding(
         "identifiability", unsound, 0, "fits", passed=unsound == 0,
         message="no steady running of this motor comes near the record, or the record does not tell load, "
         "level and offset apart: nameplate and parameters, or the recording, are not this motor's"
-        + (f"; {advice}" if advice else ""),
+        + (f"; {ratio}" if ratio else ""),
     )  # fmt: skip
 
 

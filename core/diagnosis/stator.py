@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import partial
 from time import perf_counter
 
 import numpy as np
@@ -144,7 +145,7 @@ def _diagnosed(
     starts = search(case, playback.model, method)
     known = _known(baseline, SUPPLY_UNBALANCE if assumed else 0.0)
     explanation = explain(case, phasors, playback.model, starts, known)
-    advice = current_scale_advice(accepted.terminals, motor)
+    advice = partial(current_scale_advice, accepted.terminals, motor)
     quality.append(identified(explanation, advice))
     if not quality[-1].passed:
         return _refused(quality, perf_counter() - begun, model, method, currents_only=assumed)
