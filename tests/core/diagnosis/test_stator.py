@@ -316,6 +316,7 @@ def test_the_document_has_the_keys_of_the_contract() -> None:
         "verdict", "mu_f", "mu_f_ci95", "mu_f_scatter95", "detection_limit", "theta_f", "phase", "load_level",
         "time_offset_s", "residual_rms_A", "evaluations", "compute_seconds", "quality", "reasons", "model",
         "method", "load_level_ci95", "load_level_scatter95", "speed_rpm", "indicators", "currents_only",
+        "operation",
     ]  # fmt: skip
     assert document["method"] == "hybrid"
 
