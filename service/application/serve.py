@@ -24,6 +24,7 @@ from service.collector.supervision.gateway_processes import GatewayProcesses
 from service.collector.supervision.gateway_supervisor import RESTART_POLICY
 from service.condition.motor_data import document_of
 from service.condition.work import ConditionWork
+from service.configuration.problems import Problems
 from service.configuration.relay_access import clear_passwords
 from service.configuration.settings import Settings
 from service.jobs import JobRunner
@@ -122,7 +123,10 @@ def collect(settings: Settings) -> None:
 
 def _plant(settings: Settings) -> Plant:
     """Read the plant. Raises PlantError, SettingsError."""
-    plant = read_plant(settings)
+    problems = Problems()
+    plant = read_plant(settings, problems)
+    for warning in problems.warnings:
+        log.warning("the plant's files", warning=warning)
     for relay in clear_passwords(settings.relays, [relay.name for relay in plant.relays]):
         log.warning("the relay's password goes over the network in clear: configure TLS for it", relay=relay)
     return plant

@@ -11,6 +11,9 @@ from service.setup.relay_survey import RelaySurvey, survey
 QUARTER_S, ZONE_TOLERANCE_S = 900.0, 60.0
 """Time zones differ by quarters of an hour."""
 
+CLOCK_S = 2.0
+"""The clock of each relay is looked at for so long."""
+
 LATE_S = 1.0
 """A clock that is further off is told in the line of its relay."""
 
@@ -24,13 +27,18 @@ def check_plant(config: Path | None, *, connect: bool, as_json: bool) -> int:
         progress().print(
             Text(f"asking {len(relays)} relays, {checked.settings.connect_timeout_s:g} s each ...")
         )
-        answers = survey(relays, checked.settings, lambda answer: progress().print(Text(_line(answer))))
+        answers = survey(relays, checked.settings, _tell, clock_s=CLOCK_S)
     if as_json:
         print_document(_document(checked, answers))
     else:
         _print(checked, answers)
     unreachable = any(answer.unreachable is not None for answer in answers)
     return FAILED if checked.problems or unreachable else DONE
+
+
+def _tell(answer: RelaySurvey) -> None:
+    words = "has answered" if answer.unreachable is None else "does not answer"
+    progress().print(Text(f"{answer.relay.name} {words}"))
 
 
 def _print(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> None:
@@ -40,21 +48,27 @@ def _print(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> None:
     for warning in checked.warnings:
         console.print(Text(f"warning: {one_line(warning)}", style="yellow"), soft_wrap=True)
     for answer in answers:
-        console.print(Text(_line(answer)), soft_wrap=True)
+        console.print(Text(line_of(answer)), soft_wrap=True)
+    silent = sum(answer.unreachable is not None for answer in answers)
+    if silent:
+        console.print(Text(f"{silent} of {_number(len(answers), 'relay')} did not answer"))
     if checked.problems:
-        number = len(checked.problems)
-        console.print(Text(f"{number} problem{'' if number == 1 else 's'}: mcc serve would not start"))
+        console.print(Text(f"{_number(len(checked.problems), 'problem')}: mcc serve would not start"))
     elif checked.plant is not None:
         plant = checked.plant
         console.print(
             Text(
-                f"nothing is wrong: {len(plant.motors)} motors, {len(plant.relays)} relays, "
-                f"{len(plant.sites)} sites"
+                f"nothing is wrong in the files: {_number(len(plant.motors), 'motor')}, "
+                f"{_number(len(plant.relays), 'relay')}, {_number(len(plant.sites), 'site')}"
             )
         )
 
 
-def _line(answer: RelaySurvey) -> str:
+def _number(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+
+
+def line_of(answer: RelaySurvey) -> str:
     """Return what a relay offers, in one line."""
     relay, found = answer.relay, answer.acquisition
     name = f"{relay.name} at {relay.host}:{relay.port}"
@@ -66,16 +80,21 @@ def _line(answer: RelaySurvey) -> str:
         f"trigger {found.trigger}" if found.trigger else f"no trigger: {found.no_trigger}",
         f"reports {found.report_controls[0]}" if found.report_controls else "no reports: it is polled",
         f"{answer.recordings} recordings in {answer.folder}" if answer.folder else f"{answer.no_folder}",
-        _clock(answer.clock_offset_s),
+        _clock(answer),
     ]
     if answer.differences:
         words.append(f"{answer.differences} names differ from its SCL file")
     return one_line(f"{name}: {'; '.join(words)}")
 
 
-def _clock(offset_s: float | None) -> str:
+def _clock(answer: RelaySurvey) -> str:
+    offset_s = answer.clock_offset_s
+    if offset_s is None and answer.stamp_age_s is not None:
+        if abs(answer.stamp_age_s) < ZONE_TOLERANCE_S:
+            return f"its latest time stamp is {answer.stamp_age_s:.0f} s old"
+        offset_s = -answer.stamp_age_s
     if offset_s is None:
-        return "its clock is not known"
+        return "it does not tell its clock"
     if abs(offset_s) < LATE_S:
         return "its clock agrees with this one"
     off = f"its clock is {abs(offset_s):.1f} s {'ahead of' if offset_s > 0 else 'behind'} this one"
@@ -112,4 +131,5 @@ def _answer_document(answer: RelaySurvey) -> dict[str, object]:
         "folder": answer.folder,
         "recordings": answer.recordings,
         "clock_offset_s": answer.clock_offset_s,
+        "stamp_age_s": answer.stamp_age_s,
     }

@@ -79,11 +79,13 @@ def acquisition_from_offer(relay: Relay, offer: Offer, is_control: Callable[[str
     trigger = _chosen(overrides.trigger, points.trigger)
     measurands = measurands_from_offer(offer, relay.measurands)
     deviations = (
-        _deviation("trigger", relay.trigger_control, points.trigger, "it cannot be asked for a record")
+        _deviation(relay, "trigger", relay.trigger_control, points.trigger, "it cannot be asked for a record")
         if overrides.trigger is None
         else _overridden_trigger(trigger, offer),
-        _deviation("record-made", relay.record_made, points.record_made, "its directory is polled"),
-        _deviation("reports", relay.report_control, points.report_control, "others are tried, or polling")
+        _deviation(relay, "record-made", relay.record_made, points.record_made, "its directory is polled"),
+        _deviation(
+            relay, "reports", relay.report_control, points.report_control, "others are tried, or polling"
+        )
         if overrides.report_control is None
         else None,
         _metering(relay.measurands, measurands),
@@ -133,12 +135,21 @@ def _no_trigger(relay: Relay) -> str:
     return f"it offers {NO_TRIGGER}"
 
 
-def _deviation(subject: str, expected: str | None, found: str | None, consequence: str) -> Deviation | None:
+def _deviation(
+    relay: Relay, subject: str, expected: str | None, found: str | None, consequence: str
+) -> Deviation | None:
     if expected is None or expected == found:
+        return None
+    if found is not None and not relay.scl_knows_names and _in_device(expected) == _in_device(found):
         return None
     if found is None:
         return Deviation(subject, f"expected {expected}, as its SCL says, found none: {consequence}")
     return Deviation(subject, f"expected {expected}, as its SCL says, found and used {found}")
+
+
+def _in_device(reference: str) -> str:
+    """Return a reference without its logical device."""
+    return reference.partition("/")[2]
 
 
 def _overridden_trigger(trigger: str | None, offer: Offer) -> Deviation | None:

@@ -28,9 +28,12 @@ from service.plant.sensor_classes import typical_sensors
 NOTHING_TOLD = BusEntry(schedule=None, common_voltage_transformer=False)
 
 
-def read_plant(settings: Settings) -> Plant:
-    """Read the files that the settings name. Raises PlantError, with every problem of them."""
-    problems = Problems()
+def read_plant(settings: Settings, problems: Problems | None = None) -> Plant:
+    """Read the files that the settings name. Raises PlantError, with every problem of them.
+
+    problems: gets the warnings.
+    """
+    problems = Problems() if problems is None else problems
     plant = examine_plant(settings, problems)
     if plant is None or problems:
         raise PlantError(problems)
@@ -157,11 +160,21 @@ def _relays(
             continue
         with problems.collected():
             if configuration is not None and one.relay in ieds:
-                relay = relay_of_ied(configuration, ieds[one.relay], one.site, entry, motor.overrides)
+                relay = relay_of_ied(
+                    configuration, ieds[one.relay], one.site, entry, motor.overrides, problems
+                )
             elif entry.scl is not None:
                 own = read_own_scl(entry, told, subnetwork)
-                problems.warnings.extend(omissions(own[0]))
-                relay = relay_of_ied(*own, one.site, entry, motor.overrides)
+                problems.warnings.extend(omissions(own.configuration))
+                relay = relay_of_ied(
+                    own.configuration,
+                    own.ied,
+                    one.site,
+                    entry,
+                    motor.overrides,
+                    problems,
+                    knows_names=not own.is_icd,
+                )
             elif one.relay in told.relays:
                 relay = relay_without_scl(entry, one.site, told, motor.overrides)
             else:

@@ -29,6 +29,7 @@ class Relay:
     expected: all that the SCL describes, for comparison with what the relay offers.
     overrides: what the motors file says instead of what would be recognised.
     time_zone: IANA name of the zone in which its clock runs; None for UTC.
+    scl_knows_names: whether the SCL knows how its logical devices are called; an ICD does not.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Relay:
     expected: Offer | None = field(default=None, compare=False, repr=False)
     overrides: Overrides = AS_RECOGNISED
     time_zone: str | None = None
+    scl_knows_names: bool = True
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,14 @@
 """Relays as the plant's files describe them: an IED of the SCD, one of its own SCL file, or an address."""
 
 import re
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import scl
 from scl.configuration import MMS_PORT
 from scl.ied_model import Ied
-from service.configuration.problems import Problem
+from service.configuration.problems import Problem, Problems
 from service.plant.errors import PlantError
 from service.plant.metering import measurands_from_scl
 from service.plant.model import Relay
@@ -24,16 +25,35 @@ TEMPLATE = "TEMPLATE"
 
 
 def relay_of_ied(
-    configuration: scl.Scl, ied: Ied, site: str, entry: RelayEntry, overrides: Overrides
+    configuration: scl.Scl,
+    ied: Ied,
+    site: str,
+    entry: RelayEntry,
+    overrides: Overrides,
+    problems: Problems,
+    *,
+    knows_names: bool = True,
 ) -> Relay:
-    """Return a relay that has an SCL file; the motors file wins where it says more. Raises PlantError."""
-    address = None if entry.host and entry.port else _address(configuration, ied.name, entry)
+    """Return a relay that has an SCL file; the motors file wins where it says more.
+
+    knows_names: whether the SCL knows how its logical devices are called.
+
+    Another address than that of the SCL file is a warning. Raises PlantError.
+    """
+    address = _address(configuration, ied.name, entry)
+    host = entry.host or (address.host if address else "")
+    port = entry.port or (address.port if address else MMS_PORT)
+    if address is not None and (host, port) != (address.host, address.port):
+        problems.warnings.append(
+            f"relay {entry.name}: its address is {scl.Address(host, port)}, as the motors file says, not "
+            f"{address}, as {configuration.path.name} does"
+        )
     points = recognise(ied)
     return Relay(
         name=entry.name,
         site=site,
-        host=entry.host or (address.host if address else ""),
-        port=entry.port or (address.port if address else MMS_PORT),
+        host=host,
+        port=port,
         manufacturer=entry.manufacturer or ied.manufacturer,
         type=entry.type or ied.type,
         trigger_control=points.trigger,
@@ -45,6 +65,7 @@ def relay_of_ied(
         expected=offer_from_scl(ied),
         overrides=overrides,
         time_zone=entry.time_zone,
+        scl_knows_names=knows_names,
     )
 
 
@@ -70,26 +91,41 @@ def relay_without_scl(entry: RelayEntry, site: str, told: MotorsFile, overrides:
     )
 
 
-def read_own_scl(entry: RelayEntry, told: MotorsFile, subnetwork: str | None) -> tuple[scl.Scl, Ied]:
+@dataclass(frozen=True, slots=True)
+class OwnScl:
+    """The SCL file of one relay, and its IED in it.
+
+    is_icd: whether it describes the relay's type, and knows neither its name nor its address.
+    """
+
+    configuration: scl.Scl
+    ied: Ied
+    is_icd: bool
+
+
+def read_own_scl(entry: RelayEntry, told: MotorsFile, subnetwork: str | None) -> OwnScl:
     """Read the SCL file of one relay, and find its IED: the one of its name, or the only one.
 
     Raises PlantError.
     """
-    file = entry.scl or told.path
+    file, is_icd = entry.scl or told.path, False
     try:
         configuration = scl.read(file)
         if [ied.name for ied in configuration.ieds] == [TEMPLATE]:
+            is_icd = True
             if entry.host is None:
                 expected = f"the relay's address, which {file.name} cannot know: it is an ICD"
                 raise PlantError([told.problem("relay", entry.name, "host", expected=expected, found="none")])
-            configuration = _named(file, entry.name)
+            # The address in an ICD is that of any relay of its type.
+            configuration = replace(_named(file, entry.name), communication=())
         if subnetwork in [network.name for network in configuration.communication]:
             configuration = configuration.seen_from(str(subnetwork))
     except scl.SclError as error:
         raise PlantError([scl_problem(error)]) from error
     names = [ied.name for ied in configuration.ieds]
     if entry.name in names or len(names) == 1:
-        return configuration, configuration.ied(entry.name if entry.name in names else names[0])
+        ied = configuration.ied(entry.name if entry.name in names else names[0])
+        return OwnScl(configuration, ied, is_icd)
     expected = f"a file with one IED, or with one called {entry.name}"
     found = f"{file.name} with {', '.join(names[:20]) or 'none'}"
     raise PlantError([told.problem("relay", entry.name, "scl", expected=expected, found=found)])

@@ -79,7 +79,9 @@ def draft_of_scd(configuration: scl.Scl) -> Draft:
         )
         return Draft(relays, configuration.path, subnetworks)
     taken = [ied for ied in configuration.ieds if recognise(ied).metering_data_set or _measures(ied)]
-    others = [ied.name for ied in configuration.ieds if ied not in taken]
+    others = [f"{ied.name} measures no currents" for ied in configuration.ieds if ied not in taken]
+    if len(taken) > MOST_RELAYS:
+        others.append(f"{len(taken) - MOST_RELAYS} relays beyond the first {MOST_RELAYS}")
     return Draft(
         tuple(
             DraftRelay(
@@ -93,7 +95,7 @@ def draft_of_scd(configuration: scl.Scl) -> Draft:
         ),
         configuration.path,
         subnetworks,
-        tuple(f"{name} measures no currents" for name in others),
+        tuple(others),
     )
 
 
@@ -108,7 +110,7 @@ def draft_of_files(files: Sequence[scl.Scl]) -> Draft:
             continue
         ied = named[0]
         is_template = ied.name == TEMPLATE
-        name = _name(configuration.path.stem.replace("-", "_") if is_template else ied.name, relays)
+        name = _name(configuration.path.stem if is_template else ied.name, relays)
         address = None if is_template else _address(configuration, ied)
         relays.append(
             DraftRelay(

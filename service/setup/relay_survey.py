@@ -10,13 +10,12 @@ from dataclasses import dataclass
 from threading import Timer
 
 from core.units import NANOSECONDS_PER_SECOND
-from mms import Client, CredentialFileError, FunctionalConstraint, MmsError
+from mms import Client, CredentialFileError, FunctionalConstraint, MmsError, Timestamp
 from service.collector.records.event_folder import ROOT, EventFolder
 from service.collector.records.listing import understand
 from service.collector.session.browsing import REFUSALS, browse
 from service.collector.session.clock_monitor import (
     FAST_PERIOD_S,
-    FAST_READING_S,
     clock_reading,
     stamp_of,
 )
@@ -36,6 +35,9 @@ NAME_PLATE = ("vendor", "model", "serNum", "swRev")
 
 LONGEST_TEXT = 60
 
+MOST_STAMPS = 8
+"""The stamps of so many measured values are read, until one changes."""
+
 
 @dataclass(frozen=True, slots=True)
 class RelaySurvey:
@@ -48,7 +50,8 @@ class RelaySurvey:
     differences: how many names differ from its SCL.
     folder: where its recordings are; None where none was found, for the reason `no_folder`.
     recordings: how many it lists.
-    clock_offset_s: how far its clock is ahead of ours; None where it does not tell.
+    clock_offset_s: how far its clock is ahead of ours; None where no measured value changed meanwhile.
+    stamp_age_s: how old its latest time stamp is, where nothing else is known of its clock.
     """
 
     relay: Relay
@@ -61,25 +64,32 @@ class RelaySurvey:
     no_folder: str | None = None
     recordings: int = 0
     clock_offset_s: float | None = None
+    stamp_age_s: float | None = None
 
 
 def survey(
-    relays: Sequence[Relay], settings: Settings, on_answer: Callable[[RelaySurvey], None] = lambda _: None
+    relays: Sequence[Relay],
+    settings: Settings,
+    on_answer: Callable[[RelaySurvey], None] = lambda _: None,
+    *,
+    clock_s: float = 0.0,
 ) -> tuple[RelaySurvey, ...]:
     """Ask the relays and return what they answered, in their order.
 
+    clock_s: the time for which each relay's clock is looked at; 0 for not at all.
     on_answer: is told of each relay as soon as it has answered.
     """
     found: dict[str, RelaySurvey] = {}
     with without_logs(), ThreadPoolExecutor(AT_A_TIME) as pool:
-        for future in as_completed([pool.submit(survey_relay, relay, settings) for relay in relays]):
+        futures = [pool.submit(survey_relay, relay, settings, clock_s) for relay in relays]
+        for future in as_completed(futures):
             answer = future.result()
             found[answer.relay.name] = answer
             on_answer(answer)
     return tuple(found[relay.name] for relay in relays)
 
 
-def survey_relay(relay: Relay, settings: Settings) -> RelaySurvey:
+def survey_relay(relay: Relay, settings: Settings, clock_s: float = 0.0) -> RelaySurvey:
     """Ask one relay. Each connect and each request has the time limit of the settings."""
     try:
         own = credentials(settings.relays, relay.name)
@@ -94,14 +104,14 @@ def survey_relay(relay: Relay, settings: Settings) -> RelaySurvey:
             limit = Timer(LONGEST_S, client.abandon)
             limit.start()
             try:
-                return _asked(relay, client, settings)
+                return _asked(relay, client, settings, clock_s)
             finally:
                 limit.cancel()
     except (MmsError, CredentialFileError, AccessError) as error:
         return RelaySurvey(relay, unreachable=str(error))
 
 
-def _asked(relay: Relay, client: Client, settings: Settings) -> RelaySurvey:
+def _asked(relay: Relay, client: Client, settings: Settings, clock_s: float) -> RelaySurvey:
     offer = browse(client, relay.expected)
     if offer is None:
         acquisition = acquisition_from_scl(relay)
@@ -110,6 +120,7 @@ def _asked(relay: Relay, client: Client, settings: Settings) -> RelaySurvey:
     folder = EventFolder(relay.name, settings.events_directory, relay.overrides.events_directory)
     contents = folder.contents(client)
     directory = contents.directory
+    offset_s, age_s = _clock(client, acquisition, clock_s)
     records = () if directory is None else understand(contents.entries, directory).records
     return RelaySurvey(
         relay,
@@ -120,7 +131,8 @@ def _asked(relay: Relay, client: Client, settings: Settings) -> RelaySurvey:
         folder="/" if directory == ROOT else directory,
         no_folder=folder.missing,
         recordings=len(records),
-        clock_offset_s=_clock_offset_s(client, acquisition),
+        clock_offset_s=offset_s,
+        stamp_age_s=age_s,
     )
 
 
@@ -158,21 +170,25 @@ def _plate_texts(client: Client, plate: str) -> Iterator[tuple[str, str]]:
             yield name, plain[:LONGEST_TEXT]
 
 
-def _clock_offset_s(client: Client, acquisition: Acquisition) -> float | None:
-    """Return how far the relay's clock is ahead, from a value that changes while it is read."""
-    for measurand in acquisition.measurands:
-        if measurand.quantity.is_statistic:
-            continue
-        before = stamp_of(client, measurand.stamp, FunctionalConstraint.MX)
-        until_s = time.monotonic() + FAST_READING_S
-        asked_ns = time.time_ns()
-        while before is not None and time.monotonic() < until_s:
-            time.sleep(FAST_PERIOD_S)
-            stamp = stamp_of(client, measurand.stamp, FunctionalConstraint.MX)
+def _clock(client: Client, acquisition: Acquisition, longest_s: float) -> tuple[float | None, float | None]:
+    """Return how far the clock is ahead [s], and how old its latest time stamp is [s]; None where not known.
+
+    The clock is known where a measured value changes while the values are read.
+    """
+    stamps = [each.stamp for each in acquisition.measurands if not each.quantity.is_statistic][:MOST_STAMPS]
+    before: dict[str, Timestamp] = {}
+    latest_ns = 0
+    asked_ns, until_s = time.time_ns(), time.monotonic() + longest_s
+    while stamps and time.monotonic() < until_s:
+        for reference in stamps:
+            stamp = stamp_of(client, reference, FunctionalConstraint.MX)
             answered_ns = time.time_ns()
-            if stamp is not None and stamp != before:
+            if stamp is None:
+                continue
+            latest_ns = max(latest_ns, stamp.ns)
+            if before.setdefault(reference, stamp) != stamp:
                 reading = clock_reading(stamp, asked_ns=asked_ns, answered_ns=answered_ns)
-                return reading.offset_ns / NANOSECONDS_PER_SECOND
-            asked_ns = answered_ns
-        return None
-    return None
+                return reading.offset_ns / NANOSECONDS_PER_SECOND, None
+        asked_ns = time.time_ns()
+        time.sleep(FAST_PERIOD_S)
+    return None, (time.time_ns() - latest_ns) / NANOSECONDS_PER_SECOND if latest_ns else None

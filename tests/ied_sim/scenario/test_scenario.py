@@ -4,6 +4,7 @@ import re
 import tomllib
 from math import sqrt
 from pathlib import Path
+from zoneinfo import ZoneInfo
 
 import numpy as np
 import pytest
@@ -244,6 +245,11 @@ def test_the_reference_motor_needs_no_file() -> None:
             "[motor R1] recorder.capacity",
             "greater than or equal to 1",
         ),
+        (
+            MINIMAL + '[motor.recorder]\ntime_zone = "Berlin"',
+            "[motor R1] recorder.time_zone",
+            "timezone",
+        ),
     ],
 )
 def test_a_wrong_scenario_is_refused_with_the_field_at_fault(
@@ -255,6 +261,12 @@ def test_a_wrong_scenario_is_refused_with_the_field_at_fault(
     assert caught.value.field == field
     assert words in caught.value.expected
     assert str(path) in str(caught.value)
+
+
+def test_a_relay_may_keep_local_time(tmp_path: Path) -> None:
+    relay = read_scenario(write(tmp_path, MINIMAL + '[motor.recorder]\ntime_zone = "Europe/Berlin"'))["R1"]
+    assert relay.time_zone == ZoneInfo("Europe/Berlin")
+    assert read_scenario(write(tmp_path, MINIMAL))["R1"].time_zone is None
 
 
 def test_a_missing_file_is_named(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from core.diagnosis.search import METHODS
 from core.diagnosis.stator import MODELS
+from core.time_stamps import nanoseconds
 from service.api import ApiContext, create_app
 from service.storage import Repository
 from service.storage.records import RemoteRecord
@@ -185,6 +186,18 @@ def test_waveform(client: httpx.Client, recording: str) -> None:
     assert few["time_s"] == pytest.approx([0.0, 0.004])
     assert few["channels"][0]["maximum"] == pytest.approx([9.0, 2.0])
     assert few["channels"][0]["minimum"] == pytest.approx([0.0, -1.0])
+
+
+def test_a_waveform_has_the_time_that_its_diagnosis_found(
+    client: httpx.Client, repository: Repository, recording: str
+) -> None:
+    claimed = repository.claim_job(now_ns=2**62, runner=RUNNER)
+    assert claimed is not None
+    utc_ns = nanoseconds("2026-11-21T05:00:00.002Z")
+    repository.finish_job(claimed.job.id, fault(), recorded_ns=utc_ns, now_ns=NOW_NS, runner=RUNNER)
+    waveform = client.get(f"/api/v1/recordings/{recording}/waveform").json()
+    assert waveform["trigger_time"] == "2026-11-21T05:00:00.002000000Z"
+    assert waveform["start_time"] == "2026-11-21T05:00:00.000000000Z"
 
 
 def test_a_record_that_cannot_be_read_or_is_not_there_yet(

@@ -38,7 +38,7 @@ def config(tmp_path: Path) -> Path:
 
 def test_a_plant_with_nothing_wrong(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--config", str(config)]) == 0
-    assert capsys.readouterr().out == "nothing is wrong: 1 motors, 1 relays, 1 sites\n"
+    assert capsys.readouterr().out == "nothing is wrong in the files: 1 motor, 1 relay, 1 site\n"
     assert main(["check", "--config", str(config), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert document == {"problems": [], "warnings": [], "motors": ["P-1"], "relays": ["R-1"], "asked": []}
@@ -106,6 +106,24 @@ def test_serve_refuses_with_the_same_texts(config: Path, capsys: pytest.CaptureF
     assert sorted(refused) == sorted(f"mcc: {line}" for line in told)
 
 
+def test_impedances_that_no_motor_of_the_rating_has(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    parameters = """
+[motor.parameters]
+stator_resistance_ohm = 0.0001
+rotor_resistance_ohm = 1.4
+stator_leakage_H = 0.0058
+rotor_leakage_H = 0.0058
+stator_self_inductance_H = 0.115
+inertia_kgm2 = 90000
+"""
+    config.with_name("motors.toml").write_text(MOTORS + parameters, encoding="utf-8")
+    assert main(["check", "--config", str(config)]) == 1
+    *told, _ = capsys.readouterr().out.splitlines()
+    assert ["stator_resistance_ohm: expected 0.02 to 20 ohm" in told[0], "inertia_kgm2" in told[1]] == [
+        True
+    ] * 2
+
+
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
@@ -132,6 +150,11 @@ def test_a_relay_that_does_not_answer(config: Path, capsys: pytest.CaptureFixtur
     (asked,) = json.loads(capsys.readouterr().out)["asked"]
     assert (asked["relay"], asked["reachable"]) == ("R-1", False)
     assert asked["reason"]
+    assert main(["check", "--config", str(config), "--connect"]) == 1
+    told = capsys.readouterr()
+    assert told.out.splitlines()[0].startswith("R-1 at 127.0.0.1:1: does not answer: ")
+    assert "1 of 1 relay did not answer" in told.out
+    assert told.err.splitlines() == ["asking 1 relays, 0.5 s each ...", "R-1 does not answer"]
 
 
 def test_what_is_left_out_of_a_relay_s_file_is_a_warning(
@@ -153,4 +176,4 @@ def test_what_is_left_out_of_a_relay_s_file_is_a_warning(
     told = capsys.readouterr().out
     assert "warning: R-1.icd: line " in told
     assert '<DO name="Ind1" type="gone">: left out: expected a DOType with id="gone"' in told
-    assert "nothing is wrong: 1 motors" in told
+    assert "nothing is wrong in the files: 1 motor," in told

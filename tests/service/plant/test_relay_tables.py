@@ -8,6 +8,7 @@ import pytest
 
 import scl
 from scl import Address
+from service.configuration.problems import Problems
 from service.configuration.settings import Settings
 from service.plant import Overrides, Plant, PlantError, Site, acquisition_from_scl, read_plant
 
@@ -92,15 +93,25 @@ def test_a_plant_without_an_scd(read: Callable[..., Plant], cid: Path) -> None:
     ]
 
 
-def test_the_motors_file_wins_over_the_address_in_a_cid(read: Callable[..., Plant], cid: Path) -> None:
-    plant = read(motor("M1", 'relay = "R1"'), relay("R1", f'scl = "{cid.name}"', 'host = "pump.plant"'))
+def test_the_motors_file_wins_over_the_address_in_a_cid_and_that_is_told(cid: Path) -> None:
+    motors = cid.with_name("motors.toml")
+    text = motor("M1", 'relay = "R1"') + relay("R1", f'scl = "{cid.name}"', 'host = "pump.plant"')
+    motors.write_text(text, encoding="utf-8")
+    problems = Problems()
+    plant = read_plant(Settings(motors=motors), problems)
     assert (plant.relays[0].host, plant.relays[0].port) == ("pump.plant", 1102)
+    assert problems.warnings == [
+        "relay R1: its address is pump.plant:1102, as the motors file says, "
+        "not 10.0.0.7:1102, as feeder.cid does"
+    ]
 
 
 def test_an_icd_gets_the_name_of_its_relay(read: Callable[..., Plant]) -> None:
-    table = relay("R1", f'scl = "{scl.SEL710_ICD}"', 'host = "10.0.0.8"', "port = 1102")
+    table = relay("R1", f'scl = "{scl.SEL710_ICD}"', 'host = "10.0.0.8"')
     found = read(motor("M1", 'relay = "R1"'), table).relays[0]
-    assert (found.port, found.report_control) == (1102, "R1CFG/LLN0.BR.BRep01")
+    assert (found.port, found.report_control) == (102, "R1CFG/LLN0.BR.BRep01")
+    with pytest.raises(PlantError, match=r"relay R1: host: expected the relay's address, which sel710\.icd"):
+        read(motor("M1", 'relay = "R1"'), table.replace('host = "10.0.0.8"', ""))
 
 
 def test_relays_beside_those_of_an_scd(read: Callable[..., Plant]) -> None:

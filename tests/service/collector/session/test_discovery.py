@@ -13,8 +13,12 @@ from mms import Client
 from scl import Address
 from scl.ied_model import Ied
 from service.collector.session.browsing import browse
+from service.configuration.toml_lines import TomlLines
 from service.plant import Overrides, TriggerAction, differences
+from service.plant.motors_file import MotorsFile
 from service.plant.offer import node_class, offer_from_scl
+from service.plant.relay_entry import RelayEntry
+from service.plant.relays import relay_without_scl
 from service.storage.states import AlarmKind, LinkState, RecordingRequestState
 from testing.ports import LOOPBACK
 from testing.relays.simulated import IED, scenario_of, simulated
@@ -87,6 +91,22 @@ def test_a_relay_newer_than_its_scl_tells_of_its_records(bench: Bench, tmp_path:
     assert here.alarms() == {}, "more than expected harms nobody"
 
 
+def test_a_relay_without_any_scl_file_is_asked_what_it_offers(bench: Bench, tmp_path: Path) -> None:
+    with simulated(tmp_path / "relays", scenario_of("sel-710-ed2")) as served:
+        nothing = RelayEntry(NAME, host=served.address.host, port=served.address.port)
+        told = MotorsFile(Path("motors.toml"), {}, {}, {}, TomlLines(""), {})
+        relay = relay_without_scl(nothing, "FACTORY_A", told, Overrides())
+        here = replace(at(bench, served), relay=relay)
+        with here.session():
+            assert eventually(lambda: visited(here))
+            assert granted(here)
+        assert here.alarms() == {}, "nothing was promised"
+    found = acquisition(here)
+    assert found["trigger"] == f"{IED}CON/RBGGIO1.SPCSO01"
+    assert found["records_told_by"] == "buffered-report"
+    assert found_differences(here) == set()
+
+
 def test_a_relay_older_than_its_scl_is_polled(bench: Bench, tmp_path: Path) -> None:
     with simulated(tmp_path / "relays", scenario_of("sel-710-ed1")) as served:
         here = at(expecting(bench, scl_of("sel-710-ed2")), served)
@@ -103,6 +123,16 @@ def test_a_relay_older_than_its_scl_is_polled(bench: Bench, tmp_path: Path) -> N
     assert [(file["name"], file["reason"]) for file in findings.ignored_files] == [
         (f"{name}.CEV", f"the same event as {name}.CFG, {name}.DAT, {name}.HDR, which is taken")
     ]
+
+
+def test_an_icd_that_cannot_know_the_relays_name_raises_no_alarm(bench: Bench, tmp_path: Path) -> None:
+    with simulated(tmp_path / "relays", scenario_of("sel-710-ed2")) as served:
+        here = at(expecting(bench, scl_of("sel-710-ed2", "A9")), served)
+        here = replace(here, relay=replace(here.relay, scl_knows_names=False))
+        with here.session():
+            assert eventually(lambda: visited(here))
+        assert here.alarms() == {}
+    assert acquisition(here)["trigger"] == f"{IED}CON/RBGGIO1.SPCSO01"
 
 
 def test_a_relay_under_another_name_is_used_under_its_own(bench: Bench, tmp_path: Path) -> None:
