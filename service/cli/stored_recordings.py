@@ -12,17 +12,26 @@ from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
 
 FIELDS = (
-    "recorded_time", "motor", "ied", "source", "name", "state", "operation", "reason", "size_bytes",
+    "recorded_time", "motor", "ied", "source", "name", "state", "operation", "operation_remark", "reason",
+    "size_bytes",
     "announced_time", "fetched_time", "id",
 )  # fmt: skip
 
 
 def show_recordings(
-    url: str, motor: str | None, state: str | None, *, limit: int, as_csv: bool, as_json: bool
+    url: str,
+    motor: str | None,
+    state: str | None,
+    operation: str | None = None,
+    *,
+    limit: int,
+    as_csv: bool,
+    as_json: bool,
 ) -> None:
     """Print recordings, latest first. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
-    chosen = {name: word for name, word in (("motor", motor), ("state", state)) if word is not None}
+    filters = (("motor", motor), ("state", state), ("operation", operation))
+    chosen = {name: word for name, word in filters if word is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         found = list(islice(service.items("/recordings", limit=str(min(limit, 1000)), **chosen), limit))
     columns = {

@@ -1,4 +1,4 @@
-"""From a nameplate to a trusted verdict, over real MMS: the relay records a start, the rest follows from it."""
+"""From a nameplate to a verdict, over real MMS: the relay records a start, and the rest follows from it."""
 
 import json
 import re

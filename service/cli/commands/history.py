@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
+from core.operation import Operation
 from service.cli.commands.options import DEFAULT_URL, Json, Url
 
 commands = typer.Typer()
@@ -88,6 +89,9 @@ def list_recordings(
     motor: OneMotor = None,
     url: Url = DEFAULT_URL,
     state: Annotated[State | None, typer.Option(help="Only those in this state.")] = None,
+    operation: Annotated[
+        Operation | None, typer.Option(help="Only those in which the motor does this.")
+    ] = None,
     limit: Limit = 100,
     *,
     as_csv: Csv = False,
@@ -96,7 +100,7 @@ def list_recordings(
     """List recordings, latest first."""
     from service.cli.stored_recordings import show_recordings
 
-    show_recordings(url, motor, state, limit=limit, as_csv=as_csv, as_json=as_json)
+    show_recordings(url, motor, state, operation, limit=limit, as_csv=as_csv, as_json=as_json)
 
 
 @recordings.command()

@@ -201,7 +201,7 @@ def test_parameters_that_no_such_motor_has_are_not_written(
     assert 'source = "commissioned"' in motors.read_text("utf-8")
 
 
-def test_a_service_says_what_each_recording_shows(here: Here) -> None:
+def test_a_service_says_what_each_recording_shows(here: Here, capsys: pytest.CaptureFixture[str]) -> None:
     here.add(start(load_level=0.6))
     late = here.add(cut(start(load_level=0.4), 0.06))
     ran = here.add(recording(running(REFERENCE, 0.5), noise=0.003))
@@ -209,6 +209,11 @@ def test_a_service_says_what_each_recording_shows(here: Here) -> None:
     assert found[ran].operation is Operation.RUNNING
     assert found[late].operation is Operation.START
     assert "began before the record" in (found[late].operation_remark or "")
+    command = ["recordings", "list", MOTOR, "--operation", "start", "--url", here.url, "--json"]
+    assert main(command) == 0
+    listed = json.loads(capsys.readouterr().out)["recordings"]
+    assert [one["operation"] for one in listed] == ["start", "start"]
+    assert "began before the record" in listed[0]["operation_remark"]
 
 
 @pytest.mark.parametrize(
