@@ -1,10 +1,13 @@
+from dataclasses import asdict, replace
+
 import httpx
 import pytest
 
+from core.machines.motor_file import motor_from_table
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant, undiagnosable
 
 FIRST = "2025-10-09T08:53:20.000000000Z"
 
@@ -88,3 +91,23 @@ def test_recordings_of_a_motor_latest_first(client: httpx.Client, diagnosed: lis
     assert client.get("/api/v1/motors/FAN-A2/recordings").json()["items"] == []
     assert client.get("/api/v1/recordings", params={"motor": "PUMP-A1"}).json()["items"] == items
     assert client.get("/api/v1/recordings", params={"state": "failed"}).json()["items"] == []
+
+
+def test_a_motor_with_nothing_but_a_nameplate_asks_to_be_commissioned(
+    client: httpx.Client, repository: Repository
+) -> None:
+    plant = two_motor_plant()
+    pump, fan = plant.motors
+    bare = motor_from_table({"nameplate": asdict(pump.motor.nameplate)}, name=pump.name, source="motors.toml")
+    repository.sync_plant(replace(plant, motors=(replace(pump, motor=bare), fan)))
+    sources = {one["name"]: one["parameters_source"] for one in client.get("/api/v1/motors").json()["items"]}
+    assert sources == {"PUMP-A1": "typical", "FAN-A2": "given"}
+    for path in ("health", "condition"):
+        told = client.get(f"/api/v1/motors/PUMP-A1/{path}").json()
+        condition = told["condition"] if path == "health" else told
+        assert condition["state"] == "unknown"
+        assert condition["advice"].startswith("collecting; commission me")
+        assert condition["reasons"][0].startswith("collecting; commission me")
+    assert client.get("/api/v1/motors/PUMP-A1/health").json()["parameters_source"] == "typical"
+    other = client.get("/api/v1/motors/FAN-A2/health").json()["condition"]
+    assert "commission" not in other["advice"]

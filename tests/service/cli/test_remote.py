@@ -1,12 +1,14 @@
 """The commands that ask a running service, against the API on a real port."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from fastapi import Request, Response
 from starlette.middleware.base import RequestResponseEndpoint
 
+from core.machines.parameters import ParametersSource
 from service.api import ApiContext, create_app
 from service.cli.app import main
 from service.configuration.settings import Settings
@@ -15,7 +17,7 @@ from service.storage import Repository
 from service.storage.records import RelayFindings
 from service.storage.states import LinkState
 from service.timing.backoff import Backoff
-from testing.service.plants import NOW_NS, fault
+from testing.service.plants import NOW_NS, fault, two_motor_plant
 from tests.service.api.serving import serving
 from tests.service.api.test_relays import ACQUISITION
 from tests.service.fixtures import database_url, engine, repository
@@ -37,6 +39,26 @@ def test_the_motors_whose_relay_is_down_say_why(
     assert "A1_SEL710 (PUMP-A1): down: 10.0.0.7:102: connection refused" in shown.splitlines()
     links = {line.split()[0]: line.split()[-1] for line in shown.splitlines()[3:5]}
     assert links == {"FAN-A2": "up", "PUMP-A1": "down"}
+
+
+def test_a_motor_with_nothing_but_a_nameplate_is_listed_as_collecting(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plant = two_motor_plant()
+    pump, fan = plant.motors
+    bare = replace(pump.motor, parameters_source=ParametersSource.TYPICAL)
+    repository.sync_plant(replace(plant, motors=(replace(pump, motor=bare), fan)))
+    app = create_app(
+        ApiContext(Settings(data_directory=tmp_path), repository, RecordingStore(tmp_path / "recordings"))
+    )
+    with serving(app) as client:
+        assert main(["motors", "--url", str(client.base_url)]) == 0
+        listed = capsys.readouterr().out
+        assert main(["health", "PUMP-A1", "--url", str(client.base_url)]) == 0
+        health = " ".join(capsys.readouterr().out.split())
+    assert "collecting; commission me" in " ".join(listed.split())
+    assert listed.count("commission") == 1
+    assert "collecting; commission me: the parameters are typical of the rating" in health
 
 
 def test_the_motors_are_asked_for_once(
