@@ -20,7 +20,13 @@ from math import exp, log
 
 import numpy as np
 
-from core.machines.parameters import MachineParameters, Nameplate, ParametersSource, ParameterTolerances
+from core.machines.parameters import (
+    MachineParameters,
+    Motor,
+    Nameplate,
+    ParametersSource,
+    ParameterTolerances,
+)
 
 POWERS_W = (750.0, 7.5e3, 75e3, 750e3, 7.5e6)
 STATOR_RESISTANCE_PU = (0.050, 0.027, 0.0145, 0.0090, 0.0060)
@@ -41,6 +47,10 @@ FACTORS = {
     "stator_self_inductance_H": REACTANCE_FACTOR,
     "inertia_kgm2": INERTIA_FACTOR,
 }
+
+ALL_ALIKE = 3
+"""Impedances beyond what is typical that point to a common cause."""
+STAR_FOR_DELTA = 3.0
 
 TYPICAL_TOLERANCES = ParameterTolerances(
     **{name: log(factor) for name, factor in FACTORS.items() if name != "inertia_kgm2"}
@@ -103,6 +113,40 @@ def typical_parameters(nameplate: Nameplate) -> TypicalParameters:
     return TypicalParameters(parameters, intervals)
 
 
+def atypical(motor: Motor) -> tuple[str, ...]:
+    """Say which parameters of a motor lie beyond what is typical of its rating.
+
+    They need not be wrong. But a factor of three in all impedances is star for delta, and one of a thousand
+    is another unit.
+
+    Parameters
+    ----------
+    motor : Motor
+        The motor.
+
+    Returns
+    -------
+    tuple of str
+        Sentences; none of a motor with typical parameters.
+    """
+    found = typical_parameters(motor.nameplate)
+    beyond = {}
+    for name, (low, high) in found.intervals.items():
+        value = getattr(motor.parameters, name)
+        if not low <= value <= high:
+            beyond[name] = value / getattr(found.parameters, name)
+    told = [
+        f"{name} is {factor:.2g} times what is typical of the rating ({_ends(found.intervals[name])})"
+        for name, factor in beyond.items()
+    ]
+    impedances = [factor for name, factor in beyond.items() if name != "inertia_kgm2"]
+    if len(impedances) >= ALL_ALIKE and max(impedances) < STAR_FOR_DELTA * min(impedances):
+        told.append(
+            "all impedances are off alike: check connection, whether they are a winding's, and the unit"
+        )
+    return tuple(told)
+
+
 def tolerances_of(
     parameters: MachineParameters, source: ParametersSource, intervals: dict[str, tuple[float, float]]
 ) -> ParameterTolerances:
@@ -132,6 +176,10 @@ def tolerances_of(
             value = getattr(parameters, name)
             wider[name] = max(getattr(usual, name), log(high / value), log(value / low))
     return ParameterTolerances(**wider)
+
+
+def _ends(interval: tuple[float, float]) -> str:
+    return f"{interval[0]:.3g} to {interval[1]:.3g}"
 
 
 def _at(per_unit: tuple[float, ...], nameplate: Nameplate) -> float:

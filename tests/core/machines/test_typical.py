@@ -1,5 +1,6 @@
 """Typical parameters: published motors lie within the intervals of their ratings."""
 
+from dataclasses import replace
 from math import pi, sqrt
 from typing import NamedTuple
 
@@ -7,8 +8,8 @@ import pytest
 
 from core.machines.parameters import MAGNETISING_OVER_SELF, Connection, MachineParameters, Nameplate
 from core.machines.plausibility import plausible_parameters
-from core.machines.typical import FACTORS, POWERS_W, typical_parameters
-from testing.machines.motors import ALL, VERY_LARGE
+from core.machines.typical import FACTORS, POWERS_W, atypical, typical_parameters
+from testing.machines.motors import ALL, LARGE, VERY_LARGE
 
 HORSEPOWER_W = 745.7
 
@@ -113,3 +114,12 @@ def test_a_winding_in_delta_has_three_times_the_impedance() -> None:
     for name in FACTORS:
         in_star, in_delta = (getattr(typical_parameters(one).parameters, name) for one in (star, delta))
         assert in_delta == pytest.approx(in_star * (1.0 if name == "inertia_kgm2" else 3.0))
+
+
+def test_what_lies_beyond_the_typical_is_named_with_its_factor() -> None:
+    assert all(atypical(motor) == () for motor in (*ALL, VERY_LARGE))
+    wrong = replace(LARGE, parameters=replace(LARGE.parameters, rotor_leakage_H=0.02172))
+    (said,) = atypical(wrong)
+    assert said.startswith("rotor_leakage_H is 9 times what is typical of the rating (")
+    star = replace(LARGE, nameplate=replace(LARGE.nameplate, connection=Connection.STAR))
+    assert atypical(star)[-1].startswith("all impedances are off alike: check connection")

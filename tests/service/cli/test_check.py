@@ -45,6 +45,26 @@ def test_a_plant_with_nothing_wrong(config: Path, capsys: pytest.CaptureFixture[
     assert sorted(file.name for file in config.parent.iterdir()) == ["mcc.toml", "motors.toml"]
 
 
+def test_impedances_that_are_unusual_for_the_rating_are_warned_of(
+    config: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    motors = config.with_name("motors.toml")
+    of_a_delta = """
+[motor.parameters]
+stator_resistance_ohm = 12.6
+rotor_resistance_ohm = 12.5
+stator_leakage_H = 0.0525
+rotor_leakage_H = 0.0525
+stator_self_inductance_H = 1.03
+inertia_kgm2 = 0.0131
+"""
+    motors.write_text(motors.read_text(encoding="utf-8") + of_a_delta, encoding="utf-8")
+    assert main(["check", "--config", str(config), "--json"]) == 0
+    warnings = json.loads(capsys.readouterr().out)["warnings"]
+    assert any("motor P-1: stator_resistance_ohm is " in one for one in warnings), warnings
+    assert warnings[-1].startswith("motor P-1: all impedances are off alike: check connection")
+
+
 def test_everything_that_is_wrong_is_told_at_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
