@@ -65,7 +65,10 @@ class Motor(Document):
 
 
 class QualityFinding(Document):
-    """One check of the quality gate: the figure it measured, its limit and what that means."""
+    """One check of the quality gate: the figure it measured, its limit and what that means.
+
+    One that passed and has a message is a warning, such as of a file that departs from its standard.
+    """
 
     name: str
     value: float

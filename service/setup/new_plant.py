@@ -127,6 +127,8 @@ def _motor_lines(relay: DraftRelay) -> Iterator[str]:
     yield '# connection = "delta"    # "star" is the default'
     yield "# [motor.parameters] may stay away at first: the motor begins with what is typical of its rating."
     yield "# mcc commission or mcc parameters gives its own: docs/how-to/commissioning.md."
+    yield "# [motor.transformers] has voltage_ratio and current_ratio, where recordings do not tell them:"
+    yield "# docs/reference/motor-file.md."
 
 
 def _scl_files(draft: Draft) -> list[Path]:
