@@ -1,6 +1,7 @@
 """`mcc init`: the files of a new plant, from its SCL files or from what its relays answer."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from rich.text import Text
@@ -56,7 +57,7 @@ def init_plant(directory: Path, sources: Sequence[str], *, as_json: bool) -> Non
         console.print(Text(f"left out: {one_line(words)}"), soft_wrap=True)
     console.print(
         Text(
-            f"{len(draft.relays)} relays; {len(problems)} values to fill in: "
+            f"relays: {len(draft.relays) or 'an example'}; values to fill in: {len(problems)}: "
             f"mcc check --config {directory / SETTINGS} names them"
         ),
         soft_wrap=True,
@@ -75,10 +76,26 @@ def _draft(sources: Sequence[str]) -> Draft:
         )
     if len(files) == 1 and not _is_scl(Path(files[0])):
         return _asked(_listed(Path(files[0])))
-    read = [scl.read(file) for file in files]
+    read, unreadable = _read(files)
     if len(read) == 1 and (read[0].feeders() or len(read[0].ieds) > 1):
-        return draft_of_scd(read[0])
-    return draft_of_files(read)
+        draft = draft_of_scd(read[0])
+    else:
+        draft = draft_of_files(read)
+    return replace(draft, left_out=(*draft.left_out, *unreadable))
+
+
+def _read(files: Sequence[str]) -> tuple[list[scl.Scl], list[str]]:
+    """Read SCL files, and say of those that cannot be read why. Raises SclError where none can."""
+    read: list[scl.Scl] = []
+    errors: list[scl.SclError] = []
+    for file in files:
+        try:
+            read.append(scl.read(file))
+        except scl.SclError as error:
+            errors.append(error)
+    if not read:
+        raise errors[0]
+    return read, [str(error) for error in errors]
 
 
 def _is_file(source: str) -> bool:

@@ -140,7 +140,7 @@ class Settings(BaseSettings):
     def _examined(cls, table: Mapping[str, object], sources: Sources, problems: Problems) -> Self:
         problems.extend(unknown_variables(os.environ, cls.model_fields))
         try:
-            sources.environment = EnvSettingsSource(cls)()
+            sources.environment = EnvSettingsSource(cls, env_ignore_empty=True)()
         except UnreadableEnvironment as error:
             expected = 'lists and tables as JSON, such as ["mcc"]'
             problems.add(Problem(ENVIRONMENT, "MCC_...", expected, str(error)))

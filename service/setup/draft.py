@@ -71,6 +71,7 @@ def draft_of_scd(configuration: scl.Scl) -> Draft:
                 feeder.ied,
                 motor=feeder.motor,
                 description=feeder.motor_description,
+                needs_host=_address(configuration, configuration.ied(feeder.ied)) is None,
                 by_substation=True,
                 in_scd=True,
                 told=tuple(_told(configuration.ied(feeder.ied))),

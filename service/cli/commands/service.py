@@ -9,7 +9,7 @@ from service.cli.commands.options import DEFAULT_URL, Json, Url
 
 commands = typer.Typer()
 
-MotorName = Annotated[str, typer.Argument(metavar="MOTOR", help="The motor's name in the plant's SCD.")]
+MotorName = Annotated[str, typer.Argument(metavar="MOTOR", help="The motor's name in the plant's files.")]
 Time = Annotated[
     str | None,
     typer.Option(metavar="TIME", help="When it happened, as 2026-01-31T12:00:00Z (default: now)."),
@@ -22,7 +22,7 @@ By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (defau
 
 @commands.command()
 def release(
-    relay: Annotated[str, typer.Argument(metavar="RELAY", help="The relay's name in the plant's SCD.")],
+    relay: Annotated[str, typer.Argument(metavar="RELAY", help="The relay's name in the plant's files.")],
     url: Url = DEFAULT_URL,
     *,
     as_json: Json = False,
@@ -154,7 +154,7 @@ def restart_reference(
 
 @commands.command()
 def relay(
-    name: Annotated[str, typer.Argument(metavar="RELAY", help="The relay's name in the plant's SCD.")],
+    name: Annotated[str, typer.Argument(metavar="RELAY", help="The relay's name in the plant's files.")],
     url: Url = DEFAULT_URL,
     *,
     as_json: Json = False,

@@ -94,6 +94,31 @@ def test_from_an_icd_whose_address_nobody_knows(tmp_path: Path, capsys: pytest.C
     assert (relay.host, relay.trigger_control) == ("10.0.0.9", "sel710CON/RBGGIO1.SPCSO01")
 
 
+def test_one_file_that_cannot_be_read_is_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    good = cid(tmp_path / "one.cid", "R_101", "10.0.0.1")
+    bad = tmp_path / "two.cid"
+    bad.write_text("<SCL", encoding="utf-8")
+    document = initialise(capsys, tmp_path / "plant", good, bad)
+    assert document["relays"] == ["R_101"]
+    assert document["left_out"][0].startswith("two.cid: ")
+    assert main(["init", str(tmp_path / "other"), str(bad)]) == 1
+    assert "two.cid" in capsys.readouterr().err
+
+
+def test_from_an_scd_without_addresses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scd = tmp_path / "project.scd"
+    text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
+    scd.write_text(re.sub(r"<Communication>.*</Communication>", "", text, flags=re.DOTALL), encoding="utf-8")
+    initialise(capsys, tmp_path / "plant", scd)
+    motors = tmp_path / "plant" / "motors.toml"
+    fill_in(motors)
+    hosts = (f'host = "10.0.0.{number}"' for number in range(1, 7))
+    motors.write_text(re.sub('host = "10.0.0.9"', lambda _: next(hosts), motors.read_text("utf-8")), "utf-8")
+    read = read_plant(Settings.load(tmp_path / "plant" / "mcc.toml"))
+    assert [(one.name, one.relay) for one in read.motors][:1] == [("PUMP-A1", "A1_SEL710")]
+    assert [relay.host for relay in read.relays][:2] == ["10.0.0.1", "10.0.0.2"]
+
+
 def test_from_an_scd_without_a_substation_section(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scd = tmp_path / "project.scd"
     text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")

@@ -44,6 +44,15 @@ def test_options_win_over_the_environment_and_that_over_the_file(
     assert settings.motors is None
 
 
+def test_an_empty_variable_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text("workers = 3\n")
+    monkeypatch.setenv("MCC_SCD", "")
+    monkeypatch.setenv("MCC_WORKERS", "")
+    settings = Settings.load(config)
+    assert (settings.scd, settings.workers) == (None, 3)
+
+
 def test_lists_in_the_environment_are_json(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MCC_ALLOWED_HOSTS", '["mcc.plant.example"]')
     assert Settings.load().allowed_hosts == ("mcc.plant.example",)
