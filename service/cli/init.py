@@ -57,7 +57,7 @@ def init_plant(directory: Path, sources: Sequence[str], *, as_json: bool) -> Non
         console.print(Text(f"left out: {one_line(words)}"), soft_wrap=True)
     console.print(
         Text(
-            f"relays: {len(draft.relays) or 'an example'}; values to fill in: {len(problems)}: "
+            f"{len(draft.relays) or 'example'} relays; {len(problems)} values to fill in: "
             f"mcc check --config {directory / SETTINGS} names them"
         ),
         soft_wrap=True,
