@@ -127,14 +127,17 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
         current_ratio=motor.transformers.current_ratio,
     )
     assumed = measured.voltage_ab is None
+    tripped = is_tripped(recording.digitals)
     if assumed and not currents_only:
+        without = _without_voltages(measured, recording, motor, tripped=tripped)
+        if without is not None:
+            return without
         raise NoVoltagesError(
             recording.source,
             "voltages",
             expected="three phase voltages or two line voltages beside the currents",
             found="none: without them an unbalanced supply cannot be told from a fault",
         )
-    tripped = is_tripped(recording.digitals)
     quality, passed = examine(measured, motor, tripped=tripped)
     does = _operation(recording, motor, quality, tripped=tripped)
     if passed is None:
@@ -143,6 +146,17 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
     case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
     case = replace(case, voltages_assumed=assumed)
     return Acceptance(tuple(quality), assumed, Accepted(measured, case, fundamental_of(case)), does)
+
+
+def _without_voltages(
+    measured: Terminals, recording: Recording, motor: Motor, *, tripped: bool
+) -> Acceptance | None:
+    """Tell what a motor that does not run does, for which no voltages are needed; None for any other."""
+    quality = [finding for finding in examine(measured, motor, tripped=tripped)[0] if not finding.passed]
+    if not quality or quality[0].operation is None:
+        return None
+    does = _operation(recording, motor, quality, tripped=tripped)
+    return Acceptance(tuple(quality), voltages_assumed=False, accepted=None, operation=does)
 
 
 def _operation(

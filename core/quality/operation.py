@@ -208,8 +208,8 @@ def operation(terminals: Terminals, motor: Motor, *, tripped: bool = False) -> I
 
 def _standing(terminals: Terminals, motor: Motor, circle: CircleDiagram) -> QualityFinding:
     share = float(terminals.current_abc.std(axis=1).max()) / circle.rated_current_A
-    live = _voltage_share(terminals, motor) > LEAST_SIGNAL
-    seen = "there is no current" if live else "there is neither voltage nor current"
+    dead = terminals.voltage_ab is not None and _voltage_share(terminals, motor) <= LEAST_SIGNAL
+    seen = "there is neither voltage nor current" if dead else "there is no current"
     return finding(
         "not-running", share, LEAST_OF_NO_LOAD * _no_load_A(motor, circle) / circle.rated_current_A,
         "of rated", passed=False, operation=Operation.NOT_RUNNING,
@@ -330,6 +330,4 @@ def _is_scaled_down(terminals: Terminals, motor: Motor) -> bool:
 
 
 def _voltage_share(terminals: Terminals, motor: Motor) -> float:
-    if terminals.voltage_ab is None:
-        return 0.0
     return float(terminals.voltages.std(axis=1).max()) / motor.nameplate.rated_voltage_V

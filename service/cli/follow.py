@@ -172,7 +172,13 @@ def _document(
 
 def _skipped(records: Sequence[Seen]) -> list[dict[str, object]]:
     return [
-        {"record": _name(one.path), "time": _time(one), "reason": one_line(one.refusal)} for one in records
+        {
+            "record": _name(one.path),
+            "time": _time(one),
+            "reason": one_line(one.refusal),
+            "operation": None if one.operation is None else str(one.operation),
+        }
+        for one in records
     ]
 
 

@@ -4,7 +4,7 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from core.condition.measuring.observing import observation_of
 from core.condition.observation import Observation
 from core.diagnosis.acceptance import accept
 from core.machines.parameters import Motor
+from core.operation import Operation
 from core.recordings import RecordingError, read
 from core.recordings.errors import RecordingTooLongError, UnknownTimeError
 from core.recordings.reading import READERS, mended_by
@@ -33,17 +34,18 @@ class Seen:
     """One record and what it tells.
 
     path: as it was found. time_ns: of its trigger, UTC; None where it cannot be read. observation: None where
-    the record was refused. refusal: why.
+    the record was refused. refusal: why. operation: what the motor does in it, where that can be told.
     """
 
     path: Path
     time_ns: int | None
     observation: Observation | None
     refusal: str = ""
+    operation: Operation | None = None
 
     def refused(self, reason: str) -> "Seen":
         """Return the record as one that is not used, with the reason."""
-        return Seen(self.path, self.time_ns, None, reason)
+        return Seen(self.path, self.time_ns, None, reason, self.operation)
 
 
 def find_records(given: Sequence[str]) -> list[Path]:
@@ -142,6 +144,7 @@ def observe_record(path: Path, motor: Motor, *, lenient: bool) -> Seen:
         acceptance = accept(recording, motor)
     except RecordingError as error:
         return unused.refused(str(error))
+    unused = replace(unused, operation=acceptance.operation)
     if acceptance.accepted is None:
         failed = (f"{one.name}: {one.message}" for one in acceptance.quality if not one.passed)
         return unused.refused("; ".join(failed))

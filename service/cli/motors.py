@@ -129,6 +129,8 @@ def _latest_recording(health: Document) -> list[tuple[str, RenderableType]]:
             rows.append(("diagnosed recording", diagnosed))
     rows.append(("parameters", Text(str(health.get("parameters_source", "-")))))
     rows.append(("last recording", Text(NO_RECORDING if last is None else last)))
+    if health.get("stood_time") is not None:
+        rows.append(("last seen to stand", to_the_second(health["stood_time"])))
     rows.extend(_starts(health))
     rows.append(("site, relay", Text(f"{health['site']}, {health['ied']}")))
     rows.append(("link", _link_with_reason(health)))

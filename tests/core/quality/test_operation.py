@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
+from core.diagnosis.errors import NoVoltagesError
 from core.diagnosis.stator import diagnose
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import Motor
@@ -256,3 +257,26 @@ def test_a_start_that_no_parameters_follow_from_is_refused_as_such(
 ) -> None:
     with pytest.raises(CommissioningError, match=why):
         start_of(made(), REFERENCE.nameplate, REFERENCE.channels)
+
+
+def without_voltages(record: Recording) -> Recording:
+    return replace(record, samples=record.samples[AMPS], channels=record.channels[AMPS])
+
+
+@pytest.mark.parametrize(
+    ("does", "made"),
+    [
+        (Operation.NOT_RUNNING, lambda: standing(hum(0.03))),
+        (Operation.START, started),
+        (Operation.STOP, lambda: stopped(residual=False)),
+    ],
+)
+def test_what_a_motor_does_is_told_without_voltages(does: Operation, made: Callable[[], Recording]) -> None:
+    found = diagnose(without_voltages(made()), REFERENCE)
+    assert (found.operation, found.verdict) == (does, Verdict.UNDIAGNOSABLE)
+    assert "voltage" not in found.reasons[0]
+
+
+def test_a_running_motor_needs_its_voltages() -> None:
+    with pytest.raises(NoVoltagesError):
+        diagnose(without_voltages(steady()), REFERENCE)

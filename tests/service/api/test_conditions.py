@@ -115,6 +115,21 @@ def test_a_condition_comes_with_what_was_said_from_the_latest_records_on(
     assert client.get(f"{MOTOR}/condition", params={"history": 101}).status_code == 422
 
 
+def test_a_condition_is_not_stale_for_the_time_in_which_its_motor_stood(
+    client: httpx.Client, repository: Repository
+) -> None:
+    now_ns = time.time_ns()
+    tell(repository, replace(HEALTHY, as_of_ns=now_ns - 30 * NANOSECONDS_PER_DAY, stale=True))
+    assert client.get(f"{MOTOR}/condition").json()["stale"] is True
+    due_ns = now_ns - NANOSECONDS_PER_DAY
+    repository.skip_recording("PUMP-A1", "the motor stands", due_ns=due_ns, now_ns=due_ns)
+    assert client.get(f"{MOTOR}/condition").json()["stale"] is False
+    health = client.get(f"{MOTOR}/health").json()
+    assert health["stood_time"] == rfc3339(due_ns)
+    (skipped,) = client.get("/api/v1/event-reports").json()["items"]
+    assert (skipped["state"], skipped["reason"]) == ("skipped", "the motor stands")
+
+
 def test_a_condition_is_not_stale_while_its_latest_record_is_fresh(
     client: httpx.Client, repository: Repository
 ) -> None:

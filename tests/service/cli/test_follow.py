@@ -140,7 +140,7 @@ def test_records_of_a_stopped_motor_only_age_the_condition(
     document = followed(capsys, few, str(few))
     before = followed(capsys, few, str(few / "R*.CFG"))
     (skipped,) = document["skipped"]
-    assert skipped["record"] == str(stopped)
+    assert (skipped["record"], skipped["operation"]) == (str(stopped), "not-running")
     assert (document["stale"], before["stale"]) == (True, False)
     assert document["as_of"] == before["as_of"]
     assert not followed(capsys, few, str(few), "--stale-after", "9")["stale"]
