@@ -18,7 +18,7 @@ from benchmarks.reporting import mark, spread, table
 from core.diagnosis.baseline import FEWEST_RECORDINGS, Baseline
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
-from core.machines.parameters import MachineParameters, Motor, Nameplate
+from core.machines.parameters import MAGNETISING_OVER_SELF, MachineParameters, Motor, Nameplate
 from core.recordings import Channel, Quantity, Recording
 from core.recordings.skew import without_skew
 
@@ -39,7 +39,7 @@ MILL = Motor(
     # The rating is not stated: 1 hp at 208 V only scales the load level.
     Nameplate(745.0, 208.0, 60.0, pole_pairs=2),
     # The rig's own L_m of 0.1619 H is 1.5 L_s; the inertia is a guess, there is no start to take it from.
-    MachineParameters(2.448, 1.5461, 0.0075, 0.0075, 0.1619 / 1.5, 0.01),
+    MachineParameters(2.448, 1.5461, 0.0075, 0.0075, 0.1619 / MAGNETISING_OVER_SELF, 0.01),
 )
 WINDOW = 4_000
 BASELINE_WINDOWS = 20
@@ -56,7 +56,7 @@ ITSC_MOTOR = Motor(
     "Baldor CM3542",
     Nameplate(560.0, 230.0, 60.0, pole_pairs=2),
     # Not published. The no-load current gives L_s and leakage; the rest is usual for 0.75 hp and scales mu.
-    MachineParameters(4.5, 3.0, 0.012, 0.012, 0.164 / 1.5, 0.003),
+    MachineParameters(4.5, 3.0, 0.012, 0.012, 0.164 / MAGNETISING_OVER_SELF, 0.003),
 )
 
 

@@ -10,7 +10,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
-from core.condition.kinds import State
 from core.condition.verdict.condition import Condition, condition_of
 from core.machines.motor_file import read_motor
 from core.machines.motor_file_error import MotorFileError
@@ -95,7 +94,7 @@ def follow_records(
     followed = follow(own, bus, given, round(stale_after_days * NANOSECONDS_PER_DAY))
     if not followed.steps:
         raise _none_usable(records, followed.skipped)
-    if followed.condition.state is State.UNKNOWN:
+    if followed.condition.as_of_ns is None:
         latest = to_the_second(_time(followed.steps[-1].seen))
         print_warning(
             f"there is no record after the latest event, only until {latest}: the condition is unknown"

@@ -94,6 +94,32 @@ def test_turns_that_short_are_found_with_their_phase(
     assert "watch" in states[faulty_from:]
 
 
+def test_parameters_that_do_not_fit_are_named_over_several_records(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    placeholder = replace(REFERENCE.parameters, stator_self_inductance_H=0.35)
+    write_motor(tmp_path / "PUMP.toml", replace(REFERENCE, parameters=placeholder))
+    document = followed(capsys, tmp_path, str(plant / "records"))
+    assert document["reasons"][0].startswith(
+        "the parameters in the motor's file do not fit its records (L_s): commission this motor"
+    )
+    assert "Commission this motor (mcc commission)" in document["advice"]
+
+
+def test_a_motor_with_nothing_but_a_nameplate_is_followed_and_asks_to_be_commissioned(
+    plant: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    complete = (plant / "PUMP.toml").read_text("utf-8")
+    (tmp_path / "PUMP.toml").write_text(complete.partition("[parameters]")[0], "utf-8")
+    assert main(["follow", str(plant / "records"), "--motor", str(tmp_path / "PUMP.toml"), "--json"]) == 0
+    printed = capsys.readouterr()
+    document = json.loads(printed.out)
+    assert document["state"] in ("unknown", "watch")
+    assert document["reasons"][0].startswith("collecting; commission me")
+    assert document["mu_f"] is not None
+    assert "no record after" not in printed.err
+
+
 def test_several_processes_see_what_one_sees(plant: Path) -> None:
     motor = read_motor(plant / "PUMP.toml")
     paths = find_records([str(plant / "records")])
