@@ -16,7 +16,7 @@ from core.machines.motor_file import read_plate
 from core.machines.motor_file_error import MotorFileError
 from core.machines.motor_file_writer import write_motor
 from core.quantity_text import plain, with_unit
-from core.recordings import RecordingError, read
+from core.recordings import RecordingError
 from service.cli.output import (
     WRONG_USE,
     CommandError,
@@ -26,15 +26,16 @@ from service.cli.output import (
     progress,
     results,
 )
+from service.cli.recording_files import read_recording
 from service.client.tables import FittedTable
 
 
 def commission_motor(
-    records: Sequence[Path], nameplate: Path, output: Path, *, load: str, as_json: bool
+    records: Sequence[Path], nameplate: Path, output: Path, *, load: str, lenient: bool, as_json: bool
 ) -> None:
     """Read the recordings, estimate the parameters, write the motor's file and print the result.
 
-    Warnings also go to stderr.
+    Warnings also go to stderr, and so does what a lenient reader mends.
 
     Raises CommandError, and writes nothing, where a recording cannot be read or holds no start, where the
     motor's file cannot be used or written or is one of the files read, or where the recordings determine no
@@ -44,7 +45,9 @@ def commission_motor(
     check_output(output, nameplate, records)
     with failing_clearly(RecordingError, MotorFileError, CommissioningError, OSError):
         plate = read_plate(nameplate)
-        recordings = [read(record) for record in records]
+        recordings = [read_recording(record, lenient=lenient) for record in records]
+        for note in (note for one in recordings for note in (*one.warnings, *one.repairs)):
+            print_warning(note)
         with progress_bar() as advance:
             found = commission(recordings, plate, load_law=law, progress=advance)
         if not found.identifiable:

@@ -15,9 +15,9 @@ from core.machines.motor_file_error import MotorFileError
 from core.machines.parameters import ParametersSource
 from core.machines.typical import COMMISSION
 from core.quantity_text import with_unit
-from core.recordings import Recording, RecordingError, read
-from core.recordings.reading import mended_by
-from service.cli.output import WRONG_USE, CommandError, failing_clearly, one_line, print_document, results
+from core.recordings import RecordingError
+from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
+from service.cli.recording_files import read_recording, with_advice
 from service.client.tables import FittedTable
 from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
 
@@ -45,10 +45,10 @@ def diagnose_recording(
         failing_clearly(RecordingError, MotorFileError, OSError),
         failing_clearly(DiagnosisError, exit_code=WRONG_USE),
     ):
-        recording = _read(record, lenient=lenient)
+        recording = read_recording(record, lenient=lenient)
         motor_file = motor or _motor_file_beside(record)
         found = read_motor(motor_file)
-        healthy = [_read(one, lenient=lenient) for one in baseline]
+        healthy = [read_recording(one, lenient=lenient) for one in baseline]
         with _naming_currents_only():
             diagnosis = diagnose(
                 recording,
@@ -67,19 +67,6 @@ def diagnose_recording(
         results().print(_table(record, motor_file, found.parameters_source, diagnosis))
 
 
-def _read(path: Path, *, lenient: bool) -> Recording:
-    """Read a recording. Raises CommandError, which names --lenient where that would read it."""
-    try:
-        return read(path, lenient=lenient)
-    except RecordingError as error:
-        mended = None if lenient else mended_by(path)
-        if mended is None:
-            raise
-        raise _with_advice(
-            error, f"--lenient reads it all the same, and says what it mends: {mended}"
-        ) from error
-
-
 @contextmanager
 def _naming_currents_only() -> Iterator[None]:
     """Name the option that does without voltages where they are what is missing."""
@@ -88,16 +75,9 @@ def _naming_currents_only() -> Iterator[None]:
     except RecordingError as error:
         if error.field != "voltages":
             raise
-        raise _with_advice(
+        raise with_advice(
             error, "--currents-only does without: it assumes a balanced supply, and says watch at most"
         ) from error
-
-
-def _with_advice(error: RecordingError, advice: str) -> CommandError:
-    failure = CommandError.from_error(error)
-    return CommandError(
-        f"{failure}; {one_line(advice)}", details=failure.details, exit_code=failure.exit_code
-    )
 
 
 def _motor_file_beside(record: Path) -> Path:

@@ -181,6 +181,9 @@ def commission(
             help="With --from-service: write parameters that are unusual for a motor of this rating, too.",
         ),
     ] = False,
+    lenient: Annotated[
+        bool, typer.Option("--lenient", help="Mend what can be mended in faulty files, and say what was.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Estimate a motor's parameters, with intervals, from recordings of its start.
@@ -189,8 +192,8 @@ def commission(
     has recorded (--from-service MOTOR --write MOTORS.toml).
     """
     if from_service is not None:
-        if records or nameplate is not None or output is not None:
-            raise typer.BadParameter("--from-service takes no RECORD, --nameplate or --output")
+        if records or nameplate is not None or output is not None or lenient:
+            raise typer.BadParameter("--from-service takes no RECORD, --nameplate, --output or --lenient")
         if write is None:
             raise typer.BadParameter("--from-service needs --write MOTORS.toml, the plant's motors file")
         from service.cli.commission_from_service import commission_from_service
@@ -214,4 +217,4 @@ def commission(
         )
     from service.cli.commission import commission_motor
 
-    commission_motor(records, nameplate, output, load=load.value, as_json=as_json)
+    commission_motor(records, nameplate, output, load=load.value, lenient=lenient, as_json=as_json)

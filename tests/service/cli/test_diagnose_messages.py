@@ -127,6 +127,22 @@ def test_a_damaged_file_names_the_lenient_reader_where_that_helps(
     assert "--lenient" not in failure(capsys, str(tmp_path / "GONE.CFG"))
 
 
+def test_commissioning_mends_and_names_the_option_as_well(
+    relay: Callable[..., Path], capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    path = relay("CUT")
+    data = path.with_suffix(".DAT")
+    data.write_bytes(data.read_bytes()[:-7])
+    words = ["commission", str(path), "--nameplate", str(tmp_path / "motor.toml")]
+    words += ["--output", str(tmp_path / "found.toml")]
+    assert main(words) == 1
+    assert "--lenient reads it all the same" in capsys.readouterr().err
+    assert main([*words, "--lenient"]) == 1
+    mended, why = capsys.readouterr().err.splitlines()
+    assert "2999 samples are read" in mended
+    assert "a motor already running" in why
+
+
 def test_a_record_of_unknown_time_is_diagnosed_but_put_into_no_course(
     relay: Callable[..., Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
