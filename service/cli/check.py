@@ -56,12 +56,10 @@ def _print(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> None:
         console.print(Text(f"{_number(len(checked.problems), 'problem')}: mcc serve would not start"))
     elif checked.plant is not None:
         plant = checked.plant
-        console.print(
-            Text(
-                f"nothing is wrong in the files: {_number(len(plant.motors), 'motor')}, "
-                f"{_number(len(plant.relays), 'relay')}, {_number(len(plant.sites), 'site')}"
-            )
-        )
+        where = " in the files" if silent else ""
+        numbers = ((plant.motors, "motor"), (plant.relays, "relay"), (plant.sites, "site"))
+        words = ", ".join(_number(len(found), what) for found, what in numbers)
+        console.print(Text(f"nothing is wrong{where}: {words}"))
 
 
 def _number(number: int, what: str) -> str:

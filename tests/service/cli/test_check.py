@@ -38,7 +38,7 @@ def config(tmp_path: Path) -> Path:
 
 def test_a_plant_with_nothing_wrong(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--config", str(config)]) == 0
-    assert capsys.readouterr().out == "nothing is wrong in the files: 1 motor, 1 relay, 1 site\n"
+    assert capsys.readouterr().out == "nothing is wrong: 1 motor, 1 relay, 1 site\n"
     assert main(["check", "--config", str(config), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert document == {"problems": [], "warnings": [], "motors": ["P-1"], "relays": ["R-1"], "asked": []}
@@ -174,6 +174,7 @@ def test_a_relay_that_does_not_answer(config: Path, capsys: pytest.CaptureFixtur
     told = capsys.readouterr()
     assert told.out.splitlines()[0].startswith("R-1 at 127.0.0.1:1: does not answer: ")
     assert "1 of 1 relay did not answer" in told.out
+    assert "nothing is wrong in the files: 1 motor" in told.out
     assert told.err.splitlines() == ["asking 1 relays, 0.5 s each ...", "R-1 does not answer"]
 
 
@@ -196,4 +197,4 @@ def test_what_is_left_out_of_a_relay_s_file_is_a_warning(
     told = capsys.readouterr().out
     assert "warning: R-1.icd: line " in told
     assert '<DO name="Ind1" type="gone">: left out: expected a DOType with id="gone"' in told
-    assert "nothing is wrong in the files: 1 motor," in told
+    assert "nothing is wrong: 1 motor," in told
