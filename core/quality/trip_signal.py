@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from core.recordings import Digitals
 
 _WORDS = re.compile(r"[A-Z]?[a-z]+|[A-Z]+|[0-9]+")
-_TRIP = frozenset({"trip", "trips", "tripped", "tripping", "trp", "ptrc", "ausloesung", "generalaus"})
-_STOP = frozenset({"stop", "stopcmd"})
+_TRIP = re.compile(r"(?!re)\w*trip[abc]?|trips|tripped|tripping|trp|ptrc|ausloesung|generalaus")
+"""Words such as TRIP, TRIPA and JAMTRIP; a RETRIP is that of another breaker."""
+_STOP = re.compile("stop|stopcmd")
 _OTHERWISE = frozenset(
     {
         *(
@@ -54,7 +55,7 @@ def is_tripped(digitals: Digitals | None) -> bool:
     return trip is not None and (stop is None or trip < stop)
 
 
-def _first_rise(digitals: Digitals, wanted: frozenset[str]) -> int | None:
+def _first_rise(digitals: Digitals, wanted: re.Pattern[str]) -> int | None:
     """Return the sample at which the first of some states rises; None where none does."""
     rises = [
         int(np.argmax(risen))
@@ -69,6 +70,6 @@ def _risen(digitals: Digitals, k: int) -> NDArray[np.bool_]:
     return np.asarray(state[1:] & ~state[:-1])
 
 
-def _means(name: str, wanted: frozenset[str]) -> bool:
+def _means(name: str, wanted: re.Pattern[str]) -> bool:
     words = {word.lower() for word in _WORDS.findall(name)}
-    return bool(words & wanted) and not words & _OTHERWISE
+    return any(map(wanted.fullmatch, words)) and not words & _OTHERWISE

@@ -264,8 +264,8 @@ class Health(Document):
     motor: str
     site: str
     ied: str
-    parameters_source: ParametersSource
     condition: Condition
+    parameters_source: ParametersSource
     verdict: Verdict | None
     mu_f: float | None
     mu_f_ci95: tuple[float, float] | None

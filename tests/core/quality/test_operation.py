@@ -166,6 +166,8 @@ DOES: list[tuple[str, Operation | None, Callable[[], Recording]]] = [
     ("a trip of a phase", Operation.TRIP, lambda: with_states(stopped(residual=False), ER=10, Trip_A=3_900)),
     ("a trip of the standard's", Operation.TRIP, lambda: with_states(
         stopped(residual=False), PROT_PTRC1__Tr=3_900)),
+    ("a trip of an element", Operation.TRIP, lambda: with_states(stopped(residual=False), JAMTRIP=3_900)),
+    ("a stop, a retrip", Operation.STOP, lambda: with_states(stopped(residual=False), RETRIP=3_900)),
     ("a trip in a start", Operation.TRIP, lambda: with_states(jogged(), TRIP=3_800)),
     ("a trip that the record ends before", Operation.TRIP, lambda: with_states(steady(), TRIP=5_900)),
     ("a stop by command", Operation.STOP, lambda: with_states(
