@@ -5,13 +5,19 @@ import sys
 
 SHARED = (
     "core.machines.motor_file",
+    "core.machines.motor_table",
     "core.machines.parameters",
     "core.machines.plausibility",
     "core.machines.sensors",
+    "core.machines.typical",
+    "core.machines.unit_slips",
+    "core.quantity_text",
     "core.recordings",
     "core.units",
 )
-"""What simulator and diagnosis have in common: what a motor's file says and may say, a file format, units."""
+"""What simulator and diagnosis have in common: what a motor's file says, may say and leaves out, a file
+format, units, and figures in words.
+"""
 
 
 def test_the_simulator_loads_nothing_of_the_diagnosis() -> None:

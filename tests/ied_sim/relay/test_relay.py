@@ -11,13 +11,8 @@ import pytest
 
 from core.recordings import Quantity, Recording, read
 from core.units import NANOSECONDS_PER_DAY
-from ied_sim.errors import SimulatorError
-from ied_sim.relay.plant_clock import ClockSettings, PlantClock
-from ied_sim.relay.relay import Relay
-from ied_sim.scenario.scenario import healthy_reference
+from ied_sim.relay.plant_clock import ClockSettings
 from mms import FunctionalConstraint, Timestamp
-from scl import DEMO_PLANT_SCD, Address
-from scl import read as read_scl
 from testing.waiting import wait_until
 from tests.ied_sim.relay.serving import IED, SHORT_RECORD, TRIGGER_BIT, ServedRelay, served_relay
 
@@ -216,18 +211,3 @@ def test_meters_show_the_motor(served: ServedRelay) -> None:
     assert power == pytest.approx(436, rel=0.02)
     assert isinstance(stamp, Timestamp)
     assert abs(stamp.ns - time_ns) < 100
-
-
-def test_an_ied_that_is_no_sel_710_is_refused(tmp_path: Path) -> None:
-    text = DEMO_PLANT_SCD.read_text(encoding="utf-8").replace('name="RcdMade"', 'name="RcdStr"')
-    other = tmp_path / "other.scd"
-    other.write_text(text.replace('doName="RcdMade"', 'doName="RcdStr"'), encoding="utf-8")
-    with pytest.raises(SimulatorError, match=r"A1_SEL710 has no PRO/FLTRDRE1.RcdMade"):
-        Relay(
-            read_scl(other),
-            IED,
-            healthy_reference(IED),
-            address=Address("127.0.0.1", 10_102),
-            files=tmp_path,
-            clock=PlantClock(0),
-        )
