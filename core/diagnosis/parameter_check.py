@@ -15,7 +15,7 @@ import numpy as np
 from core.diagnosis.fundamental import Fundamental
 from core.diagnosis.priors import OFFSET_S
 from core.machines.base import Array
-from core.machines.current_locus import current_locus
+from core.machines.current_locus import CurrentLocus, current_locus
 from core.machines.parameters import Connection, MachineParameters, Motor, ParameterTolerances
 from core.machines.sensors import SensorClass
 
@@ -25,6 +25,12 @@ CHANCE = 1.96
 """Standard deviations of the channels' errors and the relay's offset that count beside it."""
 SATURATION = 1.0
 """Relative loss of magnetising inductance per relative rise of the voltage above the rated one."""
+OF_THE_CIRCLE = (
+    ("stator_resistance_ohm",),
+    ("stator_leakage_H", "rotor_leakage_H"),
+    ("stator_self_inductance_H",),
+)
+"""Parameters that the circle depends on; the two leakages do nearly the same to it."""
 STEP, GAIN_STEP, OFFSET_STEP_S = 0.01, 1e-3, 1e-6
 """Steps of the difference quotients."""
 
@@ -86,7 +92,8 @@ def check_parameters(record: Fundamental, motor: Motor) -> ParameterCheck:
     """
     admittance, w = record.current.forward / record.voltage.forward, record.angular_frequency
     machine, size = motor.parameters, abs(admittance)
-    distance = distance_from_circle(machine, admittance, w)
+    locus = current_locus(machine, w)
+    distance = locus.distance(admittance)
     # A power-invariant space vector is as long as the rms voltage of the line; in delta sqrt 3 times that.
     delta = motor.nameplate.connection is Connection.DELTA
     rated_V = motor.nameplate.rated_voltage_V * (sqrt(3.0) if delta else 1.0)
@@ -96,10 +103,10 @@ def check_parameters(record: Fundamental, motor: Motor) -> ParameterCheck:
         within = getattr(motor.tolerances, name)
         within += saturated if name == "stator_self_inductance_H" else 0.0
         by_parameters += max(
-            abs(distance_from_circle(_scaled(machine, exp(off), name), admittance, w) - distance)
+            abs(current_locus(_scaled(machine, exp(off), name), w).distance(admittance) - distance)
             for off in (within, -within)
         )
-    gain, offset = slopes_of_sensors(machine, admittance, w)
+    gain, offset = slopes_of_sensors(locus, admittance, w)
     noise = sqrt(float(np.trace(record.current.covariance[:2, :2])) / 2.0) / abs(record.current.forward)
     return ParameterCheck(
         distance=distance / size,
@@ -110,35 +117,15 @@ def check_parameters(record: Fundamental, motor: Motor) -> ParameterCheck:
     )
 
 
-def distance_from_circle(machine: MachineParameters, admittance: complex, angular_frequency: float) -> float:
-    """Return how far an admittance lies outside a machine's circle.
-
-    Parameters
-    ----------
-    machine : MachineParameters
-        Parameters of the machine.
-    admittance : complex
-        I1 / V1 of the windings [S].
-    angular_frequency : float
-        Angular frequency of the supply [rad/s].
-
-    Returns
-    -------
-    float
-        Distance [S].
-    """
-    return current_locus(machine, angular_frequency).distance(admittance)
-
-
 def slopes_of_sensors(
-    machine: MachineParameters, admittance: complex, angular_frequency: float
+    locus: CurrentLocus, admittance: complex, angular_frequency: float
 ) -> tuple[float, float]:
     """Return how the distance follows errors that all three channels have in common.
 
     Parameters
     ----------
-    machine : MachineParameters
-        Parameters of the machine.
+    locus : CurrentLocus
+        The motor's circle.
     admittance : complex
         I1 / V1 of the windings [S].
     angular_frequency : float
@@ -151,20 +138,23 @@ def slopes_of_sensors(
     offset : float
         Per second of delay of the currents, as a share of the current [1/s].
     """
-    here, size = distance_from_circle(machine, admittance, angular_frequency), abs(admittance)
-    grown = distance_from_circle(machine, admittance * (1.0 + GAIN_STEP), angular_frequency)
-    late = admittance * cexp(-1j * angular_frequency * OFFSET_STEP_S)
-    delayed = distance_from_circle(machine, late, angular_frequency)
+    here, size = locus.distance(admittance), abs(admittance)
+    grown = locus.distance(admittance * (1.0 + GAIN_STEP))
+    delayed = locus.distance(admittance * cexp(-1j * angular_frequency * OFFSET_STEP_S))
     return (grown - here) / GAIN_STEP / size, (delayed - here) / OFFSET_STEP_S / size
 
 
-def slopes_of_parameters(machine: MachineParameters, admittance: complex, angular_frequency: float) -> Array:
+def slopes_of_parameters(
+    machine: MachineParameters, locus: CurrentLocus, admittance: complex, angular_frequency: float
+) -> Array:
     """Return how the distance follows the parameters of the circle.
 
     Parameters
     ----------
     machine : MachineParameters
         Parameters of the machine.
+    locus : CurrentLocus
+        Its circle.
     admittance : complex
         I1 / V1 of the windings [S].
     angular_frequency : float
@@ -175,17 +165,12 @@ def slopes_of_parameters(machine: MachineParameters, admittance: complex, angula
     ndarray, shape (3,)
         Per relative error of R_s, of both leakages, and of L_s in the file, as shares of the current.
     """
-    here = distance_from_circle(machine, admittance, angular_frequency)
-    groups = (
-        ("stator_resistance_ohm",),
-        ("stator_leakage_H", "rotor_leakage_H"),
-        ("stator_self_inductance_H",),
-    )
+    here, size = locus.distance(admittance), abs(admittance)
     changed = [
-        distance_from_circle(_scaled(machine, 1.0 + STEP, *names), admittance, angular_frequency)
-        for names in groups
+        current_locus(_scaled(machine, 1.0 + STEP, *names), angular_frequency).distance(admittance)
+        for names in OF_THE_CIRCLE
     ]
-    return (np.array(changed) - here) / STEP / abs(admittance)
+    return (np.array(changed) - here) / (STEP * size)
 
 
 def gain_deviation(sensors: SensorClass) -> float:

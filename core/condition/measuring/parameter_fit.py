@@ -16,12 +16,12 @@ from core.condition.observation import Observation
 from core.diagnosis.parameter_check import (
     SATURATION,
     TOGETHER,
-    distance_from_circle,
     gain_deviation,
     offset_deviation_s,
     slopes_of_parameters,
     slopes_of_sensors,
 )
+from core.machines.current_locus import current_locus
 from core.machines.parameters import Connection, Motor
 
 UNKNOWNS: Final = 5
@@ -38,8 +38,8 @@ PARAMETER_FIT: Final = np.dtype(
 
 FEWEST: Final = 6
 """Records before anything is told."""
-ALL_OF: Final = 32
-EVERY: Final = 16
+ALL_OF: Final = 24
+EVERY: Final = 32
 """The first records all count; then one of so many, which is as good and costs little."""
 DEVIATION: Final = 0.004
 """Standard deviation of the distance from the circle that no parameter explains, a share of the current."""
@@ -84,10 +84,11 @@ def add_record(fit: Any, observation: Observation, motor: Motor) -> None:
     plate, machine = motor.nameplate, motor.parameters
     w = 2.0 * pi * observation.frequency_hz
     admittance = observation.positive_current_A / observation.positive_voltage_V
-    distance = distance_from_circle(machine, admittance, w) / abs(admittance)
-    gain, offset = slopes_of_sensors(machine, admittance, w)
+    locus = current_locus(machine, w)
+    distance = locus.distance(admittance) / abs(admittance)
+    gain, offset = slopes_of_sensors(locus, admittance, w)
     sensors = (offset * offset_deviation_s(motor.sensors), gain * gain_deviation(motor.sensors))
-    parameters = -slopes_of_parameters(machine, admittance, w)
+    parameters = -slopes_of_parameters(machine, locus, admittance, w)
     row = np.array([*sensors, *parameters])
     per_line = sqrt(2.0) if plate.connection is Connection.DELTA else sqrt(2.0 / 3.0)
     flux = plate.rated_frequency_Hz / observation.frequency_hz

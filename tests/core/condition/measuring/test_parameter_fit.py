@@ -132,5 +132,5 @@ def test_a_corrected_file_takes_the_blame_away_and_a_saved_state_keeps_it() -> N
 
 def test_of_many_records_only_some_are_taken_in() -> None:
     taken = [number for number in range(200) if counts(float(number))]
-    assert taken[:32] == list(range(32))
-    assert taken[32:] == list(range(32, 200, 16))
+    assert taken[:24] == list(range(24))
+    assert taken[24:] == list(range(32, 200, 32))
