@@ -11,7 +11,7 @@ import pytest
 from benchmarks.corpus import kinds, made_files, workers
 from benchmarks.corpus.__main__ import main
 from benchmarks.corpus.kinds import files_of
-from benchmarks.corpus.outcomes import Agreement, Comparison, Kind, Outcome, Reading
+from benchmarks.corpus.outcomes import Agreement, Comparison, Examined, Kind, Outcome, Reading
 from tests.core.recordings.comtrade_files import RECORD_1999
 
 
@@ -74,26 +74,35 @@ def test_every_file_gets_its_row(
     assert "| COMTRADE | 3 | 1 | 0 | 1 | 1 | 0 |" in shown
 
 
-def test_a_hostile_file_does_not_end_the_run(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def examined(
+    folder: Path, names: list[str], monkeypatch: pytest.MonkeyPatch, *, timeout_s: float = 60.0
+) -> list[Examined]:
     monkeypatch.setattr(kinds, "KINDS", (HOSTILE,))
-    names = ["dies", "eats", "fails", "fine", "hangs", "sound"]
     for name in names:
-        (tmp_path / f"{name}.bad").touch()
-    found = files_of(tmp_path)
-    files = list(workers.examine_all(found.files, tmp_path, timeout_s=2.0))
+        (folder / f"{name}.bad").touch()
+    files = list(workers.examine_all(files_of(folder).files, folder, timeout_s=timeout_s))
     assert [one.path for one in files] == [f"{name}.bad" for name in names]
-    assert [one.outcome.reading for one in files] == [
-        *[Reading.CRASHED] * 3, Reading.READ, Reading.CRASHED, Reading.READ,
-    ]  # fmt: skip
-    notes = [one.outcome.notes for one in files]
-    assert notes[0] == ("the process died (exit code 11)",)
-    assert "memory" in notes[1][0].lower()
-    assert notes[2] == ("ZeroDivisionError: of the reader",)
-    assert notes[4] == ("took longer than 2 s",)
-    assert files[3].comparison.agreement is Agreement.AGREES
-    assert files[5].comparison == Comparison(Agreement.PEER_FAILS, ("the process died (exit code 12)",))
+    return files
+
+
+def test_a_hostile_file_does_not_end_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    dies, eats, fails, fine, sound = examined(
+        tmp_path, ["dies", "eats", "fails", "fine", "sound"], monkeypatch
+    )
+    assert {one.outcome.reading for one in (dies, eats, fails)} == {Reading.CRASHED}
+    assert dies.outcome.notes == ("the process died (exit code 11)",)
+    assert "memory" in eats.outcome.notes[0].lower()
+    assert fails.outcome.notes == ("ZeroDivisionError: of the reader",)
+    assert fine.comparison.agreement is Agreement.AGREES
+    assert sound.outcome.reading is Reading.READ
+    assert sound.comparison == Comparison(Agreement.PEER_FAILS, ("the process died (exit code 12)",))
+
+
+@pytest.mark.campaign
+def test_a_file_without_end_does_not_hold_up_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before, hangs, then = examined(tmp_path, ["fine", "hangs", "then"], monkeypatch, timeout_s=10.0)
+    assert hangs.outcome == Outcome(Reading.CRASHED, ("took longer than 10 s",))
+    assert before.outcome.reading is then.outcome.reading is Reading.READ
 
 
 def test_no_folder_is_wrong_use(
