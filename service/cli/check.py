@@ -25,7 +25,7 @@ def check_plant(config: Path | None, *, connect: bool, as_json: bool) -> int:
     if connect and checked.plant is not None and checked.settings is not None:
         relays = checked.plant.relays
         progress().print(
-            Text(f"asking {len(relays)} relays, {checked.settings.connect_timeout_s:g} s each ...")
+            Text(f"asking {_number(len(relays), 'relay')}, {checked.settings.connect_timeout_s:g} s each ...")
         )
         answers = survey(relays, checked.settings, _tell, clock_s=CLOCK_S)
     if as_json:
