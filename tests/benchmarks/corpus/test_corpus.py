@@ -5,38 +5,14 @@ import os
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from benchmarks.corpus import kinds, made_files, workers
 from benchmarks.corpus.__main__ import main
 from benchmarks.corpus.kinds import files_of
-from benchmarks.corpus.outcomes import Agreement, Comparison, Examined, Kind, Outcome, Reading
+from benchmarks.corpus.outcomes import Agreement, Comparison, Examined, Outcome, Reading
+from tests.benchmarks.corpus.hostile_readers import HOSTILE
 from tests.core.recordings.comtrade_files import RECORD_1999
-
-
-def hostile(path: Path) -> Outcome:
-    """A reader as a hostile file would have it: it hangs, dies, eats memory or fails, by the file's name."""
-    match path.stem:
-        case "hangs":
-            while True:
-                pass
-        case "dies":
-            os._exit(11)
-        case "eats":
-            np.ones(1 << 32)
-        case "fails":
-            raise ZeroDivisionError("of the reader")
-    return Outcome(Reading.READ)
-
-
-def hostile_to_the_peer(path: Path) -> Comparison:
-    if path.stem == "sound":
-        os._exit(12)
-    return Comparison(Agreement.AGREES)
-
-
-HOSTILE = Kind("hostile", (".bad",), hostile, hostile_to_the_peer, "nobody")
 
 
 def run(folder: Path, monkeypatch: pytest.MonkeyPatch, *options: str) -> int:
