@@ -15,17 +15,14 @@ from lxml import etree
 from scl.data_model import DataAttribute, DataObject, Enumeration, FunctionalConstraint, TriggerOptions
 from scl.document import Document, decimal
 from scl.errors import SclError
+from scl.type_extents import DEEPEST_NESTING, Extent, UnboundedTypeError, check_extent
 from scl.xml_file import content
 
-DEEPEST_NESTING = 16
 MOST_MEMBERS = 2_000
 """Of one type, as the file writes them."""
 MOST_ELEMENTS = 10_000
 """Of an array."""
-MOST_ATTRIBUTES = 100_000
-"""Of a data object with the elements of its arrays; harmonics of real relays have several thousands."""
 MOST_COPIES = 1_000_000
-LONGEST_PATH = 128
 BASIC_TYPES = frozenset(
     (
         *("BOOLEAN", "INT8", "INT16", "INT24", "INT32", "INT64", "INT128", "INT8U", "INT16U", "INT24U"),
@@ -37,38 +34,6 @@ BASIC_TYPES = frozenset(
 )
 
 
-class _UnboundedTypeError(SclError):
-    """A type contains itself, or is too large, too deep or too long in its names."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Extent:
-    """Size of a type: its attributes, its levels, and the characters of its longest path.
-
-    `attributes` counts every element of an array, `written` counts an array once. `characters` has the paths
-    to what elements of arrays hold, "har(12).cVal"; `listed` has those of MMS names, which end at an array.
-    """
-
-    attributes: int = 0
-    written: int = 0
-    depth: int = 1
-    characters: int = 0
-    listed: int = 0
-
-    def plus(self, name: str, count: int, part: "_Extent | None") -> "_Extent":
-        """Return the extent with one more member: a name, its array elements, and the extent of its type."""
-        elements = max(count, 1)
-        part = part or _Extent(depth=0, characters=-1, listed=-1)
-        index = f"({count - 1})" if count else ""
-        return _Extent(
-            attributes=self.attributes + elements * (1 + part.attributes),
-            written=self.written + 1 + part.written,
-            depth=max(self.depth, 1 + part.depth),
-            characters=max(self.characters, len(name + index) + 1 + part.characters),
-            listed=max(self.listed, len(name) if count else len(name) + 1 + part.listed),
-        )
-
-
 @dataclass(frozen=True, slots=True)
 class _Resolved:
     """A type's members, and how many, how deep and how long they are when written out."""
@@ -76,7 +41,7 @@ class _Resolved:
     common_data_class: str
     objects: tuple[DataObject, ...]
     attributes: tuple[DataAttribute, ...]
-    extent: _Extent
+    extent: Extent
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +81,7 @@ class Templates:
         self._elements: dict[tuple[str, str], etree._Element] = {}
         self._resolved: dict[tuple[str, str], _Resolved] = {}
         self._node_types: dict[str, list[etree._Element]] = {}
-        self._unbounded: dict[tuple[str, str], _UnboundedTypeError] = {}
+        self._unbounded: dict[tuple[str, str], UnboundedTypeError] = {}
         self._nodes: dict[etree._Element, NodeType] = {}
         self._inherited: dict[
             tuple[str, FunctionalConstraint, TriggerOptions], tuple[DataAttribute, ...]
@@ -168,12 +133,12 @@ class Templates:
 
     def _node(self, definition: etree._Element) -> NodeType:
         objects: list[DataObject] = []
-        extents: list[_Extent] = []
+        extents: list[Extent] = []
         for name, member in self._named(definition, "DO"):
             try:
                 part = self._resolve("DOType", member, ())
-                extent = _Extent().plus(name, 0, part.extent)
-                self._check(member, extent)
+                extent = Extent().plus(name, 0, part.extent)
+                check_extent(self._document, member, extent)
             except SclError as error:
                 self._document.leave_out(member, error)
                 continue
@@ -229,18 +194,18 @@ class Templates:
         if key in path:
             circle = " > ".join(" ".join(each) for each in (*path, key))
             raise self._document.error(
-                user, "types that do not contain themselves", circle, _UnboundedTypeError
+                user, "types that do not contain themselves", circle, UnboundedTypeError
             )
         if len(path) > DEEPEST_NESTING:
             expected = f"types nested at most {DEEPEST_NESTING} deep"
-            raise self._document.error(user, expected, "deeper ones", _UnboundedTypeError)
+            raise self._document.error(user, expected, "deeper ones", UnboundedTypeError)
         if key in self._unbounded:
             raise self._unbounded[key]
         if key not in self._resolved:
             definition = self._find(*key, user)
             try:
                 self._resolved[key] = self._members(definition, (*path, key))
-            except _UnboundedTypeError as error:
+            except UnboundedTypeError as error:
                 self._unbounded[key] = error
                 raise
         resolved = self._resolved[key]
@@ -255,21 +220,21 @@ class Templates:
         """
         objects: list[DataObject] = []
         attributes: list[DataAttribute] = []
-        extent = _Extent()
+        extent = Extent()
         for number, (name, member) in enumerate(self._named(definition, "SDO", "DA", "BDA"), 1):
             if number > MOST_MEMBERS:
                 expected = f"at most {MOST_MEMBERS} members of a type"
-                raise self._document.error(definition, expected, "more", _UnboundedTypeError)
+                raise self._document.error(definition, expected, "more", UnboundedTypeError)
             try:
                 part = self._member(name, member, path)
-            except _UnboundedTypeError:
+            except UnboundedTypeError:
                 raise
             except SclError as error:
                 self._document.leave_out(member, error)
                 continue
             made, size = part
             extent = extent.plus(name, made.count, size)
-            self._check(definition, extent)
+            check_extent(self._document, definition, extent)
             if isinstance(made, DataObject):
                 objects.append(made)
             else:
@@ -278,7 +243,7 @@ class Templates:
 
     def _member(
         self, name: str, member: etree._Element, path: tuple[tuple[str, str], ...]
-    ) -> tuple[DataObject | DataAttribute, _Extent | None]:
+    ) -> tuple[DataObject | DataAttribute, Extent | None]:
         """Return a member of a type, and the extent of its own type."""
         tag, count = etree.QName(member).localname, self._count(member)
         if tag == "SDO":
@@ -288,19 +253,6 @@ class Templates:
         constraint = self._constraint(member) if tag == "DA" else FunctionalConstraint.ST
         attribute = self._attribute(name, count, member, constraint, struct)
         return attribute, None if struct is None else struct.extent
-
-    def _check(self, definition: etree._Element, extent: _Extent) -> None:
-        if (
-            extent.attributes > MOST_ATTRIBUTES
-            or extent.depth > DEEPEST_NESTING
-            or extent.characters > LONGEST_PATH
-        ):
-            raise self._document.error(
-                definition,
-                f"at most {MOST_ATTRIBUTES} attributes, {DEEPEST_NESTING} levels, {LONGEST_PATH} characters",
-                f"{extent.attributes} attributes, {extent.depth} levels, {extent.characters} characters",
-                _UnboundedTypeError,
-            )
 
     def _data_object(self, name: str, count: int, element: etree._Element, resolved: _Resolved) -> DataObject:
         return DataObject(

@@ -187,3 +187,22 @@ def test_words_longer_than_the_parser_s_buffers_are_refused(tmp_path: Path) -> N
       <LogControl name="L" logName="{"l" * 64}"/></LN0>"""
     with pytest.raises(SclError, match="128 characters a name"):
         read_text(tmp_path, node_zero=node_zero, device=f'inst="{"d" * 60}"')
+
+
+@pytest.mark.parametrize(
+    ("attributes", "model"),
+    [
+        ('<DA name="Oper" bType="BOOLEAN" fc="CO"/>', "=1"),
+        ('<DA name="SBO" bType="VisString64" fc="CO"/><DA name="Oper" bType="BOOLEAN" fc="CO"/>', "=2"),
+        ('<DA name="SBOw" bType="BOOLEAN" fc="CO"/><DA name="Oper" bType="BOOLEAN" fc="CO"/>', "=4"),
+        ("", ""),
+    ],
+)
+def test_a_control_model_that_the_file_leaves_open_follows_from_the_control(
+    tmp_path: Path, attributes: str, model: str
+) -> None:
+    open_model = '<DA name="ctlModel" bType="Enum" type="CtlModel" fc="CF"/>'
+    control = f'<DOType id="SPC" cdc="SPC">{attributes}{open_model}</DOType>'
+    templates = TEMPLATES.replace('<DO name="AnIn1" type="MV"/>', '<DO name="SPCSO1" type="SPC"/>') + control
+    document = scl.read(write_scl(tmp_path / "relay.cid", scl_text(templates=templates)))
+    assert f"DA(ctlModel 0 12 4 0 0){model};" in model_text(document, "R1").partition("SPCSO1")[2]
