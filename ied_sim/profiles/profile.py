@@ -21,8 +21,8 @@ SHIPPED = Path(__file__).parent
 DEFAULT = "sel-710-ed2"
 
 Text = Literal["HISTORY", "CHISTORY", "SER", "CSER", "LDP", "CLDP", "MSR", "MOT"]
-Reference = Annotated[str, Field(pattern=r"^\w+/\w+(\.\w+)+$")]
-LogicalNode = Annotated[str, Field(pattern=r"^\w+/\w+$")]
+Reference = Annotated[str, Field(pattern=r"^[\w-]+/[\w-]+(\.\w+)+$")]
+LogicalNode = Annotated[str, Field(pattern=r"^[\w-]+/[\w-]+$")]
 Folder = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]+$")]
 
 _FORMAT = re.compile(r"(?:COMTRADE (1991|1999|2013)|CFF) (ASCII|BINARY|BINARY32|FLOAT32)|CEV")

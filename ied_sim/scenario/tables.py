@@ -134,7 +134,7 @@ class MisbehaviourTable(Table):
     kind: Kind
     at_s: Annotated[float, Field(ge=0)] | None = None
     for_s: Duration = inf
-    switch: Annotated[str, Field(pattern=r"^\w+/\w+\.\w+$")] | None = None
+    switch: Annotated[str, Field(pattern=r"^[\w-]+/[\w-]+\.\w+$")] | None = None
     delay_s: Duration | None = None
     after_bytes: Annotated[int, Field(ge=0)] | None = None
     grow_s: Duration | None = None
