@@ -165,6 +165,22 @@ def test_files_that_cannot_be_read(
     assert message in capsys.readouterr().out
 
 
+def test_credentials_that_cannot_be_used(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    secret = config.with_name("secret")
+    with config.open("a", encoding="utf-8") as settings:
+        settings.write('[relays.R-1]\npassword_file = "secret"\n')
+    assert main(["check", "--config", str(config)]) == 1
+    assert f"{secret}: relays.R-1: expected " in capsys.readouterr().out
+    secret.write_text("hidden word\n", encoding="ascii")
+    secret.chmod(0o644)
+    assert main(["check", "--config", str(config)]) == 1, "others may read it"
+    secret.chmod(0o600)
+    assert main(["check", "--config", str(config)]) == 0
+    told = capsys.readouterr().out
+    assert "warning: relay R-1: its password goes over the network in clear" in told
+    assert "hidden" not in told
+
+
 def test_a_relay_that_does_not_answer(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--config", str(config), "--connect", "--json"]) == 1
     (asked,) = json.loads(capsys.readouterr().out)["asked"]
