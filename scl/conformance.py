@@ -131,7 +131,7 @@ def _attribute_faults(rule: Rule, names: tuple[str, ...]) -> Iterator[str]:
         if name not in names:
             yield f"no {name}, which the SCL schema requires"
     for name in names:
-        if name not in rule.attributes and not name.startswith("{"):
+        if name not in rule.attributes and not name.startswith("{") and ":" not in name:
             yield f"the SCL schema has no attribute {name} here: passed over"
 
 

@@ -43,7 +43,8 @@ class Document:
         self.path = path
         self.findings: list[Finding] = []
         self.omissions: list[Finding] = []
-        self.root = parse(path, largest_bytes=largest_bytes).getroot()
+        parsed = parse(path, largest_bytes=largest_bytes)
+        self.root = parsed.tree.getroot()
         name = etree.QName(self.root)
         self._prefix = f"{{{name.namespace}}}" if name.namespace else ""
         self._names: dict[tuple[str, ...], tuple[str, ...]] = {}
@@ -52,6 +53,8 @@ class Document:
             raise self.error(self.root, f"a root element SCL of {NAMESPACE}", str(self.root.tag))
         if name.namespace != NAMESPACE:
             self.note(self.root, f"{name.namespace or 'no'} namespace: read as {NAMESPACE}")
+        if parsed.first_undeclared_prefix is not None:
+            self.note(self.root, f"{parsed.first_undeclared_prefix}: such names are passed over")
 
     def error(
         self, element: etree._Element, expected: str, found: str, kind: type[SclError] = SclError

@@ -4,6 +4,7 @@ The file may be hostile, so the parser allows no document type, no entities and 
 and depth.
 """
 
+from dataclasses import dataclass
 from pathlib import Path
 
 from lxml import etree
@@ -11,9 +12,28 @@ from lxml import etree
 from scl.errors import SclError
 
 LARGEST_FILE_BYTES = 256 * 1024 * 1024
+UNDECLARED_PREFIX = etree.ErrorTypes.NS_ERR_UNDEFINED_NAMESPACE
+"""Tools write xsi:type and forget to declare xsi. The XML itself is well-formed."""
 
 
-def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> etree._ElementTree:
+@dataclass(frozen=True, slots=True)
+class ParsedFile:
+    """An XML file as parsed.
+
+    Parameters
+    ----------
+    tree : lxml.etree._ElementTree
+        The XML tree, without comments.
+    first_undeclared_prefix : str or None
+        What the parser says of the first name whose namespace prefix the file does not declare; None if
+        it declares all. Such names keep their prefix: they are no names of SCL.
+    """
+
+    tree: etree._ElementTree
+    first_undeclared_prefix: str | None
+
+
+def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> ParsedFile:
     """Parse an XML file without its comments.
 
     Parameters
@@ -25,8 +45,8 @@ def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> etree._Elem
 
     Returns
     -------
-    lxml.etree._ElementTree
-        The XML tree.
+    ParsedFile
+        The XML tree, and what is odd in its namespaces.
 
     Raises
     ------
@@ -42,24 +62,34 @@ def parse(path: Path, *, largest_bytes: int = LARGEST_FILE_BYTES) -> etree._Elem
         raise SclError(path, expected="a file name", found=str(error)) from error
     if len(data) > largest_bytes:
         raise SclError(path, expected=f"at most {largest_bytes} bytes", found="a larger file")
-    parser = etree.XMLParser(
+    parser = _parser()
+    undeclared = None
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as error:
+        fault = next((entry for entry in parser.error_log if entry.type != UNDECLARED_PREFIX), None)
+        if fault is not None:
+            raise SclError(path, line=fault.line, expected="well-formed XML", found=fault.message) from error
+        undeclared = str(error.msg)
+        root = etree.fromstring(data, _parser(recover=True))
+    tree = root.getroottree()
+    if tree.docinfo.doctype:
+        raise SclError(
+            path, expected="no document type declaration (it can define entities)", found=tree.docinfo.doctype
+        )
+    return ParsedFile(tree, undeclared)
+
+
+def _parser(*, recover: bool = False) -> etree.XMLParser:
+    return etree.XMLParser(
         resolve_entities=False,
         load_dtd=False,
         no_network=True,
         huge_tree=False,
         remove_comments=True,
         remove_pis=True,
+        recover=recover,
     )
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as error:
-        raise SclError(path, line=error.lineno, expected="well-formed XML", found=str(error.msg)) from error
-    tree = root.getroottree()
-    if tree.docinfo.doctype:
-        raise SclError(
-            path, expected="no document type declaration (it can define entities)", found=tree.docinfo.doctype
-        )
-    return tree
 
 
 def content(element: etree._Element) -> str:

@@ -345,6 +345,19 @@ def test_other_spellings_of_the_namespace_are_told_and_read(tmp_path: Path, name
     assert read_scl.address("R1").host == "10.0.0.7"
 
 
+def test_names_with_an_undeclared_prefix_are_told_once_and_passed_over(tmp_path: Path) -> None:
+    read_scl = read(tmp_path, nodes='<LN lnClass="GGIO" inst="1" lnType="GGIO" xsi:type="tLN"/><v:Odd/>')
+    assert read_scl.ied("R1").logical_nodes("GGIO")
+    assert messages(read_scl).count("not defined") == 1
+    assert "Namespace prefix xsi for type on LN is not defined" in messages(read_scl)
+
+
+def test_a_fault_is_named_also_beside_an_undeclared_prefix(tmp_path: Path) -> None:
+    path = write_scl(tmp_path / "cut.scd", scl_text(nodes='<LN xsi:type="tLN">'))
+    with pytest.raises(SclError, match="Opening and ending tag mismatch: LN"):
+        scl.read(path)
+
+
 @pytest.mark.parametrize("root", ['xmlns="urn:something"', 'xmlns="http://www.iec.ch/61850/2003/CIM"'])
 def test_another_document_is_an_error_with_place(tmp_path: Path, root: str) -> None:
     with pytest.raises(SclError) as caught:
