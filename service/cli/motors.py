@@ -40,7 +40,7 @@ def list_motors(url: str, *, as_json: bool) -> None:
         return
     console = results()
     console.print(table)
-    for line in _links_in_trouble(healths):
+    for line in (*_links_in_trouble(healths), *_offers(healths)):
         console.print(line, soft_wrap=True)
 
 
@@ -100,6 +100,17 @@ def _links_in_trouble(healths: Sequence[Document]) -> list[Text]:
     return [
         Text(f"{relay} ({', '.join(names)}): {state}: {reason}", style=LINK_COLOURS.get(state, ""))
         for (relay, state, reason), names in motors.items()
+    ]
+
+
+def _offers(healths: Sequence[Document]) -> list[Text]:
+    """Return a line for each motor with nothing but a nameplate whose start was recorded."""
+    return [
+        Text(one_line(f"{health['motor']}: {advice}"))
+        for health in healths
+        if health.get("parameters_source") == TYPICAL
+        and isinstance(starts := health.get("starts"), Mapping)
+        and (advice := starts["advice"]) is not None
     ]
 
 

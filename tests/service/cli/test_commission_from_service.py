@@ -24,7 +24,7 @@ from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import recording, running
 from testing.machines.starts import StartRecord
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS
+from testing.service.plants import NOW_NS, SECOND_NS, two_motor_plant
 from tests.service.api.serving import serving
 from tests.service.fixtures import database_url, engine, repository, store
 
@@ -94,6 +94,11 @@ class Here:
         )
         return added.id
 
+    def has_parameters(self, source: ParametersSource) -> None:
+        plant = two_motor_plant()
+        motors = (replace(one, motor=replace(one.motor, parameters_source=source)) for one in plant.motors)
+        self.repository.sync_plant(replace(plant, motors=tuple(motors)))
+
 
 @pytest.fixture
 def here(repository: Repository, store: RecordingStore, tmp_path: Path) -> Iterator[Here]:
@@ -129,6 +134,12 @@ def test_recorded_starts_become_parameters_and_all_else_stays(
     assert health == 0
     shown = " ".join(capsys.readouterr().out.replace("\N{BOX DRAWINGS LIGHT VERTICAL}", " ").split())
     assert f"2 starts were recorded: mcc commission --from-service {MOTOR} --write motors.toml" in shown
+
+    offer = f"{MOTOR}: 2 starts were recorded: mcc commission --from-service {MOTOR}"
+    for source, offered in ((ParametersSource.TYPICAL, True), (ParametersSource.GIVEN, False)):
+        here.has_parameters(source)
+        assert main(["motors", "--url", here.url]) == 0
+        assert (offer in capsys.readouterr().out) is offered
 
     assert commission(here, motors, "--json") == 0
     printed = capsys.readouterr()
