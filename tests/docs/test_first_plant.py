@@ -1,0 +1,93 @@
+"""docs/first-plant.md, followed literally in a fresh folder, ends with the verdicts that it promises."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+
+import pytest
+
+from service.demo.addresses import free_ports
+from tests.docs.pages import ROOT
+
+PAGE = (ROOT / "docs" / "first-plant.md").read_text(encoding="utf-8")
+RELAY_PORTS = ("10501", "10502", "10503", "10504")
+LIMIT_S = 240
+
+TRUTH = {"P-101A": "healthy", "P-101B": "fault: shorted turns b", "K-201": "healthy", "M-202": "healthy"}
+
+
+def script() -> str:
+    """The page's commands, in their order: all that is changed is the ports, which may be taken here."""
+    blocks: list[str] = re.findall(r"^```sh\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
+    text = "\n".join(blocks)
+    for port, free in zip(RELAY_PORTS, free_ports(len(RELAY_PORTS)), strict=True):
+        assert port in text
+        text = text.replace(port, str(free))
+    return text
+
+
+def programs(folder: Path) -> None:
+    """Put the page's programs into a folder, as an installation puts them beside its Python."""
+    for name, module in (("mcc", "service.cli"), ("ied-sim", "ied_sim"), ("python", None)):
+        command = f'exec "{sys.executable}" ' + (f'-m {module} "$@"' if module else '"$@"')
+        (folder / name).write_text(f"#!/bin/sh\n{command}\n", encoding="ascii")
+        (folder / name).chmod(0o755)
+
+
+def followed(folder: Path, environment: Mapping[str, str]) -> tuple[int | None, str]:
+    """Run the page's commands; returns the exit code, None after too long, and what they print."""
+    printed = folder.with_name("printed")
+    with (
+        printed.open("wb") as output,
+        subprocess.Popen(
+            ["bash", "-e", "-c", script()],
+            cwd=folder,
+            env=environment,
+            stdout=output,
+            stderr=output,
+            start_new_session=True,
+        ) as shell,
+    ):
+        try:
+            shell.wait(LIMIT_S)
+        except subprocess.TimeoutExpired:
+            pass
+        finally:
+            with suppress(ProcessLookupError):  # what a failed page leaves running
+                os.killpg(shell.pid, signal.SIGKILL)
+    return shell.poll() if shell.returncode != -signal.SIGKILL else None, printed.read_text()
+
+
+@pytest.mark.campaign
+@pytest.mark.timeout(LIMIT_S + 60)
+def test_the_page_ends_with_its_verdicts(tmp_path: Path) -> None:
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "fresh").mkdir()
+    programs(tmp_path / "bin")
+    port = free_ports(1)[0]
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("MCC_")} | {
+        "PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}",
+        "PYTHONPATH": str(ROOT),
+        "MCC_PORT": str(port),
+        "MCC_URL": f"http://127.0.0.1:{port}",
+        "COLUMNS": "120",
+    }
+    ended, told = followed(tmp_path / "fresh", environment)
+    logs = "".join(path.read_text() for path in (tmp_path / "fresh").glob("*.log"))
+    assert ended == 0, f"{told}\n{logs}"
+    assert "16 values to fill in" in told
+    assert "16 problems: mcc serve would not start" in told
+    assert "nothing is wrong: 4 motors, 4 relays" in told
+    assert "collecting; commission me" in told
+    assert re.search(r"^P-101B: fault in phase b, [5-7]\.", told, re.MULTILINE), told
+    for motor in ("P-101A", "M-202", "K-201"):
+        assert re.search(rf"^{motor}: healthy, ", told, re.MULTILINE), told
+    rows = {motor: re.findall(rf"^ +{motor} +(\S.*?) {{2,}}", told, re.MULTILINE) for motor in TRUTH}
+    assert {motor: found[-1] for motor, found in rows.items()} == TRUTH, told
+    assert "Traceback" not in told + logs
+    assert '"level": "error"' not in logs
