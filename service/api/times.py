@@ -37,7 +37,7 @@ TimeParameter = Annotated[
         {
             "anyOf": [
                 {"type": "string", "format": "date-time", "maxLength": MAX_LENGTH},
-                {"type": "string", "format": "date"},
+                {"type": "string", "format": "date", "maxLength": 10},
             ]
         }
     ),

@@ -28,7 +28,7 @@ WRONG_VALUES: list[tuple[str, object]] = [
     ("kind", None),
     ("time", 1_760_000_000),
     ("time", "yesterday"),
-    ("time", "2025-10-09"),
+    ("time", "2025-02-30"),
     ("time", "2025-10-09T08:00:00"),
     ("time", "0000-01-01T00:00:00Z"),
     ("time", "9999-12-31T23:59:59Z"),
