@@ -82,6 +82,7 @@ def test_the_page_ends_with_its_verdicts(tmp_path: Path) -> None:
     assert ended == 0, f"{told}\n{logs}"
     assert "16 values to fill in" in told
     assert "16 problems: mcc serve would not start" in told
+    assert "breakdown torque" in told
     assert "nothing is wrong: 4 motors, 4 relays" in told
     assert "collecting; commission me" in told
     assert re.search(r"^P-101B: fault in phase b, [5-7]\.", told, re.MULTILINE), told
