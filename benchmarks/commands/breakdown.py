@@ -18,7 +18,7 @@ import sys
 from time import perf_counter
 
 import numba.core.caching as caching
-import service.cli.diagnose
+import service.cli.recordings.diagnose
 from service.cli import main
 
 loading, depth = 0.0, 0

@@ -17,7 +17,7 @@ from core.condition.measuring.observing import observe
 from core.condition.observation import Observation
 from core.machines.parameters import Motor
 from core.machines.sensors import SensorClass
-from core.recordings import Quantity, Recording, comtrade_writer, read
+from core.recordings import Quantity, Recording, comtrade, read
 from ied_sim.motor.plant import rated_current
 from testing.machines.disturbed_records import (
     FULL_SCALE_CURRENT,
@@ -86,7 +86,7 @@ def through_files(course: Course, random: np.random.Generator) -> list[Observati
     observations = []
     with TemporaryDirectory() as folder:
         for k, recording in enumerate(_recordings(course, random)):
-            path = comtrade_writer.write(Path(folder) / f"{k:05d}.cfg", recording)
+            path = comtrade.write(Path(folder) / f"{k:05d}.cfg", recording)
             observations.append(observe(read(path), course.motor))
     return observations
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from core.recordings import Channel, Digitals, Quantity, Recording
-from core.recordings.cev_writer import EventSummary, cev_bytes
-from core.recordings.compressed_ascii import checksum
-from core.recordings.comtrade_writer import (
+from core.recordings.cev.compressed_ascii import checksum
+from core.recordings.cev.writer import EventSummary, cev_bytes
+from core.recordings.comtrade.writer import (
     DataFormat,
     Revision,
     combined_bytes,

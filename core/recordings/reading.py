@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Protocol
 
-from core.recordings.cev import read_cev
+from core.recordings.cev.reader import read_cev
 from core.recordings.comtrade import read_combined_comtrade, read_comtrade
-from core.recordings.comtrade_envelope import read_comtrade_envelope
+from core.recordings.comtrade.envelope import read_comtrade_envelope
 from core.recordings.envelope import Envelope, IntervalsOf, envelope_of
 from core.recordings.errors import RecordingError, RecordingTooLongError
 from core.recordings.waveform import Recording

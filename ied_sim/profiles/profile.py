@@ -12,7 +12,7 @@ from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, ValidationError, model_validator
 
-from core.recordings.comtrade_writer import DataFormat, Revision
+from core.recordings.comtrade.writer import DataFormat, Revision
 from ied_sim.errors import ProfileError
 from ied_sim.toml_tables import Table, first_error, read_table
 from mms import MOST_CONNECTIONS

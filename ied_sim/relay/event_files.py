@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from core.recordings import Recording
-from core.recordings.cev_writer import EventSummary, write_cev
-from core.recordings.comtrade_writer import write as write_comtrade
+from core.recordings.cev.writer import EventSummary, write_cev
+from core.recordings.comtrade.writer import write as write_comtrade
 from ied_sim.profiles.profile import RecordFormat
 
 FIRST_NUMBER = 10000

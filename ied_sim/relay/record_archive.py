@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 import numpy as np
 
 from core.recordings import Recording
-from core.recordings.cev_writer import EventSummary
+from core.recordings.cev.writer import EventSummary
 from core.recordings.waveform import Digitals
 from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.misbehaviour import Kind, MisbehaviourState

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 from core.machines.parameters import Motor
-from core.recordings.compressed_ascii import closed
+from core.recordings.cev.compressed_ascii import closed
 from ied_sim.monitoring.journal import Journal
 from ied_sim.monitoring.relay_word import RelayWord
 

@@ -11,7 +11,7 @@ import ied_sim
 import scl
 from core.diagnosis.search import METHODS
 from core.recordings import comtrade, read
-from core.recordings.cev_writer import EventSummary, write_cev
+from core.recordings.cev.writer import EventSummary, write_cev
 from mms import Client
 from service.cli import main
 from service.demo import MOTORS

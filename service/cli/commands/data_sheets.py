@@ -73,7 +73,7 @@ def parameters(
     as_json: Json = False,
 ) -> None:
     """Turn a data sheet's impedances or a catalogue's figures into a motor's parameters, with intervals."""
-    from service.cli.parameters import DataSheet, parameters_of_data_sheet
+    from service.cli.plant.parameters import DataSheet, parameters_of_data_sheet
 
     sheet = DataSheet(
         r1=r1,

@@ -98,7 +98,7 @@ def list_recordings(
     as_json: Json = False,
 ) -> None:
     """List recordings, latest first."""
-    from service.cli.stored_recordings import show_recordings
+    from service.cli.recordings.stored import show_recordings
 
     show_recordings(url, motor, state, operation, limit=limit, as_csv=as_csv, as_json=as_json)
 
@@ -117,7 +117,7 @@ def download(
     as_json: Json = False,
 ) -> None:
     """Save the files of a recording in a ZIP archive, as they came from the relay."""
-    from service.cli.stored_recordings import download_recording
+    from service.cli.recordings.stored import download_recording
 
     download_recording(url, recording, output, as_json=as_json)
 
@@ -134,7 +134,7 @@ def upload(
     as_json: Json = False,
 ) -> None:
     """Give the service a recording of a motor; it is diagnosed as if its relay had made it."""
-    from service.cli.stored_recordings import upload_recording
+    from service.cli.recordings.stored import upload_recording
 
     upload_recording(url, motor, files, as_json=as_json)
 
@@ -153,7 +153,7 @@ def rediagnose(
     as_json: Json = False,
 ) -> None:
     """Diagnose stored recordings again, with the motor's parameters and baseline of today."""
-    from service.cli.rediagnose import rediagnose_recordings
+    from service.cli.recordings.rediagnose import rediagnose_recordings
 
     if not isfinite(wait):
         raise typer.BadParameter(f"--wait: expected a number of seconds, found {wait}")
@@ -173,7 +173,7 @@ def show_baseline(
     motor: MotorName, url: Url = DEFAULT_URL, *, as_csv: Csv = False, as_json: Json = False
 ) -> None:
     """Show the recordings of a motor's baseline, oldest first."""
-    from service.cli.baseline import show_baseline
+    from service.cli.recordings.baseline import show_baseline
 
     show_baseline(url, motor, as_csv=as_csv, as_json=as_json)
 
@@ -189,7 +189,7 @@ def set_baseline(
     as_json: Json = False,
 ) -> None:
     """Choose at least three recordings known to be healthy; those in doubt need a reason."""
-    from service.cli.baseline import set_baseline
+    from service.cli.recordings.baseline import set_baseline
 
     set_baseline(url, motor, recordings, reason=reason, by=by, as_json=as_json)
 
@@ -204,6 +204,6 @@ def drop_baseline(
     as_json: Json = False,
 ) -> None:
     """Have a motor compared with no baseline any more; its recordings stay."""
-    from service.cli.baseline import drop_baseline
+    from service.cli.recordings.baseline import drop_baseline
 
     drop_baseline(url, motor, reason=reason, by=by, as_json=as_json)

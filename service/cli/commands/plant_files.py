@@ -28,7 +28,7 @@ def init(
 
     Relays whose addresses are given are asked what they are. Nothing is written over, nothing is triggered.
     """
-    from service.cli.init import init_plant
+    from service.cli.plant.init import init_plant
 
     init_plant(directory, sources or [], as_json=as_json)
 
@@ -46,7 +46,7 @@ def check(
 
     Nothing is started, and no relay is triggered. The exit code is 1 where mcc serve would not start.
     """
-    from service.cli.check import check_plant
+    from service.cli.plant.check import check_plant
 
     return check_plant(config, connect=connect, as_json=as_json)
 
@@ -76,6 +76,6 @@ def import_scl(
     as_json: Json = False,
 ) -> None:
     """Show what an SCL file describes: sites, motors, relays, report control blocks."""
-    from service.cli.scl_import import show_scl
+    from service.cli.plant.scl_import import show_scl
 
     show_scl(file, as_json=as_json)

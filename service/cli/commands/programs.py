@@ -31,7 +31,7 @@ def demo(
 
     Afterwards the plant's time is the real one, until Ctrl-C.
     """
-    from service.cli.demonstrate import demonstrate
+    from service.cli.demo.demonstrate import demonstrate
 
     if url is not None and data is not None:
         raise typer.BadParameter("--data is for a plant this command starts: leave out --data or --url")
@@ -41,7 +41,7 @@ def demo(
 @commands.command("demo-status")
 def demo_status(url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
     """Show each motor's condition beside the truth at its latest record, where a demo plant runs."""
-    from service.cli.demo_status import show_demo
+    from service.cli.demo.status import show_demo
 
     show_demo(url, as_json=as_json)
 

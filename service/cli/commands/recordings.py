@@ -63,7 +63,7 @@ def diagnose(
 ) -> None:
     """Tell from one recording whether a motor has shorted stator turns."""
     with collection_paused():
-        from service.cli.diagnose import diagnose_recording
+        from service.cli.recordings.diagnose import diagnose_recording
 
         diagnose_recording(
             record,
@@ -121,7 +121,7 @@ def follow(
     if not isfinite(stale_after):
         raise typer.BadParameter(f"--stale-after: expected a number of days, found {stale_after}")
     with collection_paused():
-        from service.cli.follow import follow_records
+        from service.cli.conditions.follow import follow_records
 
     follow_records(
         records,
@@ -196,7 +196,7 @@ def commission(
             raise typer.BadParameter("--from-service takes no RECORD, --nameplate, --output or --lenient")
         if write is None:
             raise typer.BadParameter("--from-service needs --write MOTORS.toml, the plant's motors file")
-        from service.cli.commission_from_service import commission_from_service
+        from service.cli.recordings.commission_from_service import commission_from_service
 
         commission_from_service(
             url,
@@ -215,6 +215,6 @@ def commission(
             "expected RECORD... --nameplate MOTOR.toml --output MOTOR.toml, or --from-service MOTOR --write "
             "MOTORS.toml"
         )
-    from service.cli.commission import commission_motor
+    from service.cli.recordings.commission import commission_motor
 
     commission_motor(records, nameplate, output, load=load.value, lenient=lenient, as_json=as_json)

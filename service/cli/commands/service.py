@@ -85,7 +85,7 @@ def condition(
     as_json: Json = False,
 ) -> None:
     """Show a motor's condition over time: state, cause, level, forecast, what to do and why."""
-    from service.cli.conditions import show_condition
+    from service.cli.conditions.stored import show_condition
 
     show_condition(url, motor, history=history, as_json=as_json)
 
@@ -105,7 +105,7 @@ def note(
     as_json: Json = False,
 ) -> None:
     """Tell what happened to a motor: maintenance, another winding, another relay, or just a note."""
-    from service.cli.conditions import add_note
+    from service.cli.conditions.stored import add_note
 
     add_note(url, motor, text, kind=kind, time=time, by=by, as_json=as_json)
 
@@ -113,7 +113,7 @@ def note(
 @commands.command()
 def notes(motor: MotorName, url: Url = DEFAULT_URL, *, as_json: Json = False) -> None:
     """Show what people told of a motor, latest first."""
-    from service.cli.conditions import list_notes
+    from service.cli.conditions.stored import list_notes
 
     list_notes(url, motor, as_json=as_json)
 
@@ -129,7 +129,7 @@ def withdraw_note(
     as_json: Json = False,
 ) -> None:
     """Let a note that was wrong count no more: the condition follows as if nobody had told it."""
-    from service.cli.conditions import withdraw_note
+    from service.cli.conditions.stored import withdraw_note
 
     withdraw_note(url, motor, note_id, reason, by=by, as_json=as_json)
 
@@ -147,7 +147,7 @@ def restart_reference(
     as_json: Json = False,
 ) -> None:
     """Take a motor for healthy as it is: what stands out of it from the first record on is learnt anew."""
-    from service.cli.conditions import restart_reference
+    from service.cli.conditions.stored import restart_reference
 
     restart_reference(url, motor, reason, time=time, by=by, as_json=as_json)
 

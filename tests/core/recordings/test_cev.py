@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from core.recordings import Quantity, Recording, RecordingError, read
-from core.recordings.cev import read_event_report
-from core.recordings.compressed_ascii import checksum
+from core.recordings.cev.compressed_ascii import checksum
+from core.recordings.cev.reader import read_event_report
 from core.units import NANOSECONDS_PER_SECOND
 from tests.core.recordings.cev_files import REPORT, ROWS, CevFile, line
 

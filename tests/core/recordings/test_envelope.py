@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from core.recordings import Channel, Quantity, Recording, RecordingError, read, read_envelope, reading
-from core.recordings.cev_writer import EventSummary, write_cev
-from core.recordings.comtrade_writer import DataFormat, Revision, write
+from core.recordings.cev.writer import EventSummary, write_cev
+from core.recordings.comtrade.writer import DataFormat, Revision, write
 from core.recordings.envelope import IntervalsOf, envelope_of
 from core.recordings.errors import RecordingTooLongError
 from tests.core.recordings.comtrade_files import RECORD_1999
@@ -73,8 +73,8 @@ def test_read_block_by_block_it_is_the_same(
     path = write(tmp_path / f"r{suffix}", wide(40, 3000), revision=revision, data_format=data_format)
     whole = read_envelope(path, always(intervals))
     monkeypatch.setattr(reading, "MOST_VALUES_HELD", 1)
-    monkeypatch.setattr("core.recordings.comtrade_data._BLOCK_BYTES", 20_000)
-    monkeypatch.setattr("core.recordings.comtrade_ascii._BLOCK_BYTES", 20_000)
+    monkeypatch.setattr("core.recordings.comtrade.data._BLOCK_BYTES", 20_000)
+    monkeypatch.setattr("core.recordings.comtrade.ascii_samples._BLOCK_BYTES", 20_000)
     parts = read_envelope(path, always(intervals))
     assert whole.lowest.shape == parts.lowest.shape == (40, intervals)
     np.testing.assert_array_equal(parts.lowest, whole.lowest)
@@ -122,6 +122,6 @@ def test_more_samples_than_times_are_held_for_are_refused(
 ) -> None:
     path = write(tmp_path / "r.cfg", wide(1, 1000))
     monkeypatch.setattr(reading, "MOST_VALUES_HELD", 1)
-    monkeypatch.setattr("core.recordings.comtrade_envelope.MOST_SAMPLES", 999)
+    monkeypatch.setattr("core.recordings.comtrade.envelope.MOST_SAMPLES", 999)
     with pytest.raises(RecordingError, match="1000 samples"):
         read_envelope(path, always(10))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.recordings import read
-from core.recordings.comtrade_writer import write as write_comtrade
+from core.recordings.comtrade.writer import write as write_comtrade
 from core.recordings.local_time import in_utc, utc_of
 from core.recordings.waveform import Channel, Quantity, Recording
 from core.time_stamps import nanoseconds

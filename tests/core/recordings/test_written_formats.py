@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from core.recordings import Channel, Digitals, Quantity, Recording, comtrade, read
-from core.recordings.cev import read_event_report
-from core.recordings.cev_writer import EventSummary, cev_bytes, write_cev
-from core.recordings.comtrade_writer import DataFormat, Revision
+from core.recordings.cev.reader import read_event_report
+from core.recordings.cev.writer import EventSummary, cev_bytes, write_cev
+from core.recordings.comtrade.writer import DataFormat, Revision
 from core.units import NANOSECONDS_PER_SECOND
 
 FORMATS: list[tuple[Revision, DataFormat, str]] = [

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.recordings.compressed_ascii import rows
+from core.recordings.cev.compressed_ascii import rows
 from core.recordings.repairs import Repairs
 from ied_sim.motor.contactor import Contactor
 from ied_sim.profiles.profile import Triggers

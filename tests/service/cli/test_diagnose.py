@@ -14,8 +14,8 @@ from core.machines.parameters import ParametersSource
 from core.quality.finding import QualityFinding
 from core.recordings import comtrade
 from service.cli import main
-from service.cli.diagnose import _table
 from service.cli.output import results
+from service.cli.recordings.diagnose import _table
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
 from testing.service.plants import undiagnosable

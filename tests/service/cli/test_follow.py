@@ -17,8 +17,8 @@ from core.recordings import comtrade, read
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
 from service.cli import main
-from service.cli.condition_view import print_condition
-from service.cli.followed_records import FEW, find_records, observe_all, observe_record
+from service.cli.conditions.followed_records import FEW, find_records, observe_all, observe_record
+from service.cli.conditions.view import print_condition
 from testing.machines.motors import MEDIUM, REFERENCE
 from testing.machines.phase_circuits import Fault
 from testing.machines.record_series import BEGUN_NS, HOUR_NS, write_series

@@ -135,7 +135,7 @@ def test_from_an_scd_without_a_substation_section(tmp_path: Path, capsys: pytest
 def test_from_addresses_whose_relays_are_asked(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.cli.check.CLOCK_S", 0.0)
+    monkeypatch.setattr("service.cli.plant.check.CLOCK_S", 0.0)
     plant = tmp_path / "plant"
     with simulated(tmp_path / "relays", scenario_of("sel-710-ed2")) as served:
         addresses = tmp_path / "addresses.txt"

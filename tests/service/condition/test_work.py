@@ -19,7 +19,7 @@ from sqlalchemy.exc import OperationalError
 from sqlalchemy.orm import Session
 
 from core.machines.parameters import Motor, ParametersSource
-from core.recordings.comtrade_writer import write
+from core.recordings.comtrade.writer import write
 from core.time_stamps import nanoseconds
 from service.api.condition_documents import condition_document
 from service.condition import work, worker

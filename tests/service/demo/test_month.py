@@ -10,7 +10,7 @@ import scl
 from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.relay.plant_clock import PlantClock
 from ied_sim.scenario.scenario import read_clock, read_scenario
-from service.cli.demo_month import ConditionLog
+from service.cli.demo.month import ConditionLog
 from service.client.rest_client import Document
 from service.demo import MONTH, MONTH_MOTORS, MOTORS, SCENARIO
 from service.demo.month import Month, month_of

@@ -10,7 +10,7 @@ import pytest
 
 from core.diagnosis.verdict import Verdict
 from core.recordings import Channel, Quantity, Recording
-from core.recordings.comtrade_writer import write
+from core.recordings.comtrade.writer import write
 from core.time_stamps import nanoseconds
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Rejected
 from service.jobs.runner import JobLimits

@@ -10,7 +10,7 @@ import pytest
 
 from ied_sim.misbehaviour import Kind, Misbehaviour
 from scl import Address
-from service.cli.check import line_of
+from service.cli.plant.check import line_of
 from service.configuration.relay_access import RelayAccess
 from service.configuration.settings import Settings
 from service.plant import Relay

@@ -12,7 +12,7 @@ from core.condition.observation import VoltageChannels
 from core.diagnosis.stator import diagnose
 from core.machines.parameters import Connection, MachineParameters, Motor
 from core.recordings import Channel, Quantity, Recording, read
-from core.recordings.comtrade_writer import write
+from core.recordings.comtrade.writer import write
 from core.signals.sequence import PhaseSequence
 from testing.machines.motors import LARGE, REFERENCE
 from testing.machines.phase_circuits import Fault, Operation, recording, running

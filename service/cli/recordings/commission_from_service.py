@@ -14,7 +14,6 @@ from core.commissioning.result import Commissioning
 from core.machines.motor_file import Plate, plate_from_table
 from core.machines.motor_file_error import MotorFileError
 from core.recordings import RecordingError
-from service.cli.commission import commissioning_table, load_law, progress_bar
 from service.cli.output import (
     WRONG_USE,
     CommandError,
@@ -23,7 +22,8 @@ from service.cli.output import (
     print_warning,
     results,
 )
-from service.cli.recorded_starts import FetchedStarts, fetch_starts
+from service.cli.recordings.commission import commissioning_table, load_law, progress_bar
+from service.cli.recordings.recorded_starts import FetchedStarts, fetch_starts
 from service.client.rest_client import ServiceClient, ServiceError
 from service.configuration.problems import Problems, nearest
 from service.plant import PlantError

@@ -16,10 +16,10 @@ from core.machines.motor_file_error import MotorFileError
 from core.machines.parameters import Motor
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
-from service.cli.condition_view import print_condition
-from service.cli.followed_bus import Bus, Member, bus_of, read_neighbours
-from service.cli.followed_records import Seen, find_records, observe_all
-from service.cli.given_events import GivenEvent, given_events
+from service.cli.conditions.followed_bus import Bus, Member, bus_of, read_neighbours
+from service.cli.conditions.followed_records import Seen, find_records, observe_all
+from service.cli.conditions.given_events import GivenEvent, given_events
+from service.cli.conditions.view import print_condition
 from service.cli.output import (
     CommandError,
     failing_clearly,

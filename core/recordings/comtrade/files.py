@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from core.recordings.code_pages import decode_text
-from core.recordings.comtrade_ascii import decode_ascii
-from core.recordings.comtrade_combined import split_combined
-from core.recordings.comtrade_configuration import Configuration, parse_configuration
-from core.recordings.comtrade_data import Sink, SinkOf, decode_binary
+from core.recordings.comtrade.ascii_samples import decode_ascii
+from core.recordings.comtrade.combined import split_combined
+from core.recordings.comtrade.configuration import Configuration, parse_configuration
+from core.recordings.comtrade.data import Sink, SinkOf, decode_binary
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs

@@ -24,20 +24,17 @@ from numpy import float64
 from numpy.typing import NDArray
 
 from core.recordings.channel_roles import ChannelRole, channel_roles
-from core.recordings.comtrade_channels import channels_of, scale_counts
-from core.recordings.comtrade_configuration import Configuration
-from core.recordings.comtrade_data import SampleTable
-from core.recordings.comtrade_files import decode, open_combined, open_record
-from core.recordings.comtrade_time import TimeBase, time_base, trigger_index
-from core.recordings.comtrade_writer import configuration_text, data_bytes, write
+from core.recordings.comtrade.channels import channels_of, scale_counts
+from core.recordings.comtrade.configuration import Configuration
+from core.recordings.comtrade.data import SampleTable
+from core.recordings.comtrade.files import decode, open_combined, open_record
+from core.recordings.comtrade.time_axis import TimeBase, time_base, trigger_index
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
 from core.recordings.length import check_length
 from core.recordings.repairs import Repairs
 from core.recordings.skew import even_stretches, without_skew
 from core.recordings.waveform import Digitals, Quantity, Recording
-
-__all__ = ["configuration_text", "data_bytes", "read_combined_comtrade", "read_comtrade", "write"]
 
 MAX_STRETCHES = 1000
 """Stretches of a record sampled unevenly beyond which skew is not removed piece by piece."""

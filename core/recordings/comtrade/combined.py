@@ -4,7 +4,7 @@ import mmap
 import re
 from pathlib import Path
 
-from core.recordings.comtrade_lines import quoted
+from core.recordings.comtrade.lines import quoted
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs

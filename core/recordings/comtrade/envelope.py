@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.recordings.channel_roles import channel_roles
-from core.recordings.comtrade_channels import channels_of, scale_counts
-from core.recordings.comtrade_configuration import Configuration
-from core.recordings.comtrade_files import decode, open_combined, open_record
-from core.recordings.comtrade_time import time_base, trigger_index
+from core.recordings.comtrade.channels import channels_of, scale_counts
+from core.recordings.comtrade.configuration import Configuration
+from core.recordings.comtrade.files import decode, open_combined, open_record
+from core.recordings.comtrade.time_axis import time_base, trigger_index
 from core.recordings.envelope import Envelope, Extremes, IntervalsOf, interval_starts
 from core.recordings.length import VALUES_BESIDE, check_length
 from core.recordings.repairs import Repairs

@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from scl import SclError
-from service.cli.demo_month import conditions_of, conditions_table, play_month
+from service.cli.demo.month import conditions_of, conditions_table, play_month
 from service.cli.output import CommandError, as_json, failing_clearly, failure_document, progress, results
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.demo.interruption import Interruption, interruptible

@@ -11,7 +11,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from core.recordings.comtrade_configuration import Configuration
+from core.recordings.comtrade.configuration import Configuration
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs

@@ -23,11 +23,11 @@ from pathlib import Path
 
 import numpy as np
 
-from core.recordings.cev_samples import CevSamples
+from core.recordings.cev.compressed_ascii import Row, checksum, rows
+from core.recordings.cev.samples import CevSamples
 from core.recordings.channel_roles import channel_roles
 from core.recordings.code_pages import decode_text
-from core.recordings.compressed_ascii import Row, checksum, rows
-from core.recordings.comtrade_lines import quoted
+from core.recordings.comtrade.lines import quoted
 from core.recordings.errors import RecordingError
 from core.recordings.length import check_length
 from core.recordings.repairs import Repairs

@@ -26,7 +26,7 @@ from service.cli.output import (
     progress,
     results,
 )
-from service.cli.recording_files import read_recording
+from service.cli.recordings.files import read_recording
 from service.client.tables import FittedTable
 
 

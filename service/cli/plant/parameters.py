@@ -28,8 +28,8 @@ from core.machines.motor_file_error import MotorFileError
 from core.machines.motor_file_writer import motor_text, write_motor
 from core.machines.parameters import MachineParameters, Motor, Nameplate, ParametersSource
 from core.quantity_text import plain
-from service.cli.commission import check_output
 from service.cli.output import WRONG_USE, failing_clearly, print_document, results
+from service.cli.recordings.commission import check_output
 from service.client.tables import FittedTable
 
 Interval = tuple[float, float]

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.recordings.comtrade_lines import quoted
+from core.recordings.comtrade.lines import quoted
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
 

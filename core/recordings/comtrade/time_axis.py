@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from core.recordings.comtrade_configuration import Configuration
+from core.recordings.comtrade.configuration import Configuration
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
 from core.units import NANOSECONDS_PER_SECOND

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.recordings.channel_roles import ChannelRole
-from core.recordings.comtrade_configuration import AnalogChannel, Configuration
+from core.recordings.comtrade.configuration import AnalogChannel, Configuration
 from core.recordings.errors import RecordingError
 from core.recordings.waveform import Channel
 

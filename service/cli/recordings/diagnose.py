@@ -17,7 +17,7 @@ from core.machines.typical import COMMISSION
 from core.quantity_text import with_unit
 from core.recordings import RecordingError
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
-from service.cli.recording_files import read_recording, with_advice
+from service.cli.recordings.files import read_recording, with_advice
 from service.client.tables import FittedTable
 from service.client.verdicts import OPERATIONS, detection, interval, level, load, verdict_text
 

@@ -8,8 +8,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.recordings.comtrade_dates import date_time, utc_offset_ns
-from core.recordings.comtrade_lines import Line, Lines, quoted
+from core.recordings.comtrade.dates import date_time, utc_offset_ns
+from core.recordings.comtrade.lines import Line, Lines, quoted
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
 

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from core.recordings.comtrade_lines import Line, Lines, quoted
+from core.recordings.comtrade.lines import Line, Lines, quoted
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs
 from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY

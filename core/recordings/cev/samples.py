@@ -7,8 +7,8 @@ from math import isfinite, nan
 import numpy as np
 from numpy.typing import NDArray
 
-from core.recordings.compressed_ascii import Row
-from core.recordings.comtrade_lines import quoted
+from core.recordings.cev.compressed_ascii import Row
+from core.recordings.comtrade.lines import quoted
 from core.recordings.waveform import Digitals
 
 UNUSED = "*"

@@ -14,8 +14,8 @@ from types import MappingProxyType
 
 import numpy as np
 
-from core.recordings.cev_samples import UNUSED
-from core.recordings.compressed_ascii import checksum, closed
+from core.recordings.cev.compressed_ascii import checksum, closed
+from core.recordings.cev.samples import UNUSED
 from core.recordings.waveform import Channel, Recording
 from core.units import NANOSECONDS_PER_MILLISECOND
 

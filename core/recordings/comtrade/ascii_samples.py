@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from core.recordings.comtrade_configuration import Configuration
-from core.recordings.comtrade_data import SampleNumbers, Sink, SinkOf
-from core.recordings.comtrade_lines import quoted
+from core.recordings.comtrade.configuration import Configuration
+from core.recordings.comtrade.data import SampleNumbers, Sink, SinkOf
+from core.recordings.comtrade.lines import quoted
 from core.recordings.data_section import DataSection
 from core.recordings.errors import RecordingError
 from core.recordings.repairs import Repairs

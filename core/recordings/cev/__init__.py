@@ -1,0 +1,1 @@
+"""SEL event reports in the compressed ASCII format (.CEV): read and written."""

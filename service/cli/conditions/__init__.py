@@ -1,0 +1,1 @@
+"""Commands on the condition of motors over time."""

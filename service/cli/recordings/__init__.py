@@ -1,0 +1,1 @@
+"""Commands on recordings: diagnosed, commissioned from, uploaded and fetched."""
