@@ -15,7 +15,7 @@ LONGEST_POWER: Final = 12
 """Numbers beyond this power of ten are no measurements, and are written with it."""
 
 
-def plain(value: float, digits: int = 3) -> str:
+def plain(value: float, digits: int = 3, *, with_commas: bool = True) -> str:
     """Return a number rounded to significant digits, without a power of ten; large ones with commas.
 
     Parameters
@@ -24,6 +24,8 @@ def plain(value: float, digits: int = 3) -> str:
         The number.
     digits : int
         How many significant digits are kept.
+    with_commas : bool
+        Without them the text can be written into a file as it is.
 
     Returns
     -------
@@ -37,7 +39,7 @@ def plain(value: float, digits: int = 3) -> str:
         return f"{value:.{digits}g}"
     decimals = digits - 1 - power
     rounded = round(value, decimals)
-    commas = "," if abs(rounded) >= MOST_WITHOUT_PREFIX else ""
+    commas = "," if with_commas and abs(rounded) >= MOST_WITHOUT_PREFIX else ""
     text = f"{rounded:{commas}.{max(decimals, 0)}f}"
     return text.rstrip("0").rstrip(".") if decimals > 0 else text
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from math import log
 
 from core.machines.parameters import Nameplate
+from core.quantity_text import plain
 from core.recordings import Channel
 
 NEAR_RATED = (0.85, 1.15)
@@ -113,7 +114,7 @@ def current_advice(
     written = amps / (channels[0].applied_ratio if channels else 1.0)
     usual = " or ".join(_usual(least / written, most / written, rated_A))
     example = f", such as {usual}" if usual else ""
-    ends = f"{least / written:.3g} to {most / written:.3g}"
+    ends = f"{_to_type(least / written, 3)} to {_to_type(most / written, 3)}"
     return f"a current_ratio of {ends} in {PLACE} would explain it{example}"
 
 
@@ -165,4 +166,9 @@ def _usual(least: float, most: float, rated_A: float) -> Iterator[str]:
 
 
 def _advice(key: str, ratio: float, why: str, about: str = "") -> str:
-    return f"{why}: {key} = {about}{ratio:.4g} in {PLACE} would explain it"
+    return f"{why}: {key} = {about}{_to_type(ratio, 4)} in {PLACE} would explain it"
+
+
+def _to_type(ratio: float, digits: int) -> str:
+    """Return a ratio as it can be written into a motor's file."""
+    return plain(ratio, digits, with_commas=False)

@@ -25,6 +25,10 @@ def test_a_number(value: float, digits: int, text: str) -> None:
     assert plain(value, digits) == text
 
 
+def test_a_number_for_a_file_has_no_commas() -> None:
+    assert plain(13_040.0, 3, with_commas=False) == "13000"
+
+
 @pytest.mark.parametrize(
     ("value", "unit", "text"),
     [
