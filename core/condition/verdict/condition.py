@@ -224,6 +224,7 @@ def condition_of(
     size, size_ci95 = _size(fault, verdict)
     is_gone = state is State.WATCH and fault.change is not None and fault.change.until_ns is not None
     ahead = _forecast(fault, level_of(fault.change), verdict.mu_f, limit)
+    misfits = _misfits(assessment, verdict)
     return Condition(
         motor=motor.name,
         state=state,
@@ -248,9 +249,9 @@ def condition_of(
             candidates=verdict.candidates,
             is_gone=is_gone,
             is_typical=motor.is_typical,
-            misfits=[one.name for one in assessment.parameter_errors],
+            misfits=[one.name for one in misfits],
         ),
-        reasons=(*_of_parameters(motor, assessment.parameter_errors), *reasons_of(assessment, limit, ahead)),
+        reasons=(*_of_parameters(motor, misfits), *reasons_of(assessment, limit, ahead)),
     )
 
 
@@ -275,6 +276,12 @@ def _unknown(motor: Motor, ended_by: Event | None) -> Condition:
         advice=advice(State.UNKNOWN, Kind.NONE, is_typical=motor.is_typical),
         reasons=(*_of_parameters(motor), reason_of_unknown(ended_by)),
     )
+
+
+def _misfits(assessment: Assessment, verdict: Verdict) -> tuple[ParameterError, ...]:
+    """Return the parameters to be told of: shorted turns draw a current of their own, which looks alike."""
+    are_seen = verdict.mu_f_ci95 is not None and verdict.mu_f_ci95[0] > 0.0
+    return () if are_seen or Kind.SHORTED_TURNS in verdict.candidates else assessment.parameter_errors
 
 
 def _of_parameters(motor: Motor, errors: tuple[ParameterError, ...] = ()) -> tuple[str, ...]:

@@ -17,16 +17,21 @@ from core.machines.parameters import Motor, ParametersSource
 from core.machines.typical import TYPICAL_TOLERANCES
 from core.signals.sequence import PhaseSequence
 from testing.machines.motors import MEDIUM, REFERENCE, VERY_LARGE
-from testing.machines.phase_circuits import FORTESCUE, running
+from testing.machines.phase_circuits import FORTESCUE, Fault, running
 
 HOUR_NS = 3600 * 10**9
 LOADS = (0.15, 0.3, 0.45, 0.6, 0.75, 0.9)
 
 
 def observations(
-    motor: Motor, loads: Sequence[float] = LOADS * 2, *, offset_s: float = 40e-6, seed: int = 1
+    motor: Motor,
+    loads: Sequence[float] = LOADS * 2,
+    *,
+    offset_s: float = 40e-6,
+    seed: int = 1,
+    fault: Fault | None = None,
 ) -> list[Observation]:
-    """Hourly records of a healthy motor whose relay has channels of the usual class."""
+    """Hourly records of a motor whose relay has channels of the usual class."""
     random = np.random.default_rng(seed)
     gains = 1.0 + random.uniform(-0.01, 0.01, (2, 3))
     delays = random.uniform(-25e-6, 25e-6, (2, 3))
@@ -34,7 +39,7 @@ def observations(
     ratios = gains * np.exp(-2j * pi * 50.0 * delays)
     found = []
     for hour, load_level in enumerate(loads):
-        at = running(motor, load_level, unbalance=complex(*random.normal(0.0, 0.003, 2)))
+        at = running(motor, load_level, fault=fault, unbalance=complex(*random.normal(0.0, 0.003, 2)))
         noise = 2e-4 * random.normal(size=(2, 3)) * np.exp(2j * pi * random.uniform(size=(2, 3)))
         terminals = np.array([at.line_current, at.phase_voltage]) * ratios
         terminals += noise * np.abs(terminals).mean(axis=1)[:, np.newaxis]
@@ -109,6 +114,16 @@ def test_right_parameters_are_not_blamed_for_usual_sensors(seed: int) -> None:
         condition = condition_of(motor, assessment, assessment.as_of_ns)
         if condition.state is State.HEALTHY:
             assert condition.advice == "Nothing needs to be done."
+
+
+@pytest.mark.parametrize("level", [0.01, 0.03, 0.06, 0.1])
+def test_shorted_turns_are_not_blamed_on_parameters(level: float) -> None:
+    for motor in (REFERENCE, MEDIUM, VERY_LARGE):
+        assessment = followed(motor, observations(motor, fault=Fault(level, 1))).assessment()
+        assert assessment is not None
+        condition = condition_of(motor, assessment, assessment.as_of_ns)
+        assert "commission" not in condition.advice.lower()
+        assert not any("parameters" in reason for reason in condition.reasons)
 
 
 def test_few_records_and_typical_parameters_name_nothing() -> None:
