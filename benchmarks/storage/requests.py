@@ -48,7 +48,12 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/motors/{name}/condition/history": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/notes": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/notes/{note_id}": ("{busy} {note}",),
-    "/api/v1/motors/{name}/recordings": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
+    "/api/v1/motors/{name}/recordings": (
+        *_MOTOR,
+        "{busy}?limit=1000",
+        "{busy}?cursor={deep}",
+        "{busy}?operation=start",
+    ),
     "/api/v1/motors/{name}/baseline": ("{busy}",),
     "/api/v1/motors/{name}/measurements": (
         *_MOTOR,
@@ -99,6 +104,9 @@ TIMED: Mapping[str, tuple[str, ...]] = {
         *(f"?motor={motor}&state=failed" for motor in _MOTOR),
         "?motor={busy}&state=rejected&cursor={deep}",
         "?motor={some}&state=announced",
+        "?operation=start",
+        "?operation=start&cursor={deep}",
+        *(f"?motor={motor}&operation=start" for motor in _MOTOR),
     ),
     "/api/v1/recordings/{recording_id}": ("{recording}",),
     "/api/v1/recordings/{recording_id}/diagnoses": ("{recording}", "{recording}?limit=1&cursor={deep}"),

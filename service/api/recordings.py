@@ -47,6 +47,13 @@ def list_recordings(
 ) -> Page[Recording]:
     """Return recordings, of one motor or of all, in one state or in any, of any operation, latest first."""
     context.require_motor(motor)
+    if state is not None and operation is not None:
+        message = "expected state or operation, found both: a recording has an operation once it is diagnosed"
+        raise ProblemError(
+            HTTPStatus.UNPROCESSABLE_ENTITY,
+            f"query.operation: {message}",
+            errors=[FieldError(location="query.operation", message=message)],
+        )
     recordings = context.repository.recordings(
         motor=motor, state=state, operation=operation, limit=limit, after=decode(cursor, int, str)
     )

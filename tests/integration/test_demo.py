@@ -51,7 +51,7 @@ def test_the_demo_finds_the_truth_and_leaves_nothing_running(tmp_path: Path) -> 
         table, progress = demo.stdout.read(), demo.stderr.read()
     assert demo.returncode == 0, progress
     document = json.loads(results.read_text())
-    assert document["seconds"] <= 60
+    assert document["seconds"] <= 60.0 * crowding()
     assert [motor["motor"] for motor in document["motors"]] == sorted(MOTOR_NAMES)
     for motor in document["motors"]:
         assert motor["motor"] in table

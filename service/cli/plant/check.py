@@ -1,7 +1,10 @@
 """`mcc check`: all that is wrong in the files of a plant, and what its relays offer."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.text import Text
 
 from service.cli.output import DONE, FAILED, one_line, print_document, progress, results
@@ -24,10 +27,8 @@ def check_plant(config: Path | None, *, connect: bool, as_json: bool) -> int:
     answers: tuple[RelaySurvey, ...] = ()
     if connect and checked.plant is not None and checked.settings is not None:
         relays = checked.plant.relays
-        progress().print(
-            Text(f"asking {_number(len(relays), 'relay')}, {checked.settings.connect_timeout_s:g} s each ...")
-        )
-        answers = survey(relays, checked.settings, _tell, clock_s=CLOCK_S)
+        with _progress_bar(len(relays)) as advance:
+            answers = survey(relays, checked.settings, advance, clock_s=CLOCK_S)
     if as_json:
         print_document(_document(checked, answers))
     else:
@@ -36,9 +37,14 @@ def check_plant(config: Path | None, *, connect: bool, as_json: bool) -> int:
     return FAILED if checked.problems or unreachable else DONE
 
 
-def _tell(answer: RelaySurvey) -> None:
-    words = "has answered" if answer.unreachable is None else "does not answer"
-    progress().print(Text(f"{answer.relay.name} {words}"))
+@contextmanager
+def _progress_bar(relays: int) -> Iterator[Callable[[RelaySurvey], None]]:
+    """Show a progress bar on stderr, if that is a terminal, with the relay that answered last."""
+    console = progress()
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        asked = bar.add_task("asking the relays", total=relays)
+        yield lambda answer: bar.update(asked, advance=1, description=f"asked {answer.relay.name}")
 
 
 def _print(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> None:

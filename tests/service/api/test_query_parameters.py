@@ -108,3 +108,11 @@ def test_a_plus_in_an_address_is_named(client: httpx.Client) -> None:
 def test_a_download_is_named_by_motor_and_time(client: httpx.Client, recorded: str) -> None:
     answer = client.get(f"/api/v1/recordings/{recorded}/file")
     assert answer.headers["content-disposition"] == 'attachment; filename="PUMP-A1_2025-10-09T08-53-20Z.zip"'
+
+
+def test_a_state_and_an_operation_are_not_asked_for_together(client: httpx.Client) -> None:
+    answer = client.get("/api/v1/recordings?state=failed&operation=start")
+    assert answer.status_code == 422
+    assert "expected state or operation, found both" in answer.json()["detail"]
+    for either in ("state=failed", "operation=start"):
+        assert client.get(f"/api/v1/recordings?{either}").status_code == 200
