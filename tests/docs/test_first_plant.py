@@ -15,7 +15,8 @@ from service.demo.addresses import free_ports
 from tests.docs.pages import ROOT
 
 PAGE = (ROOT / "docs" / "first-plant.md").read_text(encoding="utf-8")
-RELAY_PORTS = ("10501", "10502", "10503", "10504")
+PORTS = ("10500", "10501", "10502", "10503", "10504")
+"""Of the service and of the relays."""
 LIMIT_S = 240
 
 TRUTH = {"P-101A": "healthy", "P-101B": "fault: shorted turns b", "K-201": "healthy", "M-202": "healthy"}
@@ -25,7 +26,7 @@ def script() -> str:
     """The page's commands, in their order: all that is changed is the ports, which may be taken here."""
     blocks: list[str] = re.findall(r"^```sh\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE)
     text = "\n".join(blocks)
-    for port, free in zip(RELAY_PORTS, free_ports(len(RELAY_PORTS)), strict=True):
+    for port, free in zip(PORTS, free_ports(len(PORTS)), strict=True):
         assert port in text
         text = text.replace(port, str(free))
     return text
@@ -63,18 +64,36 @@ def followed(folder: Path, environment: Mapping[str, str]) -> tuple[int | None, 
     return shell.poll() if shell.returncode != -signal.SIGKILL else None, printed.read_text()
 
 
+WAITING = re.findall(r"^until .*\n(?:kill -0 .*\n)?", PAGE, re.MULTILINE)
+
+
+@pytest.mark.parametrize("lines", WAITING)
+def test_waiting_ends_with_the_process_waited_for(tmp_path: Path, lines: str) -> None:
+    """A port may be taken: the process ends, and its log says why."""
+    for log in ("relays.log", "service.log"):
+        (tmp_path / log).write_text("address already in use", encoding="ascii")
+    commands = f"false & relays=$! service=$!; wait $relays || true\n{lines}"
+    told = subprocess.run(
+        ["/bin/bash", "-e", "-c", commands],
+        cwd=tmp_path,
+        env={"PATH": "/usr/bin:/bin"},
+        capture_output=True,
+        text=True,
+        timeout=30,
+        check=True,
+    ).stdout
+    assert ("address already in use" in told) is ("cat " in lines)
+
+
 @pytest.mark.campaign
 @pytest.mark.timeout(LIMIT_S + 60)
 def test_the_page_ends_with_its_verdicts(tmp_path: Path) -> None:
     (tmp_path / "bin").mkdir()
     (tmp_path / "fresh").mkdir()
     programs(tmp_path / "bin")
-    port = free_ports(1)[0]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("MCC_")} | {
         "PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}",
         "PYTHONPATH": str(ROOT),
-        "MCC_PORT": str(port),
-        "MCC_URL": f"http://127.0.0.1:{port}",
         "COLUMNS": "120",
     }
     ended, told = followed(tmp_path / "fresh", environment)
