@@ -4,8 +4,14 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from math import isfinite, nan, pi
 
+from core.machines.parameters import MAGNETISING_OVER_SELF
+
 KILO = 1e3
-INDUCTANCES = ("stator_leakage_H", "rotor_leakage_H", "stator_self_inductance_H")
+LEAKAGES = ("stator_leakage_H", "rotor_leakage_H")
+SELF_INDUCTANCE = ("stator_self_inductance_H",)
+INDUCTANCES = (*LEAKAGES, *SELF_INDUCTANCE)
+REACTANCES = dict(zip(INDUCTANCES, ("X1", "X2'", "Xm"), strict=True))
+"""What a data sheet has where a motor's file has inductances."""
 RESISTANCES = ("stator_resistance_ohm", "rotor_resistance_ohm")
 
 
@@ -19,15 +25,15 @@ class Slip:
         Name of their table.
     keys : tuple of str
         Their keys.
-    factor : float
-        From the unit that was given to the one of the key.
+    factors : tuple of float
+        From the units that were given to those of the keys.
     words : str
         Both units in words.
     """
 
     table: str
     keys: tuple[str, ...]
-    factor: float
+    factors: tuple[float, ...]
     words: str
 
 
@@ -56,8 +62,9 @@ def likely_slip(
         values = table.get(slip.table)
         if not isinstance(values, Mapping):
             continue
-        given = {key: _number(values.get(key)) for key in slip.keys}
-        meant = {key: value * slip.factor for key, value in given.items() if isfinite(value)}
+        given = zip(slip.keys, slip.factors, strict=True)
+        products = {key: _number(values.get(key)) * factor for key, factor in given}
+        meant = {key: value for key, value in products.items() if isfinite(value)}
         if meant and keys in ((), slip.keys) and is_plausible({**table, slip.table: {**values, **meant}}):
             figures = ", ".join(f"{key} = {value:.6g}" for key, value in meant.items())
             keys = slip.keys
@@ -66,19 +73,32 @@ def likely_slip(
 
 
 def _slips(table: Mapping[str, object]) -> Iterator[Slip]:
-    yield Slip("nameplate", ("rated_voltage_V",), KILO, "kV were given in place of V")
-    yield Slip("nameplate", ("rated_power_W",), KILO, "kW were given in place of W")
-    yield Slip("nameplate", ("rated_voltage_V", "rated_power_W"), KILO, "kV and kW were given")
-    yield Slip("nameplate", ("rated_power_W",), KILO**2, "MW were given in place of W")
+    voltage, power = ("rated_voltage_V",), ("rated_power_W",)
+    yield Slip("nameplate", voltage, (KILO,), "kV were given in place of V")
+    yield Slip("nameplate", power, (KILO,), "kW were given in place of W")
+    yield Slip("nameplate", voltage + power, (KILO, KILO), "kV and kW were given")
+    yield Slip("nameplate", power, (KILO**2,), "MW were given in place of W")
     nameplate = table.get("nameplate")
     frequency_Hz = _number(nameplate.get("rated_frequency_Hz")) if isinstance(nameplate, Mapping) else nan
-    if frequency_Hz > 0.0:
-        ohm_to_H = 1.0 / (2.0 * pi * frequency_Hz)
-        yield Slip("parameters", INDUCTANCES, ohm_to_H, "reactances in ohm were given in place of H")
-    for keys, unit in ((INDUCTANCES, "H"), (RESISTANCES, "ohm")):
-        yield Slip("parameters", keys, 1.0 / KILO, f"m{unit} were given in place of {unit}")
-        for key in keys:
-            yield Slip("parameters", (key,), 1.0 / KILO, f"m{unit} were given in place of {unit}")
+    for keys in (INDUCTANCES, LEAKAGES, *((key,) for key in INDUCTANCES)):
+        if frequency_Hz > 0.0:
+            yield _reactances(keys, 2.0 * pi * frequency_Hz)
+        yield _milli(keys, "H")
+    for keys in (RESISTANCES, *((key,) for key in RESISTANCES)):
+        yield _milli(keys, "ohm")
+
+
+def _reactances(keys: tuple[str, ...], w: float) -> Slip:
+    """Return the slip of giving reactances for inductances: Xm is that of 1.5 L_s."""
+    to_H = dict.fromkeys(LEAKAGES, 1.0 / w) | {SELF_INDUCTANCE[0]: 1.0 / (MAGNETISING_OVER_SELF * w)}
+    names = [REACTANCES[key] for key in keys]
+    several = " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    words = f"{several} in ohm {'was' if len(keys) == 1 else 'were'} given in place of H"
+    return Slip("parameters", keys, tuple(to_H[key] for key in keys), words)
+
+
+def _milli(keys: tuple[str, ...], unit: str) -> Slip:
+    return Slip("parameters", keys, (1.0 / KILO,) * len(keys), f"m{unit} were given in place of {unit}")
 
 
 def _number(value: object) -> float:

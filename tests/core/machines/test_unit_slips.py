@@ -52,8 +52,8 @@ def motor_with(changes: Mapping[str, Mapping[str, float]], *, nameplate_alone: b
         ({"nameplate": {"rated_power_W": 0.5}}, "rated_power_W = 500000, for MW were given in place of W"),
         (
             {"parameters": {"stator_leakage_H": 58, "rotor_leakage_H": 58, "stator_self_inductance_H": 1600}},
-            "stator_leakage_H = 0.18462, rotor_leakage_H = 0.18462, stator_self_inductance_H = 5.09296, "
-            "for reactances in ohm were given in place of H; or "
+            "stator_leakage_H = 0.18462, rotor_leakage_H = 0.18462, stator_self_inductance_H = 3.39531, "
+            "for X1, X2' and Xm in ohm were given in place of H; or "
             "stator_leakage_H = 0.058, rotor_leakage_H = 0.058, stator_self_inductance_H = 1.6, "
             "for mH were given in place of H",
         ),
@@ -64,14 +64,29 @@ def motor_with(changes: Mapping[str, Mapping[str, float]], *, nameplate_alone: b
                     for key, henry in (
                         ("stator_leakage_H", 0.058),
                         ("rotor_leakage_H", 0.058),
-                        ("stator_self_inductance_H", 1.6),
+                        ("stator_self_inductance_H", 1.5 * 1.6),
                     )
                 }
             },
             "stator_leakage_H = 0.058, rotor_leakage_H = 0.058, stator_self_inductance_H = 1.6, "
-            "for reactances in ohm were given in place of H; or "
+            "for X1, X2' and Xm in ohm were given in place of H; or "
             "stator_leakage_H = 0.0182212, rotor_leakage_H = 0.0182212, "
-            "stator_self_inductance_H = 0.502655, for mH were given in place of H",
+            "stator_self_inductance_H = 0.753982, for mH were given in place of H",
+        ),
+        (
+            {"parameters": {"stator_leakage_H": 2 * math.pi * 50 * 0.058}},
+            "stator_leakage_H = 0.058, for X1 in ohm was given in place of H; or "
+            "stator_leakage_H = 0.0182212, for mH were given in place of H",
+        ),
+        (
+            {"parameters": dict.fromkeys(("stator_leakage_H", "rotor_leakage_H"), 2 * math.pi * 50 * 0.058)},
+            "stator_leakage_H = 0.058, rotor_leakage_H = 0.058, for X1 and X2' in ohm were given in place of "
+            "H; or stator_leakage_H = 0.0182212, rotor_leakage_H = 0.0182212, for mH were given in place of H",
+        ),
+        (
+            {"parameters": {"stator_self_inductance_H": 1.5 * 2 * math.pi * 50 * 1.6}},
+            "stator_self_inductance_H = 1.6, for Xm in ohm was given in place of H; or "
+            "stator_self_inductance_H = 0.753982, for mH were given in place of H",
         ),
         (
             {"parameters": {"stator_resistance_ohm": 1900}},
