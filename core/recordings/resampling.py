@@ -45,7 +45,7 @@ def evenly_spaced(recording: Recording) -> Recording:
             recording.source,
             "sampling",
             expected="one sampling rate and no gap in the time stamps",
-            found=f"steps of {steps.min() * 1e6:.6g} to {steps.max() * 1e6:.6g} us between samples"
+            found=f"steps of {steps.min() * 1e6:,.0f} to {steps.max() * 1e6:,.0f} us between samples"
             if steps.size
             else "a single sample",
         )

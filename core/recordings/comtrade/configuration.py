@@ -19,6 +19,9 @@ Schneider's Sepam relays write 1997, the draft of it."""
 BETWEEN_EDITIONS = range(1997, 2013)
 """In these years there was no layout but that of 1999, so that any other of them is read as 1999 (with a
 warning)."""
+FIELDS_SINCE_1999 = 13
+"""Of the line of an analogue channel; those of 1991 have ten."""
+
 NO_REVISIONS = ("", "0")
 """Written by recorders that fill the field without knowing an edition, as RTDS simulators do."""
 
@@ -153,8 +156,13 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
     if control := _CONTROL.search(text):
         raise RecordingError(path, "text", expected="no control characters", found=repr(control.group()))
     lines = Lines(path, text)
-    station, device, edition = _identification(lines.next("station, device and revision"), repairs)
+    identification = lines.next("station, device and revision")
+    station, device, edition = _identification(identification, repairs)
     analog_count, status_count = _channel_counts(lines.next("channel counts"), len(lines))
+    if len(identification.fields) == 2 and lines.fields_ahead() == FIELDS_SINCE_1999:
+        fault = identification.refuse("revision", f"one of {', '.join(REVISIONS)}", "none")
+        repairs.mend(fault, "the edition is told by the layout")
+        edition = None
     revision = edition or (1991 if lines.fields_ahead() == 10 else 1999)
     analog = tuple(
         _analog_channel(lines.next(f"analogue channel {k}"), k, revision, repairs)
@@ -247,7 +255,7 @@ def _check_index(line: Line, number: int, repairs: Repairs) -> None:
 
 
 def _analog_channel(line: Line, number: int, revision: int, repairs: Repairs) -> AnalogChannel:
-    line.has_fields(10 if revision == 1991 else 13)
+    line.has_fields(10 if revision == 1991 else FIELDS_SINCE_1999)
     _check_index(line, number, repairs)
     gain, offset = line.real(5, "multiplier a"), line.real(6, "offset b")
     if gain == 0:

@@ -81,7 +81,8 @@ def motor_with(changes: Mapping[str, Mapping[str, float]], *, nameplate_alone: b
         (
             {"parameters": dict.fromkeys(("stator_leakage_H", "rotor_leakage_H"), 2 * math.pi * 50 * 0.058)},
             "stator_leakage_H = 0.058, rotor_leakage_H = 0.058, for X1 and X2' in ohm were given in place of "
-            "H; or stator_leakage_H = 0.0182212, rotor_leakage_H = 0.0182212, for mH were given in place of H",
+            "H; or stator_leakage_H = 0.0182212, rotor_leakage_H = 0.0182212, "
+            "for mH were given in place of H",
         ),
         (
             {"parameters": {"stator_self_inductance_H": 1.5 * 2 * math.pi * 50 * 1.6}},

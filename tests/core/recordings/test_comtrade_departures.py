@@ -84,6 +84,7 @@ def test_years_between_the_editions_are_read_as_1999(tmp_path: Path, year: str) 
     [
         RECORD_1999.but(identification="SIM,RACK 1,0"),
         RECORD_1999.but(identification="SIM,RACK 1,"),
+        RECORD_1999.but(identification="SIM,RACK 1"),
         RECORD_1991.but(identification="SIM,RACK 1,0"),
         RECORD_2013.but(identification="SIM,RACK 1,0", tail=("1", "-3,-3", "0,0")),
     ],
