@@ -21,7 +21,12 @@ RATED_CURRENT_A = (0.01, 10e3)
 EXTRA_LOW_VOLTAGE_V = 100.0
 MOST_AT_EXTRA_LOW_VOLTAGE_A = 1500.0
 """Motors of vehicles on batteries have at most so much. A voltage in kV looks like a lower one in V."""
-
+HIGH_VOLTAGE_V = 1000.0
+LEAST_AT_HIGH_VOLTAGE_A, USUAL_AT_HIGH_VOLTAGE_A = 0.5, 5.0
+"""The smallest motors of over 1 kV have some tens of kW, so draw 5 A and more."""
+HIGHEST_USUAL_VOLTAGE_V = 15e3
+LEAST_USUAL_POWER_W = 700.0
+"""Motors on protection relays have more. The largest low-voltage motors look like less in kW."""
 
 RESISTANCE_PU = (0.0005, 0.5)
 LEAKAGE_REACTANCE_PU = (0.005, 1.0)
@@ -78,6 +83,8 @@ def plausible_power(rated_voltage_V: float) -> Plausible:
     least_A, most_A = RATED_CURRENT_A
     if rated_voltage_V < EXTRA_LOW_VOLTAGE_V:
         most_A = MOST_AT_EXTRA_LOW_VOLTAGE_A
+    if rated_voltage_V > HIGH_VOLTAGE_V:
+        least_A = LEAST_AT_HIGH_VOLTAGE_A
     least, most = (sqrt(3.0) * rated_voltage_V * current for current in (least_A, most_A))
     return Plausible(
         "rated_power_W",
@@ -86,6 +93,44 @@ def plausible_power(rated_voltage_V: float) -> Plausible:
         "W",
         f"{plain(least_A, 6)} to {plain(most_A, 6)} A at {plain(rated_voltage_V, 6)} V",
     )
+
+
+def unusual_rating(nameplate: Nameplate) -> Iterator[tuple[str, str]]:
+    """Say what is unusual of a rating, for a motor on a protection relay.
+
+    It need not be wrong. But the power may be in kW, or the voltage have a digit too many.
+
+    Parameters
+    ----------
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Yields
+    ------
+    tuple of str
+        Field of the nameplate, and a sentence.
+    """
+    power_W, voltage_V = nameplate.rated_power_W, nameplate.rated_voltage_V
+    current_A = power_W / (sqrt(3.0) * voltage_V)
+    power = f"rated_power_W = {plain(power_W, 6, with_commas=False)}"
+    if voltage_V > HIGHEST_USUAL_VOLTAGE_V:
+        yield (
+            "rated_voltage_V",
+            f"rated_voltage_V = {plain(voltage_V, 6, with_commas=False)} is more than motors have "
+            f"({plain(HIGHEST_USUAL_VOLTAGE_V)} V at most): is there a digit too many?",
+        )
+    if voltage_V > HIGH_VOLTAGE_V and current_A < USUAL_AT_HIGH_VOLTAGE_A:
+        yield (
+            "rated_power_W",
+            f"{power} is little for {plain(voltage_V, 6)} V: motors of over {plain(HIGH_VOLTAGE_V)} V have "
+            "some tens of kW at least; is it in kW, or rated_voltage_V wrong? Write the power in W",
+        )
+    elif power_W < LEAST_USUAL_POWER_W:
+        yield (
+            "rated_power_W",
+            f"{power} is little for a motor on a protection relay: is it in kW? Write it in W "
+            f"({plain(1e3 * power_W, 6, with_commas=False)} for {plain(power_W, 6)} kW)",
+        )
 
 
 def plausible_parameters(nameplate: Nameplate) -> Iterator[Plausible]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from core.operation import Operation
 from core.quality.circle_diagram import CircleDiagram
 from core.quality.finding import QualityFinding, finding
-from core.quality.ratios import current_advice, current_cause
+from core.quality.ratios import current_advice, current_cause, power_in_kW
 from core.quality.supply import Feed
 from core.quantity_text import with_unit
 from core.recordings import Channel
@@ -161,7 +161,8 @@ def running(currents: Currents, feed: Feed, circle: CircleDiagram) -> Iterator[Q
     )
     cause = current_cause(currents.strong, circle.running_range_A(feed.strong), currents.channels)
     if stalled and cause:
-        why += f"; {cause}"
+        asked = power_in_kW(currents.strong, circle.running_range_A(feed.strong), circle.rated_current_A)
+        why += f"; {asked}{cause}"
     does = Operation.NOT_RUNNING if off else Operation.START if _lags_as_at_rest(currents, feed) else None
     yield finding(
         "not-running" if off else "running", share, MOST_OF_STANDSTILL, "of locked rotor",

@@ -24,6 +24,11 @@ PRIMARY_A = (
 """Rated currents of current transformers (IEC 61869-2, IEEE C57.13) [A]."""
 LEAST_OF_RATED = 0.95
 """Share of the motor's rated current that its transformers are made for at least."""
+LIGHT = 0.2
+"""Least share of the rated current that a running motor draws."""
+MOST_RATED_A = 2000.0
+"""Rated currents of motors are hardly larger."""
+KILO = 1e3
 PLACE = "[transformers] of the motor file"
 
 
@@ -109,8 +114,43 @@ def current_advice(
     least, most = plausible_A
     if amps <= 0.0 or least <= amps <= most:
         return ""
-    if cause := current_cause(amps, plausible_A, channels):
-        return cause
+    asked = power_in_kW(amps, plausible_A, rated_A)
+    return asked + (
+        current_cause(amps, plausible_A, channels) or _range(amps, plausible_A, rated_A, channels)
+    )
+
+
+def power_in_kW(amps: float, plausible_A: tuple[float, float], rated_A: float) -> str:
+    """Ask whether the rated power is in kW, where that would explain a current.
+
+    Parameters
+    ----------
+    amps : float
+        Current as it was read, rms [A].
+    plausible_A : tuple of float
+        Least and greatest current of the motor in this operation, rms [A].
+    rated_A : float
+        Rated current [A].
+
+    Returns
+    -------
+    str
+        The question, for other advice to follow; "" where that does not explain the current.
+    """
+    least, most = plausible_A
+    # A larger motor needs less to magnetise it, so runs with a smaller share of its rated current.
+    if KILO * rated_A > MOST_RATED_A or not min(least, LIGHT * rated_A) <= amps / KILO <= most:
+        return ""
+    return (
+        "is rated_power_W of [nameplate] in kW? The currents are about 1000 times too large for it: write it "
+        "in W; if it is right, "
+    )
+
+
+def _range(
+    amps: float, plausible_A: tuple[float, float], rated_A: float, channels: tuple[Channel, ...]
+) -> str:
+    least, most = plausible_A
     written = amps / (channels[0].applied_ratio if channels else 1.0)
     usual = " or ".join(_usual(least / written, most / written, rated_A))
     example = f", such as {usual}" if usual else ""

@@ -5,7 +5,7 @@ the nameplate and the equivalent circuit of each motor. It may also bind motors 
 that no SCD has. Either may say on which bus a motor is. The motors file wins.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from ipaddress import ip_address
 from pathlib import Path
@@ -14,6 +14,8 @@ import scl
 from core.machines.motor_file import TABLES, motor_from_table
 from core.machines.motor_file_error import MotorFileError
 from core.machines.parameters import Motor
+from core.machines.plausibility import unusual_rating
+from core.machines.typical import atypical
 from service.configuration.problems import Problem, Problems, nearest
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
 from service.configuration.settings import Settings
@@ -198,9 +200,23 @@ def _motors(
             )
         except MotorFileError as error:
             problems.extend(_in_motor(each, entry, told) for each in (error, *error.others))
+        else:
+            problems.warnings.extend(_unusual(data[entry.name], told))
     return tuple(
         _plant_motor(one, told.motors[name], data[name]) for name, one in binding_of.items() if name in data
     )
+
+
+def _unusual(motor: Motor, told: MotorsFile) -> Iterator[str]:
+    """Yield what is odd about a motor's data and may be right all the same, with its line.
+
+    Parameters that fit a rating are checked against it already, so its power is asked about only without.
+    """
+    if motor.is_typical:
+        for key, words in unusual_rating(motor.nameplate):
+            yield f"{told.place('motor', motor.name, 'nameplate', key)}: motor {motor.name}: {words}"
+    for words in atypical(motor):
+        yield f"{told.place('motor', motor.name, 'parameters')}: motor {motor.name}: {words}"
 
 
 def _plant_motor(one: Binding, entry: MotorEntry, motor: Motor) -> PlantMotor:

@@ -66,10 +66,17 @@ class MotorsFile:
         self, kind: str, name: str, *key: str, expected: str, found: str, nearest: str | None = None
     ) -> Problem:
         """Return what is wrong with a key of a motor, relay or bus, or with all of its table."""
-        number = self.tables.get((kind, name))
-        line = None if number is None else self.lines.line(kind, number, *key)
         field = ": ".join((f"{kind} {name}", *key[-1:]))
-        return Problem(str(self.path), field, expected, found, nearest, line)
+        return Problem(str(self.path), field, expected, found, nearest, self._line(kind, name, *key))
+
+    def place(self, kind: str, name: str, *key: str) -> str:
+        """Return where a key of a motor, relay or bus is: the file, and the line if it is known."""
+        line = self._line(kind, name, *key)
+        return str(self.path) if line is None else f"{self.path}: line {line}"
+
+    def _line(self, kind: str, name: str, *key: str) -> int | None:
+        number = self.tables.get((kind, name))
+        return None if number is None else self.lines.line(kind, number, *key)
 
 
 def read_motors_file(path: Path, problems: Problems) -> MotorsFile:

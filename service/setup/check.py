@@ -7,7 +7,6 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.machines.typical import atypical
 from mms import CredentialFileError
 from service.configuration.problems import Problem, Problems
 from service.configuration.relay_access import AccessError, clear_passwords, credentials
@@ -50,7 +49,6 @@ def check(config: Path | None) -> CheckedPlant:
             f"relay {name}: its password goes over the network in clear: configure TLS for it"
             for name in clear_passwords(settings.relays, names)
         )
-        problems.warnings.extend(_parameters(plant))
     in_order = sorted(problems, key=lambda problem: (problem.source, problem.line or 0))
     return CheckedPlant(settings, plant, tuple(in_order), tuple(problems.warnings))
 
@@ -86,12 +84,6 @@ def _credentials(settings: Settings, relay: str) -> list[Problem]:
     except AccessError as error:
         return [_of_text("environment", f"relays.{relay}", str(error))]
     return []
-
-
-def _parameters(plant: Plant) -> list[str]:
-    """Return what is odd about the parameters of motors."""
-    motors = [one.motor for one in plant.motors]
-    return [f"motor {motor.name}: {said}" for motor in motors for said in atypical(motor)]
 
 
 def _of_text(source: str, field: str, text: str) -> Problem:

@@ -62,10 +62,14 @@ def _print(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> None:
         console.print(Text(f"{_number(len(checked.problems), 'problem')}: mcc serve would not start"))
     elif checked.plant is not None:
         plant = checked.plant
+        number = len(checked.warnings)
         where = " in the files" if silent else ""
+        said = (
+            f"{_number(number, 'warning')}; mcc serve would start" if number else f"nothing is wrong{where}"
+        )
         numbers = ((plant.motors, "motor"), (plant.relays, "relay"), (plant.sites, "site"))
         words = ", ".join(_number(len(found), what) for found, what in numbers)
-        console.print(Text(f"nothing is wrong{where}: {words}"))
+        console.print(Text(f"{said}: {words}"))
 
 
 def _number(number: int, what: str) -> str:

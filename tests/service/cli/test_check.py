@@ -62,7 +62,49 @@ inertia_kgm2 = 0.0131
     assert main(["check", "--config", str(config), "--json"]) == 0
     warnings = json.loads(capsys.readouterr().out)["warnings"]
     assert any("motor P-1: stator_resistance_ohm is " in one for one in warnings), warnings
-    assert warnings[-1].startswith("motor P-1: all impedances are off alike: check connection")
+    line = motors.read_text(encoding="utf-8").splitlines().index("[motor.parameters]") + 1
+    assert warnings[-1].startswith(
+        f"{motors}: line {line}: motor P-1: all impedances are off alike: check connection"
+    )
+    assert main(["check", "--config", str(config)]) == 0
+    summary = capsys.readouterr().out.splitlines()[-1]
+    assert summary == f"{len(warnings)} warnings; mcc serve would start: 1 motor, 1 relay, 1 site"
+
+
+@pytest.mark.parametrize(
+    ("power", "voltage", "key", "question"),
+    [
+        ("90", "400", "rated_power_W", "is it in kW? Write it in W (90000 for 90 kW)"),
+        ("355", "400", "rated_power_W", "is it in kW?"),
+        ("20000", "11000", "rated_power_W", "is it in kW, or rated_voltage_V wrong?"),
+        ("90000", "40000", "rated_voltage_V", "is there a digit too many?"),
+    ],
+)
+def test_a_rating_that_is_unusual_is_asked_about_at_its_line(
+    config: Path, power: str, voltage: str, key: str, question: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """With nothing but a nameplate, no impedance tells that the power is in kW."""
+    motors = config.with_name("motors.toml")
+    text = MOTORS.replace("= 4000", f"= {power}").replace("_V = 400", f"_V = {voltage}")
+    motors.write_text(text, encoding="utf-8")
+    assert main(["check", "--config", str(config)]) == 0
+    warning, *_, summary = capsys.readouterr().out.splitlines()
+    line = next(number for number, words in enumerate(text.splitlines(), 1) if words.startswith(key))
+    assert warning.startswith(f"warning: {motors}: line {line}: motor P-1: {key} = ")
+    assert question in warning
+    assert "nothing is wrong" not in summary
+    assert "mcc serve would start: 1 motor" in summary
+
+
+def test_a_power_that_no_motor_of_the_voltage_has_is_an_error(
+    config: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = MOTORS.replace("= 4000", "= 450").replace("_V = 400", "_V = 3300")
+    config.with_name("motors.toml").write_text(text, encoding="utf-8")
+    assert main(["check", "--config", str(config)]) == 1
+    told = capsys.readouterr().out
+    assert "[nameplate] rated_power_W: expected 2860 to " in told
+    assert "rated_power_W = 450000, for kW were given in place of W" in told
 
 
 def test_everything_that_is_wrong_is_told_at_once(
@@ -213,4 +255,4 @@ def test_what_is_left_out_of_a_relay_s_file_is_a_warning(
     told = capsys.readouterr().out
     assert "warning: R-1.icd: line " in told
     assert '<DO name="Ind1" type="gone">: left out: expected a DOType with id="gone"' in told
-    assert "nothing is wrong: 1 motor," in told
+    assert "warning; mcc serve would start: 1 motor," in told

@@ -13,7 +13,8 @@ from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
 from core.machines.motor_file import read_motor
 from core.machines.motor_file_writer import write_motor
-from core.machines.parameters import ChannelNames, Motor, Transformers
+from core.machines.parameters import ChannelNames, Motor, Nameplate, ParametersSource, Transformers
+from core.machines.typical import typical_parameters
 from core.recordings import Recording, comtrade
 from service.cli import main
 from testing.machines.phase_circuits import recording, running
@@ -169,6 +170,26 @@ def test_secondary_values_of_a_high_voltage_are_no_motor_that_stands(
     assert "13800:110: voltage_ratio = about 125.5 in" in first
     found = diagnosed(capsys, path, mill, Transformers(13_800 / 110, 400.0))
     assert found["verdict"] == "healthy"
+
+
+def test_a_power_in_kW_is_asked_about_before_a_ratio_is_named(
+    written: Write, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The currents of 37 kW are 1000 times those of 37 W; a ratio that hides it would be wrong for good."""
+    plate = Nameplate(rated_power_W=37e3, rated_voltage_V=400.0, rated_frequency_Hz=50.0, pole_pairs=2)
+    in_kW = replace(plate, rated_power_W=37.0)
+    motor, wrong = (
+        Motor("FAN", each, typical_parameters(each).parameters, parameters_source=ParametersSource.TYPICAL)
+        for each in (plate, in_kW)
+    )
+    (reason, *_) = diagnosed(capsys, written(of(motor)), wrong)["reasons"]
+    asked, _, otherwise = reason.partition("; if it is right, ")
+    assert "is rated_power_W of [nameplate] in kW?" in asked
+    assert "current_ratio" not in asked
+    assert "current_ratio" in otherwise
+    record = StartRecord(duration_s=0.4, snr_db=60.0).of(motor)
+    with pytest.raises(CommissioningError, match=r"is rated_power_W of \[nameplate\] in kW\?.*current_ratio"):
+        start_of(record, in_kW, ChannelNames())
 
 
 def test_commissioning_names_the_ratios_and_takes_them() -> None:
