@@ -211,7 +211,8 @@ def identified(explanation: Explanation, advice: Callable[[], str]) -> QualityFi
     return finding(
         "identifiability", unsound, 0, "fits", passed=unsound == 0,
         message="no steady running of this motor comes near the record, or the record does not tell load, "
-        "level and offset apart: nameplate and parameters, or the recording, are not this motor's"
+        "level and offset apart: nameplate and parameters, or the recording, are not this motor's: "
+        f"{COMMISSION_IT}"
         + (f"; {ratio}" if ratio else ""),
     )  # fmt: skip
 

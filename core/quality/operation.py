@@ -267,6 +267,13 @@ def _beginning(course: Course, over_rated: float, motor: Motor, *, from_rest: bo
             "the motor starts through a soft starter, a drive or a reduced voltage: its current rises slowly "
             f"and reaches {plain(over_rated, 2)} times the rated one; {NOT_DIRECT}"
         )
+    if over_rated < INRUSH and course.greatest_A < INRUSH * float(course.rms_A[-1]):
+        return (
+            "the current begins within the record without an inrush, it reaches "
+            f"{plain(over_rated, 2)} times the rated one: samples lost at the beginning, a start "
+            "through a drive, or currents scaled wrongly. "
+            f"`mcc commission` needs an inrush of {INRUSH:g} times or more; {RECORD_AGAIN}"
+        )
     return (
         f"the motor starts, its current comes and reaches {plain(over_rated, 2)} times the rated one: "
         f"{WHAT_TO_DO}"

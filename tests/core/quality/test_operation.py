@@ -243,6 +243,17 @@ def test_a_reason_says_plainly_what_helps() -> None:
     )
 
 
+def test_a_current_that_begins_without_an_inrush_is_not_sent_to_the_commissioning() -> None:
+    samples = steady(0.6).samples.copy()
+    samples[AMPS, :CYCLE] = noise((3, CYCLE), 0.002)
+    record = of(steady(), samples)
+    (reason, *_) = diagnose(record, REFERENCE).reasons
+    assert "without an inrush" in reason
+    assert "estimates" not in reason
+    with pytest.raises(CommissioningError, match="an inrush of at least"):
+        start_of(record, REFERENCE.nameplate, REFERENCE.channels)
+
+
 UNSUPPORTED: list[tuple[str, str, Callable[[], Recording]]] = [
     ("star-delta", "interrupted 0.7", in_steps),
     ("soft starter", "soft starter, a drive", lambda: ramped(started(busbar=True), 15)),
