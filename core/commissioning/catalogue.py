@@ -19,12 +19,13 @@ Symposium 2012. IEC 60034-1, clause 12.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import exp, hypot, log, pi, sqrt
 
 import numpy as np
 
-from core.commissioning.data_sheet import DATA_SHEET, INERTIA_TOLERANCE, positive
+from core.commissioning.catalogue_data import CatalogueData, check_figures
+from core.commissioning.data_sheet import DATA_SHEET, INERTIA_TOLERANCE
 from core.commissioning.errors import CommissioningError
 from core.commissioning.rated_performance import (
     OTHER,
@@ -42,8 +43,6 @@ from core.machines.base import Array
 from core.machines.parameters import MachineParameters, Nameplate
 from core.machines.typical import FACTORS, typical_parameters
 
-FEWEST = 3
-"""Figures of a catalogue without which typical parameters are as good."""
 NORMAL_95 = 1.96
 LEAST_HALF_WIDTH = 0.05
 """Of an interval: no catalogue is of one motor alone."""
@@ -52,6 +51,10 @@ SPLIT = 0.15
 ROUNDING_RPM = 0.5
 
 LARGEST_RATED_SLIP = 0.5
+LEAST_RATIO = 1e-6
+"""A fit on its way may try a circuit without output, whose torques have no logarithm."""
+FARTHEST = 6.0
+"""Standard deviations from what is typical of the rating, beyond which no circuit is looked for."""
 
 PRIOR_OF_OTHERS = {
     SKIN: (log(1.6), 0.45),
@@ -59,43 +62,6 @@ PRIOR_OF_OTHERS = {
     OTHER: (log(0.45), 0.3),
 }
 """Logarithms with standard deviations: k_R, k_X, and the share of the losses that are not of the windings."""
-
-
-@dataclass(frozen=True, slots=True)
-class CatalogueData:
-    """Figures of a catalogue at rated voltage, frequency and power; None where it has none.
-
-    Parameters
-    ----------
-    efficiency, power_factor : float or None, optional
-        As fractions.
-    rated_current_A : float or None, optional
-        Line current, rms [A].
-    rated_speed_rpm : float or None, optional
-        Speed [rpm].
-    locked_rotor_current : float or None, optional
-        Over the rated current.
-    locked_rotor_torque, breakdown_torque : float or None, optional
-        Over the rated torque.
-    stator_resistance_ohm : float or None, optional
-        Of a winding at work, where it was measured [ohm].
-    """
-
-    efficiency: float | None = None
-    power_factor: float | None = None
-    rated_current_A: float | None = None
-    rated_speed_rpm: float | None = None
-    locked_rotor_current: float | None = None
-    locked_rotor_torque: float | None = None
-    breakdown_torque: float | None = None
-    stator_resistance_ohm: float | None = None
-
-    @property
-    def given(self) -> dict[str, float]:
-        """Figures that are given, by name."""
-        return {
-            field.name: value for field in fields(self) if (value := getattr(self, field.name)) is not None
-        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +77,7 @@ class Compared:
     computed : float
         What the circuit gives.
     deviations : float or None
-        Their difference in standard deviations of what the standard allows.
+        Computed less given, in standard deviations of what the standard allows.
     """
 
     name: str
@@ -165,14 +131,18 @@ def circuit_from_catalogue(
     """
     from scipy.optimize import least_squares  # its import takes longer than the fit
 
-    _check(data, nameplate)
+    check_figures(data, nameplate)
     middle, deviation = _prior(nameplate)
     figures = _Figures(data, nameplate)
 
     def residuals(x: Array) -> Array:
         return np.concatenate([(x - middle) / deviation, figures.residuals(x)])
 
-    fit = least_squares(residuals, middle, x_scale=deviation, xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    low, high = middle - FARTHEST * deviation, middle + FARTHEST * deviation
+    high[SLIP] = log(LARGEST_RATED_SLIP)
+    fit = least_squares(
+        residuals, middle, bounds=(low, high), x_scale=deviation, xtol=1e-12, ftol=1e-12, gtol=1e-12
+    )
     slopes = np.asarray(fit.jac, dtype=np.float64)
     spread = np.sqrt(np.diag(np.linalg.inv(slopes.T @ slopes)))
     base_ohm, w = nameplate.base_impedance_ohm, nameplate.rated_angular_frequency
@@ -233,7 +203,7 @@ def figures_of(machine: MachineParameters, data: CatalogueData, nameplate: Namep
     """
     from scipy.optimize import brentq
 
-    _check(data, nameplate, fewest=0)
+    check_figures(data, nameplate, fewest=0)
     base_ohm, w = nameplate.base_impedance_ohm, nameplate.rated_angular_frequency
     x, _ = _prior(nameplate)
     x[[R_S, R_R, X_M]] = np.log(
@@ -274,14 +244,14 @@ class _Figures:
         }
         slip_rpm = synchronous - self._given.get("rated_speed_rpm", 0.0)
         self._compare: dict[str, tuple[Callable[[float], float], float]] = {
-            "efficiency": (lambda one: log(max(1.0 - one, 1e-4)), 0.08),
+            "efficiency": (lambda one: -log(max(1.0 - one, 1e-4)), 0.08),
             "power_factor": (lambda one: one, 0.015),
-            "rated_current_A": (log, 0.03),
-            "rated_speed_rpm": (lambda one: log(max(1.0 - one, 1e-5)), hypot(0.1, ROUNDING_RPM / slip_rpm)),
-            "locked_rotor_current": (log, 0.08),
-            "locked_rotor_torque": (log, 0.12),
-            "breakdown_torque": (log, 0.08),
-            "stator_resistance_ohm": (log, 0.05),
+            "rated_current_A": (_logarithm, 0.03),
+            "rated_speed_rpm": (lambda one: -log(max(1.0 - one, 1e-5)), hypot(0.1, ROUNDING_RPM / slip_rpm)),
+            "locked_rotor_current": (_logarithm, 0.08),
+            "locked_rotor_torque": (_logarithm, 0.12),
+            "breakdown_torque": (_logarithm, 0.08),
+            "stator_resistance_ohm": (_logarithm, 0.05),
         }
 
     def residuals(self, x: Array) -> Array:
@@ -308,6 +278,10 @@ class _Figures:
         return (measure(computed) - measure(self._given[name] / self._scale.get(name, 1.0))) / deviation
 
 
+def _logarithm(value: float) -> float:
+    return log(max(value, LEAST_RATIO))
+
+
 def _prior(nameplate: Nameplate) -> tuple[Array, Array]:
     """Return the logarithms that are typical of the rating, and their standard deviations."""
     typical, base_ohm = typical_parameters(nameplate).parameters, nameplate.base_impedance_ohm
@@ -325,33 +299,3 @@ def _prior(nameplate: Nameplate) -> tuple[Array, Array]:
     deviation = [log(FACTORS[name]) / 2.0 for name in names]
     deviation += [PRIOR_OF_OTHERS[k][1] for k in (SKIN, SATURATION, OTHER)]
     return np.array(middle), np.array([*deviation, 1.0])
-
-
-def _check(data: CatalogueData, nameplate: Nameplate, *, fewest: int = FEWEST) -> None:
-    """Raise CommissioningError for figures that no motor has, and too few."""
-    for name, value in data.given.items():
-        positive(name, value)
-    for name in ("efficiency", "power_factor"):
-        value = getattr(data, name)
-        if value is not None and not 0.3 <= value < 1.0:
-            raise CommissioningError(
-                DATA_SHEET, name, expected="30 to below 100 %", found=f"{100.0 * value:g} %"
-            )
-    synchronous = 60.0 * nameplate.rated_frequency_Hz / nameplate.pole_pairs
-    speed = data.rated_speed_rpm
-    if speed is not None and not 0.8 * synchronous < speed < synchronous:
-        raise CommissioningError(
-            DATA_SHEET,
-            "rated speed",
-            expected=f"{0.8 * synchronous:g} to {synchronous:g} rpm, below the synchronous speed of "
-            f"{nameplate.pole_pairs} pole pairs at {nameplate.rated_frequency_Hz:g} Hz",
-            found=f"{speed:g} rpm",
-        )
-    if len(data.given) < fewest:
-        raise CommissioningError(
-            DATA_SHEET,
-            "figures",
-            expected=f"at least {fewest} figures of the catalogue: rated speed, rated current, power factor, "
-            "efficiency, locked-rotor current and torque, breakdown torque",
-            found=", ".join(data.given) or "none",
-        )

@@ -10,7 +10,14 @@ from math import inf
 
 from core.commissioning.errors import CommissioningError
 from core.machines.parameters import Connection, MachineParameters, Nameplate
+from core.machines.plausibility import (
+    INERTIA_CONSTANT_S,
+    LEAKAGE_REACTANCE_PU,
+    MAGNETISING_REACTANCE_PU,
+    RESISTANCE_PU,
+)
 from core.machines.typical import typical_parameters
+from core.quantity_text import plain
 
 DATA_SHEET = "data sheet"
 WORKING_C = 75.0
@@ -20,6 +27,20 @@ COPPER_C, ALUMINIUM_C = 235.0, 225.0
 RESISTANCE_TOLERANCE, REACTANCE_TOLERANCE = 0.15, 0.20
 """Of designed values against one motor: IEC 60034-1 allows the locked-rotor current 20 %."""
 INERTIA_TOLERANCE = 0.2
+BASE_OVER_POWER = (0.5, 10.0)
+"""Apparent power that per unit may be of, over the rated power."""
+RANGES_PU = {
+    "r1": RESISTANCE_PU,
+    "r2": RESISTANCE_PU,
+    "x1": LEAKAGE_REACTANCE_PU,
+    "x2": LEAKAGE_REACTANCE_PU,
+    "xm": MAGNETISING_REACTANCE_PU,
+}
+"""What motors have of each impedance, per unit of a winding's V^2 / P."""
+OPTIONS = {
+    "r1": "--r1, or by --terminal-resistance",
+    **{name: f"--{name}" for name in ("r2", "x1", "x2", "xm")},
+}
 
 
 class Unit(StrEnum):
@@ -109,8 +130,7 @@ def winding_parameters(
     CommissioningError
         If a figure is impossible, or something is missing without which the others mean nothing.
     """
-    for field in fields(impedances):
-        positive(field.name, getattr(impedances, field.name))
+    _check_impedances(impedances, nameplate, reading)
     factor, w = ohm_per_unit(nameplate, reading), nameplate.rated_angular_frequency
     typical = typical_parameters(nameplate).parameters
     return MachineParameters.from_magnetising_inductance(
@@ -121,6 +141,54 @@ def winding_parameters(
         magnetising_inductance_H=impedances.xm * factor / w,
         inertia_kgm2=typical.inertia_kgm2 if inertia_kgm2 is None else inertia_kgm2,
     )
+
+
+def _check_impedances(impedances: Impedances, nameplate: Nameplate, reading: Reading) -> None:
+    """Raise CommissioningError for impedances that no motor of the rating has."""
+    ohm = ohm_per_unit(nameplate, reading)
+    factor = ohm / nameplate.base_impedance_ohm
+    for field in fields(impedances):
+        value, (least, most) = getattr(impedances, field.name), RANGES_PU[field.name]
+        name = OPTIONS[field.name]
+        positive(name, value)
+        warm = warmed(COPPER_C if field.name == "r1" else ALUMINIUM_C, reading.temperature_C)
+        found = value * factor * (warm if field.name.startswith("r") else 1.0)
+        if not least <= found <= most:
+            in_milliohm = reading.unit is Unit.OHM and least <= found / 1e3 <= most
+            ends = " to ".join(plain(end * value / found, 4) for end in (least, most))
+            raise CommissioningError(
+                DATA_SHEET,
+                name,
+                expected=f"{ends} {reading.unit}, for this nameplate",
+                found=plain(value, 6)
+                + (f": is it in milliohm? then {plain(value / 1e3, 4)}" if in_milliohm else ""),
+            )
+
+
+def check_inertia(inertia_kgm2: float, nameplate: Nameplate) -> None:
+    """Check that an inertia is one that a motor of the rating may turn.
+
+    Parameters
+    ----------
+    inertia_kgm2 : float
+        Inertia of motor and load [kg m^2].
+    nameplate : Nameplate
+        Rated values of the motor.
+
+    Raises
+    ------
+    CommissioningError
+        If it is not.
+    """
+    positive("inertia", inertia_kgm2)
+    least, most = (one * nameplate.base_inertia_kgm2 for one in INERTIA_CONSTANT_S)
+    if not least <= inertia_kgm2 <= most:
+        raise CommissioningError(
+            DATA_SHEET,
+            "inertia",
+            expected=f"{plain(least)} to {plain(most)} kg m^2, for this nameplate",
+            found=plain(inertia_kgm2, 6),
+        )
 
 
 def winding_resistance_ohm(between_terminals_ohm: float, connection: Connection) -> float:
@@ -201,7 +269,17 @@ def ohm_per_unit(nameplate: Nameplate, reading: Reading) -> float:
                 "(--rated-current) for sqrt(3) V I",
                 found="neither",
             )
-        positive("base_VA", reading.base_VA)
+        positive("base of per unit (--base-VA)", reading.base_VA)
+        least, most = (share * nameplate.rated_power_W for share in BASE_OVER_POWER)
+        if not least <= reading.base_VA <= most:
+            in_kVA = least <= 1e3 * reading.base_VA <= most
+            raise CommissioningError(
+                DATA_SHEET,
+                "base of per unit (--base-VA)",
+                expected=f"{plain(least)} to {plain(most)} VA, for this nameplate",
+                found=plain(reading.base_VA, 6)
+                + (f": is it in kVA? then {plain(1e3 * reading.base_VA)}" if in_kVA else ""),
+            )
         return nameplate.rated_voltage_V**2 / reading.base_VA * (3.0 if delta else 1.0)
     if reading.values is None and delta:
         raise CommissioningError(

@@ -9,15 +9,18 @@ from pathlib import Path
 
 from rich.text import Text
 
-from core.commissioning.catalogue import CatalogueData, Compared, circuit_from_catalogue, figures_of
+from core.commissioning.catalogue import Compared, circuit_from_catalogue, figures_of
+from core.commissioning.catalogue_data import CatalogueData, check_figures
 from core.commissioning.data_sheet import (
     COPPER_C,
     Impedances,
     Reading,
     Unit,
     Values,
+    check_inertia,
     intervals_of_data_sheet,
     ohm_per_unit,
+    positive,
     warmed,
     winding_parameters,
     winding_resistance_ohm,
@@ -77,8 +80,22 @@ class DataSheet:
 
     @property
     def has_impedances(self) -> bool:
-        """Whether it gives any reactance or the rotor's resistance."""
-        return any(one is not None for one in (self.r2, self.x1, self.x2, self.xm))
+        """Whether it gives a reactance or the rotor's resistance; or the stator's, and no catalogue's figure.
+
+        The rated current may be there for the base of per unit alone.
+        """
+        figures = (
+            self.efficiency,
+            self.power_factor,
+            self.rated_speed_rpm,
+            self.locked_rotor_current,
+            self.locked_rotor_torque,
+            self.breakdown_torque,
+        )
+        stator = (self.r1, self.terminal_resistance_ohm)
+        return any(one is not None for one in (self.r2, self.x1, self.x2, self.xm)) or (
+            all(one is None for one in figures) and any(one is not None for one in stator)
+        )
 
 
 def parameters_of_data_sheet(
@@ -113,10 +130,8 @@ def _found(
     sheet: DataSheet, nameplate: Nameplate
 ) -> tuple[MachineParameters, dict[str, Interval], tuple[Compared, ...]]:
     """Return parameters, intervals, and the catalogue's figures beside the circuit's."""
-    if sheet.inertia_kgm2 is not None and not sheet.inertia_kgm2 > 0.0:
-        raise CommissioningError(
-            "data sheet", "inertia", expected="a number above zero", found=f"{sheet.inertia_kgm2:g}"
-        )
+    if sheet.inertia_kgm2 is not None:
+        check_inertia(sheet.inertia_kgm2, nameplate)
     data = CatalogueData(
         efficiency=sheet.efficiency,
         power_factor=sheet.power_factor,
@@ -126,6 +141,7 @@ def _found(
         locked_rotor_torque=sheet.locked_rotor_torque,
         breakdown_torque=sheet.breakdown_torque,
     )
+    check_figures(data, nameplate, fewest=0)
     reading = Reading(sheet.unit, sheet.values, _base_VA(sheet, nameplate), sheet.temperature_C)
     if not sheet.has_impedances:
         resistance = _winding_resistance(sheet, nameplate, reading)
@@ -147,18 +163,18 @@ def _base_VA(sheet: DataSheet, nameplate: Nameplate) -> float | None:
 
 def _winding_resistance(sheet: DataSheet, nameplate: Nameplate, reading: Reading) -> float | None:
     """Return the stator's resistance of a winding at work, where the data sheet has one."""
+    _check_resistance(sheet)
     warm = warmed(COPPER_C, sheet.temperature_C)
     if sheet.terminal_resistance_ohm is not None:
-        _only_one_resistance(sheet)
         return winding_resistance_ohm(sheet.terminal_resistance_ohm, nameplate.connection) * warm
     return None if sheet.r1 is None else sheet.r1 * ohm_per_unit(nameplate, reading) * warm
 
 
 def _impedances(sheet: DataSheet, nameplate: Nameplate, reading: Reading) -> Impedances:
     """Return the impedances; the stator's resistance between terminals is put into the unit of the others."""
+    _check_resistance(sheet)
     r1 = sheet.r1
     if sheet.terminal_resistance_ohm is not None:
-        _only_one_resistance(sheet)
         winding = winding_resistance_ohm(sheet.terminal_resistance_ohm, nameplate.connection)
         r1 = winding / ohm_per_unit(nameplate, reading)
     x2 = sheet.x1 if sheet.x2 is None else sheet.x2
@@ -174,11 +190,15 @@ def _impedances(sheet: DataSheet, nameplate: Nameplate, reading: Reading) -> Imp
     return Impedances(r1, sheet.r2, sheet.x1, x2, sheet.xm)
 
 
-def _only_one_resistance(sheet: DataSheet) -> None:
-    if sheet.r1 is not None:
+def _check_resistance(sheet: DataSheet) -> None:
+    """Raise CommissioningError where the stator's resistance is given twice, or is none."""
+    if sheet.r1 is not None and sheet.terminal_resistance_ohm is not None:
         raise CommissioningError(
             "data sheet", "stator resistance", expected="--r1 or --terminal-resistance", found="both"
         )
+    for name, value in (("--r1", sheet.r1), ("--terminal-resistance", sheet.terminal_resistance_ohm)):
+        if value is not None:
+            positive(name, value)
 
 
 def _warnings(compared: tuple[Compared, ...], *, from_impedances: bool) -> list[str]:

@@ -1,14 +1,16 @@
 """Circuits from catalogues: published motors are found again, within the intervals."""
 
+from dataclasses import replace
 from math import sqrt
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from core.commissioning.catalogue import CatalogueData, circuit_from_catalogue, figures_of
+from core.commissioning.catalogue import circuit_from_catalogue, figures_of
+from core.commissioning.catalogue_data import CatalogueData
 from core.commissioning.errors import CommissioningError
-from core.machines.parameters import MachineParameters, Nameplate
+from core.machines.parameters import Connection, MachineParameters, Nameplate
 from tests.core.machines.test_typical import PUBLISHED, Published
 
 PUMP = Nameplate(450e3, 3300.0, 50.0, 1)
@@ -109,10 +111,19 @@ def test_a_measured_resistance_is_kept() -> None:
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (CatalogueData(efficiency=0.958, power_factor=0.9), "at least 3 figures .* found efficiency, power"),
-        (CatalogueData(efficiency=0.00958), "efficiency: expected 30 to below 100 %, found 0.958 %"),
-        (CatalogueData(rated_speed_rpm=1486.0), "rated speed: expected 2400 to 3000 rpm, .* 1 pole pairs"),
-        (CatalogueData(rated_current_A=-92.0), "rated_current_A: expected a number above zero"),
+        (
+            CatalogueData(efficiency=0.958, power_factor=0.9),
+            "at least 3 figures .* found efficiency, power f",
+        ),
+        (
+            CatalogueData(efficiency=0.00958),
+            "efficiency: .* 30 to below 100 %, found 0.958 %: is it a fraction. then 95.8",
+        ),
+        (
+            CatalogueData(rated_speed_rpm=1486.0),
+            "rated speed: expected 2400 to below 3000 rpm, .* 1 pole pairs",
+        ),
+        (CatalogueData(rated_current_A=-92.0), "rated current: expected a number above zero"),
     ],
 )
 def test_impossible_figures_and_too_few_are_refused(data: CatalogueData, words: str) -> None:
@@ -125,3 +136,34 @@ def test_a_circuit_that_cannot_bear_its_rated_torque_is_refused() -> None:
     weak = MachineParameters(*(20.0 * getattr(machine, name) for name in machine.__dataclass_fields__))
     with pytest.raises(CommissioningError, match="a motor that bears its rated torque"):
         figures_of(weak, CatalogueData(), PUMP)
+
+
+FAN = Nameplate(90e3, 400.0, 50.0, 2, Connection.DELTA)
+OF_FAN = CatalogueData(0.952, 0.86, 159.0, 1483.0, 7.2, 2.5, 2.9)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "words"),
+    [
+        ("locked_rotor_current", 1145.0, "2 to 15 times .*, found 1145: is it in amperes. then 7.201"),
+        ("locked_rotor_current", 720.0, "found 720: is it in percent. then 7.2"),
+        ("locked_rotor_current", 72.0, "found 72: is it with the decimal point elsewhere. then 7.2"),
+        ("locked_rotor_torque", 1450.0, "0.1 to 8 times .*, found 1450: is it in Nm. then 2.502"),
+        ("breakdown_torque", 1680.0, "1.1 to 8 times .*, found 1680: is it in Nm. then 2.899"),
+        ("rated_current_A", 159e3, "rated current: .* A, for 90 kW .* is it in milliamperes. then 159"),
+        ("rated_current_A", 91.8, "is it that of a winding in delta. then 159"),
+        ("rated_speed_rpm", 1.13, "is it the slip in percent. then 1483"),
+        ("power_factor", 86.0, "0.3 to below 1, found 86: is it in percent. then 0.86"),
+        ("stator_resistance_ohm", 69.0, "ohm of a winding, found 69: is it in milliohm. then 0.069"),
+    ],
+)
+def test_a_figure_in_another_unit_is_refused_with_the_unit(name: str, value: float, words: str) -> None:
+    with pytest.raises(CommissioningError, match=words):
+        circuit_from_catalogue(replace(OF_FAN, **{name: value}), FAN)
+
+
+def test_deviations_have_the_sign_of_what_is_shown() -> None:
+    for one in circuit_from_catalogue(OF_FAN, FAN).compared:
+        if one.given is not None:
+            assert one.deviations is not None
+            assert one.deviations * (one.computed - one.given) > 0.0, one.name

@@ -85,7 +85,13 @@ def test_cold_resistances_are_those_of_a_winding_at_work() -> None:
         (DELTA, PER_PHASE, Reading(), r"values: expected what the ohms of this motor in delta are"),
         (STAR, PER_PHASE, Reading(Unit.PER_UNIT), r"base of per unit: expected .*--base-VA"),
         (STAR, replace(PER_PHASE, xm=0.0), Reading(), r"xm: expected a number above zero, found 0"),
-        (STAR, replace(PER_PHASE, r1=float("nan")), Reading(), r"r1: .*found nan"),
+        (STAR, replace(PER_PHASE, r1=float("nan")), Reading(), r"--r1, .*found nan"),
+        (
+            STAR,
+            replace(PER_PHASE, x1=1815.0),
+            Reading(),
+            r"--x1: .* ohm, .*found 1815: .*milliohm. then 1.815",
+        ),
         (STAR, PER_PHASE, Reading(temperature_C=400.0), r"temperature: expected -50 to 200"),
     ],
 )

@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from core.machines.motor_file_writer import write_motor
 from core.machines.parameters import ChannelNames
@@ -93,6 +95,9 @@ def test_data_that_contradict_the_impedances_are_warned_of(
     [
         ([], "at least 3 figures"),
         (["--r1", "8.4", "--x1", "10.3"], "no --r2, --xm"),
+        (["--values", "star", "--r1", "8.4"], "no --r2, --x1, --x2, --xm"),
+        ([*IMPEDANCES, "--unit", "pu", "--base-VA", "1.1"], "is it in kVA? then 1100"),
+        ([*IMPEDANCES, "--inertia", "1e9"], "inertia: expected"),
         ([*IMPEDANCES, "--terminal-resistance", "16.8"], "--r1 or --terminal-resistance, found both"),
         ([*IMPEDANCES, "--unit", "pu"], "--base-VA"),
         ([*IMPEDANCES, "--inertia", "0"], "inertia: expected a number above zero"),
@@ -111,6 +116,48 @@ def test_what_cannot_be_is_wrong_use_and_writes_nothing(
 def test_figures_that_no_motor_has_are_refused(plate: Path, capsys: pytest.CaptureFixture[str]) -> None:
     output = plate.with_name("out.toml")
     words = ["--r1", "0.0084", "--r2", "8.2", "--x1", "10.3", "--xm", "206"]
-    assert main(["parameters", "--nameplate", str(plate), "--output", str(output), *words]) == 1
-    assert "stator_resistance_ohm" in capsys.readouterr().err
+    assert main(["parameters", "--nameplate", str(plate), "--output", str(output), *words]) == 2
+    assert "--r1, or by --terminal-resistance: expected" in capsys.readouterr().err
     assert not output.exists()
+
+
+NUMBERS = st.one_of(
+    st.floats(allow_nan=True, allow_infinity=True),
+    st.floats(0.01, 1e4),
+    st.sampled_from([0.5, 0.86, 2.0, 2.5, 7.2, 95.2, 159.0, 1483.0, 1145.0, 1499.9999999]),
+)
+FIGURES = (
+    "--efficiency",
+    "--power-factor",
+    "--rated-current",
+    "--rated-speed",
+    "--locked-rotor-current",
+    "--locked-rotor-torque",
+    "--breakdown-torque",
+)
+IN_RANGE = {
+    "--efficiency": st.floats(30.0, 99.999),
+    "--power-factor": st.floats(0.3, 0.999),
+    "--rated-current": st.floats(59.0, 320.0),
+    "--rated-speed": st.floats(1201.0, 1499.999),
+    "--locked-rotor-current": st.floats(2.0, 15.0),
+    "--locked-rotor-torque": st.floats(0.1, 8.0),
+    "--breakdown-torque": st.floats(1.1, 8.0),
+    "--terminal-resistance": st.floats(0.001, 1.0),
+}
+OTHERS = ("--r1", "--r2", "--x1", "--x2", "--xm", "--base-VA", "--terminal-resistance", "--temperature")
+WORDS = st.one_of(
+    st.dictionaries(st.sampled_from((*FIGURES, *OTHERS, "--inertia")), NUMBERS),
+    st.fixed_dictionaries({}, optional=IN_RANGE),
+    st.fixed_dictionaries(
+        {name: st.floats(1e-4, 50.0) for name in ("--r1", "--r2", "--x1", "--xm")}, optional=IN_RANGE
+    ),
+)
+SUPPRESSED = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow]
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=SUPPRESSED)
+@given(figures=WORDS, options=st.sampled_from([[], ["--unit", "pu"], ["--values", "star"]]))
+def test_no_figures_end_in_a_traceback(delta: Path, figures: dict[str, float], options: list[str]) -> None:
+    words = [f"{name}={value!r}" for name, value in figures.items()]
+    assert main(["parameters", "--nameplate", str(delta), *words, *options]) in (0, 2)
