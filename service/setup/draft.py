@@ -7,6 +7,8 @@ from pathlib import Path
 
 import scl
 from scl.ied_model import Ied
+from service.configuration.problems import Problem
+from service.plant.errors import PlantError
 from service.plant.model import Relay
 from service.plant.recognition import recognise
 from service.plant.relay_entry import RELAY_NAME
@@ -101,13 +103,16 @@ def draft_of_scd(configuration: scl.Scl) -> Draft:
 
 
 def draft_of_files(files: Sequence[scl.Scl]) -> Draft:
-    """Return a relay for each CID, IID or ICD: named as its IED, or as its file where that is no name yet."""
+    """Return a relay for each CID, IID or ICD: named as its IED, or as its file where that is no name yet.
+
+    Raises PlantError where no file describes one.
+    """
     relays: list[DraftRelay] = []
     left_out: list[str] = []
     for configuration in files[:MOST_RELAYS]:
         named = [ied for ied in configuration.ieds if _measures(ied)] or list(configuration.ieds)
         if len(named) != 1:
-            left_out.append(f"{configuration.path.name} has {len(configuration.ieds)} IEDs: it is no CID")
+            left_out.append(_without_one_ied(configuration))
             continue
         ied = named[0]
         is_template = ied.name == TEMPLATE
@@ -122,7 +127,23 @@ def draft_of_files(files: Sequence[scl.Scl]) -> Draft:
                 told=(*_told(ied), *([] if address is None else [f"at {address}, as its file says"])),
             )
         )
+    if not relays:
+        expected = "the SCL file of one relay (CID, IID or ICD), or the SCD of a plant"
+        raise PlantError(
+            [
+                Problem(str(configuration.path), "file", expected, words)
+                for configuration, words in zip(files, left_out, strict=False)
+            ]
+        )
     return Draft(tuple(relays), left_out=tuple(left_out))
+
+
+def _without_one_ied(configuration: scl.Scl) -> str:
+    """Return in words that a file does not describe one relay, with what its reader left out."""
+    number = len(configuration.ieds)
+    words = f"{configuration.path.name} has {number or 'no'} IED{'' if number == 1 else 's'} that can be used"
+    found = [str(each) for each in configuration.warnings if each.left_out and "<IED" in each.element]
+    return "; ".join([words, *found[:3]])
 
 
 def relays_to_ask(addresses: Iterable[scl.Address]) -> tuple[Relay, ...]:

@@ -105,6 +105,21 @@ def test_one_file_that_cannot_be_read_is_left_out(tmp_path: Path, capsys: pytest
     assert "two.cid" in capsys.readouterr().err
 
 
+def test_a_file_without_a_relay_is_left_out_with_what_its_reader_says(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    good = cid(tmp_path / "one.cid", "R_101", "10.0.0.1")
+    bad = cid(tmp_path / "two.cid", "R_102", "10.0.0.2")
+    bad.write_text(bad.read_text(encoding="utf-8").replace('"R_102"', '"R 102"'), encoding="utf-8")
+    document = initialise(capsys, tmp_path / "plant", good, bad)
+    (words,) = document["left_out"]
+    assert words.startswith("two.cid has no IEDs that can be used; line ")
+    assert "R 102" in words
+    assert main(["init", str(tmp_path / "other"), str(bad)]) == 1
+    assert "expected the SCL file of one relay" in capsys.readouterr().err
+    assert not (tmp_path / "other").exists()
+
+
 def test_from_an_scd_without_addresses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scd = tmp_path / "project.scd"
     text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
