@@ -48,7 +48,11 @@ def examine_plant(settings: Settings, problems: Problems) -> Plant | None:
     None: nothing can be read.
     """
     if settings.motors is None:
-        problems.add(Problem("settings", "motors", "the path of the plant's motors file (TOML)", "nothing"))
+        expected = (
+            "the path of the plant's motors file (TOML), in the settings that --config FILE names or as "
+            "MCC_MOTORS in the environment"
+        )
+        problems.add(Problem("settings", "motors", expected, "nothing"))
         return None
     plant = _plant(settings.scd, settings.motors, settings.subnetwork, problems)
     if plant is None:

@@ -6,6 +6,7 @@ from typing import Final
 
 from core.condition.assessment import PHASES, Assessment, Change, Level, Reference
 from core.condition.events import Event
+from core.condition.filter.state import START
 from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
 from core.condition.severity import FEW, Interval, standing_stays_a_fault, stands_out, stays_a_fault
@@ -170,7 +171,12 @@ def _of_standing(assessment: Assessment, limit: float) -> Iterator[str]:
 
 def _of_reference(reference: Reference) -> Iterator[str]:
     if not reference.complete:
-        yield f"the reference is still being learnt ({reference.records} records): no change can be seen yet"
+        yield (
+            f"the reference is still being learnt ({reference.records} of {START} records): no change can be "
+            "seen yet"
+            if reference.records < START
+            else f"the reference is learnt ({START} records): changes can be seen from the next record on"
+        )
     elif reference.detectable is not None:
         yield (
             f"the reference holds {reference.records} records; a step of {_percent(reference.detectable)} of "

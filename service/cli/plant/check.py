@@ -11,6 +11,7 @@ from service.cli.output import DONE, FAILED, one_line, print_document, progress,
 from service.setup.check import CheckedPlant, check
 from service.setup.relay_survey import RelaySurvey, survey
 
+TIME_ZONE = "if it runs in local time, set time_zone"
 QUARTER_S, ZONE_TOLERANCE_S = 900.0, 60.0
 """Time zones differ by quarters of an hour."""
 
@@ -96,20 +97,32 @@ def line_of(answer: RelaySurvey) -> str:
 
 
 def _clock(answer: RelaySurvey) -> str:
-    offset_s = answer.clock_offset_s
-    if offset_s is None and answer.stamp_age_s is not None:
-        if abs(answer.stamp_age_s) < ZONE_TOLERANCE_S:
-            return f"its latest time stamp is {answer.stamp_age_s:.0f} s old"
-        offset_s = -answer.stamp_age_s
-    if offset_s is None:
+    """Return how far the clock of a relay is off, as far as it can be seen."""
+    offset_s, age_s = answer.clock_offset_s, answer.stamp_age_s
+    if offset_s is None and age_s is None:
         return "it does not tell its clock"
+    if offset_s is None and age_s is not None and age_s >= 0.0:
+        return _clock_by_old_stamp(age_s)
+    if offset_s is None:
+        offset_s = -(age_s or 0.0)
     if abs(offset_s) < LATE_S:
         return "its clock agrees with this one"
     off = f"its clock is {abs(offset_s):.1f} s {'ahead of' if offset_s > 0 else 'behind'} this one"
+    return f"{off}: {TIME_ZONE}" if _is_of_a_zone(offset_s) else off
+
+
+def _clock_by_old_stamp(age_s: float) -> str:
+    """Return what a stamp tells that is no news: it may be old because its value has not changed."""
+    stamp = f"its latest time stamp is {age_s:.0f} s old and no value has changed meanwhile"
+    if age_s < ZONE_TOLERANCE_S:
+        return f"its clock agrees as far as can be seen ({stamp})"
+    zone = f"; {TIME_ZONE}" if _is_of_a_zone(age_s) else ""
+    return f"its clock cannot be seen ({stamp}; it may be behind this one{zone})"
+
+
+def _is_of_a_zone(offset_s: float) -> bool:
     quarters = round(offset_s / QUARTER_S)
-    if quarters and abs(offset_s - quarters * QUARTER_S) < ZONE_TOLERANCE_S:
-        off += ": if it runs in local time, set time_zone"
-    return off
+    return quarters != 0 and abs(offset_s - quarters * QUARTER_S) < ZONE_TOLERANCE_S
 
 
 def _document(checked: CheckedPlant, answers: tuple[RelaySurvey, ...]) -> dict[str, object]:

@@ -57,11 +57,16 @@ def init_plant(directory: Path, sources: Sequence[str], *, as_json: bool) -> Non
         console.print(Text(f"left out: {one_line(words)}"), soft_wrap=True)
     console.print(
         Text(
-            f"{len(draft.relays) or 'example'} relays; {len(problems)} values to fill in: "
+            f"{_counted(draft)}; {len(problems)} values to fill in: "
             f"mcc check --config {directory / SETTINGS} names them"
         ),
         soft_wrap=True,
     )
+
+
+def _counted(draft: Draft) -> str:
+    number = len(draft.relays)
+    return f"{number} relays" if number > 1 else f"{number or 'example'} relay"
 
 
 def _draft(sources: Sequence[str]) -> Draft:
@@ -112,8 +117,26 @@ def _is_scl(path: Path) -> bool:
 
 def _listed(path: Path) -> list[str]:
     """Return the addresses that a text file lists, one a line; # begins a comment."""
-    lines = [line.partition("#")[0].strip() for line in path.read_text(encoding="utf-8").splitlines()]
-    return [line for line in lines if line]
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise _no_source(path, "another kind of file") from error
+    lines = [line.partition("#")[0].strip() for line in text.splitlines()]
+    addresses = [line for line in lines if line]
+    for line in addresses:
+        if not _is_address(line):
+            raise _no_source(path, repr(line[:60]))
+    return addresses
+
+
+def _no_source(path: Path, found: str) -> CommandError:
+    """Return the error of a file that is neither SCL nor a list of addresses."""
+    return CommandError(
+        f"{path}: expected an SCL file, or a list of relays' addresses, one a line, such as 10.20.1.11 or "
+        f"10.20.1.11:102, found {found}",
+        details={"type": "WrongUse"},
+        exit_code=WRONG_USE,
+    )
 
 
 def _asked(sources: Sequence[str]) -> Draft:
@@ -130,16 +153,26 @@ def _tell(answer: RelaySurvey) -> None:
     progress().print(Text(one_line(f"{answer.relay.host}:{answer.relay.port}: {words}")), soft_wrap=True)
 
 
-def _address(text: str) -> scl.Address:
-    """Read HOST, HOST:PORT or [IPv6]:PORT. Raises CommandError."""
+def _is_address(text: str) -> bool:
+    host, port = _parts(text)
+    return is_host(host) and (not port or (port.isdecimal() and 0 < int(port[:6]) < 65536))
+
+
+def _parts(text: str) -> tuple[str, str]:
+    """Return host and port of HOST, HOST:PORT or [IPv6]:PORT."""
     host, colon, port = text.rpartition(":")
     if not colon or ("]" not in host and ":" in host):
         host, port = text, ""
-    host = host.removeprefix("[").removesuffix("]")
-    if not is_host(host) or (port and not (port.isdecimal() and 0 < int(port[:6]) < 65536)):
+    return host.removeprefix("[").removesuffix("]"), port
+
+
+def _address(text: str) -> scl.Address:
+    """Read an address. Raises CommandError."""
+    if not _is_address(text):
         raise CommandError(
             f"expected a file, or an address such as 10.20.1.11 or 10.20.1.11:102, found {text[:60]!r}",
             details={"type": "WrongUse"},
             exit_code=WRONG_USE,
         )
+    host, port = _parts(text)
     return scl.Address(host, int(port)) if port else scl.Address(host)

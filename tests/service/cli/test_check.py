@@ -223,6 +223,15 @@ def test_credentials_that_cannot_be_used(config: Path, capsys: pytest.CaptureFix
     assert "hidden" not in told
 
 
+def test_without_settings_it_says_how_they_are_given(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.delenv("MCC_MOTORS", raising=False)
+    assert main(["check"]) == 1
+    told = capsys.readouterr().out
+    assert "in the settings that --config FILE names or as MCC_MOTORS in the environment" in told
+
+
 def test_a_relay_that_does_not_answer(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "--config", str(config), "--connect", "--json"]) == 1
     (asked,) = json.loads(capsys.readouterr().out)["asked"]

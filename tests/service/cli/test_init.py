@@ -204,6 +204,27 @@ def test_sources_that_cannot_be_used(
     assert not (tmp_path / "plant").exists()
 
 
+@pytest.mark.parametrize(
+    ("content", "found"),
+    [(b'[[relay]]\nname = "R1"\n', "found '[[relay]]'"), (b"PK\x03\xff", "another kind")],
+)
+def test_a_file_of_another_kind_is_named(
+    tmp_path: Path, content: bytes, found: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = tmp_path / "relays.toml"
+    source.write_bytes(content)
+    assert main(["init", str(tmp_path / "plant"), str(source)]) == 2
+    told = capsys.readouterr().err
+    assert f"{source}: expected an SCL file, or a list of relays' addresses, one a line" in told
+    assert found in told
+
+
+def test_one_relay_is_counted_as_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = cid(tmp_path / "one.cid", "R_101", "10.0.0.1")
+    assert main(["init", str(tmp_path / "plant"), str(source)]) == 0
+    assert "\n1 relay; 4 values to fill in: " in capsys.readouterr().out
+
+
 def test_names_in_a_file_make_no_toml(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = scl.DEMO_PLANT_SCD.read_text(encoding="utf-8")
     scd = tmp_path / "hostile.scd"

@@ -13,9 +13,9 @@ from scl import Address
 from service.cli.plant.check import line_of
 from service.configuration.relay_access import RelayAccess
 from service.configuration.settings import Settings
-from service.plant import Relay
+from service.plant import Relay, acquisition_from_scl
 from service.setup.draft import relays_to_ask
-from service.setup.relay_survey import survey
+from service.setup.relay_survey import RelaySurvey, survey
 from testing.ports import LOOPBACK
 from testing.relays.simulated import scenario_of, simulated
 
@@ -46,6 +46,30 @@ def test_a_password_that_cannot_be_read_is_told(mute: Relay, tmp_path: Path) -> 
     (answer,) = survey([mute], SETTINGS.model_copy(update={"relays": {mute.name: access}}))
     assert answer.unreachable is not None
     assert "missing" in answer.unreachable
+
+
+@pytest.mark.parametrize(
+    ("offset_s", "age_s", "said"),
+    [
+        (0.3, None, "its clock agrees with this one"),
+        (-5.0, None, "its clock is 5.0 s behind this one"),
+        (
+            None,
+            26.0,
+            "agrees as far as can be seen (its latest time stamp is 26 s old and no value has changed",
+        ),
+        (None, 400.0, "its clock cannot be seen (its latest time stamp is 400 s old"),
+        (None, 3610.0, "it may be behind this one; if it runs in local time, set time_zone)"),
+        (None, -3600.0, "its clock is 3600.0 s ahead of this one: if it runs in local time, set time_zone"),
+        (None, None, "it does not tell its clock"),
+    ],
+)
+def test_what_can_be_seen_of_a_clock_is_told(
+    mute: Relay, offset_s: float | None, age_s: float | None, said: str
+) -> None:
+    found = acquisition_from_scl(mute)
+    answer = RelaySurvey(mute, acquisition=found, clock_offset_s=offset_s, stamp_age_s=age_s)
+    assert said in line_of(answer)
 
 
 @pytest.mark.campaign

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from core.condition.assessment import STALE_AFTER_NS, Assessment, Change, Declared, Level, Reference
 from core.condition.events import Event, EventKind
+from core.condition.filter.state import START
 from core.condition.kinds import Kind, State
 from core.condition.verdict.condition import Condition, condition_of
 from core.machines.parameters import ParametersSource
@@ -113,6 +114,13 @@ def test_no_change_is_healthy_from_the_first_record_on() -> None:
     assert (early.state, early.kind, early.change) == (State.HEALTHY, Kind.NONE, None)
     late = judged(assessment())
     assert (late.state, late.phase, late.change, late.since_ns) == (State.HEALTHY, None, 0.0, None)
+
+
+def test_how_many_records_a_reference_still_needs_is_told() -> None:
+    early = judged(assessment(reference=reference(records=4, complete=False)))
+    assert any(f"still being learnt (4 of {START} records)" in reason for reason in early.reasons)
+    learnt = judged(assessment(reference=reference(records=START, complete=False)))
+    assert any("changes can be seen from the next record on" in reason for reason in learnt.reasons)
 
 
 def test_a_nameplate_alone_is_never_healthy_and_on_watch_at_most() -> None:
