@@ -11,10 +11,20 @@ from core.operation import Operation
 from service.api.condition_documents import condition_document
 from service.api.context import Context
 from service.api.document import Name
+from service.api.listed_recordings import listed
 from service.api.operations import offer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
-from service.api.schemas import Health, ListedMotor, Motor, RecordedStarts, Recording, Site, TrendPoint
+from service.api.schemas import (
+    Health,
+    ListedMotor,
+    ListedRecording,
+    Motor,
+    RecordedStarts,
+    Recording,
+    Site,
+    TrendPoint,
+)
 from service.api.times import TimeParameter, rfc3339
 from service.condition.staleness import stale_after_ns
 from service.configuration.settings import Settings
@@ -93,13 +103,13 @@ def list_recordings_of_motor(
     operation: Annotated[Operation | None, Query(description="What the motor does in them.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[Recording]:
+) -> Page[ListedRecording]:
     """Return the recordings of a motor, latest first."""
     context.repository.motor(name)
     recordings = context.repository.recordings(
         motor=name, operation=operation, limit=limit, after=decode(cursor, int, str)
     )
-    return page(recordings, Recording.model_validate)
+    return listed(context, recordings)
 
 
 def _point_of_condition(point: ConditionPoint, quantity: ConditionQuantity) -> TrendPoint:

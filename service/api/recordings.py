@@ -17,9 +17,10 @@ from core.operation import Operation
 from core.recordings import Envelope, RecordingError, read_envelope
 from service.api.archive import archive_name, zipped
 from service.api.context import ApiContext, Context
-from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
+from service.api.listed_recordings import listed
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode
 from service.api.problems import FieldError, ProblemError, problems
-from service.api.schemas import Diagnosis, Recording, RecordingDetails, RecordingFile
+from service.api.schemas import Diagnosis, ListedRecording, Recording, RecordingDetails, RecordingFile
 from service.api.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
 from service.retention.deletion import remove_discarded_folder_if_possible
@@ -44,7 +45,7 @@ def list_recordings(
     operation: Annotated[Operation | None, Query(description="What the motor does in them.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[Recording]:
+) -> Page[ListedRecording]:
     """Return recordings, of one motor or of all, in one state or in any, of any operation, latest first."""
     context.require_motor(motor)
     if state is not None and operation is not None:
@@ -57,7 +58,7 @@ def list_recordings(
     recordings = context.repository.recordings(
         motor=motor, state=state, operation=operation, limit=limit, after=decode(cursor, int, str)
     )
-    return page(recordings, Recording.model_validate)
+    return listed(context, recordings)
 
 
 @router.post(
@@ -219,6 +220,7 @@ def _store_upload(context: ApiContext, files: list[UploadFile]) -> StoredRecordi
             raise _refused(f"{name[:100]!r}: expected a file ending in {', '.join(sorted(UPLOAD_SUFFIXES))}")
     if ".CFG" in suffixes and ".DAT" not in suffixes:
         raise _refused("expected the .DAT file that belongs to the .CFG file, found none")
+    _require_one_record(names)
     try:
         with context.store.incoming() as incoming:
             for name, file in zip(names, files, strict=True):
@@ -228,6 +230,16 @@ def _store_upload(context: ApiContext, files: list[UploadFile]) -> StoredRecordi
             return incoming.keep()
     except RecordingStoreError as error:
         raise _refused(str(error)) from error
+
+
+def _require_one_record(names: list[str]) -> None:
+    """Raise ProblemError where a .CFG and a .DAT file are of different records, by their names."""
+    parts = [name for name in names if PurePosixPath(name).suffix.upper() in (".CFG", ".DAT")]
+    if len({PurePosixPath(name).stem.casefold() for name in parts}) > 1:
+        found = " and ".join(repr(name[:100]) for name in sorted(parts))
+        raise _refused(
+            f"expected a .CFG and a .DAT file of one record, which have the same name, found {found}"
+        )
 
 
 def _refused(message: str) -> ProblemError:

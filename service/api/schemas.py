@@ -169,6 +169,12 @@ class Recording(RelayClock):
     recorded_time: Time | None = Field(validation_alias="recorded_ns")
 
 
+class ListedRecording(Recording):
+    """A recording with the verdict of its latest diagnosis; null without one."""
+
+    verdict: Verdict | None = None
+
+
 class BaselineRequest(RequestDocument):
     """The recordings that stand for a motor's healthy condition.
 

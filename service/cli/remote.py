@@ -12,6 +12,23 @@ from service.client.verdicts import level, load, percent, reasons_of, verdict_te
 ENDED = ("diagnosed", "failed")
 POLL_PERIOD_S = 0.25
 
+SO_FAR = {
+    "requested": "its relay is not asked yet",
+    "triggered": "its relay was asked and has not said yet that it recorded",
+    "recorded": "its relay has recorded, and the record is being fetched",
+    "fetched": "the record was fetched and waits for its diagnosis",
+    "diagnosed": "the recording is diagnosed",
+    "skipped": "the motor stood, and no relay was asked",
+}
+"""How far a recording request has come, in words."""
+
+
+def what_next(command: str, motor: str) -> str:
+    """Return where the verdict will be seen that a command did not wait for."""
+    return one_line(
+        f"mcc recordings list {motor} shows what comes of it; {command} --wait 60 waits for the verdict"
+    )
+
 
 def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_json: bool) -> None:
     """Request a recording of a motor and, for at most `wait_s`, follow it to its verdict.
@@ -38,16 +55,20 @@ def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_js
         raise CommandError(f"{motor}: {request['reason']}", details={"event_report": dict(request)})
     if wait_s and state != "diagnosed":
         raise CommandError(
-            f"{motor}: still {state} after {wait_s:g} s", details={"event_report": dict(request)}
+            f"{motor}: no verdict within {wait_s:g} s: {SO_FAR.get(str(state), state)}; "
+            f"mcc recordings list {motor} shows what comes of it",
+            details={"event_report": dict(request)},
         )
     if as_json:
         print_document(request)
         return
     diagnosis = request.get("diagnosis")
     if isinstance(diagnosis, Mapping):
-        results().print(_verdict_line(motor, diagnosis), soft_wrap=True)
+        results().print(verdict_line(motor, diagnosis), soft_wrap=True)
     else:
-        results().print(Text(f"{motor}: recording request {request['id']} {state}"), soft_wrap=True)
+        words = f"{motor}: recording request {request['id']}: {SO_FAR.get(str(state), state)}"
+        results().print(Text(words), soft_wrap=True)
+        results().print(Text(what_next("mcc trigger", motor)), soft_wrap=True)
 
 
 def release_relay(url: str, relay: str, *, as_json: bool) -> None:
@@ -88,7 +109,8 @@ def _warn_of_a_link_that_is_down(service: ServiceClient, motor: str) -> None:
         progress().print(Text(words, style="yellow"), soft_wrap=True)
 
 
-def _verdict_line(motor: str, diagnosis: Document) -> Text:
+def verdict_line(motor: str, diagnosis: Document) -> Text:
+    """Return what a recording of a motor says, in one line."""
     line = Text(f"{motor}: ")
     line.append_text(verdict_text(str(diagnosis["verdict"]), _phase(diagnosis)))
     if diagnosis["mu_f"] is not None:

@@ -3,7 +3,7 @@
 import csv
 import io
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.text import Text
@@ -37,11 +37,13 @@ def print_rows(
     *,
     as_csv: bool,
     as_json: bool,
+    whole: Collection[str] = (),
 ) -> None:
     """Print rows.
 
     name: of the list in the JSON document.  fields: those of a row in CSV, in their order; of two numbers
-    such as ci95 each gets a column.  columns: the table's, by heading.
+    such as ci95 each gets a column.  columns: the table's, by heading.  whole: headings of the
+    columns that are wrapped last of all, such as ids, which people copy.
     """
     if as_json:
         print_document({name: list(rows)})
@@ -52,7 +54,7 @@ def print_rows(
     else:
         table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
         for heading in columns:
-            table.add_column(heading)
+            table.add_column(heading, no_wrap=heading in whole)
         for row in rows:
             cells = (show(row) for show in columns.values())
             table.add_row(*(cell if isinstance(cell, Text) else Text(one_line(cell)) for cell in cells))

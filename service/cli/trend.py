@@ -8,7 +8,7 @@ from service.cli.output import failing_clearly
 from service.cli.rows import Column, print_rows, require_one_format
 from service.client.conditions import state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
-from service.client.verdicts import level, load, percent, to_the_second, verdict_text
+from service.client.verdicts import interval, load, percent, to_the_second, verdict_text
 
 FIELDS = (
     "time", "value", "ci95", "scatter95", "detection_limit", "verdict", "state", "kind", "phase",
@@ -36,14 +36,16 @@ def show_trend(
         points = list(deque(found, maxlen=limit))
     columns: dict[str, Column] = {
         "time": lambda point: to_the_second(point["time"]),
-        quantity: lambda point: _value(point, quantity),
-        "seen from": lambda point: percent(point["detection_limit"]),
+        quantity if quantity in ("theta_f", "load_level") else f"{quantity} %": lambda point: _value(
+            point, quantity
+        ),
+        "seen from %": lambda point: percent(point["detection_limit"]),
         "verdict": _said,
         "recording": lambda point: str(point["recording_id"]),
     }
     if quantity != "mu_f":
-        del columns["seen from"]
-    print_rows("points", points, FIELDS, columns, as_csv=as_csv, as_json=as_json)
+        del columns["seen from %"]
+    print_rows("points", points, FIELDS, columns, as_csv=as_csv, as_json=as_json, whole=("recording",))
 
 
 def _value(point: Document, quantity: str) -> str:
@@ -52,7 +54,8 @@ def _value(point: Document, quantity: str) -> str:
         return load(value, point["ci95"])
     if quantity == "theta_f":
         return "-" if value is None else str(value)
-    return level(value, point["ci95"])
+    between = interval(point["ci95"])
+    return percent(value) + ("" if between == "-" else f" [{between}]")
 
 
 def _said(point: Document) -> Text:

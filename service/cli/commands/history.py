@@ -130,13 +130,21 @@ def upload(
         typer.Argument(metavar="FILE...", help="One recording: .CFG and .DAT, or .CFF, or .CEV."),
     ],
     url: Url = DEFAULT_URL,
+    wait: Annotated[
+        float,
+        typer.Option(
+            metavar="SECONDS", min=0, help="Wait this long for the diagnosis, and print its verdict."
+        ),
+    ] = 0.0,
     *,
     as_json: Json = False,
 ) -> None:
     """Give the service a recording of a motor; it is diagnosed as if its relay had made it."""
-    from service.cli.recordings.stored import upload_recording
+    from service.cli.recordings.upload import upload_recording
 
-    upload_recording(url, motor, files, as_json=as_json)
+    if not isfinite(wait):
+        raise typer.BadParameter(f"--wait: expected a number of seconds, found {wait}")
+    upload_recording(url, motor, files, wait_s=wait, as_json=as_json)
 
 
 @commands.command()

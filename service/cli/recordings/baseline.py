@@ -29,7 +29,7 @@ def show_baseline(url: str, motor: str, *, as_csv: bool, as_json: bool) -> None:
         "in doubt for": lambda one: str(one["doubt"] or "-"),
         "id": lambda one: str(one["id"]),
     }
-    print_rows("baseline", rows, FIELDS, columns, as_csv=as_csv, as_json=False)
+    print_rows("baseline", rows, FIELDS, columns, as_csv=as_csv, as_json=False, whole=("id",))
     if not as_csv and rows:
         why = f": {baseline['reason']} ({baseline['by']})" if baseline["reason"] else ""
         chosen = one_line(f"chosen {to_the_second(baseline['chosen_time'])}{why}")

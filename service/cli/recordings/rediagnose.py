@@ -42,7 +42,8 @@ def rediagnose_recordings(
         "diagnosis": lambda row: _said(row),
         "level": lambda row: level(row.get("mu_f"), row.get("mu_f_ci95")),
     }
-    print_rows("diagnoses", runs if as_json else rows, FIELDS, columns, as_csv=as_csv, as_json=as_json)
+    shown = runs if as_json else rows
+    print_rows("diagnoses", shown, FIELDS, columns, as_csv=as_csv, as_json=as_json, whole=("recording",))
     failed = [run for run in runs if run["state"] == "failed"]
     if failed and not as_json:
         raise CommandError(f"{len(failed)} of {len(runs)} diagnoses failed", exit_code=FAILED)

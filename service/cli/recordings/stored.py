@@ -1,19 +1,18 @@
-"""`mcc recordings`, `mcc upload`: what recordings the service has, and how one leaves and enters it."""
+"""`mcc recordings`: what recordings the service has, and how one leaves it."""
 
-from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
 
 from rich.text import Text
 
-from service.cli.output import CommandError, failing_clearly, one_line, print_document, results
-from service.cli.rows import print_rows, require_one_format
+from service.cli.output import failing_clearly, one_line, print_document, results
+from service.cli.rows import Column, print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
-from service.client.verdicts import to_the_second
+from service.client.verdicts import to_the_second, verdict_text
 
 FIELDS = (
-    "recorded_time", "motor", "ied", "source", "name", "state", "operation", "operation_remark", "reason",
-    "size_bytes",
+    "recorded_time", "motor", "ied", "source", "name", "state", "operation", "operation_remark", "verdict",
+    "reason", "size_bytes",
     "announced_time", "fetched_time", "id",
 )  # fmt: skip
 
@@ -34,14 +33,21 @@ def show_recordings(
     chosen = {name: word for name, word in filters if word is not None}
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         found = list(islice(service.items("/recordings", limit=str(min(limit, 1000)), **chosen), limit))
-    columns = {
+    columns: dict[str, Column] = {
         "recorded": lambda one: to_the_second(one["recorded_time"] or one["announced_time"]),
         "motor": lambda one: str(one["motor"]),
         "name": lambda one: str(one["name"]),
         "state": _state,
         "id": lambda one: str(one["id"]),
     }
-    print_rows("recordings", found, FIELDS, columns, as_csv=as_csv, as_json=as_json)
+    if motor is not None:
+        del columns["motor"]
+    print_rows("recordings", found, FIELDS, columns, as_csv=as_csv, as_json=as_json, whole=("id",))
+    if not as_csv and not as_json:
+        for one in found:
+            if one["reason"]:
+                words = one_line(f"{one['motor']}, {one['name']}: {one['state']}: {one['reason']}")
+                results().print(Text(words), soft_wrap=True)
 
 
 def download_recording(url: str, recording: str, output: Path | None, *, as_json: bool) -> None:
@@ -57,23 +63,9 @@ def download_recording(url: str, recording: str, output: Path | None, *, as_json
     results().print(Text(one_line(f"{path}: {len(content)} bytes")), soft_wrap=True)
 
 
-def upload_recording(url: str, motor: str, files: Sequence[Path], *, as_json: bool) -> None:
-    """Give the files of one recording to the service. Raises CommandError."""
-    missing = [str(file) for file in files if not file.is_file()]
-    if missing:
-        raise CommandError(f"{', '.join(missing)}: expected a file", details={"type": "FileNotFound"})
-    with failing_clearly(ServiceError, OSError), ServiceClient(url) as service:
-        added, is_new = service.upload(motor, {file.name: file.read_bytes() for file in files})
-    if as_json:
-        print_document(added)
-        return
-    told = "is queued for its diagnosis" if is_new else f"was there already, {added['state']}"
-    words = one_line(f"{motor}: recording {added['name']} ({added['id']}) {told}")
-    results().print(Text(words), soft_wrap=True)
-
-
-def _state(recording: Document) -> str:
-    """Return the state, with what the motor does where it does not run, and why nothing came of it."""
-    does = recording.get("operation")
-    words = str(recording["state"]) + (f" ({does})" if does not in (None, "running") else "")
-    return f"{words}: {recording['reason']}" if recording["reason"] else words
+def _state(recording: Document) -> Text:
+    """Return the state, with the verdict, or with what the motor does where it does not run."""
+    state, does, verdict = recording["state"], recording.get("operation"), recording.get("verdict")
+    if does not in (None, "running"):
+        return Text(f"{state} ({does})")
+    return Text(f"{state}: ").append_text(verdict_text(str(verdict))) if verdict else Text(str(state))

@@ -2,7 +2,7 @@
 
 import json
 import uuid
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from sqlalchemy import Select, func, or_, select, update
 from sqlalchemy.orm import Session, joinedload
@@ -224,6 +224,14 @@ class JobRows(Sessions):
         with self._read() as session:
             row = only(session, query)
             return None if row is None else record_of(DiagnosisEntry, row)
+
+    def verdicts(self, recording_ids: Sequence[str]) -> Mapping[str, Verdict]:
+        """Return the latest verdict of each of these recordings that has one, by the recording's id."""
+        query = select(DiagnosisRow.recording_id, DiagnosisRow.verdict).where(
+            DiagnosisRow.recording_id.in_(recording_ids), DiagnosisRow.current
+        )
+        with self._read() as session:
+            return {row.recording_id: row.verdict for row in session.execute(query)}
 
 
 def _end(row: JobRow, state: JobState, error: str | None, now_ns: int) -> None:

@@ -79,6 +79,7 @@ def test_a_gap_shows_in_the_waveform(client: httpx.Client) -> None:
     [
         ({"EVENT.CFG": CFG}, "the .DAT file that belongs to the .CFG"),
         ({"EVENT.DAT": DAT}, "exactly one file"),
+        ({"ONE.CFG": CFG, "TWO.DAT": DAT}, "the same name, found 'ONE.CFG' and 'TWO.DAT'"),
         ({"EVENT.EXE": b"MZ"}, "expected a file ending in"),
         ({f"E{i}.CFF": b"" for i in range(5)}, "at most 4 files"),
     ],

@@ -71,7 +71,7 @@ def rows(text: str) -> list[dict[str, str]]:
 def test_a_trend(mcc: Mcc, recorded: list[str]) -> None:
     table = mcc("trend", "PUMP-A1").splitlines()
     assert [line.split()[0] for line in table if line.strip()][2:] == ["2025-10-09"] * 4
-    assert f"2.00 % [1.60..2.40] 2.10 fault {recorded[3]}" in " ".join(table[-2].split())
+    assert f"2.00 [1.60..2.40] 2.10 fault {recorded[3]}" in " ".join(table[-2].split())
     found = json.loads(mcc("trend", "PUMP-A1", "--json"))["points"]
     assert [point["recording_id"] for point in found] == recorded
     [last] = rows(mcc("trend", "PUMP-A1", "--csv", "--limit", "1"))
@@ -110,7 +110,7 @@ def test_alarms(mcc: Mcc, repository: Repository) -> None:
 def test_recordings_are_listed(mcc: Mcc, recorded: list[str], words: tuple[str, ...]) -> None:
     shown = mcc(*words)
     assert [line.split()[-1] for line in shown.splitlines()[3:] if line.strip()] == recorded[::-1]
-    assert "diagnosed" in shown
+    assert (shown.count("diagnosed: healthy"), shown.count("diagnosed: fault")) == (3, 1)
     assert mcc(*words, "FAN-A2") == "no recordings\n"
     assert mcc(*words, "--state", "failed") == "no recordings\n"
     assert [row["id"] for row in rows(mcc(*words, "PUMP-A1", "--csv", "--limit", "2"))] == recorded[:1:-1]
@@ -126,7 +126,10 @@ def test_a_recording_comes_and_goes(
     files = (str(tmp_path / "EVENT.CFG"), str(tmp_path / "EVENT.DAT"))
     added = json.loads(mcc("upload", "FAN-A2", *files, "--json"))
     assert added["motor"] == "FAN-A2"
-    assert "was there already" in mcc("upload", "FAN-A2", *files)
+    again = mcc("upload", "FAN-A2", *files)
+    assert "was there already, fetched" in again
+    assert "mcc recordings list FAN-A2 shows what comes of it; mcc upload --wait 60 waits" in again
+    assert "no verdict within 0.01 s" in mcc("upload", "FAN-A2", *files, "--wait", "0.01", ends=1)
     assert "expected a file" in mcc("upload", "FAN-A2", str(tmp_path / "NONE.CFF"), ends=1)
     assert "the .DAT file that belongs to" in mcc("upload", "FAN-A2", files[0], ends=1)
     monkeypatch.chdir(tmp_path)
@@ -142,6 +145,50 @@ def test_a_recording_comes_and_goes(
     (tmp_path / "other").mkdir()
     mcc("recordings", "download", added["id"], "--output", str(tmp_path / "other"))
     assert (tmp_path / "other" / saved.name).read_bytes()[:2] == b"PK"
+
+
+def test_an_upload_is_waited_for(mcc: Mcc, tmp_path: Path, repository: Repository) -> None:
+    files = [tmp_path / name for name in ("EVENT.CFG", "EVENT.DAT")]
+    for file, content in zip(files, (CFG, DAT), strict=True):
+        file.write_bytes(content)
+    words = ("upload", "FAN-A2", *map(str, files))
+    mcc(*words)
+    claimed = repository.claim_job(now_ns=NOW_NS * 2, runner=RUNNER)
+    assert claimed is not None
+    repository.finish_job(claimed.job.id, fault(0.02), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
+    for shown in (mcc(*words, "--wait", "60"), mcc(*words)):
+        assert "FAN-A2: fault in phase" in shown
+    assert json.loads(mcc(*words, "--wait", "60", "--json"))["diagnosis"]["verdict"] == "fault"
+
+
+def test_what_was_refused_says_why(mcc: Mcc, tmp_path: Path, repository: Repository) -> None:
+    file = tmp_path / "EVENT.CFF"
+    file.write_bytes(b"no recording")
+    mcc("upload", "FAN-A2", str(file))
+    claimed = repository.claim_job(now_ns=NOW_NS * 2, runner=RUNNER)
+    assert claimed is not None
+    repository.reject_recording(claimed.job.id, "EVENT.CFF: line 1: wrong", now_ns=NOW_NS, runner=RUNNER)
+    assert "rejected: EVENT.CFF: line 1" in mcc("upload", "FAN-A2", str(file), "--wait", "60", ends=1)
+    assert "was there already, rejected: EVENT.CFF: line 1" in mcc("upload", "FAN-A2", str(file))
+    assert "FAN-A2, EVENT: rejected: EVENT.CFF: line 1: wrong" in mcc("recordings").splitlines()
+
+
+def test_files_of_two_recordings_are_refused(mcc: Mcc, tmp_path: Path) -> None:
+    for name, content in (("ONE.CFG", CFG), ("TWO.DAT", DAT)):
+        (tmp_path / name).write_bytes(content)
+    refused = mcc("upload", "FAN-A2", str(tmp_path / "ONE.CFG"), str(tmp_path / "TWO.DAT"), ends=1)
+    assert "have the same name, found 'ONE.CFG' and 'TWO.DAT'" in refused
+
+
+@pytest.mark.parametrize("columns", ["80", "100", "250"])
+def test_ids_stay_whole(mcc: Mcc, recorded: list[str], columns: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Other commands need them."""
+    monkeypatch.setenv("COLUMNS", columns)
+    mcc("baseline", "set", "PUMP-A1", *recorded[:3])
+    for words in (("trend", "PUMP-A1"), ("recordings",), ("recordings", "PUMP-A1")):
+        assert set(recorded) <= set(mcc(*words).split()), words
+    assert set(recorded[:3]) <= set(mcc("baseline", "PUMP-A1").split())
+    assert set(recorded) <= set(mcc("rediagnose", *recorded, "--wait", "0").split())
 
 
 def test_recordings_are_diagnosed_again(mcc: Mcc, recorded: list[str], repository: Repository) -> None:
