@@ -24,7 +24,7 @@ from math import exp, hypot, log, pi, sqrt
 
 import numpy as np
 
-from core.commissioning.catalogue_data import CatalogueData, check_figures
+from core.commissioning.catalogue_data import FIGURES, CatalogueData, check_figures
 from core.commissioning.data_sheet import DATA_SHEET, INERTIA_TOLERANCE
 from core.commissioning.errors import CommissioningError
 from core.commissioning.rated_performance import (
@@ -41,7 +41,9 @@ from core.commissioning.rated_performance import (
 )
 from core.machines.base import Array
 from core.machines.parameters import MachineParameters, Nameplate
+from core.machines.plausibility import plausible_parameters
 from core.machines.typical import FACTORS, typical_parameters
+from core.quantity_text import plain
 
 NORMAL_95 = 1.96
 LEAST_HALF_WIDTH = 0.05
@@ -77,7 +79,8 @@ class Compared:
     computed : float
         What the circuit gives.
     deviations : float or None
-        Computed less given, in standard deviations of what the standard allows.
+        Computed less given, in standard deviations of what the standard allows, and of what the circuit
+        does not tell.
     """
 
     name: str
@@ -156,6 +159,8 @@ def circuit_from_catalogue(
         magnetising_inductance_H=X_m * base_ohm / w,
         inertia_kgm2=typical.parameters.inertia_kgm2 if inertia_kgm2 is None else inertia_kgm2,
     )
+    compared = figures.compared(fit.x)
+    _check_circuit(parameters, compared, nameplate)
     leakage = hypot(float(spread[X_L]), SPLIT)
     widths = {
         "stator_resistance_ohm": float(spread[R_S]),
@@ -176,7 +181,7 @@ def circuit_from_catalogue(
             inertia_kgm2 * (1 - INERTIA_TOLERANCE),
             inertia_kgm2 * (1 + INERTIA_TOLERANCE),
         )
-    return CircuitFound(parameters, intervals, figures.compared(fit.x))
+    return CircuitFound(parameters, intervals, compared)
 
 
 def figures_of(machine: MachineParameters, data: CatalogueData, nameplate: Nameplate) -> tuple[Compared, ...]:
@@ -228,7 +233,7 @@ def figures_of(machine: MachineParameters, data: CatalogueData, nameplate: Namep
             found="one that does not: check unit, base and which values these are",
         )
     x[SLIP] = log(brentq(output, 1e-6, slips[0]))
-    return _Figures(data, nameplate).compared(x)
+    return _Figures(data, nameplate).compared(x, unknown=(SKIN, SATURATION, OTHER))
 
 
 class _Figures:
@@ -260,15 +265,29 @@ class _Figures:
         rest = [self._deviations(name, computed[name]) for name in self._given]
         return np.array([(computed["output"] - 1.0) / 0.003, *rest])
 
-    def compared(self, x: Array) -> tuple[Compared, ...]:
-        """Return all figures beside those of a circuit, in their own units."""
+    def compared(self, x: Array, *, unknown: tuple[int, ...] = ()) -> tuple[Compared, ...]:
+        """Return all figures beside those of a circuit, in their own units.
+
+        unknown: places of what is not known of the circuit, but typical of the rating.
+        """
         computed = performance(x)
+        others = []
+        for place in unknown:
+            other = x.copy()
+            other[place] += PRIOR_OF_OTHERS[place][1]
+            others.append(performance(other))
+
+        def spread(name: str) -> float:
+            """Return the standard deviation of a figure over that which the standard allows."""
+            here = self._deviations(name, computed[name])
+            return hypot(1.0, *(self._deviations(name, other[name]) - here for other in others))
+
         return tuple(
             Compared(
                 name,
                 self._given.get(name),
                 computed[name] * self._scale.get(name, 1.0),
-                self._deviations(name, computed[name]) if name in self._given else None,
+                self._deviations(name, computed[name]) / spread(name) if name in self._given else None,
             )
             for name in self._compare
         )
@@ -276,6 +295,20 @@ class _Figures:
     def _deviations(self, name: str, computed: float) -> float:
         measure, deviation = self._compare[name]
         return (measure(computed) - measure(self._given[name] / self._scale.get(name, 1.0))) / deviation
+
+
+def _check_circuit(machine: MachineParameters, compared: tuple[Compared, ...], nameplate: Nameplate) -> None:
+    """Raise CommissioningError, which names the figure that fits worst, for a circuit that no motor has."""
+    worst = max(compared, key=lambda one: abs(one.deviations or 0.0))
+    for one in plausible_parameters(nameplate):
+        value = getattr(machine, one.field)
+        if not one.least <= value <= one.most:
+            raise CommissioningError(
+                DATA_SHEET,
+                FIGURES[worst.name],
+                expected="figures that a motor of the rating can have together",
+                found=f"a circuit whose {one.field} is {plain(value)}, not {one}; this figure fits worst",
+            )
 
 
 def _logarithm(value: float) -> float:

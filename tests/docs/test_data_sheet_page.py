@@ -51,9 +51,11 @@ def test_a_catalogue_gives_what_the_page_prints(folder: Path, capsys: pytest.Cap
     _, of_catalogue = COMMANDS
     assert main(of_catalogue) == 0
     printed = capsys.readouterr().out
+    assert printed.splitlines()[:9] == TABLES[2].splitlines()[:9]
     found: dict[str, Any] = tomllib.loads(printed)
     shown: dict[str, Any] = tomllib.loads(TABLES[2])
     assert found["parameters"].pop("source") == shown["parameters"].pop("source") == "data-sheet"
+    assert found["nameplate"] == shown["nameplate"]
     assert found["parameters"] == pytest.approx(shown["parameters"], rel=1e-3)
     for name, ends in shown["intervals"].items():
         assert found["intervals"][name] == pytest.approx(ends, rel=2e-3), name

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from math import sqrt
 from pathlib import Path
+from shutil import copy2
 
 from rich.text import Text
 
 from core.commissioning.catalogue import Compared, circuit_from_catalogue, figures_of
 from core.commissioning.catalogue_data import CatalogueData, check_figures
+from core.commissioning.circuit_doubts import circuit_doubts
 from core.commissioning.data_sheet import (
     COPPER_C,
     Impedances,
@@ -31,7 +33,7 @@ from core.machines.motor_file_error import MotorFileError
 from core.machines.motor_file_writer import motor_text, write_motor
 from core.machines.parameters import MachineParameters, Motor, Nameplate, ParametersSource
 from core.quantity_text import plain
-from service.cli.output import WRONG_USE, failing_clearly, print_document, results
+from service.cli.output import WRONG_USE, failing_clearly, print_document, print_warning, results
 from service.cli.recordings.commission import check_output
 from service.client.tables import FittedTable
 
@@ -51,8 +53,7 @@ WORDS: Mapping[str, tuple[str, float, str]] = {
 
 FAR = 2.5
 FAR_OF_IMPEDANCES = 4.0
-"""Standard deviations of what the standard allows, beyond which a figure is doubted."""
-RUNNING = ("power_factor", "rated_current_A", "rated_speed_rpm", "locked_rotor_current")
+"""Standard deviations beyond which a figure is doubted; impedances are rounded, and cold or warm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,17 +114,35 @@ def parameters_of_data_sheet(
         parameters, intervals, compared = _found(sheet, plate.nameplate)
         motor = replace(plate.motor, parameters=parameters, parameters_source=ParametersSource.DATA_SHEET)
         warnings = _warnings(compared, from_impedances=sheet.has_impedances)
+        if not sheet.has_impedances:
+            warnings += circuit_doubts(parameters, compared, plate.nameplate)
         heading = _heading(compared, warnings, from_impedances=sheet.has_impedances)
         text = motor_text(motor, intervals=intervals, remarks={}, heading=heading)
         motor_from_table(tomllib.loads(text), name=motor.name, source=output or nameplate)
+        backup = None if output is None else _kept(output)
         if output is not None:
             write_motor(output, motor, intervals=intervals, heading=heading)
     if as_json:
-        print_document(_document(motor, intervals, compared, warnings, output))
+        print_document(_document(motor, intervals, compared, warnings, output=output, backup=backup))
     elif output is None:
         sys.stdout.write(text)
+        for warning in warnings:
+            print_warning(warning)
     else:
-        results().print(_table(output, parameters, intervals, compared, warnings))
+        results().print(_table(output, parameters, intervals, compared))
+        for warning in warnings:
+            results().print(Text(f"WARNING: {warning}"))
+        if backup is not None:
+            results().print(Text(f"{output} as it was: {backup}"), soft_wrap=True)
+
+
+def _kept(output: Path) -> Path | None:
+    """Keep a file that is there beside it, and return its name; None where there is none."""
+    if not output.exists():
+        return None
+    backup = output.with_name(f"{output.name}.bak")
+    copy2(output, backup)
+    return backup
 
 
 def _found(
@@ -202,16 +221,13 @@ def _check_resistance(sheet: DataSheet) -> None:
 
 
 def _warnings(compared: tuple[Compared, ...], *, from_impedances: bool) -> list[str]:
-    """Return which figures are far from the circuit's.
-
-    What the cage does with the rotor locked is not in the impedances of a running motor.
-    """
-    names, far = (RUNNING, FAR_OF_IMPEDANCES) if from_impedances else (tuple(WORDS), FAR)
+    """Return which figures are far from the circuit's."""
+    far = FAR_OF_IMPEDANCES if from_impedances else FAR
     return [
         f"{WORDS[one.name][0]}: the data sheet says {_figure(one, one.given)}, its circuit "
         f"{_figure(one, one.computed)}: check nameplate, unit, base and which values these are"
         for one in compared
-        if one.name in names and one.deviations is not None and abs(one.deviations) > far
+        if one.deviations is not None and abs(one.deviations) > far
     ]
 
 
@@ -238,7 +254,9 @@ def _document(
     intervals: Mapping[str, Interval],
     compared: tuple[Compared, ...],
     warnings: list[str],
+    *,
     output: Path | None,
+    backup: Path | None,
 ) -> dict[str, object]:
     return {
         "parameters": {
@@ -250,6 +268,7 @@ def _document(
         "figures": [asdict(one) for one in compared],
         "warnings": warnings,
         "output": None if output is None else str(output),
+        "backup": None if backup is None else str(backup),
     }
 
 
@@ -258,7 +277,6 @@ def _table(
     parameters: MachineParameters,
     intervals: Mapping[str, Interval],
     compared: tuple[Compared, ...],
-    warnings: list[str],
 ) -> FittedTable:
     table = FittedTable(title=Text(f"written: {output.name}"), title_justify="left")
     for heading in ("quantity", "value", "interval, or given", "off by"):
@@ -270,7 +288,4 @@ def _table(
     for one in compared:
         off = "" if one.deviations is None else f"{one.deviations:+.1f} sd"
         table.add_row(WORDS[one.name][0], _figure(one, one.computed), _figure(one, one.given), off)
-    table.add_section()
-    for warning in warnings:
-        table.add_row("WARNING", "", "", Text(warning))
     return table

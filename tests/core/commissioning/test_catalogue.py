@@ -9,6 +9,7 @@ from scipy.optimize import brentq
 
 from core.commissioning.catalogue import circuit_from_catalogue, figures_of
 from core.commissioning.catalogue_data import CatalogueData
+from core.commissioning.circuit_doubts import circuit_doubts
 from core.commissioning.errors import CommissioningError
 from core.machines.parameters import Connection, MachineParameters, Nameplate
 from tests.core.machines.test_typical import PUBLISHED, Published
@@ -70,6 +71,7 @@ def test_published_motors_lie_within_the_intervals_of_their_own_catalogue(publis
         narrow = found.intervals["rotor_resistance_ohm"]
         assert narrow[1] / narrow[0] < 1.6
         assert max(abs(one.deviations or 0.0) for one in found.compared) < 1.0
+        assert circuit_doubts(found.parameters, found.compared, published.nameplate) == ()
 
 
 def test_the_circuit_found_has_the_figures_that_it_is_said_to_have() -> None:
@@ -167,3 +169,15 @@ def test_deviations_have_the_sign_of_what_is_shown() -> None:
         if one.given is not None:
             assert one.deviations is not None
             assert one.deviations * (one.computed - one.given) > 0.0, one.name
+
+
+def test_a_circuit_unlike_those_of_the_rating_names_the_figures_of_the_catalogue() -> None:
+    data = CatalogueData(rated_current_A=155.0, rated_speed_rpm=1290.0, locked_rotor_torque=3.0)
+    found = circuit_from_catalogue(data, FAN)
+    (doubt,) = circuit_doubts(found.parameters, found.compared, FAN)
+    assert doubt.startswith("rotor resistance of the circuit: 8.3 times what is typical of the rating")
+    assert doubt.endswith("check rated speed (1290), locked-rotor torque (3) and the nameplate")
+    data = CatalogueData(rated_current_A=350.0, rated_speed_rpm=1250.0, efficiency=0.8)
+    found = circuit_from_catalogue(data, FAN)
+    for doubt in circuit_doubts(found.parameters, found.compared, FAN):
+        assert "rated current (350)" in doubt

@@ -121,6 +121,47 @@ def test_figures_that_no_motor_has_are_refused(plate: Path, capsys: pytest.Captu
     assert not output.exists()
 
 
+OF_LARGE = ["--power-factor", "0.88", "--rated-current", "66", "--efficiency", "92", "--rated-speed", "1480"]
+
+
+def test_a_circuit_that_motors_do_not_have_is_warned_of_in_whole_lines(
+    delta: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = delta.with_name("out.toml")
+    words = ["--nameplate", str(delta), *OF_LARGE, "--locked-rotor-current", "14.9"]
+    assert main(["parameters", *words, "--output", str(output)]) == 0
+    shown = capsys.readouterr().out
+    table, _, warnings = shown.partition("WARNING: ")
+    assert "┘" in table
+    said = " ".join(warnings.split())
+    assert "motors have 3 to 12 times: check locked-rotor current (14.9)" in said
+    assert "WARNING" not in table
+    assert "WARNING: locked-rotor current" in output.read_text("utf-8")
+    assert main(["parameters", *words]) == 0
+    assert "mcc: warning: locked-rotor current: the circuit has" in capsys.readouterr().err
+
+
+def test_a_file_that_is_there_is_kept_beside(delta: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    output = delta.with_name("out.toml")
+    output.write_text("what was before", "utf-8")
+    words = ["--nameplate", str(delta), *OF_LARGE, "--output", str(output)]
+    assert document(words, capsys)["backup"] == str(output.with_name("out.toml.bak"))
+    assert output.with_name("out.toml.bak").read_text("utf-8") == "what was before"
+    assert main(["parameters", *words]) == 0
+    assert f"{output} as it was: {output}.bak" in capsys.readouterr().out
+
+
+def test_an_efficiency_far_from_that_of_the_impedances_is_warned_of(
+    plate: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--nameplate", str(plate), *IMPEDANCES, "--efficiency"]
+    near, far = (document([*words, percent], capsys) for percent in ("72", "97"))
+    assert near["warnings"] == []
+    off = next(one["deviations"] for one in far["figures"] if one["name"] == "efficiency")
+    assert off < -4.0
+    assert far["warnings"][0].startswith("efficiency: the data sheet says 97 %")
+
+
 NUMBERS = st.one_of(
     st.floats(allow_nan=True, allow_infinity=True),
     st.floats(0.01, 1e4),
