@@ -119,7 +119,7 @@ def parameters_of_data_sheet(
         heading = _heading(compared, warnings, from_impedances=sheet.has_impedances)
         text = motor_text(motor, intervals=intervals, remarks={}, heading=heading)
         motor_from_table(tomllib.loads(text), name=motor.name, source=output or nameplate)
-        backup = None if output is None else _kept(output)
+        backup = None if output is None else _kept(output, nameplate)
         if output is not None:
             write_motor(output, motor, intervals=intervals, heading=heading)
     if as_json:
@@ -136,11 +136,15 @@ def parameters_of_data_sheet(
             results().print(Text(f"{output} as it was: {backup}"), soft_wrap=True)
 
 
-def _kept(output: Path) -> Path | None:
-    """Keep a file that is there beside it, and return its name; None where there is none."""
+def _kept(output: Path, nameplate: Path) -> Path | None:
+    """Keep a file that is there beside it, and return its name; None where there is none.
+
+    Raises CommandError, and keeps all as it is, where that would replace the file of the nameplate.
+    """
     if not output.exists():
         return None
     backup = output.with_name(f"{output.name}.bak")
+    check_output(backup, nameplate, ())
     copy2(output, backup)
     return backup
 
@@ -197,7 +201,7 @@ def _impedances(sheet: DataSheet, nameplate: Nameplate, reading: Reading) -> Imp
         winding = winding_resistance_ohm(sheet.terminal_resistance_ohm, nameplate.connection)
         r1 = winding / ohm_per_unit(nameplate, reading)
     x2 = sheet.x1 if sheet.x2 is None else sheet.x2
-    given = {"r1": r1, "r2": sheet.r2, "x1": sheet.x1, "x2": x2, "xm": sheet.xm}
+    given = {"r1": r1, "r2": sheet.r2, "x1": sheet.x1, "xm": sheet.xm}
     missing = [f"--{name}" for name, value in given.items() if value is None]
     if missing or r1 is None or sheet.r2 is None or sheet.x1 is None or x2 is None or sheet.xm is None:
         raise CommissioningError(

@@ -95,7 +95,7 @@ def test_data_that_contradict_the_impedances_are_warned_of(
     [
         ([], "at least 3 figures"),
         (["--r1", "8.4", "--x1", "10.3"], "no --r2, --xm"),
-        (["--values", "star", "--r1", "8.4"], "no --r2, --x1, --x2, --xm"),
+        (["--values", "star", "--r1", "8.4"], "no --r2, --x1, --xm"),
         ([*IMPEDANCES, "--unit", "pu", "--base-VA", "1.1"], "is it in kVA? then 1100"),
         ([*IMPEDANCES, "--inertia", "1e9"], "inertia: expected"),
         ([*IMPEDANCES, "--terminal-resistance", "16.8"], "--r1 or --terminal-resistance, found both"),
@@ -149,6 +149,18 @@ def test_a_file_that_is_there_is_kept_beside(delta: Path, capsys: pytest.Capture
     assert output.with_name("out.toml.bak").read_text("utf-8") == "what was before"
     assert main(["parameters", *words]) == 0
     assert f"{output} as it was: {output}.bak" in capsys.readouterr().out
+
+
+def test_the_nameplate_is_never_replaced_by_what_is_kept(
+    delta: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = delta.with_name("out.toml")
+    output.write_text("what was before", "utf-8")
+    plate = delta.rename(delta.with_name("out.toml.bak"))
+    before = plate.read_text("utf-8")
+    assert main(["parameters", "--nameplate", str(plate), *OF_LARGE, "--output", str(output)]) == 2
+    assert "out.toml.bak: expected a file to write" in capsys.readouterr().err
+    assert (output.read_text("utf-8"), plate.read_text("utf-8")) == ("what was before", before)
 
 
 def test_an_efficiency_far_from_that_of_the_impedances_is_warned_of(
