@@ -62,6 +62,8 @@ def read(path: Path, *, lenient: bool = False, most_values: int | None = None) -
     reader = READERS.get(path.suffix.casefold())
     if reader is None:
         known = ", ".join(READERS)
+        if path.suffix.casefold() == ".zip":
+            known += "; unpack the archive first"
         raise RecordingError(
             path,
             "file name suffix",

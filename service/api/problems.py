@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from http import HTTPStatus
-from typing import Annotated
+from typing import Annotated, Any
 
 import structlog
 from fastapi import FastAPI, Request
@@ -58,6 +58,9 @@ MAX_ERRORS = 100
 """An answer names so many faults of a request."""
 
 MAX_LOCATION_LENGTH = 200
+
+LONGEST_QUOTED = 50
+"""An answer repeats so much of a wrong value."""
 
 
 class FieldError(BaseModel):
@@ -208,6 +211,19 @@ def location(way: Iterable[str | int]) -> str:
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
+def _in_words(found: Mapping[str, Any]) -> str:
+    """Return what is wrong with a value, in words for those who do not know the program's types."""
+    given = found.get("ctx", {})
+    match found["type"]:
+        case "uuid_parsing" | "uuid_type" | "uuid_version":
+            text = repr(str(found["input"])[:LONGEST_QUOTED]).encode("ascii", "backslashreplace").decode()
+            return f"expected an id such as mcc recordings list shows, found {text}"
+        case "too_short":
+            kind = "different ones" if given.get("field_type") == "Set" else "of them"
+            return f"expected at least {given['min_length']} {kind}, found {given['actual_length']}"
+    return str(found["msg"])
+
+
 def install(app: FastAPI) -> None:
     """Make `app` answer every error with a problem document."""
 
@@ -261,7 +277,7 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(RequestValidationError)
     async def _validation(request: Request, error: RequestValidationError) -> JSONResponse:
         errors = [
-            FieldError(location=location(found["loc"]), message=found["msg"])
+            FieldError(location=location(found["loc"]), message=_in_words(found))
             for found in error.errors()[:MAX_ERRORS]
         ]
         detail = "; ".join(f"{found.location}: {found.message}" for found in errors[:3])

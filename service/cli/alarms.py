@@ -2,9 +2,12 @@
 
 from itertools import islice
 
-from service.cli.output import failing_clearly
+from rich.padding import Padding
+from rich.text import Text
+
+from service.cli.output import failing_clearly, one_line, results
 from service.cli.rows import print_rows, require_one_format
-from service.client.rest_client import ServiceClient, ServiceError
+from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second
 
 FIELDS = ("raised_time", "cleared_time", "ied", "motor", "kind", "subject", "reason", "advice", "id")
@@ -27,13 +30,21 @@ def show_alarms(
         chosen["standing"] = "true"
     with failing_clearly(ServiceError), ServiceClient(url) as service:
         found = list(islice(service.items("/alarms", limit=str(min(limit, 1000)), **chosen), limit))
-    columns = {
-        "since": lambda alarm: to_the_second(alarm["raised_time"]),
-        "until": lambda alarm: "-" if alarm["cleared_time"] is None else to_the_second(alarm["cleared_time"]),
-        "at": lambda alarm: str(alarm["motor"] or alarm["ied"]),
-        "alarm": lambda alarm: str(alarm["kind"]),
-        "reason": lambda alarm: ": ".join(str(alarm[key]) for key in ("subject", "reason") if alarm[key]),
-    }
-    if not cleared:
-        del columns["until"]
-    print_rows("alarms", found, FIELDS, columns, as_csv=as_csv, as_json=as_json)
+    if as_csv or as_json or not found:
+        print_rows("alarms", found, FIELDS, {}, as_csv=as_csv, as_json=as_json)
+        return
+    for alarm in found:
+        _print_alarm(alarm)
+
+
+def _print_alarm(alarm: Document) -> None:
+    """Print where and what an alarm is, since when, and below it why and what to do."""
+    until = "" if alarm["cleared_time"] is None else f", until {to_the_second(alarm['cleared_time'])}"
+    since = to_the_second(alarm["raised_time"])
+    console = results()
+    where = alarm["motor"] or alarm["ied"]
+    console.print(Text(one_line(f"{where}: {alarm['kind']}, since {since}{until}")))
+    reason = ": ".join(str(alarm[key]) for key in ("subject", "reason") if alarm[key])
+    for words in (reason, alarm.get("advice")):
+        if words:
+            console.print(Padding(Text(one_line(str(words)), overflow="fold"), (0, 0, 0, 4), expand=False))

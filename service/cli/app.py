@@ -55,7 +55,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return error.exit_code
     except typer.TyperException as error:
         message = one_line(error.format_message()) or "expected a command"
-        failure = CommandError(f"{message} (mcc --help tells the way)", details={"type": "WrongUse"})
+        context = getattr(error, "ctx", None)
+        command = "mcc" if context is None else context.command_path
+        failure = CommandError(f"{message} ({command} --help tells the way)", details={"type": "WrongUse"})
         print_failure(failure, in_json=in_json)
         return WRONG_USE
     if outcome == INTERRUPTED:

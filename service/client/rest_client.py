@@ -13,6 +13,9 @@ API = "/api/v1"
 TIMEOUT_S = 30.0
 DISPOSITION = "Content-Disposition"
 
+PART_OF_REQUEST = re.compile(r"(^|; )(?:body|path|query)\.(?=\w+: )")
+"""Where in an HTTP request a wrong value was says nothing to people."""
+
 Document = Mapping[str, object]
 
 
@@ -203,5 +206,6 @@ def _problem(response: httpx.Response) -> str:
     except ValueError:
         problem = None
     if isinstance(problem, dict):
-        return str(problem.get("detail") or problem.get("title") or f"HTTP status {response.status_code}")
+        detail = str(problem.get("detail") or problem.get("title") or f"HTTP status {response.status_code}")
+        return PART_OF_REQUEST.sub(r"\1", detail)
     return f"{_asked(response)}: HTTP status {response.status_code}"

@@ -77,7 +77,8 @@ def table(motors: Sequence[DemoMotor]) -> FittedTable:
         box=SIMPLE_HEAD,
         collapse_padding=True,
     )
-    for heading in ("motor", "truth", "verdict"):
+    shown.add_column("motor", no_wrap=True)
+    for heading in ("truth", "verdict"):
         shown.add_column(heading)  # these wrap on a narrow terminal, so that the figures stay whole
     for heading in ("mu_f %", "95 %\ninterval", "seen\nfrom %", "load", "trigger to\ndiagnosis s"):
         shown.add_column(heading, justify="right", no_wrap=True)

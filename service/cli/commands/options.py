@@ -1,12 +1,35 @@
 """Arguments and options that several commands have."""
 
+import os
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from service.cli.output import print_warning
+
+
+def _warn_of_unknown_variables(url: str) -> str:
+    """Print a warning for each variable that is named like a setting and is none, such as MCC_ULR."""
+    if any(name.upper().startswith("MCC_") and name != "MCC_URL" for name in os.environ):
+        from service.configuration.settings import Settings
+        from service.configuration.settings_problems import unknown_variables
+
+        for problem in unknown_variables(os.environ, Settings.model_fields):
+            print_warning(str(problem))
+    return url
+
+
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout, also on failure.")]
-Url = Annotated[str, typer.Option("--url", envvar="MCC_URL", help="Address of the running service.")]
+Url = Annotated[
+    str,
+    typer.Option(
+        "--url",
+        envvar="MCC_URL",
+        callback=_warn_of_unknown_variables,
+        help="Address of the running service.",
+    ),
+]
 Config = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Settings file (TOML); see docs/reference/settings.md."),

@@ -98,7 +98,7 @@ def conditions_table(motors: Sequence[DemoMotor], conditions: Mapping[str, Docum
         title="Conditions and truth", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True
     )
     for heading in ("motor", "truth", "condition", "level", "since"):
-        shown.add_column(heading)
+        shown.add_column(heading, no_wrap=heading == "motor")
     for motor in motors:
         condition = conditions[motor.name]
         since = condition["since"]

@@ -24,7 +24,7 @@ def show_demo(url: str, *, as_json: bool) -> None:
         return
     table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
     for heading in ("motor", "truth", "condition", "level", "latest verdict", "link"):
-        table.add_column(heading)
+        table.add_column(heading, no_wrap=heading == "motor")
     for motor in motors:
         table.add_row(*_row(motor))
     results().print(table)

@@ -65,6 +65,7 @@ def commission_motor(
         print_document({**found.as_dict(), "output": str(output)})
     else:
         results().print(commissioning_table(output, found))
+        results().print(Text(f"{output} is written"), soft_wrap=True)
     for warning in found.warnings:
         print_warning(warning)
 
@@ -113,10 +114,10 @@ def load_law(name: str) -> LoadLaw | None:
 
 
 def commissioning_table(output: Path, found: Commissioning) -> FittedTable:
-    """Return what was found as a table. output: the file that it is written to."""
+    """Return what was found as a table. output: the file that it is written to, the table's title."""
     table = FittedTable(title=Text(output.name), title_justify="left")
     for heading in ("quantity", "value", "95 % interval", "remark"):
-        table.add_column(heading)
+        table.add_column(heading, no_wrap=heading == "quantity")
     for name, one in found.parameters.items():
         table.add_row(
             name, plain(one.value, 5), _interval(one), Text(f"fixed: {one.fixed}" if one.fixed else "")
@@ -138,7 +139,6 @@ def commissioning_table(output: Path, found: Commissioning) -> FittedTable:
         )
     table.add_section()
     table.add_row("effort", f"{found.evaluations} simulations", "", f"{found.compute_seconds:.1f} s")
-    table.add_row("written", Text(str(output)))
     for warning in found.warnings:
         table.add_row("WARNING", "", "", Text(warning))
     for reason in found.reasons:

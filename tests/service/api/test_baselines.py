@@ -146,7 +146,7 @@ def test_what_cannot_be_part_of_a_baseline_changes_nothing(client: httpx.Client,
         (waiting, 409, "it is fetched, not diagnosed"),
         (others, 404, "there is no recording of motor PUMP-A1"),
         (str(uuid4()), 404, "there is no recording of motor PUMP-A1"),
-        (good[0], 422, "at least 3 items"),
+        (good[0], 422, "at least 3 different ones, found 2"),
     ):
         answer = client.put(BASELINE, json={"recording_ids": [*good[:2], wrong]})
         assert answer.status_code == status

@@ -94,8 +94,8 @@ def test_alarms(mcc: Mcc, repository: Repository) -> None:
     over = repository.raise_alarm("A2_SEL710", AlarmKind.RELAY_DIFFERS, "trigger", "none", now_ns=NOW_NS)
     repository.clear_alarms("A2_SEL710", [over.id], now_ns=NOW_NS + SECOND_NS)
     shown = mcc("alarms")
-    assert "A1_SEL710" in shown
-    assert f"X.CFG: {FORMULA}" in shown
+    assert shown.startswith("A1_SEL710: file-refused, since 2025-10-09 08:53:20 UTC\n")
+    assert f"    X.CFG: {FORMULA}" in shown.splitlines()
     assert "A2_SEL710" not in shown
     assert "2025-10-09 08:53:21 UTC" in mcc("alarms", "--all")
     assert mcc("alarms", "--relay", "A2_SEL710") == "no alarms\n"
@@ -104,6 +104,16 @@ def test_alarms(mcc: Mcc, repository: Repository) -> None:
     assert (alarm["ied"], alarm["kind"], alarm["cleared_time"]) == ("A1_SEL710", "file-refused", "")
     assert alarm["reason"] == f"'{FORMULA}", "a spreadsheet would compute it"
     assert json.loads(mcc("alarms", "--json"))["alarms"][0]["reason"] == FORMULA
+
+
+def test_an_alarm_has_its_advice(mcc: Mcc, repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    tell(repository, FAULT)
+    shown = mcc("alarms")
+    [alarm] = json.loads(mcc("alarms", "--json"))["alarms"]
+    assert alarm["advice"]
+    assert " ".join(alarm["advice"].split()) in " ".join(shown.split())
+    assert max(map(len, shown.splitlines())) <= 80
 
 
 @pytest.mark.parametrize("words", [("recordings",), ("recordings", "list")])
@@ -212,6 +222,11 @@ def test_a_baseline_is_chosen_and_dropped(mcc: Mcc, recorded: list[str]) -> None
     assert [line.split()[-1] for line in shown.splitlines()[3:6]] == recorded[:3]
     assert ": new (" in shown
     assert [row["id"] for row in rows(mcc("baseline", "show", "PUMP-A1", "--csv"))] == recorded[:3]
+    few = mcc("baseline", "set", "PUMP-A1", *recorded[:2], ends=1)
+    assert few == "mcc: recording_ids: expected at least 3 different ones, found 2\n"
+    assert "recording_id: expected an id such as mcc recordings list shows, found 'E1'" in mcc(
+        "recordings", "download", "E1", ends=1
+    )
     assert "in doubt" in mcc("baseline", "set", "PUMP-A1", *recorded[1:], ends=1), "one shows a fault"
     assert json.loads(mcc("baseline", "PUMP-A1", "--json"))["reason"] == "new"
     assert "no baseline any more" in mcc("baseline", "drop", "PUMP-A1")
