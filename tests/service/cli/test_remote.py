@@ -158,3 +158,17 @@ def test_a_relay_is_released(
 def test_a_wait_without_end_is_refused(wait: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["trigger", "PUMP-A1", "--wait", wait, "--url", "http://127.0.0.1:9"]) == 2
     assert "--wait" in capsys.readouterr().err
+
+
+def test_a_trigger_that_is_not_waited_for_names_what_is_next(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    store = RecordingStore(tmp_path / "recordings")
+    app = create_app(ApiContext(Settings(data_directory=tmp_path), repository, store))
+    with serving(app) as client:
+        words = ["trigger", "PUMP-A1", "--url", str(client.base_url)]
+        assert main(words) == 0
+        assert "mcc recordings list PUMP-A1 shows what comes of it" in capsys.readouterr().out
+        assert main([*words, "--wait", "0.01"]) == 1
+    told = capsys.readouterr().err
+    assert "PUMP-A1: no verdict within 0.01 s: its relay is not asked yet; mcc recordings list" in told

@@ -119,6 +119,15 @@ def test_no_figure_is_cut_off_where_there_is_no_terminal(
     assert row.split()[-7:] == ["fault", "b", "5.00", "4.10..5.90", "2.10", "0.650", "1.50"]
 
 
+def test_names_of_motors_stay_whole_at_80_columns() -> None:
+    motor = DemoMotor("COMPRESSOR-B2", "FACTORY_B", Truth(mu_f=0.1, theta_f=1, load_level=0.75))
+    motor.diagnoses.append(DemoDiagnosis({**DIAGNOSIS, "mu_f_ci95": [0.0821, 0.1112]}, 12.34))
+    terminal = Console(file=io.StringIO(), width=80)
+    with terminal.capture() as shown:
+        terminal.print(table([motor]))
+    assert "COMPRESSOR-B2" in shown.get().split()
+
+
 def test_figures_stay_whole_on_a_narrow_terminal() -> None:
     motor = DemoMotor("COMPRESSOR-B2", "FACTORY_B", Truth(mu_f=0.05, theta_f=1, load_level=0.65))
     motor.diagnoses.append(DemoDiagnosis(DIAGNOSIS, 1.5))
