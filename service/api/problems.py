@@ -221,7 +221,7 @@ def _in_words(found: Mapping[str, Any]) -> str:
         case "too_short":
             kind = "different ones" if given.get("field_type") == "Set" else "of them"
             return f"expected at least {given['min_length']} {kind}, found {given['actual_length']}"
-    return str(found["msg"])
+    return str(found["msg"]).removeprefix("Value error, ")  # the name of an exception of Python
 
 
 def install(app: FastAPI) -> None:

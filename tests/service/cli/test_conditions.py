@@ -243,7 +243,7 @@ def test_every_kind_of_note_that_is_offered_is_accepted(mcc: Mcc) -> None:
         (("note", "NOPE", "hums"), 1, "there is no motor 'NOPE'"),
         (("note", "PUMP-A1", " "), 1, "TEXT: expected a few words, found none"),
         (("note", "PUMP-A1", "x" * 501), 1, "at most 500 characters"),
-        (("note", "PUMP-A1", "hums", "--time", "yesterday"), 1, "body.time"),
+        (("note", "PUMP-A1", "hums", "--time", "yesterday"), 1, "time: expected an RFC 3339 time"),
         (("note", "PUMP-A1", "hums", "--kind", "exploded"), 2, "exploded"),
         (("note", "PUMP-A1", "hums", "--kind", "parameters-edited"), 2, "reference-restarted"),
         (("restart-reference", "PUMP-A1"), 2, "--reason"),
