@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from core.commissioning.commissioning import commission
 from core.commissioning.start_detection import start_of
 from core.machines.candidates import LoadLaw
-from core.machines.motor_file import read_plate
+from core.machines.motor_file.reader import read_plate
 from core.machines.playback import electrical_to_rpm
 from core.machines.starting import start_candidate
 from core.recordings import read

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from core.diagnosis.stator import diagnose
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.recordings import read
 
 

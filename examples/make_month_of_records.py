@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.recordings import Channel, Quantity, Recording, comtrade
 from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 from ied_sim.motor.fault import FaultCourse

@@ -9,7 +9,7 @@ physics are the simulator's own: windings in phase variables, which share nothin
 import sys
 from pathlib import Path
 
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.recordings import Channel, Quantity, Recording, comtrade
 from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.load import Load

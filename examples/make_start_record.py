@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.recordings import Channel, Quantity, Recording, comtrade
 from core.units import NANOSECONDS_PER_SECOND
 from ied_sim.motor.load import Load

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.machines.motor_file_writer import write_motor
+from core.machines.motor_file.writer import write_motor
 from core.recordings import comtrade
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running

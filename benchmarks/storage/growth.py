@@ -18,7 +18,7 @@ from pathlib import Path
 from benchmarks.storage.forgetting import MOTORS, plant
 from benchmarks.storage.forgetting import fill as fill_measurements
 from core.condition.measuring.observing import Examined, examine
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.recordings import read
 from service.condition.worker import fold_due
 from service.configuration.settings import sqlite_url

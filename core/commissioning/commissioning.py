@@ -23,7 +23,7 @@ from core.commissioning.uncertainty import inherited_covariance, noise_covarianc
 from core.commissioning.unknowns import OF_A_START, Point
 from core.machines.base import Array
 from core.machines.candidates import LoadLaw
-from core.machines.motor_file import Plate
+from core.machines.motor_file.reader import Plate
 from core.machines.parameters import Motor, ParametersSource
 from core.recordings import Recording
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from core.machines.motor_file import motor_from_table
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import motor_from_table
 from core.machines.parameters import MachineParameters, Motor, Nameplate
 from ied_sim.errors import ScenarioError
 from ied_sim.motor.contactor import Contactor

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from service.cli.commands import data_sheets, history, plant_files, programs, recordings, service
+from service.cli.commands import data_sheets, plant_files, programs, record_files, service, stored
 from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, one_line, print_failure
 
 app = typer.Typer(
@@ -39,7 +39,7 @@ def options(
     """Read the options that come before a command."""
 
 
-for _part in (programs, recordings, data_sheets, service, history, plant_files):
+for _part in (programs, record_files, data_sheets, service, stored, plant_files):
     app.add_typer(_part.commands)
 
 

@@ -11,8 +11,8 @@ from ipaddress import ip_address
 from pathlib import Path
 
 import scl
-from core.machines.motor_file import TABLES, motor_from_table
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import TABLES, motor_from_table
 from core.machines.parameters import Motor
 from core.machines.plausibility import unusual_rating
 from core.machines.typical import atypical

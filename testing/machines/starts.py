@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from core.machines.motor_file import Plate
+from core.machines.motor_file.reader import Plate
 from core.machines.parameters import ChannelNames, Limits, MachineParameters, Motor
 from core.machines.sensors import SensorClass
 from core.recordings import Channel, Quantity, Recording

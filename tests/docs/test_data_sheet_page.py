@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import ParametersSource
 from service.cli import main
 from tests.docs.pages import ROOT

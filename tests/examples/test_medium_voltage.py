@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from core.diagnosis.stator import diagnose
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.machines.typical import typical_parameters
 from core.quality import circle_diagram
 from core.recordings import Channel, Quantity, Recording

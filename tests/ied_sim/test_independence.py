@@ -4,13 +4,13 @@ import subprocess
 import sys
 
 SHARED = (
-    "core.machines.motor_file",
-    "core.machines.motor_table",
+    "core.machines.motor_file.reader",
+    "core.machines.motor_file.table",
     "core.machines.parameters",
     "core.machines.plausibility",
     "core.machines.sensors",
     "core.machines.typical",
-    "core.machines.unit_slips",
+    "core.machines.motor_file.unit_slips",
     "core.quantity_text",
     "core.recordings",
     "core.units",

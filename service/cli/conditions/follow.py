@@ -11,8 +11,8 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
 from core.condition.verdict.condition import Condition, condition_of
-from core.machines.motor_file import read_motor
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import Motor
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY

@@ -8,7 +8,7 @@ from core.condition.bus.bus_records import BusRecords
 from core.condition.bus.neighbours import StandingEstimate
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import Motor
 from service.cli.conditions.followed_records import Seen, find_records
 from service.cli.output import WRONG_USE, CommandError

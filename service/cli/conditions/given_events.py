@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from core.condition.events import Event, EventKind
-from core.machines.motor_file import read_motor
+from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import Motor
 from core.time_stamps import nanoseconds, rfc3339
 from service.cli.output import WRONG_USE, CommandError

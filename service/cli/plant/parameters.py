@@ -28,9 +28,9 @@ from core.commissioning.data_sheet import (
     winding_resistance_ohm,
 )
 from core.commissioning.errors import CommissioningError
-from core.machines.motor_file import motor_from_table, read_plate
-from core.machines.motor_file_error import MotorFileError
-from core.machines.motor_file_writer import motor_text, write_motor
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import motor_from_table, read_plate
+from core.machines.motor_file.writer import motor_text, write_motor
 from core.machines.parameters import MachineParameters, Motor, Nameplate, ParametersSource
 from core.quantity_text import plain
 from service.cli.output import WRONG_USE, failing_clearly, print_document, print_warning, results

@@ -12,9 +12,9 @@ from core.commissioning.commissioning import commission
 from core.commissioning.errors import CommissioningError
 from core.commissioning.result import Commissioning, Estimate
 from core.machines.candidates import LoadLaw
-from core.machines.motor_file import read_plate
-from core.machines.motor_file_error import MotorFileError
-from core.machines.motor_file_writer import write_motor
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import read_plate
+from core.machines.motor_file.writer import write_motor
 from core.quantity_text import plain, with_unit
 from core.recordings import RecordingError
 from service.cli.output import (

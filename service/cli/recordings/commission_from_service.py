@@ -11,8 +11,8 @@ from rich.text import Text
 from core.commissioning.commissioning import commission
 from core.commissioning.errors import CommissioningError
 from core.commissioning.result import Commissioning
-from core.machines.motor_file import Plate, plate_from_table
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import Plate, plate_from_table
 from core.recordings import RecordingError
 from service.cli.output import (
     WRONG_USE,

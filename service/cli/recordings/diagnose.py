@@ -10,8 +10,8 @@ from rich.text import Text
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis
-from core.machines.motor_file import read_motor
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import ParametersSource
 from core.machines.typical import COMMISSION
 from core.quantity_text import with_unit

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
-from core.machines.motor_file import Plate
+from core.machines.motor_file.reader import Plate
 from core.recordings import Recording, RecordingError, read
 from service.cli.output import CommandError, one_line
 from service.client.recording_download import download_recording

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
-from core.machines.motor_file import motor_from_table
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import motor_from_table
 from core.machines.parameters import Motor
 from core.machines.plausibility import plausible_parameters
 from testing.machines.motors import ALL, REFERENCE

@@ -3,7 +3,7 @@ from dataclasses import asdict, replace
 import httpx
 import pytest
 
-from core.machines.motor_file import motor_from_table
+from core.machines.motor_file.reader import motor_from_table
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.job_runner import RUNNER

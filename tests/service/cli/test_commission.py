@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from core.machines.motor_file import read_motor, read_plate
+from core.machines.motor_file.reader import read_motor, read_plate
 from core.recordings import comtrade, read
 from examples import make_start_record
 from service.cli import main

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.machines.motor_file_writer import write_motor
+from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import ParametersSource
 from core.quality.finding import QualityFinding
 from core.recordings import comtrade

@@ -11,8 +11,8 @@ import pytest
 from core.condition.following.follower import Follower
 from core.condition.measuring.observing import observe
 from core.condition.verdict.condition import condition_of
-from core.machines.motor_file import read_motor
-from core.machines.motor_file_writer import write_motor
+from core.machines.motor_file.reader import read_motor
+from core.machines.motor_file.writer import write_motor
 from core.recordings import comtrade, read
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from core.machines.motor_file_writer import write_motor
+from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import ChannelNames
 from service.cli import main
 from testing.machines.motors import LARGE, REFERENCE

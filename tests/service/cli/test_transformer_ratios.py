@@ -11,8 +11,8 @@ import pytest
 
 from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
-from core.machines.motor_file import read_motor
-from core.machines.motor_file_writer import write_motor
+from core.machines.motor_file.reader import read_motor
+from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import ChannelNames, Motor, Nameplate, ParametersSource, Transformers
 from core.machines.typical import typical_parameters
 from core.recordings import Recording, comtrade

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.machines.motor_file import motor_from_table, read_motor, read_plate
-from core.machines.motor_file_error import MotorFileError
-from core.machines.motor_file_writer import write_motor
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import motor_from_table, read_motor, read_plate
+from core.machines.motor_file.writer import write_motor
 from core.machines.parameters import (
     ChannelNames,
     Connection,

@@ -5,7 +5,7 @@ from difflib import get_close_matches
 from math import inf, isnan, nan
 from pathlib import Path
 
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
 from core.machines.parameters import Connection, ParametersSource
 from core.quantity_text import plain
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import pytest
 
-from core.machines.motor_file import motor_from_table
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import motor_from_table
 
 MOTOR = """
 [nameplate]

@@ -8,8 +8,9 @@ from math import isnan
 from pathlib import Path
 
 from core.machines import plausibility
-from core.machines.motor_file_error import MotorFileError
-from core.machines.motor_table import MotorTable
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.table import MotorTable
+from core.machines.motor_file.unit_slips import likely_slip
 from core.machines.parameters import (
     ChannelNames,
     Limits,
@@ -21,7 +22,6 @@ from core.machines.parameters import (
 )
 from core.machines.sensors import SensorClass
 from core.machines.typical import tolerances_of, typical_parameters
-from core.machines.unit_slips import likely_slip
 
 TABLES = ("nameplate", "parameters", "intervals", "channels", "limits", "sensors", "transformers")
 PARAMETERS = tuple(field.name for field in fields(MachineParameters))

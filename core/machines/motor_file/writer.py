@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
-from core.machines.motor_file import motor_from_table
-from core.machines.motor_file_error import MotorFileError
+from core.machines.motor_file.error import MotorFileError
+from core.machines.motor_file.reader import motor_from_table
 from core.machines.parameters import ChannelNames, Limits, Motor, ParametersSource
 from core.machines.sensors import SensorClass
 

@@ -1,0 +1,1 @@
+"""MOTOR.toml, the file of one motor: read, checked and written."""
