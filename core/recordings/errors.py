@@ -41,3 +41,19 @@ class UnknownTimeError(RecordingError):
 
 def _rebuild(path: Path, field: str, expected: str, found: str) -> RecordingError:
     return RecordingError(path, field, expected=expected, found=found)
+
+
+def quoted(text: str) -> str:
+    """Return text from a file as a message shows it: short and without control characters.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+
+    Returns
+    -------
+    str
+        What is shown.
+    """
+    return repr(text if len(text) <= 60 else text[:57] + "...")

@@ -1,12 +1,12 @@
 """Query parameters that a route does not have are refused: a misspelt one would silently select nothing."""
 
-from difflib import get_close_matches
 from http import HTTPStatus
 
 from fastapi import Request, params
 from fastapi.dependencies.utils import get_flat_params
 from fastapi.routing import APIRoute
 
+from core.error_words import nearest
 from service.api.problems import MAX_ERRORS, FieldError, ProblemError, location
 
 LONGEST_QUOTED = 100
@@ -44,6 +44,6 @@ def _fault(name: str, known: list[str]) -> str:
     quoted = ascii(name[:LONGEST_QUOTED])
     if not known:
         return f"there is no parameter {quoted} here, nor any other"
-    near = get_close_matches(name[:LONGEST_QUOTED].casefold(), known, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    near = nearest(name[:LONGEST_QUOTED], known)
+    hint = "" if near is None else f"; did you mean {near!r}?"
     return f"there is no parameter {quoted} here{hint} (known: {', '.join(known)})"

@@ -5,7 +5,8 @@ from itertools import islice
 from rich.padding import Padding
 from rich.text import Text
 
-from service.cli.output import failing_clearly, one_line, results
+from core.error_words import one_line
+from service.cli.output import failing_clearly, results
 from service.cli.rows import print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.client.verdicts import to_the_second

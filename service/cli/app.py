@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
+from core.error_words import one_line
 from service.cli.commands import data_sheets, plant_files, programs, record_files, service, stored
-from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, one_line, print_failure
+from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, print_failure
 
 app = typer.Typer(
     name="mcc",

@@ -6,9 +6,10 @@ from rich.box import SIMPLE_HEAD
 from rich.console import RenderableType
 from rich.text import Text
 
+from core.error_words import one_line
 from core.machines.parameters import ParametersSource
 from core.machines.typical import COMMISSION
-from service.cli.output import facts_table, failing_clearly, one_line, print_document, results
+from service.cli.output import facts_table, failing_clearly, print_document, results
 from service.client.conditions import as_of, condition_lines, condition_of, since_day, state_text
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.tables import FittedTable

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from rich.console import Console, RenderableType
 from rich.text import Text
 
+from core.error_words import one_line
 from service.client.tables import FittedTable
 from service.configuration.problems import ConfigurationError
 
@@ -59,11 +60,6 @@ def failing_clearly(*expected: type[Exception], exit_code: int = FAILED) -> Iter
         yield
     except expected as error:
         raise CommandError.from_error(error, exit_code) from error
-
-
-def one_line(text: str) -> str:
-    """Replace line ends and control characters, which text from files and relays may contain, by spaces."""
-    return "".join(character if character.isprintable() else " " for character in text).strip()
 
 
 def results() -> Console:

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 from rich.text import Text
 
-from service.cli.output import failing_clearly, one_line, print_document, results
+from core.error_words import one_line
+from service.cli.output import failing_clearly, print_document, results
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.tables import FittedTable
 

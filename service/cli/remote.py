@@ -5,7 +5,8 @@ from collections.abc import Mapping
 
 from rich.text import Text
 
-from service.cli.output import CommandError, failing_clearly, one_line, print_document, progress, results
+from core.error_words import one_line
+from service.cli.output import CommandError, failing_clearly, print_document, progress, results
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import level, load, percent, reasons_of, verdict_text
 

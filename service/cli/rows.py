@@ -8,7 +8,8 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from rich.box import SIMPLE_HEAD
 from rich.text import Text
 
-from service.cli.output import WRONG_USE, CommandError, one_line, print_document, results
+from core.error_words import one_line
+from service.cli.output import WRONG_USE, CommandError, print_document, results
 from service.client.rest_client import Document
 from service.client.tables import FittedTable
 

@@ -3,7 +3,6 @@
 from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass
-from difflib import get_close_matches
 from types import TracebackType
 
 ENVIRONMENT = "environment"
@@ -106,10 +105,3 @@ class _Collecting(AbstractContextManager[None, bool]):
             self._problems.extend(error.problems)
             return True
         return False
-
-
-def nearest(unknown: str, known: Iterable[str]) -> str | None:
-    """Return the known name that is most like an unknown one; None where none is like it."""
-    names = {name.casefold(): name for name in known}
-    found = get_close_matches(unknown.casefold(), names, n=1, cutoff=0.7)
-    return names[found[0]] if found else None

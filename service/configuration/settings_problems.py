@@ -7,7 +7,8 @@ from typing import Any, Final
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from service.configuration.problems import ENVIRONMENT, Problem, nearest
+from core.error_words import nearest
+from service.configuration.problems import ENVIRONMENT, Problem
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
 from service.configuration.retention import RetentionSettings
 from service.configuration.toml_lines import TomlLines

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import scl
-from service.configuration.problems import Problem, Problems, nearest
+from core.error_words import nearest
+from service.configuration.problems import Problem, Problems
 from service.plant.motors_file import MotorsFile
 
 SITE = "PLANT"

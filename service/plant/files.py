@@ -11,12 +11,13 @@ from ipaddress import ip_address
 from pathlib import Path
 
 import scl
+from core.error_words import nearest
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import TABLES, motor_from_table
 from core.machines.parameters import Motor
 from core.machines.plausibility import unusual_rating
 from core.machines.typical import atypical
-from service.configuration.problems import Problem, Problems, nearest
+from service.configuration.problems import Problem, Problems
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, named_in_environment
 from service.configuration.settings import Settings
 from service.plant.binding import Binding, bindings

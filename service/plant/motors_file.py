@@ -6,13 +6,14 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from service.configuration.problems import Problem, Problems, nearest
+from core.error_words import nearest, shown
+from service.configuration.problems import Problem, Problems
 from service.configuration.toml_lines import TomlLines
 from service.plant.errors import plant_error
 from service.plant.overrides import AS_RECOGNISED, OverrideError, Overrides, overrides_from_table
 from service.plant.relay_entry import RelayEntry, relay_entry
 from service.plant.schedule import Schedule
-from service.plant.tables import PlantTable, is_text, shown
+from service.plant.tables import PlantTable, is_text
 
 TABLES = ("motor", "relay", "bus")
 

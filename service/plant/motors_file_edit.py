@@ -19,6 +19,7 @@ from tomlkit.container import Container
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import InlineTable, Item, Table
 
+from core.error_words import one_line
 from core.machines.parameters import ParametersSource
 from service.plant.errors import plant_error
 
@@ -177,7 +178,7 @@ def _enter(table: Table | InlineTable, estimated: EstimatedParameters) -> None:
         for name, remark in {**estimated.remarks, "source": estimated.origin}.items():
             entry = parameters.item(name)
             if isinstance(entry, Item) and (name == "source" or not entry.trivia.comment):
-                entry.comment(_printable(remark))
+                entry.comment(one_line(remark))
     if not estimated.intervals:
         table.pop("intervals", None)
         return
@@ -224,7 +225,3 @@ def _without_estimates(text: str, motor: str) -> dict[str, object]:
 
 def _rounded(value: float) -> float:
     return float(f"{value:.7g}")
-
-
-def _printable(text: str) -> str:
-    return "".join(character if character.isprintable() else " " for character in text)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from service.configuration.problems import nearest
+from core.error_words import nearest
 
 NONE = "none"
 """This word in place of a reference means: use none, whatever the relay offers."""

@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from service.configuration.problems import Problem, Problems, nearest
+from core.error_words import nearest, shown
+from service.configuration.problems import Problem, Problems
 from service.plant.schedule import Schedule
 
 LONGEST_TEXT = 200
 ONLY_RUNNING = "schedule_only_running"
-MOST_SHOWN = 60
 
 
 class PlantTable:
@@ -97,7 +97,7 @@ class PlantTable:
 
     def refuse(self, key: str, expected: str, value: object, nearest: str | None = None) -> None:
         """Tell that the value of a key cannot be used."""
-        self.tell(key, expected=expected, found=shown(value), nearest=nearest)
+        self.tell(key, expected=expected, found="none" if value is None else shown(value), nearest=nearest)
 
     def tell(self, key: str, *, expected: str, found: str, nearest: str | None = None) -> None:
         """Tell of a problem with a key."""
@@ -110,14 +110,3 @@ class PlantTable:
 def is_text(text: str) -> bool:
     """Tell whether a text is printable, and of a bearable length."""
     return text.isprintable() and 0 < len(text.strip()) <= LONGEST_TEXT
-
-
-def shown(value: object) -> str:
-    """Return a value for a message; TOML has integers of any length, of which Python prints only some."""
-    if value is None:
-        return "none"
-    try:
-        text = repr(value)
-    except ValueError:
-        return "a number of thousands of digits"
-    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."

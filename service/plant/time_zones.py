@@ -2,7 +2,7 @@
 
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError, available_timezones
 
-from service.configuration.problems import nearest
+from core.error_words import nearest
 
 
 def is_time_zone(name: str) -> bool:

@@ -5,6 +5,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+from core.error_words import one_line
 from service.configuration.problems import Problem
 from service.plant import PlantError
 from service.setup.draft import Draft, DraftRelay
@@ -51,7 +52,7 @@ def settings_text(draft: Draft) -> str:
         lines.append(f"scd = {_quoted(f'{SCL_FOLDER}/{draft.scd.name}')}")
     if draft.subnetworks:
         lines += [
-            f"# Its subnetworks are {_comment(', '.join(draft.subnetworks))}: name the one of this host.",
+            f"# Its subnetworks are {one_line(', '.join(draft.subnetworks))}: name the one of this host.",
             f"# subnetwork = {_quoted(draft.subnetworks[0])}",
         ]
     lines += [
@@ -73,7 +74,7 @@ def motors_text(draft: Draft) -> str:
         "# Fill in each line that ends with '=': take the # away and write the value of the nameplate.",
         "# mcc check --config mcc.toml names what is still missing.",
     ]
-    lines += [f"# Left out: {_comment(words)}." for words in draft.left_out]
+    lines += [f"# Left out: {one_line(words)}." for words in draft.left_out]
     relays = draft.relays or (DraftRelay("R1", needs_host=True, motor="MOTOR-1"),)
     for relay in relays:
         lines += ["", *_relay_lines(relay), *_motor_lines(relay)]
@@ -81,7 +82,7 @@ def motors_text(draft: Draft) -> str:
 
 
 def _relay_lines(relay: DraftRelay) -> Iterator[str]:
-    yield from (f"# {relay.name}: {_comment(words)}" for words in relay.told)
+    yield from (f"# {relay.name}: {one_line(words)}" for words in relay.told)
     if relay.in_scd and not relay.needs_host:
         yield f"# [[relay]]    # {relay.name} is in the SCD; this table would add to that"
         yield f"# name = {_quoted(relay.name)}"
@@ -160,9 +161,4 @@ def _checked(text: str) -> str:
 
 def _quoted(text: str) -> str:
     """Return a text as a TOML string."""
-    return json.dumps(_comment(text), ensure_ascii=False)
-
-
-def _comment(text: str) -> str:
-    """Return a text on one line: names come from SCL files and from relays."""
-    return "".join(each if each.isprintable() else " " for each in text).strip()
+    return json.dumps(one_line(text), ensure_ascii=False)

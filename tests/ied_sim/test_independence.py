@@ -4,19 +4,18 @@ import subprocess
 import sys
 
 SHARED = (
-    "core.machines.motor_file.reader",
-    "core.machines.motor_file.table",
+    "core.error_words",
+    "core.machines.motor_file",
     "core.machines.parameters",
     "core.machines.plausibility",
     "core.machines.sensors",
     "core.machines.typical",
-    "core.machines.motor_file.unit_slips",
     "core.quantity_text",
     "core.recordings",
     "core.units",
 )
 """What simulator and diagnosis have in common: what a motor's file says, may say and leaves out, a file
-format, units, and figures in words.
+format, units, and the words of errors and figures.
 """
 
 

@@ -14,8 +14,8 @@ import httpx
 import pytest
 
 import scl
+from core.error_words import one_line
 from service.application.serve import serve
-from service.cli.output import one_line
 from service.cli.run_service import TROUBLES
 from service.configuration.settings import Settings
 from service.demo import MOTORS

@@ -3,10 +3,10 @@
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from difflib import get_close_matches
 from math import isnan
 from pathlib import Path
 
+from core.error_words import nearest
 from core.machines import plausibility
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.table import MotorTable
@@ -237,7 +237,7 @@ def _plate(
                 expected="one of the tables "
                 f"{', '.join(f'[{each}]' for each in TABLES)} (docs/reference/motor-file.md)",
                 found="an unknown key",
-                nearest=next(iter(get_close_matches(unknown, TABLES, n=1)), None),
+                nearest=nearest(unknown, TABLES),
             )
         )
     nameplate = MotorTable(table, "nameplate", source, errors)

@@ -1,10 +1,10 @@
 """One table of a motor's file: typed values, and errors that name the key. Every error is kept."""
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 from math import inf, isnan, nan
 from pathlib import Path
 
+from core.error_words import nearest, shown
 from core.machines.motor_file.error import MotorFileError
 from core.machines.parameters import Connection, ParametersSource
 from core.quantity_text import plain
@@ -14,9 +14,6 @@ ROUNDING = 1e-6
 
 TRANSFORMER_RATIOS = (1e-4, 1e5)
 """Also of clip-on sensors whose volts or millivolts the recording calls amperes, and of kV called V."""
-
-MOST_SHOWN = 60
-"""Of a value that is refused, so many characters are shown."""
 
 NOTHING = "nothing"
 UNKNOWN = "an unknown key"
@@ -237,8 +234,7 @@ class MotorTable:
     def end(self) -> None:
         """Tell of the keys that nobody asked for. A misspelt key is not told as missing too."""
         for key in sorted(set(self._values) - self._known):
-            meant = get_close_matches(key.casefold(), {known.casefold() for known in self._known}, n=1)
-            near = next((known for known in self._known if [known.casefold()] == meant), None)
+            near = nearest(key, self._known)
             missing = f"[{self._name}] {near}"
             self._errors[:] = [
                 error for error in self._errors if (error.field, error.found) != (missing, NOTHING)
@@ -265,16 +261,7 @@ class MotorTable:
         return self._values.get(key, default)
 
     def _refuse(self, key: str, expected: str, found: object) -> None:
-        shown = NOTHING if found is None else _shown(found)
+        in_words = NOTHING if found is None else shown(found)
         self._errors.append(
-            MotorFileError(self._source, f"[{self._name}] {key}", expected=expected, found=shown)
+            MotorFileError(self._source, f"[{self._name}] {key}", expected=expected, found=in_words)
         )
-
-
-def _shown(value: object) -> str:
-    """Return a value for a message; TOML has integers of any length, of which Python prints only some."""
-    try:
-        text = repr(value)
-    except ValueError:
-        return "a number of thousands of digits"
-    return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."

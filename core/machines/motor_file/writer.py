@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+from core.error_words import one_line
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import motor_from_table
 from core.machines.parameters import ChannelNames, Limits, Motor, ParametersSource
@@ -138,5 +139,4 @@ def _text(text: str) -> str:
 
 
 def _comment(text: str) -> str:
-    printable = "".join(character if character.isprintable() else " " for character in text)
-    return f"# {printable}".rstrip()
+    return f"# {one_line(text)}".rstrip()

@@ -12,8 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from core.recordings.comtrade.lines import quoted
-from core.recordings.errors import RecordingError
+from core.recordings.errors import RecordingError, quoted
 from core.recordings.repairs import Repairs
 
 STX, ETX = b"\x02", b"\x03"

@@ -27,8 +27,7 @@ from core.recordings.cev.compressed_ascii import Row, checksum, rows
 from core.recordings.cev.samples import CevSamples
 from core.recordings.channel_roles import channel_roles
 from core.recordings.code_pages import decode_text
-from core.recordings.comtrade.lines import quoted
-from core.recordings.errors import RecordingError
+from core.recordings.errors import RecordingError, quoted
 from core.recordings.length import check_length
 from core.recordings.repairs import Repairs
 from core.recordings.waveform import Channel, Recording

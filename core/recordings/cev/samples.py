@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.recordings.cev.compressed_ascii import Row
-from core.recordings.comtrade.lines import quoted
+from core.recordings.errors import quoted
 from core.recordings.waveform import Digitals
 
 UNUSED = "*"

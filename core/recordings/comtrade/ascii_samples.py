@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from core.recordings.comtrade.configuration import Configuration
 from core.recordings.comtrade.data import SampleNumbers, Sink, SinkOf
-from core.recordings.comtrade.lines import quoted
 from core.recordings.data_section import DataSection
-from core.recordings.errors import RecordingError
+from core.recordings.errors import RecordingError, quoted
 from core.recordings.repairs import Repairs
 
 MISSING = 99_999

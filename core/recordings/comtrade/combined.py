@@ -4,9 +4,8 @@ import mmap
 import re
 from pathlib import Path
 
-from core.recordings.comtrade.lines import quoted
 from core.recordings.data_section import DataSection
-from core.recordings.errors import RecordingError
+from core.recordings.errors import RecordingError, quoted
 from core.recordings.repairs import Repairs
 
 _SECTION = re.compile(

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.recordings.comtrade.dates import date_time, utc_offset_ns
-from core.recordings.comtrade.lines import Line, Lines, quoted
-from core.recordings.errors import RecordingError
+from core.recordings.comtrade.lines import Line, Lines
+from core.recordings.errors import RecordingError, quoted
 from core.recordings.repairs import Repairs
 
 REVISIONS = {"1991": 1991, "1997": 1999, "1999": 1999, "2001": 1999, "2013": 2013}

@@ -4,8 +4,8 @@ import re
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from core.recordings.comtrade.lines import Line, Lines, quoted
-from core.recordings.errors import RecordingError
+from core.recordings.comtrade.lines import Line, Lines
+from core.recordings.errors import RecordingError, quoted
 from core.recordings.repairs import Repairs
 from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 

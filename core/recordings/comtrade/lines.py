@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 
-from core.recordings.errors import RecordingError
+from core.recordings.errors import RecordingError, quoted
 
 MAX_LINE = 10_000
 
@@ -244,19 +244,3 @@ class Lines:
 
     def __len__(self) -> int:
         return len(self._lines)
-
-
-def quoted(text: str) -> str:
-    """Return text from a file as a message shows it: short and without control characters.
-
-    Parameters
-    ----------
-    text : str
-        The text.
-
-    Returns
-    -------
-    str
-        What is shown.
-    """
-    return repr(text if len(text) <= 60 else text[:57] + "...")

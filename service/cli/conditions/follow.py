@@ -11,6 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from core.condition.errors import ObservationError
 from core.condition.following.follower import Follower
 from core.condition.verdict.condition import Condition, condition_of
+from core.error_words import one_line
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import read_motor
 from core.machines.parameters import Motor
@@ -20,14 +21,7 @@ from service.cli.conditions.followed_bus import Bus, Member, bus_of, read_neighb
 from service.cli.conditions.followed_records import Seen, find_records, observe_all
 from service.cli.conditions.given_events import GivenEvent, given_events
 from service.cli.conditions.view import print_condition
-from service.cli.output import (
-    CommandError,
-    failing_clearly,
-    one_line,
-    print_document,
-    print_warning,
-    progress,
-)
+from service.cli.output import CommandError, failing_clearly, print_document, print_warning, progress
 from service.client.verdicts import to_the_second
 
 

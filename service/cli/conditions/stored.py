@@ -7,13 +7,13 @@ from rich.box import SIMPLE_HEAD
 from rich.text import Text
 
 from core.condition.events import ENDING
+from core.error_words import one_line
 from core.time_stamps import nanoseconds
 from service.cli.output import (
     READABLE_WIDTH,
     CommandError,
     facts_table,
     failing_clearly,
-    one_line,
     print_document,
     print_warning,
     results,

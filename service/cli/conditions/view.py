@@ -7,7 +7,8 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.text import Text
 
-from service.cli.output import facts_table, one_line, results
+from core.error_words import one_line
+from service.cli.output import facts_table, results
 from service.client.conditions import cause, condition_lines, state_text
 from service.client.tables import FittedTable
 from service.client.verdicts import percent, to_the_second

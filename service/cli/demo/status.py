@@ -3,7 +3,8 @@
 from rich.box import SIMPLE_HEAD
 from rich.text import Text
 
-from service.cli.output import failing_clearly, one_line, print_document, results
+from core.error_words import one_line
+from service.cli.output import failing_clearly, print_document, results
 from service.client.conditions import state_text
 from service.client.rest_client import ServiceClient, ServiceError
 from service.client.tables import FittedTable

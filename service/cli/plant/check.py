@@ -7,7 +7,8 @@ from pathlib import Path
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.text import Text
 
-from service.cli.output import DONE, FAILED, one_line, print_document, progress, results
+from core.error_words import one_line
+from service.cli.output import DONE, FAILED, print_document, progress, results
 from service.setup.check import CheckedPlant, check
 from service.setup.relay_survey import RelaySurvey, survey
 

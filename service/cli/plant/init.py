@@ -7,15 +7,8 @@ from pathlib import Path
 from rich.text import Text
 
 import scl
-from service.cli.output import (
-    WRONG_USE,
-    CommandError,
-    failing_clearly,
-    one_line,
-    print_document,
-    progress,
-    results,
-)
+from core.error_words import one_line
+from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, progress, results
 from service.configuration.settings import Settings
 from service.plant import PlantError
 from service.plant.relay_entry import is_host

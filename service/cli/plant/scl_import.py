@@ -7,9 +7,10 @@ from rich.console import RenderableType
 from rich.text import Text
 
 import scl
+from core.error_words import one_line
 from scl import Address, Scl, SclError
 from scl.ied_model import Ied
-from service.cli.output import failing_clearly, one_line, print_document, results
+from service.cli.output import failing_clearly, print_document, results
 from service.client.tables import FittedTable
 from service.plant.recognition import recognise
 

@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 
 from rich.text import Text
 
-from service.cli.output import failing_clearly, one_line, print_document, results
+from core.error_words import one_line
+from service.cli.output import failing_clearly, print_document, results
 from service.cli.rows import print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 from service.client.verdicts import to_the_second

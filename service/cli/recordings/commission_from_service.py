@@ -11,6 +11,7 @@ from rich.text import Text
 from core.commissioning.commissioning import commission
 from core.commissioning.errors import CommissioningError
 from core.commissioning.result import Commissioning
+from core.error_words import nearest
 from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import Plate, plate_from_table
 from core.recordings import RecordingError
@@ -25,7 +26,7 @@ from service.cli.output import (
 from service.cli.recordings.commission import commissioning_table, load_law, progress_bar
 from service.cli.recordings.recorded_starts import FetchedStarts, fetch_starts
 from service.client.rest_client import ServiceClient, ServiceError
-from service.configuration.problems import Problems, nearest
+from service.configuration.problems import Problems
 from service.plant import PlantError
 from service.plant.motors_file import read_motors_file
 from service.plant.motors_file_edit import EstimatedParameters, MotorsFileEdit, with_parameters

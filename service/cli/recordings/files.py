@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
+from core.error_words import one_line
 from core.recordings import Recording, RecordingError, read
 from core.recordings.reading import mended_by
-from service.cli.output import CommandError, one_line
+from service.cli.output import CommandError
 
 
 def read_recording(path: Path, *, lenient: bool) -> Recording:

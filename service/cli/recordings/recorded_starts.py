@@ -6,9 +6,10 @@ from pathlib import Path
 
 from core.commissioning.errors import CommissioningError
 from core.commissioning.start_detection import start_of
+from core.error_words import one_line
 from core.machines.motor_file.reader import Plate
 from core.recordings import Recording, RecordingError, read
-from service.cli.output import CommandError, one_line
+from service.cli.output import CommandError
 from service.client.recording_download import download_recording
 from service.client.rest_client import Document, ServiceClient, segment
 from service.client.verdicts import to_the_second

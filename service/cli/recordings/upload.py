@@ -6,7 +6,8 @@ from pathlib import Path
 
 from rich.text import Text
 
-from service.cli.output import CommandError, failing_clearly, one_line, print_document, results
+from core.error_words import one_line
+from service.cli.output import CommandError, failing_clearly, print_document, results
 from service.cli.remote import verdict_line, what_next
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
 

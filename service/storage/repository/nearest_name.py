@@ -1,9 +1,9 @@
 """The name that somebody meant who asked for one that there is not."""
 
-from difflib import get_close_matches
-
 from sqlalchemy import func, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
+
+from core.error_words import nearest
 
 MOST_COMPARED = 500
 """With so many names one that is misspelt is compared, the first by the alphabet: an answer stays quick."""
@@ -17,7 +17,4 @@ def nearest_name(session: Session, column: InstrumentedAttribute[str], name: str
     alike = session.scalars(select(column).where(func.lower(column) == func.lower(name)).limit(1)).first()
     if alike is not None:
         return alike
-    names = session.scalars(select(column).order_by(column).limit(MOST_COMPARED)).all()
-    by_folded = {one.casefold(): one for one in names}
-    near = get_close_matches(name.casefold(), by_folded, n=1)
-    return by_folded[near[0]] if near else None
+    return nearest(name, session.scalars(select(column).order_by(column).limit(MOST_COMPARED)))

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from core.error_words import one_line
 from core.recordings import RecordingError
-from service.cli.output import CommandError, failing_clearly, one_line, print_failure
+from service.cli.output import CommandError, failing_clearly, print_failure
 
 
 def test_a_failure_names_its_fields(capsys: pytest.CaptureFixture[str]) -> None:
