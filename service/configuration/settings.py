@@ -15,6 +15,7 @@ from pydantic_settings import BaseSettings, EnvSettingsSource, PydanticBaseSetti
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
 from core.units import SECONDS_PER_DAY
+from service.configuration.backup import BackupSettings
 from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
 from service.configuration.relay_access import AbsolutePath, RelayAccess
 from service.configuration.retention import MOST_DAYS, RetentionSettings
@@ -77,6 +78,7 @@ class Settings(BaseSettings):
     job_retry_delay_s: float = Field(default=2.0, ge=0, le=3600)
 
     retention: RetentionSettings = Field(default_factory=RetentionSettings)
+    backup: BackupSettings = Field(default_factory=BackupSettings)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=100, ge=1, le=1000)
@@ -173,6 +175,9 @@ def _table(text: str, config: Path) -> dict[str, object]:
         value = table.get(name)
         if isinstance(value, str):
             table[name] = config.absolute().parent / value
+    backup = table.get("backup")
+    if isinstance(backup, dict) and isinstance(backup.get("directory"), str):
+        table["backup"] = {**backup, "directory": config.absolute().parent / backup["directory"]}
     relays = table.get("relays")
     if isinstance(relays, dict):
         table["relays"] = {name: _anchored(relay, config.absolute().parent) for name, relay in relays.items()}

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from core.error_words import nearest
+from service.configuration.backup import BackupSettings
 from service.configuration.problems import ENVIRONMENT, Problem
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
 from service.configuration.retention import RetentionSettings
@@ -25,6 +26,7 @@ FOLLOWS_FROM_ANOTHER: Final = "default_factory_not_called"
 
 TABLES: Final[Mapping[str, tuple[Any, ...]]] = {
     "relays": (None, None, RelayAccess, RelayTls),
+    "backup": (None, BackupSettings),
     "retention": (None, RetentionSettings),
 }
 """Models of the tables in the settings, by the depth of their keys."""

@@ -26,6 +26,14 @@ class AlarmKind(StrEnum):
     CONDITION_FAULT = "condition-fault"
 
 
+class BackupState(StrEnum):
+    """How far a back-up has come."""
+
+    RUNNING = "running"
+    VERIFIED = "verified"
+    FAILED = "failed"
+
+
 class ClockQuality(StrEnum):
     """What a relay says of its own clock."""
 

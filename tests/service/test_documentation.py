@@ -5,6 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from service.api import ApiContext, create_app
+from service.configuration.backup import BackupSettings
 from service.configuration.retention import RetentionSettings
 from service.configuration.settings import Settings
 from service.plant import Overrides
@@ -25,6 +26,12 @@ def test_every_rule_of_retention_is_documented() -> None:
     page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `retention\.(\w+)`", page, re.MULTILINE)
     assert rows == list(RetentionSettings.model_fields)
+
+
+def test_every_setting_of_the_back_up_is_documented() -> None:
+    page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `backup\.(\w+)`", page, re.MULTILINE)
+    assert rows == list(BackupSettings.model_fields)
 
 
 def test_the_documented_ranges_and_defaults_are_those_of_the_settings() -> None:

@@ -15,6 +15,7 @@ from core.operation import Operation
 from core.signals.sequence import PhaseSequence
 from service.storage.states import (
     AlarmKind,
+    BackupState,
     ClockQuality,
     DeletedBy,
     JobState,
@@ -67,6 +68,7 @@ class Base(DeclarativeBase):
         int: BigInteger,
         LinkState: _words(LinkState),
         AlarmKind: _words(AlarmKind),
+        BackupState: _words(BackupState),
         ClockQuality: _words(ClockQuality),
         RecordingRequestOrigin: _words(RecordingRequestOrigin),
         RecordingRequestState: _words(RecordingRequestState),

@@ -1,5 +1,6 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
+from service.storage.records.backups import BackupEntry
 from service.storage.records.baselines import BaselineDoubt, BaselineEntry
 from service.storage.records.conditions import (
     Backlog,
@@ -49,6 +50,7 @@ __all__ = [
     "Alarm",
     "Amount",
     "Backlog",
+    "BackupEntry",
     "BaselineDoubt",
     "BaselineEntry",
     "BusMotor",

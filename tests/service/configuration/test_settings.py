@@ -237,3 +237,27 @@ def test_a_database_url_that_is_no_text_is_not_told(tmp_path: Path) -> None:
         SettingsError, match="database_url: expected a valid string, found a value of type list"
     ):
         Settings.load(config)
+
+
+def test_the_directory_of_the_back_ups_is_meant_from_the_files_folder(tmp_path: Path) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text('[backup]\ndirectory = "copies"\ndaily_at = "23:59"\n')
+    backup = Settings.load(config).backup
+    assert (backup.directory, backup.daily_at, backup.keep) == (tmp_path / "copies", "23:59", 14)
+    assert Settings().backup.directory is None
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ('daily_at = "24:00"', "backup.daily_at.*: expected .*pattern"),
+        ("keep = 0", "backup.keep.*: expected greater than or equal to 1"),
+        ('directry = "copies"', "backup.directry.*: expected a setting named in .*directory"),
+        ("directory = 5", "backup.directory.*: expected"),
+    ],
+)
+def test_what_is_wrong_with_the_back_up_is_named(tmp_path: Path, content: str, message: str) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text(f"[backup]\n{content}\n")
+    with pytest.raises(SettingsError, match=message):
+        Settings.load(config)
