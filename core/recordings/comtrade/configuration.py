@@ -9,21 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.recordings.comtrade.dates import date_time, utc_offset_ns
+from core.recordings.comtrade.editions import FIELDS_SINCE_1999, REVISIONS, read_identification
 from core.recordings.comtrade.lines import Line, Lines
 from core.recordings.errors import RecordingError, quoted
 from core.recordings.repairs import Repairs
-
-REVISIONS = {"1991": 1991, "1997": 1999, "1999": 1999, "2001": 1999, "2013": 2013}
-"""Revision year in the file -> edition whose layout holds. IEC 60255-24:2001 is the 1999 edition;
-Schneider's Sepam relays write 1997, the draft of it."""
-BETWEEN_EDITIONS = range(1997, 2013)
-"""In these years there was no layout but that of 1999, so that any other of them is read as 1999 (with a
-warning)."""
-FIELDS_SINCE_1999 = 13
-"""Of the line of an analogue channel; those of 1991 have ten."""
-
-NO_REVISIONS = ("", "0")
-"""Written by recorders that fill the field without knowing an edition, as RTDS simulators do."""
 
 DATA_FORMATS = ("ASCII", "BINARY", "BINARY32", "FLOAT32")
 
@@ -35,7 +24,6 @@ MOST_RATIO = 1e12
 MOST_NAMED = 12
 """Constant channels that are named; a recorder may have hundreds of spare inputs."""
 
-_YEAR = re.compile(r"199[1-9]|20[0-9]{2}", re.ASCII)
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f]")
 
 
@@ -157,7 +145,7 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
         raise RecordingError(path, "text", expected="no control characters", found=repr(control.group()))
     lines = Lines(path, text)
     identification = lines.next("station, device and revision")
-    station, device, edition = _identification(identification, repairs)
+    station, device, edition = read_identification(identification, repairs)
     analog_count, status_count = _channel_counts(lines.next("channel counts"), len(lines))
     if len(identification.fields) == 2 and lines.fields_ahead() == FIELDS_SINCE_1999:
         fault = identification.refuse("revision", f"one of {', '.join(REVISIONS)}", "none")
@@ -203,29 +191,6 @@ def parse_configuration(path: Path, text: str, repairs: Repairs) -> Configuratio
         data_format=data_format,
         time_stamp_unit_s=time_multiplier * time_base_s,
     )
-
-
-def _identification(line: Line, repairs: Repairs) -> tuple[str, str, int | None]:
-    """Return station, device and edition; None for an edition that only the layout tells."""
-    line.has_fields(2, 3)
-    station, device = line.fields[:2]
-    if len(line.fields) == 2:  # 1991 has no revision year
-        return station, device, 1991
-    year = line.fields[2]
-    if year in REVISIONS:
-        return station, device, REVISIONS[year]
-    fault = line.refuse("revision", f"one of {', '.join(REVISIONS)}", quoted(year))
-    if year in NO_REVISIONS:
-        repairs.mend(fault, "the edition is told by the layout")
-        return station, device, None
-    if not _YEAR.fullmatch(year):
-        raise fault
-    if int(year) in BETWEEN_EDITIONS:
-        repairs.warn(f"{fault}: read as the edition of 1999")
-        return station, device, 1999
-    edition = max(edition for edition in REVISIONS.values() if edition <= int(year))
-    repairs.mend(fault, f"read as the edition of {edition}")
-    return station, device, edition
 
 
 def _channel_counts(line: Line, line_count: int) -> tuple[int, int]:

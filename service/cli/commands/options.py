@@ -1,6 +1,7 @@
 """Arguments and options that several commands have."""
 
 import os
+from math import isfinite
 from pathlib import Path
 from typing import Annotated
 
@@ -18,6 +19,13 @@ def _warn_of_unknown_variables(url: str) -> str:
         for problem in unknown_variables(os.environ, Settings.model_fields):
             print_warning(str(problem))
     return url
+
+
+def finite_seconds(wait: float) -> float:
+    """Refuse `nan` and `inf`, which are numbers to the parser of options."""
+    if not isfinite(wait):
+        raise typer.BadParameter(f"expected a number of seconds, found {wait}")
+    return wait
 
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout, also on failure.")]

@@ -1,11 +1,10 @@
 """Commands that ask a running service, or tell it something."""
 
-from math import isfinite
 from typing import Annotated, Literal
 
 import typer
 
-from service.cli.commands.options import DEFAULT_URL, Json, Url
+from service.cli.commands.options import DEFAULT_URL, Json, Url, finite_seconds
 
 commands = typer.Typer()
 
@@ -40,7 +39,10 @@ def trigger(
     wait: Annotated[
         float,
         typer.Option(
-            metavar="SECONDS", min=0, help="Wait this long for the diagnosis, and print its verdict."
+            metavar="SECONDS",
+            min=0,
+            callback=finite_seconds,
+            help="Wait this long for the diagnosis, and print its verdict.",
         ),
     ] = 0.0,
     *,
@@ -53,8 +55,6 @@ def trigger(
     """Request a recording of a motor from its relay."""
     from service.cli.remote import trigger_motor
 
-    if not isfinite(wait):
-        raise typer.BadParameter(f"--wait: expected a number of seconds, found {wait}")
     trigger_motor(url, motor, key=key, wait_s=wait, as_json=as_json)
 
 

@@ -1,6 +1,5 @@
 """Commands on what a running service has kept: trends, alarms, recordings, their diagnoses and baselines."""
 
-from math import isfinite
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -8,7 +7,7 @@ import typer
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from core.operation import Operation
-from service.cli.commands.options import DEFAULT_URL, Json, Url
+from service.cli.commands.options import DEFAULT_URL, Json, Url, finite_seconds
 
 commands = typer.Typer()
 
@@ -133,7 +132,10 @@ def upload(
     wait: Annotated[
         float,
         typer.Option(
-            metavar="SECONDS", min=0, help="Wait this long for the diagnosis, and print its verdict."
+            metavar="SECONDS",
+            min=0,
+            callback=finite_seconds,
+            help="Wait this long for the diagnosis, and print its verdict.",
         ),
     ] = 0.0,
     *,
@@ -142,8 +144,6 @@ def upload(
     """Give the service a recording of a motor; it is diagnosed as if its relay had made it."""
     from service.cli.recordings.upload import upload_recording
 
-    if not isfinite(wait):
-        raise typer.BadParameter(f"--wait: expected a number of seconds, found {wait}")
     upload_recording(url, motor, files, wait_s=wait, as_json=as_json)
 
 
@@ -154,7 +154,10 @@ def rediagnose(
     method: Method = DEFAULT_METHOD,
     model: Model = DEFAULT_MODEL,
     wait: Annotated[
-        float, typer.Option(metavar="SECONDS", min=0, help="Wait this long for the diagnoses.")
+        float,
+        typer.Option(
+            metavar="SECONDS", min=0, callback=finite_seconds, help="Wait this long for the diagnoses."
+        ),
     ] = 60.0,
     *,
     as_csv: Csv = False,
@@ -163,8 +166,6 @@ def rediagnose(
     """Diagnose stored recordings again, with the motor's parameters and baseline of today."""
     from service.cli.recordings.rediagnose import rediagnose_recordings
 
-    if not isfinite(wait):
-        raise typer.BadParameter(f"--wait: expected a number of seconds, found {wait}")
     rediagnose_recordings(
         url, recordings, method.value, model.value, wait_s=wait, as_csv=as_csv, as_json=as_json
     )

@@ -11,7 +11,7 @@ from shutil import copy2
 from rich.text import Text
 
 from core.commissioning.catalogue import Compared, circuit_from_catalogue, figures_of
-from core.commissioning.catalogue_data import CatalogueData, check_figures
+from core.commissioning.catalogue_data import FIGURES, CatalogueData, check_figures
 from core.commissioning.circuit_doubts import circuit_doubts
 from core.commissioning.data_sheet import (
     COPPER_C,
@@ -39,17 +39,17 @@ from service.client.tables import FittedTable
 
 Interval = tuple[float, float]
 
-WORDS: Mapping[str, tuple[str, float, str]] = {
-    "efficiency": ("efficiency", 100.0, "%"),
-    "power_factor": ("power factor", 1.0, ""),
-    "rated_current_A": ("rated current", 1.0, "A"),
-    "rated_speed_rpm": ("rated speed", 1.0, "rpm"),
-    "locked_rotor_current": ("locked-rotor current", 1.0, "times"),
-    "locked_rotor_torque": ("locked-rotor torque", 1.0, "times"),
-    "breakdown_torque": ("breakdown torque", 1.0, "times"),
-    "stator_resistance_ohm": ("stator resistance", 1.0, "ohm"),
+UNITS: Mapping[str, tuple[float, str]] = {
+    "efficiency": (100.0, "%"),
+    "power_factor": (1.0, ""),
+    "rated_current_A": (1.0, "A"),
+    "rated_speed_rpm": (1.0, "rpm"),
+    "locked_rotor_current": (1.0, "times"),
+    "locked_rotor_torque": (1.0, "times"),
+    "breakdown_torque": (1.0, "times"),
+    "stator_resistance_ohm": (1.0, "ohm"),
 }
-"""Figures of a catalogue in words, with the factor to the unit that is shown."""
+"""Unit in which a figure of a catalogue is shown, with the factor to it."""
 
 FAR = 2.5
 FAR_OF_IMPEDANCES = 4.0
@@ -228,7 +228,7 @@ def _warnings(compared: tuple[Compared, ...], *, from_impedances: bool) -> list[
     """Return which figures are far from the circuit's."""
     far = FAR_OF_IMPEDANCES if from_impedances else FAR
     return [
-        f"{WORDS[one.name][0]}: the data sheet says {_figure(one, one.given)}, its circuit "
+        f"{FIGURES[one.name]}: the data sheet says {_figure(one, one.given)}, its circuit "
         f"{_figure(one, one.computed)}: check nameplate, unit, base and which values these are"
         for one in compared
         if one.deviations is not None and abs(one.deviations) > far
@@ -238,7 +238,7 @@ def _warnings(compared: tuple[Compared, ...], *, from_impedances: bool) -> list[
 def _figure(one: Compared, value: float | None) -> str:
     if value is None:
         return "-"
-    _, factor, unit = WORDS[one.name]
+    factor, unit = UNITS[one.name]
     return f"{plain(value * factor, 4)} {unit}".strip()
 
 
@@ -246,7 +246,7 @@ def _heading(compared: tuple[Compared, ...], warnings: list[str], *, from_impeda
     source = "impedances of the data sheet" if from_impedances else "figures of a catalogue (least squares)"
     lines = [f"By `mcc parameters` from {source}; commission the motor when a start is recorded"]
     lines += [
-        f"{WORDS[one.name][0]}: {_figure(one, one.computed)} by this circuit"
+        f"{FIGURES[one.name]}: {_figure(one, one.computed)} by this circuit"
         + ("" if one.given is None else f", {_figure(one, one.given)} given")
         for one in compared
     ]
@@ -291,5 +291,5 @@ def _table(
     table.add_section()
     for one in compared:
         off = "" if one.deviations is None else f"{one.deviations:+.1f} sd"
-        table.add_row(WORDS[one.name][0], _figure(one, one.computed), _figure(one, one.given), off)
+        table.add_row(FIGURES[one.name], _figure(one, one.computed), _figure(one, one.given), off)
     return table
