@@ -8,6 +8,7 @@ from importlib.metadata import version
 from fastapi import APIRouter, Depends, FastAPI, Response
 from fastapi.openapi.utils import get_openapi
 
+from service.access.permissions import Permission
 from service.api import (
     baselines,
     conditions,
@@ -21,6 +22,7 @@ from service.api import (
     recordings,
     relays,
 )
+from service.api.access.requirements import require
 from service.api.context import ApiContext
 from service.api.host_guard import HostGuard
 from service.api.limits.arrivals import Arrivals
@@ -99,7 +101,7 @@ def _complete_document(app: FastAPI, limits: Mapping[Route, int]) -> None:
     @app.get(
         f"{PREFIX}/openapi.json",
         include_in_schema=False,
-        dependencies=[Depends(refuse_unknown_parameters)],
+        dependencies=[require(Permission.ACCOUNT), Depends(refuse_unknown_parameters)],
     )
     async def get_openapi_document() -> Response:
         return Response(written(), media_type="application/json")

@@ -6,6 +6,9 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from service.access.permissions import Permission
+from service.api.access.callers import By
+from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name, Person, Reason
 from service.api.problems import problems
@@ -14,14 +17,14 @@ from service.api.schemas import Baseline, BaselineRequest
 router = APIRouter(prefix="/motors/{name}/baseline", tags=["condition"])
 
 
-@router.get("", responses=problems(404))
+@router.get("", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def get_baseline(context: Context, name: Name) -> Baseline:
     """Return the recordings of a motor's baseline, oldest first; none where it has no baseline."""
     return Baseline.model_validate(context.repository.baseline(name))
 
 
-@router.put("", responses=problems(400, 404, 409, 413))
-def set_baseline(context: Context, name: Name, wanted: BaselineRequest) -> Baseline:
+@router.put("", responses=problems(400, 404, 409, 413), dependencies=[require(Permission.CONFIGURE)])
+def set_baseline(context: Context, name: Name, wanted: BaselineRequest, caller: By) -> Baseline:
     """Replace a motor's baseline by recordings known to be healthy, for diagnoses from now on.
 
     Recordings in doubt need a reason and who says so; both are kept, in a note of the motor too.
@@ -31,18 +34,24 @@ def set_baseline(context: Context, name: Name, wanted: BaselineRequest) -> Basel
         name,
         ids,
         reason=wanted.reason,
-        by=wanted.by,
+        by=wanted.by or caller.name,
         now_ns=time.time_ns(),
     )
     return Baseline.model_validate(baseline)
 
 
-@router.delete("", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
+@router.delete(
+    "",
+    status_code=HTTPStatus.NO_CONTENT,
+    responses=problems(404),
+    dependencies=[require(Permission.CONFIGURE)],
+)
 def drop_baseline(
     context: Context,
     name: Name,
+    caller: By,
     reason: Annotated[Reason | None, Query(description="Why; it is kept.")] = None,
     by: Annotated[Person | None, Query(description="Who says so; it is kept.")] = None,
 ) -> None:
     """Delete a motor's baseline; its recordings stay, and a note of the motor keeps who did so and why."""
-    context.repository.delete_baseline(name, reason=reason, by=by, now_ns=time.time_ns())
+    context.repository.delete_baseline(name, reason=reason, by=by or caller.name, now_ns=time.time_ns())

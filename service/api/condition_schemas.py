@@ -123,27 +123,27 @@ class ConditionChange(_Figures):
 
 
 class NoteRequest(RequestDocument):
-    """What a person tells of a motor. `time`: when it happened, by default now."""
+    """What a person tells of a motor. `time`: when it happened, by default now. `by`: by default who asks."""
 
     kind: EventKind = EventKind.NOTE
     text: Reason
-    by: Person
+    by: Person | None = None
     time: TimeParameter | None = None
 
 
 class RestartRequest(RequestDocument):
-    """Why the motor counts as healthy as it is. `time`: from when on, by default now."""
+    """Why the motor counts as healthy as it is. `time`: from when on, by default now. `by`: as of notes."""
 
     reason: Reason
-    by: Person
+    by: Person | None = None
     time: TimeParameter | None = None
 
 
 class Withdrawal(RequestDocument):
-    """Why a note was wrong."""
+    """Why a note was wrong. `by`: by default who asks."""
 
     reason: Reason
-    by: Person
+    by: Person | None = None
 
 
 class Note(Document):

@@ -9,6 +9,9 @@ from fastapi import APIRouter, Query, Request, Response
 
 from core.condition.events import Event, EventKind
 from core.units import NANOSECONDS_PER_DAY
+from service.access.permissions import Permission
+from service.api.access.callers import By
+from service.api.access.requirements import require
 from service.api.condition_documents import condition_document
 from service.api.condition_schemas import (
     ConditionChange,
@@ -39,7 +42,7 @@ _MADE: dict[int | str, dict[str, object]] = {
 router = APIRouter(prefix="/motors/{name}", tags=["condition"])
 
 
-@router.get("/condition", responses=problems(404))
+@router.get("/condition", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def get_condition(
     context: Context,
     name: Name,
@@ -60,7 +63,7 @@ def get_condition(
     )
 
 
-@router.get("/condition/history", responses=problems(404))
+@router.get("/condition/history", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_condition_history(
     context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
 ) -> Page[ConditionChange]:
@@ -69,7 +72,7 @@ def list_condition_history(
     return page(changes, ConditionChange.model_validate)
 
 
-@router.get("/notes", responses=problems(404))
+@router.get("/notes", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_notes(
     context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
 ) -> Page[Note]:
@@ -79,37 +82,53 @@ def list_notes(
     )
 
 
-@router.post("/notes", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 409, 413) | _MADE)
-def add_note(context: Context, request: Request, response: Response, name: Name, wanted: NoteRequest) -> Note:
+@router.post(
+    "/notes",
+    status_code=HTTPStatus.CREATED,
+    responses=problems(400, 404, 409, 413) | _MADE,
+    dependencies=[require(Permission.NOTE)],
+)
+def add_note(
+    context: Context, request: Request, response: Response, name: Name, wanted: NoteRequest, caller: By
+) -> Note:
     """Keep what a person tells of a motor; its condition follows within seconds."""
-    note = _add(context, name, wanted.kind, wanted.text, wanted.by, wanted.time)
+    note = _add(context, name, wanted.kind, wanted.text, wanted.by or caller.name, wanted.time)
     response.headers["Location"] = request.url_for("get_note", name=name, note_id=note.id).path
     return note
 
 
-@router.get("/notes/{note_id}", responses=problems(404))
+@router.get("/notes/{note_id}", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def get_note(context: Context, name: Name, note_id: UUID) -> Note:
     """Return one note."""
     return Note.model_validate(context.repository.event(name, str(note_id)))
 
 
-@router.post("/notes/{note_id}/withdrawal", responses=problems(400, 404, 409, 413))
-def withdraw_note(context: Context, name: Name, note_id: UUID, wanted: Withdrawal) -> Note:
+@router.post(
+    "/notes/{note_id}/withdrawal",
+    responses=problems(400, 404, 409, 413),
+    dependencies=[require(Permission.CONFIGURE)],
+)
+def withdraw_note(context: Context, name: Name, note_id: UUID, wanted: Withdrawal, caller: By) -> Note:
     """Let a note that was wrong count no more; the condition follows as if nobody had told it."""
     note = context.repository.withdraw_event(
-        name, str(note_id), by=wanted.by, reason=wanted.reason, now_ns=time.time_ns()
+        name, str(note_id), by=wanted.by or caller.name, reason=wanted.reason, now_ns=time.time_ns()
     )
     context.on_new_job()
     return Note.model_validate(note)
 
 
-@router.post("/reference", status_code=HTTPStatus.CREATED, responses=problems(400, 404, 409, 413) | _MADE)
+@router.post(
+    "/reference",
+    status_code=HTTPStatus.CREATED,
+    responses=problems(400, 404, 409, 413) | _MADE,
+    dependencies=[require(Permission.CONFIGURE)],
+)
 def restart_reference(
-    context: Context, request: Request, response: Response, name: Name, wanted: RestartRequest
+    context: Context, request: Request, response: Response, name: Name, wanted: RestartRequest, caller: By
 ) -> Note:
     """Take the motor for healthy as it is: its standing asymmetry is learnt anew. The answer is a note."""
     kind = EventKind.REFERENCE_RESTARTED
-    note = _add(context, name, kind, wanted.reason, wanted.by, wanted.time)
+    note = _add(context, name, kind, wanted.reason, wanted.by or caller.name, wanted.time)
     response.headers["Location"] = request.url_for("get_note", name=name, note_id=note.id).path
     return note
 

@@ -9,6 +9,8 @@ from fastapi import APIRouter, Query
 from pydantic import Field, StringConstraints
 
 from core.diagnosis.verdict import Verdict
+from service.access.permissions import Permission
+from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Document
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
@@ -48,13 +50,18 @@ class Deletion(Document):
     reason: str
 
 
-@router.delete("/recordings/{recording_id}", status_code=HTTPStatus.NO_CONTENT, responses=problems(404, 409))
+@router.delete(
+    "/recordings/{recording_id}",
+    status_code=HTTPStatus.NO_CONTENT,
+    responses=problems(404, 409),
+    dependencies=[require(Permission.RECORDINGS)],
+)
 def delete_recording(context: Context, recording_id: UUID, reason: Reason) -> None:
     """Delete a recording with its files and diagnoses; it is not pulled from its relay again."""
     delete_with_folder(context.repository, context.store, str(recording_id), reason, now_ns=time.time_ns())
 
 
-@router.get("/deletions", responses=problems(404))
+@router.get("/deletions", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_deletions(
     context: Context,
     motor: Annotated[str | None, Query(max_length=200)] = None,
@@ -67,7 +74,7 @@ def list_deletions(
     return page(deletions, Deletion.model_validate)
 
 
-@router.get("/deletions/{recording_id}", responses=problems(404))
+@router.get("/deletions/{recording_id}", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def get_deletion(context: Context, recording_id: UUID) -> Deletion:
     """Return what is remembered of one recording that was deleted."""
     return Deletion.model_validate(context.repository.deletion(str(recording_id)))

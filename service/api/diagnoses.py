@@ -7,6 +7,8 @@ from uuid import UUID
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.access.permissions import Permission
+from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
@@ -24,6 +26,7 @@ router = APIRouter(prefix="/recordings/{recording_id}/diagnoses", tags=["recordi
     status_code=HTTPStatus.ACCEPTED,
     responses=problems(400, 404, 409, 413, 429)
     | {202: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The diagnosis."}}}},
+    dependencies=[require(Permission.RECORDINGS)],
 )
 def request_diagnosis(
     context: Context,
@@ -47,7 +50,7 @@ def request_diagnosis(
     return DiagnosisRun.model_validate(job)
 
 
-@router.get("", responses=problems(404))
+@router.get("", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_diagnoses(
     context: Context,
     recording_id: UUID,
@@ -59,7 +62,7 @@ def list_diagnoses(
     return page(jobs, _run)
 
 
-@router.get("/{diagnosis_id}", responses=problems(404))
+@router.get("/{diagnosis_id}", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def get_diagnosis(context: Context, recording_id: UUID, diagnosis_id: UUID) -> DiagnosisRun:
     """Return one diagnosis of a recording."""
     return _run(context.repository.job(str(recording_id), str(diagnosis_id)))

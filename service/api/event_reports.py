@@ -7,6 +7,8 @@ from uuid import UUID
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
+from service.access.permissions import Permission
+from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
@@ -34,6 +36,7 @@ IdempotencyKey = Annotated[
             "headers": {"Location": {"schema": {"type": "string"}, "description": "The recording request."}}
         }
     },
+    dependencies=[require(Permission.TRIGGER)],
 )
 def request_event_report(
     context: Context,
@@ -53,7 +56,7 @@ def request_event_report(
     return EventReport.model_validate(recording_request)
 
 
-@router.get("/event-reports", responses=problems(404))
+@router.get("/event-reports", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_event_reports(
     context: Context,
     motor: Annotated[str | None, Query(max_length=200)] = None,
@@ -66,7 +69,7 @@ def list_event_reports(
     return page(requests, EventReport.model_validate)
 
 
-@router.get("/event-reports/{report_id}", responses=problems(404))
+@router.get("/event-reports/{report_id}", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def get_event_report(context: Context, report_id: UUID) -> EventReport:
     """Return one recording request."""
     return EventReport.model_validate(context.repository.recording_request(str(report_id)))

@@ -4,6 +4,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from service.access.permissions import Permission
+from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
@@ -16,7 +18,7 @@ from service.storage.records import Measurement as StoredMeasurement
 router = APIRouter(tags=["condition"])
 
 
-@router.get("/motors/{name}/measurements", responses=problems(404))
+@router.get("/motors/{name}/measurements", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_measurements(
     context: Context,
     name: Name,

@@ -8,6 +8,8 @@ from fastapi import APIRouter, Query
 
 from core.machines.parameters import ParametersSource
 from core.operation import Operation
+from service.access.permissions import Permission
+from service.api.access.requirements import require
 from service.api.condition_documents import condition_document
 from service.api.context import Context
 from service.api.document import Name
@@ -35,13 +37,19 @@ ConditionQuantity = Literal["condition_level", "change"]
 router = APIRouter()
 
 
-@router.get("/sites", responses=problems(), tags=["plant"])
+@router.get("/sites", responses=problems(), tags=["plant"], dependencies=[require(Permission.VIEW)])
 def list_sites(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Site]:
     """Return the sites (substations of the plant's SCD), by name."""
     return page(context.repository.sites(limit=limit, after=decode(cursor, str)), Site.model_validate)
 
 
-@router.get("/motors", responses=problems(), tags=["plant"], response_model_exclude_unset=True)
+@router.get(
+    "/motors",
+    responses=problems(),
+    tags=["plant"],
+    response_model_exclude_unset=True,
+    dependencies=[require(Permission.VIEW)],
+)
 def list_motors(
     context: Context,
     health: Annotated[bool, Query(description="With the health of each, as `motors/{name}/health`.")] = False,
@@ -56,13 +64,20 @@ def list_motors(
     return page(context.repository.motors(limit=limit, after=after), ListedMotor.model_validate)
 
 
-@router.get("/motors/{name}", responses=problems(404), tags=["plant"])
+@router.get(
+    "/motors/{name}", responses=problems(404), tags=["plant"], dependencies=[require(Permission.VIEW)]
+)
 def get_motor(context: Context, name: Name) -> Motor:
     """Return one motor."""
     return Motor.model_validate(context.repository.motor(name))
 
 
-@router.get("/motors/{name}/health", responses=problems(404), tags=["condition"])
+@router.get(
+    "/motors/{name}/health",
+    responses=problems(404),
+    tags=["condition"],
+    dependencies=[require(Permission.VIEW)],
+)
 def get_health(context: Context, name: Name) -> Health:
     """Return a motor's condition, what its latest recording says by itself, and whether its relay answers."""
     return _health(context.repository.health(name), time.time_ns(), context.settings)
@@ -73,6 +88,7 @@ def get_health(context: Context, name: Name) -> Health:
     responses=problems(404),
     tags=["condition"],
     response_model_exclude_unset=True,
+    dependencies=[require(Permission.VIEW)],
 )
 def get_trend(
     context: Context,
@@ -96,7 +112,12 @@ def get_trend(
     return page(points, TrendPoint.model_validate)
 
 
-@router.get("/motors/{name}/recordings", responses=problems(404), tags=["recordings"])
+@router.get(
+    "/motors/{name}/recordings",
+    responses=problems(404),
+    tags=["recordings"],
+    dependencies=[require(Permission.VIEW)],
+)
 def list_recordings_of_motor(
     context: Context,
     name: Name,

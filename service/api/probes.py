@@ -11,6 +11,8 @@ from prometheus_client.exposition import CONTENT_TYPE_LATEST, generate_latest
 from prometheus_client.registry import Collector
 from sqlalchemy.exc import SQLAlchemyError
 
+from service.access.permissions import Permission
+from service.api.access.requirements import open_to_all, require
 from service.api.condition_metrics import ConditionMetrics
 from service.api.context import ApiContext, Context
 from service.api.link_metrics import LinkMetrics
@@ -23,14 +25,16 @@ from service.timing.database_silence import database_trouble
 router = APIRouter(tags=["operation"])
 
 
-@router.get("/healthz")
+@router.get("/healthz", dependencies=[open_to_all()])
 async def get_health_of_service() -> Status:
     """Answer, which shows that the service runs."""
     # Without a thread, of which all may be busy, and without the database: it is answered under any load.
     return Status(status="ok")
 
 
-@router.get("/readyz", response_model=Status, responses={503: problems(503)[503]})
+@router.get(
+    "/readyz", response_model=Status, responses={503: problems(503)[503]}, dependencies=[open_to_all()]
+)
 def get_readiness(context: Context, request: Request) -> Status | JSONResponse:
     """Tell whether all parts of the service work; otherwise answer 503, and say which does not and why."""
     parts = _parts(context)
@@ -45,7 +49,7 @@ def get_readiness(context: Context, request: Request) -> Status | JSONResponse:
     )
 
 
-@router.get("/metrics", response_class=PlainTextResponse)
+@router.get("/metrics", response_class=PlainTextResponse, dependencies=[require(Permission.METRICS)])
 def get_metrics(context: Context) -> Response:
     """Return the numbers of links, recording requests, recordings, jobs, alarms and motors by state.
 

@@ -15,6 +15,8 @@ from fastapi.responses import StreamingResponse
 
 from core.operation import Operation
 from core.recordings import Envelope, RecordingError, read_envelope
+from service.access.permissions import Permission
+from service.api.access.requirements import require
 from service.api.archive import archive_name, zipped
 from service.api.context import ApiContext, Context
 from service.api.listed_recordings import listed
@@ -37,7 +39,7 @@ UPLOAD_ROUTES = frozenset({("POST", "/recordings")})
 """Routes that take files; bodies of others are small."""
 
 
-@router.get("/recordings", responses=problems(404))
+@router.get("/recordings", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_recordings(
     context: Context,
     motor: Annotated[str | None, Query(max_length=200)] = None,
@@ -74,6 +76,7 @@ def list_recordings(
         },
         201: {"headers": {"Location": {"schema": {"type": "string"}, "description": "The recording."}}},
     },
+    dependencies=[require(Permission.RECORDINGS)],
 )
 async def upload_recording(
     context: Context,
@@ -97,7 +100,7 @@ async def upload_recording(
     return details
 
 
-@router.get("/recordings/{recording_id}", responses=problems(404))
+@router.get("/recordings/{recording_id}", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def get_recording(context: Context, recording_id: UUID) -> RecordingDetails:
     """Return one recording with its files and its latest diagnosis."""
     return _details(context, context.repository.recording(str(recording_id)))
@@ -112,7 +115,7 @@ async def _sending_turn(context: Context) -> AsyncIterator[None]:
 @router.get(
     "/recordings/{recording_id}/waveform",
     response_model=Waveform,
-    dependencies=[Depends(_sending_turn)],
+    dependencies=[require(Permission.VIEW), Depends(_sending_turn)],
     responses=problems(404, 409),
 )
 async def get_waveform(
@@ -134,6 +137,7 @@ async def get_waveform(
     response_class=StreamingResponse,
     responses=problems(404, 409)
     | {200: {"content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}}}},
+    dependencies=[require(Permission.VIEW)],
 )
 def download_recording(context: Context, recording_id: UUID) -> StreamingResponse:
     """Return the files of a recording as they came from the relay, in a ZIP archive.

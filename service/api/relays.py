@@ -6,6 +6,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
+from service.access.permissions import Permission
+from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
@@ -30,13 +32,13 @@ LATEST_CHANGES = 20
 """So many are shown with the relay itself; all have a route of their own."""
 
 
-@router.get("/ieds", responses=problems())
+@router.get("/ieds", responses=problems(), dependencies=[require(Permission.VIEW)])
 def list_ieds(context: Context, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None) -> Page[Ied]:
     """Return the relays and the state of their links, by name."""
     return page(context.repository.relays(limit=limit, after=decode(cursor, str)), Ied.model_validate)
 
 
-@router.get("/ieds/{name}", responses=problems(404))
+@router.get("/ieds/{name}", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def get_ied(context: Context, name: Name) -> IedDetails:
     """Return one relay, with figures and history of its link and its standing alarms."""
     repository = context.repository
@@ -60,7 +62,12 @@ def get_ied(context: Context, name: Name) -> IedDetails:
     )
 
 
-@router.delete("/ieds/{name}/quarantine", status_code=HTTPStatus.NO_CONTENT, responses=problems(404))
+@router.delete(
+    "/ieds/{name}/quarantine",
+    status_code=HTTPStatus.NO_CONTENT,
+    responses=problems(404),
+    dependencies=[require(Permission.RELEASE)],
+)
 def release_ied(context: Context, name: Name) -> None:
     """Visit a relay again that was set aside, with a clean sheet; harmless where it was not."""
     context.repository.release(name, now_ns=time.time_ns())
@@ -72,7 +79,7 @@ def _acquisition(findings: RelayFindings | None) -> Acquisition | None:
     return Acquisition.model_validate({**findings.acquisition, "found_time": findings.found_ns})
 
 
-@router.get("/ieds/{name}/link-changes", responses=problems(404))
+@router.get("/ieds/{name}/link-changes", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_link_changes(
     context: Context, name: Name, limit: Limit = DEFAULT_LIMIT, cursor: CursorText = None
 ) -> Page[LinkChange]:
@@ -81,14 +88,14 @@ def list_link_changes(
     return page(changes, LinkChange.model_validate)
 
 
-@router.get("/gateways", responses=problems())
+@router.get("/gateways", responses=problems(), dependencies=[require(Permission.VIEW)])
 def list_gateways(context: Context) -> Page[Gateway]:
     """Return the processes that visit the relays, on all hosts, by id; always one page."""
     gateways = context.repository.gateways()
     return Page(items=[Gateway.model_validate(gateway) for gateway in gateways], next_cursor=None)
 
 
-@router.get("/alarms", responses=problems(404))
+@router.get("/alarms", responses=problems(404), dependencies=[require(Permission.VIEW)])
 def list_alarms(
     context: Context,
     ied: Annotated[

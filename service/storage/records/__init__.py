@@ -1,5 +1,6 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
+from service.storage.records.actors import SERVICE, Actor, Role
 from service.storage.records.backups import BackupEntry
 from service.storage.records.baselines import BaselineDoubt, BaselineEntry
 from service.storage.records.conditions import (
@@ -47,6 +48,8 @@ from service.storage.records.relays import (
 )
 
 __all__ = [
+    "SERVICE",
+    "Actor",
     "Alarm",
     "Amount",
     "Backlog",
@@ -92,6 +95,7 @@ __all__ = [
     "RecordingRequest",
     "RelayFindings",
     "RemoteRecord",
+    "Role",
     "Sample",
     "SiteEntry",
     "ToObserve",

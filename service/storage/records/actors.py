@@ -1,0 +1,30 @@
+"""Who does something: a person, a program with a token of theirs, or a part of the service."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Role(StrEnum):
+    """What somebody is in the plant, after IEC 62351-8. A person may have several."""
+
+    VIEWER = "VIEWER"
+    OPERATOR = "OPERATOR"
+    ENGINEER = "ENGINEER"
+    SECADM = "SECADM"
+    SECAUD = "SECAUD"
+
+
+@dataclass(frozen=True, slots=True)
+class Actor:
+    """Who asks for a change, for what is kept of it.
+
+    origin: the address a request came from, "command line", or "service" for what the service does itself.
+    """
+
+    name: str
+    origin: str
+    roles: frozenset[Role] = frozenset()
+
+
+SERVICE = Actor("statorwatch", "service")
+"""The service itself: schedules, retention, alarms that end by themselves."""
