@@ -136,6 +136,16 @@ class LatestDiagnosis:
 
 
 @dataclass(frozen=True, slots=True)
+class LatestFigures:
+    """The figures of a motor's latest recording that has any."""
+
+    motor: str
+    recorded_ns: int
+    detection_limit: float | None
+    load_level: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Counts:
     """How many of each there are, by state; of alarms, those that stand, by kind. For the metrics."""
 

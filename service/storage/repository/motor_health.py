@@ -17,6 +17,7 @@ from service.storage.records import (
     Cursor,
     IedEntry,
     LatestDiagnosis,
+    LatestFigures,
     MotorEntry,
     MotorHealth,
     Page,
@@ -75,6 +76,28 @@ class MotorHealthRows(Sessions):
         with self._read() as session:
             motors = page_of(session, query, [MotorRow.name], MotorEntry, limit=limit, after=after)
             return Page(_health_of(session, motors.items), motors.next)
+
+    def latest_figures(self) -> tuple[LatestFigures, ...]:
+        """Return the figures of the latest recording of each motor in service that has any, by name."""
+        diagnosis = aliased(DiagnosisRow)
+        # The index of the trend has all of these columns: no document is read.
+        latest = (
+            select(diagnosis.id)
+            .where(diagnosis.motor == MotorRow.name, diagnosis.current, diagnosis.says_nothing.is_(False))
+            .where(diagnosis.mu_f.is_not(None))
+            .order_by(diagnosis.recorded_ns.desc(), diagnosis.id.desc())
+            .limit(1)
+            .scalar_subquery()
+        )
+        query = (
+            select(*columns_of(LatestFigures, DiagnosisRow))
+            .select_from(MotorRow)
+            .join(DiagnosisRow, DiagnosisRow.id == latest)
+            .where(MotorRow.in_service)
+            .order_by(MotorRow.name)
+        )
+        with self._read() as session:
+            return tuple(LatestFigures(*row) for row in session.execute(query))
 
     def trend(
         self,

@@ -47,13 +47,25 @@ def diagnose(repository: Repository) -> None:
     repository.finish_job(claimed.job.id, fault(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER)
 
 
+def plan_of(engine: Engine, statement: str) -> list[str]:
+    """How SQLite means to find what a statement asks for."""
+    with engine.connect() as connection:
+        bound = tuple(range(statement.count("?")))
+        return [row[-1] for row in connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {statement}", bound)]
+
+
 def test_the_metrics_read_no_table_that_grows(
-    asked: Asked, client: httpx.Client, repository: Repository, recording_id: str
+    asked: Asked, client: httpx.Client, repository: Repository, engine: Engine, recording_id: str
 ) -> None:
     diagnose(repository)
     statements = asked("/metrics")
-    for table in ("recordings", "recording_requests", "jobs", "diagnoses", "alarms"):
+    for table in ("recordings", "recording_requests", "jobs", "alarms"):
         assert not [statement for statement in statements if f"FROM {table}" in statement]
+    (latest,) = [statement for statement in statements if "FROM diagnoses" in statement]
+    assert "FROM motors" in latest, "one look into the index of the trend for each motor"
+    plan = " ".join(plan_of(engine, latest))
+    assert "SEARCH diagnoses_1 USING COVERING INDEX ix_diagnoses_trend (motor=?" in plan
+    assert "SCAN diagnoses" not in plan
     figures = client.get("/metrics").text
     assert 'mcc_recordings{state="diagnosed"} 1.0' in figures
     assert 'mcc_jobs{state="done"} 1.0' in figures

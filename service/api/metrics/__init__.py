@@ -1,0 +1,1 @@
+"""What the service tells Prometheus, made from the database at each scrape."""

@@ -1,0 +1,36 @@
+"""How much there is of everything, by state, for Prometheus."""
+
+from collections.abc import Iterator, Mapping
+
+from prometheus_client.core import GaugeMetricFamily
+from prometheus_client.registry import Collector
+
+from service.storage.repository import Repository
+from service.storage.states import AlarmKind
+
+
+class StateMetrics(Collector):
+    """Asks the database when it is asked, so that the figures are those of all processes."""
+
+    def __init__(self, repository: Repository) -> None:
+        self._repository = repository
+
+    def collect(self) -> Iterator[GaugeMetricFamily]:
+        counts = self._repository.counts()
+        families: Mapping[str, Mapping[str, int]] = {
+            "links": {str(state): count for state, count in counts.links.items()},
+            "event_reports": {str(state): count for state, count in counts.recording_requests.items()},
+            "recordings": {str(state): count for state, count in counts.recordings.items()},
+            "jobs": {str(state): count for state, count in counts.jobs.items()},
+        }
+        for name, by_state in families.items():
+            family = GaugeMetricFamily(
+                f"mcc_{name}", f"Number of {name.replace('_', ' ')} by state", labels=["state"]
+            )
+            for state, count in sorted(by_state.items()):
+                family.add_metric([state], count)
+            yield family
+        alarms = GaugeMetricFamily("mcc_alarms", "Number of standing alarms by kind", labels=["kind"])
+        for kind in AlarmKind:
+            alarms.add_metric([kind], counts.alarms.get(kind, 0))
+        yield alarms
