@@ -3,6 +3,7 @@
 The code says relay; the tables, their columns and the REST API say IED, as IEC 61850 does.
 """
 
+from service.storage.models.audit import AuditEntryRow, AuditHeadRow
 from service.storage.models.backups import BackupRow
 from service.storage.models.base import Base
 from service.storage.models.conditions import (
@@ -40,6 +41,8 @@ from service.storage.models.relays import (
 
 __all__ = [
     "AlarmRow",
+    "AuditEntryRow",
+    "AuditHeadRow",
     "BackupRow",
     "Base",
     "BaselineRecordingRow",

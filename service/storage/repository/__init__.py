@@ -1,6 +1,7 @@
 """The only code that touches the tables, one module a subject."""
 
 from service.storage.repository.alarms import AlarmRows
+from service.storage.repository.audit.trail import AuditRows
 from service.storage.repository.backups import BackupRows
 from service.storage.repository.baselines import BaselineRows
 from service.storage.repository.condition_alarms import ConditionAlarmRows
@@ -53,6 +54,7 @@ class Repository(
     FolderRows,
     RetentionRows,
     BackupRows,
+    AuditRows,
 ):
     """All there is to ask of and tell the database; every method is one transaction.
 

@@ -1,0 +1,89 @@
+"""Reads the audit trail: pages of it for people, all of it for who verifies or exports it."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session
+
+from service.audit.actions import AuditAction
+from service.audit.entries import Anchor, AuditEntry
+from service.storage.models import AuditEntryRow, AuditHeadRow
+from service.storage.records import Cursor, Page
+from service.storage.records.actors import Actor
+from service.storage.repository.audit.entries import note_change
+from service.storage.repository.sessions import Sessions, columns_of, page_of
+
+READ_AT_ONCE = 1000
+"""So many entries are in memory when all are read."""
+
+
+@dataclass(frozen=True, slots=True)
+class AuditTrail:
+    """The trail as it is at one time, whatever is added meanwhile. head: the last entry that was written."""
+
+    head: Anchor
+    _session: Session
+
+    def entries(self, *, first: int = 1) -> Iterator[AuditEntry]:
+        """Read the entries from a number on, one by one."""
+        query = select(*columns_of(AuditEntry, AuditEntryRow)).order_by(AuditEntryRow.number)
+        while rows := self._session.execute(
+            query.where(AuditEntryRow.number >= first).limit(READ_AT_ONCE)
+        ).all():
+            for row in rows:
+                yield AuditEntry(*row)
+            first = rows[-1].number + 1
+
+
+class AuditRows(Sessions):
+    @contextmanager
+    def audit_trail(self) -> Iterator[AuditTrail]:
+        """Give the whole trail to read, as it is now."""
+        with self._read() as session:
+            if session.get_bind().dialect.name == "postgresql":
+                # Each statement would else see what was added since the one before.
+                session.connection(execution_options={"isolation_level": "REPEATABLE READ"})
+            head = session.scalars(select(AuditHeadRow)).one()
+            yield AuditTrail(Anchor(head.number, head.hash), session)
+
+    def audit_entries(
+        self,
+        *,
+        limit: int,
+        after: Cursor | None = None,
+        actor: str | None = None,
+        action: AuditAction | None = None,
+        subject: str | None = None,
+        from_ns: int | None = None,
+        to_ns: int | None = None,
+    ) -> Page[AuditEntry]:
+        """Return a page of entries, latest first, those that meet all conditions; None for any."""
+        query = select(*columns_of(AuditEntry, AuditEntryRow))
+        if actor is not None:
+            query = query.where(AuditEntryRow.actor == actor)
+        if action is not None:
+            query = query.where(AuditEntryRow.action == action)
+        if subject is not None:
+            query = query.where(AuditEntryRow.subject == subject)
+        if from_ns is not None:
+            query = query.where(AuditEntryRow.time_ns >= from_ns)
+        if to_ns is not None:
+            query = query.where(AuditEntryRow.time_ns < to_ns)
+        with self._read() as session:
+            order = [AuditEntryRow.number]
+            return page_of(session, query, order, AuditEntry, limit=limit, after=after, descending=True)
+
+    def note_by(
+        self,
+        by: Actor,
+        action: AuditAction,
+        subject: tuple[str, str],
+        *,
+        now_ns: int,
+        after: dict[str, object] | None = None,
+    ) -> None:
+        """Write an entry on what changes nothing in the database, such as an export."""
+        with self._write() as session:
+            note_change(session, by, action, subject, now_ns=now_ns, after=after)
