@@ -15,6 +15,7 @@ from pydantic_settings import BaseSettings, EnvSettingsSource, PydanticBaseSetti
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
 from core.units import SECONDS_PER_DAY
+from service.configuration.alarms import AlarmSettings
 from service.configuration.backup import BackupSettings
 from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
 from service.configuration.relay_access import AbsolutePath, RelayAccess
@@ -79,6 +80,7 @@ class Settings(BaseSettings):
 
     retention: RetentionSettings = Field(default_factory=RetentionSettings)
     backup: BackupSettings = Field(default_factory=BackupSettings)
+    alarms: AlarmSettings = Field(default_factory=AlarmSettings)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=100, ge=1, le=1000)

@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from core.error_words import nearest
+from service.configuration.alarms import AlarmSettings
 from service.configuration.backup import BackupSettings
 from service.configuration.problems import ENVIRONMENT, Problem
 from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
@@ -27,6 +28,7 @@ FOLLOWS_FROM_ANOTHER: Final = "default_factory_not_called"
 TABLES: Final[Mapping[str, tuple[Any, ...]]] = {
     "relays": (None, None, RelayAccess, RelayTls),
     "backup": (None, BackupSettings),
+    "alarms": (None, AlarmSettings),
     "retention": (None, RetentionSettings),
 }
 """Models of the tables in the settings, by the depth of their keys."""

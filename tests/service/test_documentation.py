@@ -5,6 +5,7 @@ from dataclasses import fields
 from pathlib import Path
 
 from service.api import ApiContext, create_app
+from service.configuration.alarms import AlarmSettings
 from service.configuration.backup import BackupSettings
 from service.configuration.retention import RetentionSettings
 from service.configuration.settings import Settings
@@ -32,6 +33,16 @@ def test_every_setting_of_the_back_up_is_documented() -> None:
     page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `backup\.(\w+)`", page, re.MULTILINE)
     assert rows == list(BackupSettings.model_fields)
+
+
+def test_every_setting_of_the_alarms_is_documented_with_its_default_and_range() -> None:
+    page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `alarms\.(\w+)` \| ([\d.]+) \(([\d.]+) to ([\d.]+)\) \|", page, re.MULTILINE)
+    documented = {name: tuple(map(float, figures)) for name, *figures in rows}
+    schema = AlarmSettings.model_json_schema()["properties"]
+    assert documented == {
+        name: (found["default"], found["minimum"], found["maximum"]) for name, found in schema.items()
+    }
 
 
 def test_the_documented_ranges_and_defaults_are_those_of_the_settings() -> None:

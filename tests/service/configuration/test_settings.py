@@ -6,6 +6,7 @@ import pytest
 from annotated_types import Ge, Le
 from pydantic import ValidationError
 
+from service.alarms.confirmation import Confirmation
 from service.background.housekeeping import Housekeeping
 from service.configuration.settings import Settings, SettingsError
 from service.storage import Repository
@@ -261,3 +262,27 @@ def test_what_is_wrong_with_the_back_up_is_named(tmp_path: Path, content: str, m
     config.write_text(f"[backup]\n{content}\n")
     with pytest.raises(SettingsError, match=message):
         Settings.load(config)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("watch_records = 4", "alarms: expected watch_records of at most 3 \\(watch_of_records\\), found"),
+        (
+            "healthy_records = 1",
+            "alarms: expected healthy_records of at least 2, so that 2 of 3 records do not",
+        ),
+        ("healty_records = 2", "alarms.healty_records: .* \\(did you mean healthy_records\\?\\)"),
+    ],
+)
+def test_rules_of_alarms_that_contradict_each_other_are_refused(tmp_path: Path, line: str, told: str) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text(f"[alarms]\n{line}\n")
+    with pytest.raises(SettingsError, match=told):
+        Settings.load(config)
+
+
+def test_the_rules_of_alarms_follow_from_the_settings() -> None:
+    alarms = Settings().alarms
+    assert alarms.watch == Confirmation(2, 3, 2)
+    assert alarms.fault == Confirmation(1, 1, 2)

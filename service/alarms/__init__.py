@@ -1,0 +1,1 @@
+"""What alarms there are, and the rules by which they are raised and are over: pure logic."""

@@ -1,0 +1,37 @@
+"""Whether a level has grown since somebody was told of it, beyond what its interval leaves open."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class LevelSeen:
+    """A level with its 95 % interval; the interval is None where it is not known."""
+
+    value: float
+    low: float | None
+    high: float | None
+
+
+def has_grown(told: float, seen: LevelSeen, least_ratio: float) -> bool:
+    """Tell whether a level is surely above the one that people were told.
+
+    The dead band is what the interval leaves open: its lower end has to lie above the level that was told. A
+    narrow interval alone is not enough: the level has to have grown by the share `least_ratio` at least.
+    """
+    if seen.low is None:
+        return False
+    return seen.low > told and seen.value >= told * (1.0 + least_ratio)
+
+
+def has_grown_by(shelved_at: float, step: float, seen: LevelSeen) -> bool:
+    """Tell whether a level has grown by a step since an alarm was shelved until then."""
+    return seen.value >= shelved_at + step
+
+
+def is_another_kind(told: frozenset[str], seen: frozenset[str]) -> bool:
+    """Tell whether what a motor shows is something else than what people were told.
+
+    told, seen: the kinds that it may be; empty where it is not named. To name one of those that were told, or
+    to be less sure again, is nothing new.
+    """
+    return bool(seen) and told.isdisjoint(seen)
