@@ -22,6 +22,7 @@ GROWING = frozenset(
         "diagnoses",
         "measurements",
         "alarms",
+        "alarm_changes",
         "link_changes",
         "deletions",
         "deleted_remote_records",

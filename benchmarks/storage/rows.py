@@ -103,6 +103,7 @@ def tables(amounts: Amounts) -> Iterator[Table]:
     yield Table("diagnoses", _DIAGNOSIS_COLUMNS, _diagnoses(amounts))
     yield Table("recording_requests", _REQUEST_COLUMNS, _requests(amounts))
     yield Table("alarms", _ALARM_COLUMNS, _alarms(amounts))
+    yield Table("alarm_changes", _CHANGE_COLUMNS, _alarm_changes(amounts))
     yield Table("link_changes", ("id", "ied", "changed_ns", "state", "reason"), _link_changes(amounts))
     yield Table("deletions", _DELETION_COLUMNS, _deletions(amounts))
     yield Table(
@@ -241,7 +242,10 @@ def _requests(amounts: Amounts) -> Iterator[Row]:
         )  # fmt: skip
 
 
-_ALARM_COLUMNS = ("id", "ied", "kind", "subject", "reason", "raised_ns", "cleared_ns")
+_ALARM_COLUMNS = (
+    "id", "ied", "kind", "subject", "reason", "raised_ns", "cleared_ns", "priority", "state",
+    "urgency", "raises", "changed_ns", "changed_by",
+)  # fmt: skip
 
 
 def _alarms(amounts: Amounts) -> Iterator[Row]:
@@ -253,7 +257,20 @@ def _alarms(amounts: Amounts) -> Iterator[Row]:
         cleared_ns = None if stands else time_ns + 3_600_000_000_000
         yield (
             id_of(ALARM, number), relay, "file-refused", f"HR_{number:08d}.CFG", "refused by the relay",
-            time_ns, cleared_ns,
+            time_ns, cleared_ns, "low", "unacknowledged" if stands else "normal", 30 if stands else 0, 1,
+            cleared_ns or time_ns, "statorwatch",
+        )  # fmt: skip
+
+
+_CHANGE_COLUMNS = ("alarm", "changed_ns", "event", "before", "after", "by", "routed_ns")
+
+
+def _alarm_changes(amounts: Amounts) -> Iterator[Row]:
+    of = amounts.alarms
+    for number in range(of):
+        time_ns = time_of(number, of)
+        yield (
+            id_of(ALARM, number), time_ns, "raised", "normal", "unacknowledged", "statorwatch", time_ns
         )  # fmt: skip
 
 

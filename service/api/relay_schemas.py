@@ -10,6 +10,8 @@ from service.plant.differences import DifferenceKind
 from service.plant.overrides import TriggerAction
 from service.storage.states import (
     AlarmKind,
+    AlarmPriority,
+    AlarmState,
     ClockQuality,
     LinkState,
 )
@@ -66,21 +68,40 @@ class LinkChange(Document):
 
 
 class Alarm(Document):
-    """What somebody has to look after at a relay or a motor; it stands while `cleared_time` is null.
+    """What somebody has to look after; its cause stands while `cleared_time` is null.
 
-    subject: the record or file it is about, as printable text, empty where it is about the relay; of a
-    motor's condition (`condition-...`), its cause. motor, advice: of a motor's condition, and null otherwise.
+    state: what people and the plant's design have made of it. site, ied, motor: null where it is not about
+    one. subject: the record or file it is about, as printable text, empty where it is about the relay; of a
+    motor's condition (`condition-...`), its cause. advice: what to do. recording: the one that shows it.
+    value: how bad the cause is, where it can grow; seen_value: when somebody acknowledged or shelved it.
+    raised_time: the latest; raises: how often. changed_...: the latest change of the state, by whom and with
+    which comment. shelved_until, shelved_above: the time and the value that end the shelving.
+    suppressed_because: why the plant's design suppresses it.
     """
 
     id: str
-    ied: str
+    site: str | None
+    ied: str | None
+    motor: str | None
     kind: AlarmKind
+    priority: AlarmPriority
+    state: AlarmState
+    standing: bool
     subject: str
     reason: str
-    raised_time: Time = Field(validation_alias="raised_ns")
-    cleared_time: Time | None = Field(validation_alias="cleared_ns")
-    motor: str | None
     advice: str | None
+    recording: str | None = Field(validation_alias="recording_id")
+    value: float | None
+    seen_value: float | None
+    raised_time: Time = Field(validation_alias="raised_ns")
+    raises: int
+    cleared_time: Time | None = Field(validation_alias="cleared_ns")
+    changed_time: Time = Field(validation_alias="changed_ns")
+    changed_by: str
+    comment: str | None
+    shelved_until: Time | None = Field(validation_alias="shelved_until_ns")
+    shelved_above: float | None
+    suppressed_because: str | None
 
 
 class Quarantine(Document):

@@ -43,7 +43,7 @@ def _print_alarm(alarm: Document) -> None:
     until = "" if alarm["cleared_time"] is None else f", until {to_the_second(alarm['cleared_time'])}"
     since = to_the_second(alarm["raised_time"])
     console = results()
-    where = alarm["motor"] or alarm["ied"]
+    where = alarm["motor"] or alarm["ied"] or alarm["site"] or "the service"
     console.print(Text(one_line(f"{where}: {alarm['kind']}, since {since}{until}")))
     reason = ": ".join(str(alarm[key]) for key in ("subject", "reason") if alarm[key])
     for words in (reason, alarm.get("advice")):

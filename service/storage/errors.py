@@ -2,7 +2,9 @@
 
 from collections.abc import Sequence
 
+from service.storage.alarm_transitions import possible_for_people
 from service.storage.records import BaselineDoubt
+from service.storage.states import AlarmEvent, AlarmState
 
 
 class StorageError(Exception):
@@ -118,3 +120,35 @@ class StateConflictError(StorageError):
         self.present = present
         self.wanted = wanted
         super().__init__(f"{kind} {name} is {present} and cannot become {wanted}")
+
+
+class AlarmActionError(StorageError):
+    """What somebody wants to do about an alarm does not follow from its present state."""
+
+    def __init__(self, alarm_id: str, event: AlarmEvent, state: AlarmState, *, why: str) -> None:
+        self.alarm_id = alarm_id
+        self.state = state
+        self.possible = possible_for_people(state)
+        can = ", ".join(DEED[event] for event in self.possible) or "nothing; it is over"
+        super().__init__(
+            f"alarm {alarm_id} cannot be {PARTICIPLE.get(event, event.value)}: it is {state.value} ({why}); "
+            f"possible now: {can}"
+        )
+
+
+DEED = {
+    AlarmEvent.ACKNOWLEDGED: "acknowledge",
+    AlarmEvent.SHELVED: "shelve",
+    AlarmEvent.UNSHELVED: "unshelve",
+    AlarmEvent.TAKEN_OUT_OF_SERVICE: "take out of service",
+    AlarmEvent.PUT_BACK_IN_SERVICE: "put back in service",
+}
+"""What people do, in words."""
+
+PARTICIPLE = {
+    AlarmEvent.ACKNOWLEDGED: "acknowledged",
+    AlarmEvent.SHELVED: "shelved",
+    AlarmEvent.UNSHELVED: "unshelved",
+    AlarmEvent.TAKEN_OUT_OF_SERVICE: "taken out of service",
+    AlarmEvent.PUT_BACK_IN_SERVICE: "put back in service",
+}

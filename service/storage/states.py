@@ -26,6 +26,60 @@ class AlarmKind(StrEnum):
     CONDITION_FAULT = "condition-fault"
 
 
+FOLLOW_FROM_QUARANTINE = frozenset(
+    {
+        AlarmKind.FILE_REFUSED,
+        AlarmKind.FILE_TOO_LARGE,
+        AlarmKind.FILE_UNSTEADY,
+        AlarmKind.DAILY_LIMIT,
+        AlarmKind.RELAY_DIFFERS,
+        AlarmKind.TIME_ZONE,
+    }
+)
+"""Nobody can look after these while the relay is set aside: its quarantine is the alarm then."""
+
+
+class AlarmPriority(StrEnum):
+    """How soon somebody has to act."""
+
+    CRITICAL = "critical"
+    HIGH = "high"
+    MEDIUM = "medium"
+    LOW = "low"
+
+
+class AlarmState(StrEnum):
+    """What people, and the plant's design, have made of an alarm, after ISA-18.2 and IEC 62682.
+
+    Whether its cause stands is another thing: an alarm may be shelved while the cause comes and goes.
+    """
+
+    NORMAL = "normal"
+    UNACKNOWLEDGED = "unacknowledged"
+    ACKNOWLEDGED = "acknowledged"
+    RETURNED_UNACKNOWLEDGED = "returned-unacknowledged"
+    SHELVED = "shelved"
+    SUPPRESSED = "suppressed"
+    OUT_OF_SERVICE = "out-of-service"
+
+
+class AlarmEvent(StrEnum):
+    """What happens to an alarm; `alarm_transitions` says what follows from it."""
+
+    RAISED = "raised"
+    CLEARED = "cleared"
+    SUPERSEDED = "superseded"
+    REOPENED = "reopened"
+    ACKNOWLEDGED = "acknowledged"
+    SHELVED = "shelved"
+    UNSHELVED = "unshelved"
+    SHELVING_ENDED = "shelving-ended"
+    SUPPRESSED = "suppressed"
+    UNSUPPRESSED = "unsuppressed"
+    TAKEN_OUT_OF_SERVICE = "taken-out-of-service"
+    PUT_BACK_IN_SERVICE = "put-back-in-service"
+
+
 class BackupState(StrEnum):
     """How far a back-up has come."""
 

@@ -1,6 +1,7 @@
 """Write what pages have from the code: `make docs`."""
 
-from tests.docs import architecture_drawing, command_reference
+from tests.docs import alarm_transitions, architecture_drawing, command_reference
 
 architecture_drawing.main()
 command_reference.main()
+alarm_transitions.main()

@@ -106,9 +106,11 @@ def standing_alarm_counts(engine: Engine) -> tuple[AlarmCounts, AlarmCounts]:
             for row in session.scalars(select(StandingAlarmCountRow))
             if row.number
         }
-        standing = select(AlarmRow.ied, AlarmRow.kind, func.count()).where(AlarmRow.cleared_ns.is_(None))
+        standing = select(AlarmRow.ied, AlarmRow.kind, func.count()).where(
+            AlarmRow.cleared_ns.is_(None), AlarmRow.ied.is_not(None)
+        )
         counted = {
-            (ied, str(kind)): number
+            (str(ied), str(kind)): number
             for ied, kind, number in session.execute(standing.group_by(AlarmRow.ied, AlarmRow.kind))
         }
     return kept, counted

@@ -3,6 +3,7 @@
 The code says relay; the tables, their columns and the REST API say IED, as IEC 61850 does.
 """
 
+from service.storage.models.alarms import AlarmChangeRow, AlarmRow
 from service.storage.models.audit import AuditEntryRow, AuditHeadRow
 from service.storage.models.backups import BackupRow
 from service.storage.models.base import Base
@@ -30,7 +31,6 @@ from service.storage.models.recordings import (
     RemoteRecordRow,
 )
 from service.storage.models.relays import (
-    AlarmRow,
     GatewayRow,
     LeaseRow,
     LinkChangeRow,
@@ -40,6 +40,7 @@ from service.storage.models.relays import (
 )
 
 __all__ = [
+    "AlarmChangeRow",
     "AlarmRow",
     "AuditEntryRow",
     "AuditHeadRow",

@@ -14,7 +14,10 @@ from core.machines.parameters import ParametersSource
 from core.operation import Operation
 from core.signals.sequence import PhaseSequence
 from service.storage.states import (
+    AlarmEvent,
     AlarmKind,
+    AlarmPriority,
+    AlarmState,
     BackupState,
     ClockQuality,
     DeletedBy,
@@ -67,8 +70,11 @@ class Base(DeclarativeBase):
     type_annotation_map = {  # noqa: RUF012  # SQLAlchemy's own declaration style
         int: BigInteger,
         LinkState: _words(LinkState),
-        AlarmKind: _words(AlarmKind),
         BackupState: _words(BackupState),
+        AlarmKind: _words(AlarmKind, 32),
+        AlarmPriority: _words(AlarmPriority),
+        AlarmState: _words(AlarmState, 32),
+        AlarmEvent: _words(AlarmEvent, 32),
         ClockQuality: _words(ClockQuality),
         RecordingRequestOrigin: _words(RecordingRequestOrigin),
         RecordingRequestState: _words(RecordingRequestState),

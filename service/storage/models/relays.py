@@ -1,20 +1,12 @@
-"""Tables of what is known of the relays: who visits them, their links, alarms and findings."""
+"""Tables of what is known of the relays: who visits them, their links and findings."""
 
 from collections.abc import Mapping
 
-from sqlalchemy import ForeignKey, Index, String, TextClause, text
+from sqlalchemy import ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
 
 from service.storage.models.base import Base
-from service.storage.states import AlarmKind, LinkState
-
-STANDING = text("cleared_ns IS NULL")
-CLEARED = text("cleared_ns IS NOT NULL")
-
-
-def _of_alarms(name: str, condition: TextClause, *columns: str) -> Index:
-    """Return an index of those alarms that meet a condition."""
-    return Index(name, *columns, sqlite_where=condition, postgresql_where=condition)
+from service.storage.states import LinkState
 
 
 class GatewayRow(Base):
@@ -81,41 +73,6 @@ class LinkFiguresRow(Base):
     report_gaps: Mapped[int]
     day: Mapped[int]
     day_bytes: Mapped[int]
-
-
-class AlarmRow(Base):
-    """What somebody has to look after; it stands until it is cleared.
-
-    subject: a file's name; of a motor's condition, its cause.
-    motor, advice: of a motor's condition, whose relay is `ied`; empty for what is about the relay itself.
-    """
-
-    __tablename__ = "alarms"
-
-    id: Mapped[str] = mapped_column(String(36), primary_key=True)
-    ied: Mapped[str] = mapped_column(ForeignKey("ieds.name"))
-    kind: Mapped[AlarmKind]
-    subject: Mapped[str]
-    reason: Mapped[str]
-    raised_ns: Mapped[int]
-    cleared_ns: Mapped[int | None]
-    motor: Mapped[str | None]
-    advice: Mapped[str | None]
-
-    __table_args__ = (
-        Index("ix_alarms_ied_cleared_ns", "ied", "cleared_ns"),
-        Index("ix_alarms_raised_ns_id", "raised_ns", "id"),
-        Index("ix_alarms_ied_raised_ns_id", "ied", "raised_ns", "id"),
-        # A list of those that stand reads none of the many that are cleared, and the other way round.
-        _of_alarms("ix_alarms_standing", STANDING, "ied", "kind", "subject"),
-        _of_alarms("ix_alarms_standing_raised_ns_id", STANDING, "raised_ns", "id"),
-        _of_alarms("ix_alarms_standing_ied_raised_ns_id", STANDING, "ied", "raised_ns", "id"),
-        _of_alarms("ix_alarms_cleared_raised_ns_id", CLEARED, "raised_ns", "id"),
-        _of_alarms("ix_alarms_cleared_ied_raised_ns_id", CLEARED, "ied", "raised_ns", "id"),
-        Index("ix_alarms_motor_raised_ns_id", "motor", "raised_ns", "id"),
-        _of_alarms("ix_alarms_standing_motor_raised_ns_id", STANDING, "motor", "raised_ns", "id"),
-        _of_alarms("ix_alarms_cleared_motor_raised_ns_id", CLEARED, "motor", "raised_ns", "id"),
-    )
 
 
 class RelayFindingsRow(Base):

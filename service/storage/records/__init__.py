@@ -1,6 +1,7 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
 from service.storage.records.actors import SERVICE, Actor, Role
+from service.storage.records.alarms import Alarm, AlarmChange, AlarmPlace, AlarmSpec
 from service.storage.records.backups import BackupEntry
 from service.storage.records.baselines import BaselineDoubt, BaselineEntry
 from service.storage.records.conditions import (
@@ -37,7 +38,6 @@ from service.storage.records.pages import Cursor, Page
 from service.storage.records.plant import IedEntry, MotorEntry, SiteEntry
 from service.storage.records.recordings import RecordingEntry, RecordingFile, RecordingRequest, RemoteRecord
 from service.storage.records.relays import (
-    Alarm,
     ClockReading,
     GatewayEntry,
     LinkChange,
@@ -52,6 +52,9 @@ __all__ = [
     "SERVICE",
     "Actor",
     "Alarm",
+    "AlarmChange",
+    "AlarmPlace",
+    "AlarmSpec",
     "Amount",
     "Backlog",
     "BackupEntry",

@@ -1,10 +1,10 @@
-"""What is known of a relay: its clock, its link, who visits it, its alarms and findings."""
+"""What is known of a relay: its clock, its link, who visits it, its findings."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from core.units import NANOSECONDS_PER_SECOND
-from service.storage.states import AlarmKind, ClockQuality, LinkState
+from service.storage.states import ClockQuality, LinkState
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,24 +110,6 @@ class LinkFigures:
     report_gaps: int = 0
     day: int = 0
     day_bytes: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Alarm:
-    """What somebody has to look after at a relay or a motor; standing until `cleared_ns` is set.
-
-    motor, advice: None for what is about the relay itself.
-    """
-
-    id: str
-    ied: str
-    kind: AlarmKind
-    subject: str
-    reason: str
-    raised_ns: int
-    cleared_ns: int | None
-    motor: str | None = None
-    advice: str | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,6 @@ from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.audit.trail import AuditRows
 from service.storage.repository.backups import BackupRows
 from service.storage.repository.baselines import BaselineRows
-from service.storage.repository.condition_alarms import ConditionAlarmRows
 from service.storage.repository.condition_events import ConditionEventRows
 from service.storage.repository.conditions import ConditionRows
 from service.storage.repository.deletions import DeletionRows
@@ -44,7 +43,6 @@ class Repository(
     MotorVersionRows,
     ObservationRows,
     ConditionEventRows,
-    ConditionAlarmRows,
     ConditionRows,
     FoldingRows,
     StateCounts,

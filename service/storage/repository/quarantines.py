@@ -9,7 +9,11 @@ from sqlalchemy.orm import Session
 from core.units import NANOSECONDS_PER_SECOND
 from service.storage.models import IedRow, QuarantineRow
 from service.storage.records import Quarantine
-from service.storage.repository.alarms import clear_standing, raised
+from service.storage.repository.alarms.causes import clear_standing, raised
+from service.storage.repository.alarms.suppression import (
+    suppress_those_of_quarantine,
+    unsuppress_those_of_relay,
+)
 from service.storage.repository.links import change_link
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmKind, LinkState
@@ -29,6 +33,7 @@ class QuarantineRows(Sessions):
             times = _times(session, relay) + 1
             row = _put(session, relay, reason, times, now_ns, backoff.pause_s(times))
             raised(session, relay, AlarmKind.QUARANTINED, "", reason, now_ns)
+            suppress_those_of_quarantine(session, relay, now_ns=now_ns)
             return record_of(Quarantine, row)
 
     def suspect(self, relays: Collection[str], reason: str, *, pause_s: float, now_ns: int) -> None:
@@ -37,6 +42,8 @@ class QuarantineRows(Sessions):
             for relay in sorted(relays):  # in one order, for two who lock them
                 found(session, IedRow, relay, "relay", lock=True)
                 _put(session, relay, reason, _times(session, relay), now_ns, pause_s)
+                if pause_s > 0:
+                    suppress_those_of_quarantine(session, relay, now_ns=now_ns)
 
     def release(self, relay: str, *, now_ns: int) -> None:
         """Forget whatever was held against a relay; harmless where nothing was. Raises NotFoundError."""
@@ -45,9 +52,11 @@ class QuarantineRows(Sessions):
             row = session.get(QuarantineRow, relay)
             if row is not None:
                 session.delete(row)
+                session.flush()
             if relay_row.link_state is LinkState.QUARANTINED:
                 change_link(session, relay_row, LinkState.UNKNOWN, RELEASED, now_ns)
             clear_standing(session, relay, AlarmKind.QUARANTINED, now_ns)
+            unsuppress_those_of_relay(session, relay, now_ns=now_ns)
 
     def quarantine(self, relay: str) -> Quarantine | None:
         """Return what is held against a relay, over or not; None where nothing is."""

@@ -225,14 +225,28 @@ def test_an_alarm_says_what_to_do_about_a_motor(client: httpx.Client, repository
     (alarm,) = client.get("/api/v1/alarms", params={"motor": "PUMP-A1", "standing": "true"}).json()["items"]
     del alarm["id"]
     assert alarm == {
+        "site": "FACTORY_A",
         "ied": "A1_SEL710",
         "motor": "PUMP-A1",
         "kind": "condition-fault",
         "subject": "shorted turns in phase b",
         "reason": "; ".join(FAULT.reasons),
         "advice": FAULT.advice,
+        "priority": "high",
+        "state": "unacknowledged",
+        "standing": True,
+        "recording": None,
+        "value": FAULT.change,
+        "seen_value": None,
         "raised_time": rfc3339(NOW_NS),
+        "raises": 1,
         "cleared_time": None,
+        "changed_time": rfc3339(NOW_NS),
+        "changed_by": "statorwatch",
+        "comment": None,
+        "shelved_until": None,
+        "shelved_above": None,
+        "suppressed_because": None,
     }
     assert client.get("/api/v1/ieds/A1_SEL710").json()["alarms"] == []
     assert client.get("/api/v1/alarms", params={"motor": "FAN-A2"}).json()["items"] == []

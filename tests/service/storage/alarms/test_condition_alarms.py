@@ -12,7 +12,7 @@ from core.condition.verdict.condition import Condition
 from service.storage import Repository
 from service.storage.models import MotorRow
 from service.storage.records import Alarm
-from service.storage.repository.condition_alarms import settle_alarm
+from service.storage.repository.alarms.conditions import settle_alarm
 from service.storage.states import AlarmKind
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, UNKNOWN, entry_of, tell
 from testing.service.plants import NOW_NS, two_motor_plant

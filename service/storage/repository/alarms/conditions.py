@@ -1,6 +1,5 @@
 """The alarm of a motor: one stands while its condition is `watch` or `fault`."""
 
-import uuid
 from collections.abc import Mapping, Sequence
 
 from sqlalchemy import exists, or_, select
@@ -8,12 +7,13 @@ from sqlalchemy.orm import Session
 
 from core.condition.kinds import State
 from service.storage.models import AlarmRow, ConditionRow, MotorRow
-from service.storage.records import ConditionEntry
-from service.storage.repository.alarms import clear, forget_cleared
+from service.storage.models.alarms import is_open
+from service.storage.records import AlarmPlace, AlarmSpec, ConditionEntry
+from service.storage.repository.alarms.causes import clear, forget_cleared, raised_at, supersede
+from service.storage.repository.alarms.changes import locked
+from service.storage.repository.alarms.suppression import suppress_by_design
 from service.storage.repository.sessions import Sessions, found, record_of
-from service.storage.repository.standing_alarm_counts import count_raised
-from service.storage.states import AlarmKind
-from service.storage.texts import storable
+from service.storage.states import AlarmKind, AlarmState
 
 ALARM_OF = {State.WATCH: AlarmKind.CONDITION_WATCH, State.FAULT: AlarmKind.CONDITION_FAULT}
 
@@ -40,33 +40,37 @@ class ConditionAlarmRows(Sessions):
 def settle_alarm(session: Session, motor: MotorRow, condition: ConditionEntry, *, now_ns: int) -> None:
     """Make the motor's alarm say what its condition says. Whoever calls it has locked the condition's row.
 
-    From `watch` to `fault` one alarm is cleared and the other raised; while the state stays, the alarm stays
-    and gets the present words. A motor that left the plant has none.
+    From `watch` to `fault` one alarm is superseded by the other; while the state stays, the alarm stays and
+    gets the present words. Those of a motor that left the plant are suppressed and cleared.
     """
     kind = ALARM_OF.get(condition.state) if motor.in_service else None
-    standing = (
-        select(AlarmRow)
-        .where(AlarmRow.motor == motor.name, AlarmRow.cleared_ns.is_(None))
-        .order_by(AlarmRow.raised_ns, AlarmRow.id)
-    )
-    rows = session.scalars(standing).all()
-    others = [row.id for row in rows if row.kind is not kind]
-    if others:
-        clear(session, now_ns, AlarmRow.id.in_(others))
-        forget_cleared(session, AlarmRow.motor == motor.name)
+    of_motor = (AlarmRow.motor == motor.name, is_open())
+    rows = locked(session, *of_motor, AlarmRow.kind.in_(ALARM_OF.values()))
+    if not motor.in_service:
+        for row in rows:
+            suppress_by_design(session, row, now_ns=now_ns)
+    others = [row for row in rows if row.kind is not kind]
     if kind is None:
+        if any(row.cleared_ns is None for row in others):
+            clear(session, now_ns, AlarmRow.id.in_([row.id for row in others]))
+            forget_cleared(session, AlarmRow.motor == motor.name)
         return
-    stands = next((row for row in rows if row.kind is kind), None)
-    row = stands or AlarmRow(
-        id=str(uuid.uuid4()), ied=motor.ied, kind=kind, motor=motor.name, raised_ns=now_ns
-    )
     document = condition.document or {}
-    row.subject = storable(_cause(condition, document))
-    row.reason = storable("; ".join(_texts(document.get("reasons"))))
-    row.advice = storable(str(document.get("advice", "")))
-    if stands is None:
-        session.add(row)
-        count_raised(session, motor.ied, kind)
+    spec = AlarmSpec(
+        kind,
+        reason="; ".join(_texts(document.get("reasons"))),
+        subject=_cause(condition, document),
+        one_of_kind=True,
+        value=condition.mu_f if condition.change is None else condition.change,
+        advice=str(document.get("advice", "")),
+    )
+    place = AlarmPlace(motor.site, motor.ied, motor.name)
+    successor = raised_at(session, place, spec, now_ns=now_ns)
+    for row in others:
+        if row.cleared_ns is None or row.state is AlarmState.RETURNED_UNACKNOWLEDGED:
+            supersede(session, row, successor, now_ns=now_ns)
+    if others:
+        forget_cleared(session, AlarmRow.motor == motor.name)
 
 
 def _cause(condition: ConditionEntry, document: Mapping[str, object]) -> str:

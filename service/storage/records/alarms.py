@@ -1,0 +1,90 @@
+"""Alarms: what somebody has to look after, where, and what has happened to it."""
+
+from dataclasses import dataclass
+
+from service.storage.states import AlarmEvent, AlarmKind, AlarmPriority, AlarmState
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmPlace:
+    """What an alarm is about: a relay, a motor, a whole site, or (all None) the service itself.
+
+    The site and the relay of a motor, and the site of a relay, need not be given.
+    """
+
+    site: str | None = None
+    relay: str | None = None
+    motor: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmSpec:
+    """What an alarm says when it is raised.
+
+    subject: tells it from others of its kind at the same place, e.g. a file's name.
+    one_of_kind: there is one of this kind at a place, and the subject is a text that may change while it
+    stands. priority: None for that of the kind. value: how bad the cause is, if it can grow.
+    """
+
+    kind: AlarmKind
+    reason: str
+    subject: str = ""
+    one_of_kind: bool = False
+    priority: AlarmPriority | None = None
+    value: float | None = None
+    advice: str | None = None
+    recording_id: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Alarm:
+    """One occurrence of something that somebody has to look after.
+
+    Its cause stands while `cleared_ns` is None; `state` is what people and the plant's design made of it.
+    site, ied, motor: None where it is not about one. value: how bad the cause is, if it can grow; seen_value:
+    how bad it was when somebody acknowledged or shelved it. raised_ns: the latest time; raises: how often.
+    changed_ns, changed_by, comment: of the latest change of the state. shelved_until_ns, shelved_above: what
+    ends its shelving.
+    """
+
+    id: str
+    site: str | None
+    ied: str | None
+    motor: str | None
+    kind: AlarmKind
+    subject: str
+    reason: str
+    advice: str | None
+    recording_id: str | None
+    priority: AlarmPriority
+    state: AlarmState
+    value: float | None
+    seen_value: float | None
+    raised_ns: int
+    raises: int
+    cleared_ns: int | None
+    changed_ns: int
+    changed_by: str
+    comment: str | None
+    shelved_until_ns: int | None
+    shelved_above: float | None
+    suppressed_because: str | None
+
+    @property
+    def standing(self) -> bool:
+        """Tell whether the cause stands."""
+        return self.cleared_ns is None
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmChange:
+    """One thing that happened to an alarm."""
+
+    sequence: int
+    alarm: str
+    changed_ns: int
+    event: AlarmEvent
+    before: AlarmState
+    after: AlarmState
+    by: str
+    comment: str | None

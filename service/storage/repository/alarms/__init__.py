@@ -1,0 +1,14 @@
+"""Alarms: raised and cleared by their causes, looked after by people, listed, and forgotten at last."""
+
+from service.storage.repository.alarms.causes import AlarmCauseRows
+from service.storage.repository.alarms.conditions import ConditionAlarmRows
+from service.storage.repository.alarms.lists import AlarmLists
+from service.storage.repository.alarms.people import AlarmPeopleRows
+from service.storage.repository.alarms.suppression import AlarmSuppressionRows
+
+
+class AlarmRows(AlarmLists, AlarmCauseRows, AlarmPeopleRows, AlarmSuppressionRows, ConditionAlarmRows):
+    """All there is to ask of and tell the database about alarms."""
+
+
+__all__ = ["AlarmRows"]

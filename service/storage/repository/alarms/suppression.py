@@ -1,0 +1,96 @@
+"""What the plant's design suppresses: alarms of motors that left it, and of relays that are set aside."""
+
+from sqlalchemy import ColumnElement, or_, select
+from sqlalchemy.orm import Session
+
+from service.storage.models import AlarmRow, MotorRow, QuarantineRow
+from service.storage.models.alarms import in_state
+from service.storage.repository.alarms.changes import change, locked
+from service.storage.repository.sessions import Sessions
+from service.storage.states import FOLLOW_FROM_QUARANTINE, AlarmEvent, AlarmState
+
+AT_A_TIME = 500
+"""So many alarms are changed in one transaction, so that nobody waits for long."""
+
+CALLING = (AlarmState.UNACKNOWLEDGED, AlarmState.RETURNED_UNACKNOWLEDGED)
+
+
+class AlarmSuppressionRows(Sessions):
+    def end_shelvings(self, *, now_ns: int) -> int:
+        """End the shelvings whose time has come; return how many, at most 500 at a time."""
+        due = select(AlarmRow.id).where(in_state(AlarmState.SHELVED), AlarmRow.shelved_until_ns <= now_ns)
+        with self._read() as session:
+            ids = session.scalars(due.order_by(AlarmRow.shelved_until_ns).limit(AT_A_TIME)).all()
+        if not ids:
+            return 0
+        with self._write() as session:
+            # Somebody may have shelved one for longer meanwhile, or another service been here.
+            rows = locked(session, AlarmRow.id.in_(ids), AlarmRow.id.in_(due))
+            for row in rows:
+                change(session, row, AlarmEvent.SHELVING_ENDED, now_ns=now_ns)
+                suppress_by_design(session, row, now_ns=now_ns)
+            return len(rows)
+
+    def end_suppressions(self, *, now_ns: int) -> int:
+        """End the suppressions whose reason is gone; return how many, at most 500 at a time."""
+        with self._read() as session:
+            suppressed = session.scalars(select(AlarmRow).where(in_state(AlarmState.SUPPRESSED)))
+            over = [row.id for row in suppressed if why_suppressed(session, row, now_ns=now_ns) is None]
+        if not over:
+            return 0
+        with self._write() as session:
+            return _unsuppress(session, AlarmRow.id.in_(over[:AT_A_TIME]), now_ns=now_ns)
+
+
+def suppress_by_design(session: Session, row: AlarmRow, *, now_ns: int) -> None:
+    """Suppress an alarm that calls for somebody, where the plant's design says so."""
+    reason = why_suppressed(session, row, now_ns=now_ns) if row.state in CALLING else None
+    if reason is not None:
+        suppress(session, row, reason, now_ns=now_ns)
+
+
+def suppress(session: Session, row: AlarmRow, reason: str, *, now_ns: int) -> None:
+    """Suppress an alarm for a reason."""
+    change(session, row, AlarmEvent.SUPPRESSED, now_ns=now_ns, comment=reason)
+    row.suppressed_because = reason
+    session.flush()
+
+
+def suppress_those_of_quarantine(session: Session, relay: str, *, now_ns: int) -> None:
+    """Suppress the alarms that follow from the quarantine of their relay."""
+    calling = or_(*(in_state(state) for state in CALLING))
+    for row in locked(session, AlarmRow.ied == relay, AlarmRow.kind.in_(FOLLOW_FROM_QUARANTINE), calling):
+        suppress(session, row, _in_quarantine(relay), now_ns=now_ns)
+
+
+def unsuppress_those_of_relay(session: Session, relay: str, *, now_ns: int) -> None:
+    """Have those alarms of a relay call again that nothing suppresses any more."""
+    _unsuppress(session, AlarmRow.ied == relay, now_ns=now_ns)
+
+
+def why_suppressed(session: Session, row: AlarmRow, *, now_ns: int) -> str | None:
+    """Return why the plant's design suppresses an alarm; None where it does not."""
+    if row.motor is not None:
+        motor = session.get(MotorRow, row.motor)
+        if motor is None or not motor.in_service:
+            return f"motor {row.motor} is out of service"
+    if row.ied is not None and row.kind in FOLLOW_FROM_QUARANTINE:
+        quarantine = session.get(QuarantineRow, row.ied)
+        if quarantine is not None and quarantine.until_ns > now_ns:
+            return _in_quarantine(row.ied)
+    return None
+
+
+def _unsuppress(session: Session, *which: ColumnElement[bool], now_ns: int) -> int:
+    over = [
+        row
+        for row in locked(session, in_state(AlarmState.SUPPRESSED), *which)
+        if why_suppressed(session, row, now_ns=now_ns) is None
+    ]
+    for row in over:
+        change(session, row, AlarmEvent.UNSUPPRESSED, now_ns=now_ns)
+    return len(over)
+
+
+def _in_quarantine(relay: str) -> str:
+    return f"relay {relay} is in quarantine"
