@@ -5,7 +5,7 @@ The later one wins. docs/reference/settings.md explains every setting; a test fa
 
 import os
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from ipaddress import IPv4Address, IPv6Address
 from pathlib import Path
 from typing import Literal, Self
@@ -17,6 +17,8 @@ from pydantic_settings import SettingsError as UnreadableEnvironment
 from core.units import SECONDS_PER_DAY
 from service.configuration.alarms import AlarmSettings
 from service.configuration.backup import BackupSettings
+from service.configuration.channels import CHANNEL_PATHS
+from service.configuration.notifications import NotificationSettings
 from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
 from service.configuration.relay_access import AbsolutePath, RelayAccess
 from service.configuration.retention import MOST_DAYS, RetentionSettings
@@ -81,6 +83,7 @@ class Settings(BaseSettings):
     retention: RetentionSettings = Field(default_factory=RetentionSettings)
     backup: BackupSettings = Field(default_factory=BackupSettings)
     alarms: AlarmSettings = Field(default_factory=AlarmSettings)
+    notifications: NotificationSettings = Field(default_factory=NotificationSettings)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=100, ge=1, le=1000)
@@ -180,18 +183,24 @@ def _table(text: str, config: Path) -> dict[str, object]:
     backup = table.get("backup")
     if isinstance(backup, dict) and isinstance(backup.get("directory"), str):
         table["backup"] = {**backup, "directory": config.absolute().parent / backup["directory"]}
-    relays = table.get("relays")
-    if isinstance(relays, dict):
-        table["relays"] = {name: _anchored(relay, config.absolute().parent) for name, relay in relays.items()}
+    _anchor_each(table, "relays", RELAY_PATHS, config.absolute().parent)
+    _anchor_each(table.get("notifications"), "channels", CHANNEL_PATHS, config.absolute().parent)
     return table
 
 
-def _anchored(table: object, folder: Path) -> object:
-    """A relay's table, with relative paths that start at `folder`."""
+def _anchor_each(table: object, name: str, keys: Collection[str], folder: Path) -> None:
+    """Let relative paths start at `folder` in each of the tables that stand below this name."""
+    tables = table.get(name) if isinstance(table, dict) else None
+    if isinstance(table, dict) and isinstance(tables, dict):
+        table[name] = {one: _anchored(each, keys, folder) for one, each in tables.items()}
+
+
+def _anchored(table: object, keys: Collection[str], folder: Path) -> object:
+    """A table, and all tables in it, with relative paths at these keys that start at `folder`."""
     if not isinstance(table, dict):
         return table
     return {
-        name: _paths(value, folder) if name in RELAY_PATHS else _anchored(value, folder)
+        name: _paths(value, folder) if name in keys else _anchored(value, keys, folder)
         for name, value in table.items()
     }
 

@@ -2,17 +2,16 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from core.error_words import nearest
-from service.configuration.alarms import AlarmSettings
-from service.configuration.backup import BackupSettings
+from service.configuration.channel_secrets import VARIABLE, is_variable
 from service.configuration.problems import ENVIRONMENT, Problem
-from service.configuration.relay_access import PASSWORD_VARIABLE, RelayAccess, RelayTls
-from service.configuration.retention import RetentionSettings
+from service.configuration.relay_access import PASSWORD_VARIABLE
+from service.configuration.tables import is_table, way_and_model
 from service.configuration.toml_lines import TomlLines
 
 PREFIX: Final = "MCC_"
@@ -24,14 +23,6 @@ PAGE: Final = "docs/reference/settings.md"
 
 FOLLOWS_FROM_ANOTHER: Final = "default_factory_not_called"
 """A default that is made of other settings was not made, because one of those is wrong."""
-
-TABLES: Final[Mapping[str, tuple[Any, ...]]] = {
-    "relays": (None, None, RelayAccess, RelayTls),
-    "backup": (None, BackupSettings),
-    "alarms": (None, AlarmSettings),
-    "retention": (None, RetentionSettings),
-}
-"""Models of the tables in the settings, by the depth of their keys."""
 
 
 class Sources:
@@ -65,43 +56,56 @@ def unknown_variables(variables: Mapping[str, str], settings: Mapping[str, objec
     for variable in sorted(variables):
         if not variable.upper().startswith(PREFIX) or variable.upper() in known:
             continue
-        if not variable.startswith(PASSWORD_VARIABLE):
+        if not variable.startswith(PASSWORD_VARIABLE) and not is_variable(variable):
             yield Problem(
                 ENVIRONMENT,
                 variable,
                 f"{PREFIX} and the name of a setting of {PAGE} in capitals",
                 "an unknown variable",
-                nearest(variable, [*known, PASSWORD_VARIABLE]),
+                nearest(variable, [*known, PASSWORD_VARIABLE, VARIABLE]),
             )
 
 
-def problems_of(error: ValidationError, sources: Sources, model: type[Any]) -> Iterator[Problem]:
+def problems_of(error: ValidationError, sources: Sources, model: type[BaseModel]) -> Iterator[Problem]:
     """Yield what the validation of the settings found wrong."""
-    for details in error.errors(include_url=False):
-        if details["type"] != FOLLOWS_FROM_ANOTHER:
+    found = error.errors(include_url=False)
+    ways = [details["loc"] for details in found]
+    for details in found:
+        way = details["loc"]
+        # A list whose only item is wrong is told to be empty.
+        follows = details["type"] == "too_short" and any(one[: len(way)] == way != one for one in ways)
+        if details["type"] != FOLLOWS_FROM_ANOTHER and not follows:
             yield _problem(details, sources, model)
 
 
-def _problem(details: ErrorDetails, sources: Sources, model: type[Any]) -> Problem:
+def _problem(details: ErrorDetails, sources: Sources, model: type[BaseModel]) -> Problem:
     setting = str(details["loc"][0]) if details["loc"] else ""
-    depth = None if setting in TABLES else 1
-    path = details["loc"][:depth]
+    path, holder = way_and_model(details["loc"], model) if is_table(setting, model) else ((setting,), model)
     source, field, line = sources.of(setting, path)
     if details["type"] == "extra_forbidden":
-        known = _known(path, model)
+        known = [] if holder is None else [field.alias or name for name, field in holder.model_fields.items()]
         meant = nearest(str(path[-1]), known)
         return Problem(source, field, f"a setting named in {PAGE}", "another name", meant, line)
     if details["type"] == "missing":
         return Problem(source, field, "this setting", "none", line=line)
+    if details["type"] in ("union_tag_invalid", "union_tag_not_found"):
+        return _of_kind(details, source, field, line)
     found = repr(details["input"])
     if setting in model.model_fields and not model.model_fields[setting].repr:
         found = f"a value of type {type(details['input']).__name__}"  # it may hold a password
-    expected = details["msg"].removeprefix("Input should be ")
-    return Problem(source, field, expected, found, line=line)
+    message = details["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
+    expected, _, said = message.partition(", found ")
+    if isinstance(details["input"], dict):
+        found = "a table with others"
+    return Problem(source, field, expected, said or found, line=line)
 
 
-def _known(path: tuple[str | int, ...], model: type[Any]) -> list[str]:
-    """Return the names that a key beside this one may have."""
-    tables = TABLES.get(str(path[0]), ())
-    beside = tables[len(path) - 1] if 1 < len(path) <= len(tables) else model
-    return [] if beside is None else list(beside.model_fields)
+def _of_kind(details: ErrorDetails, source: str, field: str, line: int | None) -> Problem:
+    """Return what is wrong with the key that says of which kind a table is."""
+    told = details.get("ctx", {})
+    key = str(told["discriminator"]).strip("'")
+    kinds = str(told.get("expected_tags", "")).replace("'", "")
+    expected = f"one of {kinds}" if kinds else f"the key {key}, which says of which kind the table is"
+    tag = str(told.get("tag", ""))
+    meant = nearest(tag, kinds.split(", ")) if tag else None
+    return Problem(source, f"{field}.{key}", expected, repr(tag) if tag else "none", meant, line)

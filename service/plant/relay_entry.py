@@ -6,8 +6,8 @@ from ipaddress import ip_address
 from pathlib import Path
 
 from scl.configuration import HOST_NAME
+from service.configuration.time_zones import is_time_zone, nearest_time_zone
 from service.plant.tables import PlantTable
-from service.plant.time_zones import is_time_zone, nearest_time_zone
 
 MOST_PORT = 65_535
 

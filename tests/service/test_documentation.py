@@ -3,10 +3,21 @@
 import re
 from dataclasses import fields
 from pathlib import Path
+from typing import get_args
+
+from pydantic import BaseModel
 
 from service.api import ApiContext, create_app
 from service.configuration.alarms import AlarmSettings
 from service.configuration.backup import BackupSettings
+from service.configuration.channels import (
+    AppriseChannel,
+    CommandChannel,
+    MailChannel,
+    SyslogChannel,
+    WebhookChannel,
+)
+from service.configuration.notifications import Digest, NotificationSettings, Route
 from service.configuration.retention import RetentionSettings
 from service.configuration.settings import Settings
 from service.plant import Overrides
@@ -43,6 +54,27 @@ def test_every_setting_of_the_alarms_is_documented_with_its_default_and_range() 
     assert documented == {
         name: (found["default"], found["minimum"], found["maximum"]) for name, found in schema.items()
     }
+
+
+def test_every_setting_of_notifications_is_documented() -> None:
+    page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
+    assert re.findall(r"^\| `notifications\.(\w+)`", page, re.MULTILINE) == list(
+        NotificationSettings.model_fields
+    )
+    section = page.partition("## Notifications\n")[2].partition("\n## ")[0]
+    documented: dict[str, list[str]] = {}
+    for cell in re.findall(r"^\| (`.*?) \|", section, re.MULTILINE):
+        for table, key in re.findall(r"`(?!notifications)(\w+)\.(\w+)`", cell):
+            documented.setdefault(table, []).append(key)
+    channels = (MailChannel, WebhookChannel, SyslogChannel, CommandChannel, AppriseChannel)
+    tables = {get_args(one.model_fields["kind"].annotation)[0]: one for one in channels}
+    assert set(documented) == {*tables, "routes", "digests"}
+    for name, table in (*tables.items(), ("routes", Route), ("digests", Digest)):
+        assert sorted(documented[name]) == sorted(_keys(table) - {"kind", "timeout_s"}), name
+
+
+def _keys(table: type[BaseModel]) -> set[str]:
+    return {field.alias or name for name, field in table.model_fields.items()}
 
 
 def test_the_documented_ranges_and_defaults_are_those_of_the_settings() -> None:
