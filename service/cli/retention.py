@@ -1,6 +1,7 @@
 """`mcc retention`: what the rules of the settings would delete, and deleting it now."""
 
 import time
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -17,11 +18,12 @@ from service.recording_store.store import RecordingStore
 from service.recording_store.unknown_folders import APART, Folder, UnknownFolders
 from service.retention.batches import Batches, Pace
 from service.retention.deletion import remove_discarded_folders
+from service.retention.reasons import WORDS
 from service.retention.rules import Rule, rules
 from service.retention.unknown_folders import KEPT_DAYS, UnknownFolderSweep
 from service.storage import Repository, StorageError, connect
 from service.storage.migrations import require_current_tables
-from service.storage.records import Amount
+from service.storage.records import Amount, OldRecording
 
 MB = 1e6
 UNTIL_DONE = Pace(round_s=float("inf"))
@@ -29,22 +31,29 @@ UNTIL_DONE = Pace(round_s=float("inf"))
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """A rule, what there was to delete, and how much of it was deleted; None in a dry run."""
+    """A rule, what there was to delete, and how much of it was deleted; None in a dry run.
+
+    listed: the recordings that the rule is for, also those that stay.
+    """
 
     rule: Rule
     amount: Amount
     deleted: int | None
+    listed: tuple[OldRecording, ...] = ()
 
 
-def apply_retention(config: Path | None, *, dry_run: bool, as_json: bool) -> None:
-    """Print what every rule would delete and, unless it is a dry run, delete that. Raises CommandError."""
+def apply_retention(config: Path | None, *, dry_run: bool, each: bool = False, as_json: bool) -> None:
+    """Print what every rule would delete and, unless it is a dry run, delete that. Raises CommandError.
+
+    each: print each recording too, with the reason why it goes or stays.
+    """
     with failing_clearly(SettingsError, StorageError, SQLAlchemyError, OSError):
         settings = Settings.load(config)
         require_current_tables(settings.database_url)
         engine = connect(settings.database_url)
         try:
             repository = Repository(engine)
-            outcomes = _outcomes(settings, repository, dry_run=dry_run)
+            outcomes = _outcomes(settings, repository, dry_run=dry_run, each=each)
             unknown = _unknown_folders(settings, repository, dry_run=dry_run)
         finally:
             engine.dispose()
@@ -54,26 +63,30 @@ def apply_retention(config: Path | None, *, dry_run: bool, as_json: bool) -> Non
             {
                 "dry_run": dry_run,
                 "rules": [_document(outcome) for outcome in outcomes],
+                **({"recordings": list(_recordings(outcomes))} if each else {}),
                 "unknown_folders": folders,
             }
         )
         return
     _print_table(outcomes, dry_run=dry_run)
+    for recording in _recordings(outcomes):
+        results().print(Text(_line(recording)), soft_wrap=True)
     if unknown:
         _print_unknown(unknown, dry_run=dry_run)
 
 
-def _outcomes(settings: Settings, repository: Repository, *, dry_run: bool) -> list[Outcome]:
+def _outcomes(settings: Settings, repository: Repository, *, dry_run: bool, each: bool) -> list[Outcome]:
     outcomes = []
     batches = Batches(UNTIL_DONE)
     for rule in rules(settings, repository, time.time_ns()):
         amount = rule.amount()
+        listed = tuple(rule.listed()) if each else ()
         deleted = None
         if not dry_run:
             if amount.rows:
                 progress().print(f"{rule.setting}: deleting {amount.rows} rows")
             deleted = rule.forget(batches)
-        outcomes.append(Outcome(rule, amount, deleted))
+        outcomes.append(Outcome(rule, amount, deleted, listed))
     if not dry_run:
         remove_discarded_folders(repository, RecordingStore(settings.recordings_directory, "retention"))
     return outcomes
@@ -136,6 +149,31 @@ def _document(outcome: Outcome) -> dict[str, object]:
         "newest": _time(outcome.amount.newest_ns),
         "deleted": outcome.deleted,
     }
+
+
+def _recordings(outcomes: list[Outcome]) -> Iterator[Mapping[str, object]]:
+    """Yield each recording that a rule is for, with what becomes of it and why."""
+    for outcome in outcomes:
+        for one in outcome.listed:
+            older = f"older than {outcome.rule.setting} = {outcome.rule.days:g}"
+            yield {
+                "motor": one.motor,
+                "recording": one.id,
+                "name": one.name,
+                "seen": _time(one.announced_ns),
+                "recorded": _time(one.recorded_ns),
+                "bytes": one.size_bytes,
+                "rule": outcome.rule.setting,
+                "goes": one.stays is None,
+                "reason": older if one.stays is None else WORDS[one.stays],
+                "stays_for": one.stays,
+            }
+
+
+def _line(recording: Mapping[str, object]) -> str:
+    time = recording["recorded"] or recording["seen"]
+    outcome = "goes" if recording["goes"] else "stays"
+    return f"{outcome:5}  {recording['motor']}  {time}  {recording['recording']}  {recording['reason']}"
 
 
 def _time(time_ns: int | None) -> str | None:

@@ -4,6 +4,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from core.operation import Operation
+
 MOST_DAYS = 36_500
 """A hundred years: in nanoseconds this fits into the integers of the database."""
 
@@ -14,13 +16,18 @@ Days = Annotated[float, Field(ge=1, le=MOST_DAYS)] | None
 class RetentionSettings(BaseModel):
     """What is deleted when it is older than so many days; by default nothing.
 
-    The age of a recording counts from when the service first saw it: a relay's clock may be wrong.
+    The age of a recording counts from when the service first saw it: a relay's clock may be wrong. What the
+    settings `keep_...` say stays, whatever its age.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     keep_newest: int = Field(default=100, ge=1, le=1_000_000)
     keep_starts: int = Field(default=10, ge=1, le=1_000)
+    keep_first_days: Days = None
+    keep_changes: bool = False
+    keep_operations: tuple[Operation, ...] = ()
+    keep_one_in_days: Days = None
     healthy_days: Days = None
     watch_days: Days = None
     fault_days: Days = None

@@ -6,12 +6,14 @@ from functools import partial
 
 from core.diagnosis.verdict import Verdict
 from core.units import NANOSECONDS_PER_DAY
+from service.configuration.retention import RetentionSettings
 from service.configuration.settings import Settings
 from service.plant import AveragingStep
 from service.retention.batches import Batches
 from service.retention.row_sizes import ROW_BYTES
-from service.storage.records import Amount, DeletedRows
+from service.storage.records import Amount, DeletedRows, OldRecording
 from service.storage.repository import Repository
+from service.storage.repository.kept_recordings import Keeping
 from service.storage.repository.retention import NOTHING, ExpiredRecordings
 from service.storage.states import RecordingState
 
@@ -19,17 +21,23 @@ FIRST_RECORDINGS = 1
 """Recordings of a first batch: one has rows in many tables, and takes 50 ms where the machine is busy."""
 
 
+def _no_recordings() -> Iterator[OldRecording]:
+    return iter(())
+
+
 @dataclass(frozen=True, slots=True)
 class Rule:
     """One rule: the setting that it comes from, and after how many days something is deleted; None for never.
 
     amount: says what it would delete now.  forget: deletes it, and returns how many.
+    listed: yields the recordings that it is for, those that it would delete and those that stay.
     """
 
     setting: str
     days: float | None
     amount: Callable[[], Amount]
     forget: Callable[[Batches], int]
+    listed: Callable[[], Iterator[OldRecording]] = _no_recordings
 
 
 def rules(settings: Settings, repository: Repository, now_ns: int) -> tuple[Rule, ...]:
@@ -43,9 +51,31 @@ def rules(settings: Settings, repository: Repository, now_ns: int) -> tuple[Rule
     )
 
 
+def keeping_of(kept: RetentionSettings) -> Keeping:
+    """Return what stays of each motor's recordings, whatever their age."""
+    return Keeping(
+        newest=kept.keep_newest,
+        starts=kept.keep_starts,
+        first_ns=_nanoseconds(kept.keep_first_days),
+        changes=kept.keep_changes,
+        operations=kept.keep_operations,
+        one_in_ns=_nanoseconds(kept.keep_one_in_days),
+    )
+
+
+def _nanoseconds(days: float | None) -> int | None:
+    return None if days is None else round(days * NANOSECONDS_PER_DAY)
+
+
+def _old_recordings(repository: Repository, expired: ExpiredRecordings) -> Iterator[OldRecording]:
+    for motor in repository.all_motors():
+        yield from repository.old_recordings(motor, expired)
+
+
 def _recording_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
     """Yield the rules of recordings, by verdict or, where there is none, by state."""
     kept = settings.retention
+    keeping = keeping_of(kept)
     diagnosed, refused = RecordingState.DIAGNOSED, Verdict.UNDIAGNOSABLE
     kinds: tuple[tuple[str, float | None, RecordingState, Verdict | None, bool], ...] = (
         ("healthy_days", kept.healthy_days, diagnosed, Verdict.HEALTHY, False),
@@ -61,11 +91,10 @@ def _recording_rules(settings: Settings, repository: Repository, now_ns: int) ->
         if days is None:
             yield _keeping(setting)
             continue
-        expired = ExpiredRecordings(
-            state, verdict, _before(now_ns, days), kept.keep_newest, kept.keep_starts, says_nothing
-        )
+        expired = ExpiredRecordings(state, verdict, _before(now_ns, days), keeping, says_nothing)
         forget = partial(_forget_recordings, repository, expired, f"older than {setting} = {days:g}", now_ns)
-        yield Rule(setting, days, partial(repository.expired_recordings, expired), forget)
+        amount = partial(repository.expired_recordings, expired)
+        yield Rule(setting, days, amount, forget, partial(_old_recordings, repository, expired))
 
 
 def _other_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:

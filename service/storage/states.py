@@ -144,6 +144,23 @@ class DeletedBy(StrEnum):
     RETENTION = "retention"
 
 
+class StayReason(StrEnum):
+    """Why no rule of retention deletes a recording; the first that holds is told."""
+
+    RUNNING = "running-diagnosis"
+    UNOBSERVED = "not-observed-yet"
+    BASELINE = "baseline"
+    ALARM = "standing-alarm"
+    NOTE = "note"
+    CHECKPOINT = "condition-checkpoint"
+    NEWEST = "newest"
+    STARTS = "start"
+    FIRST = "first-days"
+    CHANGE = "change"
+    OPERATION = "operation"
+    ONE_IN = "one-in-days"
+
+
 class JobState(StrEnum):
     """A diagnosis to be made."""
 

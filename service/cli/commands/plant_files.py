@@ -58,6 +58,10 @@ def retention(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Delete nothing: show what each rule would delete.")
     ] = False,
+    each: Annotated[
+        bool,
+        typer.Option("--list", help="Show each recording that is old enough, and why it goes or stays."),
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Delete the recordings and the like that the settings of retention call old, now instead of once a day.
@@ -66,7 +70,7 @@ def retention(
     """
     from service.cli.retention import apply_retention
 
-    apply_retention(config, dry_run=dry_run, as_json=as_json)
+    apply_retention(config, dry_run=dry_run, each=each, as_json=as_json)
 
 
 @commands.command("import-scl")

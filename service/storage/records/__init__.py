@@ -19,7 +19,7 @@ from service.storage.records.conditions import (
     RecordObservation,
     ToObserve,
 )
-from service.storage.records.deletions import Amount, DeletedRows, Deletion
+from service.storage.records.deletions import Amount, DeletedRows, Deletion, OldRecording
 from service.storage.records.diagnoses import (
     ClaimedJob,
     Counts,
@@ -90,6 +90,7 @@ __all__ = [
     "MotorEntry",
     "MotorHealth",
     "MotorVersion",
+    "OldRecording",
     "Page",
     "Quantity",
     "Quarantine",

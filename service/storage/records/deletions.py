@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from core.diagnosis.verdict import Verdict
-from service.storage.states import DeletedBy, RecordingSource, RecordingState
+from service.storage.states import DeletedBy, RecordingSource, RecordingState, StayReason
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +36,19 @@ class Amount:
             min(times, default=None),
             max(times, default=None),
         )
+
+
+@dataclass(frozen=True, slots=True)
+class OldRecording:
+    """A recording that a rule is old enough to delete. stays: why it does not; None where it does."""
+
+    id: str
+    motor: str
+    name: str
+    size_bytes: int
+    announced_ns: int
+    recorded_ns: int | None
+    stays: StayReason | None
 
 
 @dataclass(frozen=True, slots=True)

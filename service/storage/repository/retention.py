@@ -1,15 +1,14 @@
 """What is older than somebody wants to keep it: how much there is, and deleting some of it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from time import monotonic
 
-from sqlalchemy import ColumnElement, and_, delete, exists, func, or_, select
+from sqlalchemy import ColumnElement, and_, case, delete, exists, func, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from core.diagnosis.verdict import Verdict
 from service.storage.models import (
-    BaselineRecordingRow,
     DeletedRemoteRecordRow,
     DeletionRow,
     DiagnosisRow,
@@ -18,14 +17,13 @@ from service.storage.models import (
     MotorRow,
     RecordingRequestRow,
     RecordingRow,
-    UnobservedRecordingRow,
 )
-from service.storage.records import Amount, DeletedRows
+from service.storage.records import Amount, DeletedRows, OldRecording
 from service.storage.repository.deletions import delete_row, to_delete
-from service.storage.repository.motor_health import is_usable_start
+from service.storage.repository.kept_recordings import Keeping, conditions
 from service.storage.repository.recording_requests import ENDED
 from service.storage.repository.sessions import Sessions
-from service.storage.states import DeletedBy, JobState, RecordingState
+from service.storage.states import DeletedBy, JobState, RecordingState, StayReason
 
 NOTHING = Amount(0, 0, None, None)
 
@@ -34,17 +32,14 @@ NOTHING = Amount(0, 0, None, None)
 class ExpiredRecordings:
     """Recordings in a state, with a verdict, that were first seen before a time.
 
-    verdict: None for recordings of any verdict or none.  keep_newest: so many of each motor stay in any case,
-    counted by when they were seen and by when they were recorded.  keep_starts: so many of the starts of each
-    motor from which its parameters can be estimated stay in any case, the newest.  says_nothing: whether the
-    motor stands, starts, stops or trips in them.
+    verdict: None for recordings of any verdict or none.  keeping: what of them stays all the same.
+    says_nothing: whether the motor stands, starts, stops or trips in them.
     """
 
     state: RecordingState
     verdict: Verdict | None
     before_ns: int
-    keep_newest: int
-    keep_starts: int = 0
+    keeping: Keeping
     says_nothing: bool = False
 
 
@@ -60,10 +55,19 @@ class RetentionRows(Sessions):
         for motor in self.all_motors():
             with self._read() as session:
                 condition = _expired(session, motor, expired)
-                if condition is not None:
-                    size = func.sum(RecordingRow.size_bytes)
-                    amount = amount.plus(_amount(session, RecordingRow.announced_ns, condition, size))
+                size = func.sum(RecordingRow.size_bytes)
+                amount = amount.plus(_amount(session, RecordingRow.announced_ns, condition, size))
         return amount
+
+    def old_recordings(self, motor: str, expired: ExpiredRecordings) -> tuple[OldRecording, ...]:
+        """Return the recordings of a motor that a rule is for, oldest first, also those that stay."""
+        columns = [getattr(RecordingRow, field.name) for field in fields(OldRecording)[:-1]]
+        with self._read() as session:
+            kept = conditions(session, motor, expired.keeping)
+            why = case(*((condition, reason.value) for reason, condition in kept.items()), else_=None)
+            query = select(*columns, why).where(_old(motor, expired))
+            rows = session.execute(query.order_by(RecordingRow.announced_ns, RecordingRow.id)).all()
+        return tuple(_old_recording(*row) for row in rows)
 
     def forget_recordings(
         self, motor: str, rows: int, *, expired: ExpiredRecordings, reason: str, now_ns: int
@@ -82,8 +86,6 @@ class RetentionRows(Sessions):
     def _oldest_expired(self, motor: str, expired: ExpiredRecordings, rows: int) -> Sequence[str]:
         with self._read() as session:
             condition = _expired(session, motor, expired)
-            if condition is None:
-                return ()
             order = (RecordingRow.announced_ns, RecordingRow.id)
             return session.scalars(
                 select(RecordingRow.id).where(condition).order_by(*order).limit(rows)
@@ -96,9 +98,12 @@ class RetentionRows(Sessions):
         with self._write() as session:
             session.connection()
             began_s = monotonic()
-            for recording_id in ids:
-                row = to_delete(session, motor, recording_id)
-                if row is not None and _is_expired(session, row, expired):
+            locked = [to_delete(session, motor, recording_id) for recording_id in ids]
+            # Nobody else can change them now, and to delete one makes none of the others stay or go.
+            still = _expired(session, motor, expired)
+            expired_ids = set(session.scalars(select(RecordingRow.id).where(still, RecordingRow.id.in_(ids))))
+            for row in locked:
+                if row is not None and row.id in expired_ids:
                     delete_row(session, row, reason, DeletedBy.RETENTION, now_ns)
                     number += 1
         return DeletedRows(number, monotonic() - began_s)
@@ -188,37 +193,34 @@ def _amount(
     return Amount(int(number or 0), int(size[0] or 0) if size else 0, oldest_ns, newest_ns)
 
 
-def _is_expired(session: Session, row: RecordingRow, expired: ExpiredRecordings) -> bool:
-    condition = _expired(session, row.motor, expired)
-    if condition is None:
-        return False
-    return session.scalar(select(RecordingRow.id).where(condition, RecordingRow.id == row.id)) is not None
+def _old_recording(
+    id_: str,
+    motor: str,
+    name: str,
+    size_bytes: int,
+    announced_ns: int,
+    recorded_ns: int | None,
+    stays: str | None,
+) -> OldRecording:
+    reason = None if stays is None else StayReason(stays)
+    return OldRecording(id_, motor, name, size_bytes, announced_ns, recorded_ns, reason)
 
 
-def _expired(session: Session, motor: str, expired: ExpiredRecordings) -> ColumnElement[bool] | None:
-    """Return the condition that a recording of the motor is expired; None where too few are there."""
-    of_motor = (RecordingRow.motor == motor, RecordingRow.state != RecordingState.ANNOUNCED)
-    seen, recorded = (
-        session.scalar(
-            select(time).where(*of_motor, time.is_not(None)).order_by(time.desc()).offset(nth).limit(1)
-        )
-        for time in (RecordingRow.announced_ns, RecordingRow.recorded_ns)
-        for nth in (expired.keep_newest - 1,)
-    )
-    if seen is None:
-        return None
-    conditions = [
+def _expired(session: Session, motor: str, expired: ExpiredRecordings) -> ColumnElement[bool]:
+    """Return the condition that a recording of the motor is deleted."""
+    kept = conditions(session, motor, expired.keeping)
+    return and_(_old(motor, expired), *(~condition for condition in kept.values()))
+
+
+def _old(motor: str, expired: ExpiredRecordings) -> ColumnElement[bool]:
+    """Return the condition that the rule is for a recording of the motor, which may stay all the same."""
+    matching = [
         RecordingRow.motor == motor,
         RecordingRow.state == expired.state,
-        RecordingRow.announced_ns < min(expired.before_ns, seen),
-        ~exists().where(BaselineRecordingRow.recording_id == RecordingRow.id),
-        ~exists().where(UnobservedRecordingRow.recording_id == RecordingRow.id),
-        ~exists().where(JobRow.recording_id == RecordingRow.id, JobRow.state == JobState.RUNNING),
+        RecordingRow.announced_ns < expired.before_ns,
     ]
-    untimed = RecordingRow.recorded_ns.is_(None)
-    conditions.append(untimed if recorded is None else or_(untimed, RecordingRow.recorded_ns < recorded))
     if expired.verdict is not None:
-        conditions.append(
+        matching.append(
             exists().where(
                 DiagnosisRow.recording_id == RecordingRow.id,
                 DiagnosisRow.current,
@@ -226,14 +228,7 @@ def _expired(session: Session, motor: str, expired: ExpiredRecordings) -> Column
                 DiagnosisRow.says_nothing.is_(expired.says_nothing),
             )
         )
-    kept_starts = (
-        select(RecordingRow.id)
-        .where(RecordingRow.motor == motor, is_usable_start())
-        .order_by(RecordingRow.announced_ns.desc(), RecordingRow.id.desc())
-        .limit(expired.keep_starts)
-    )
-    conditions.append(RecordingRow.id.not_in(session.scalars(kept_starts).all()))
-    return and_(*conditions)
+    return and_(*matching)
 
 
 def _superseded(before_ns: int) -> ColumnElement[bool]:

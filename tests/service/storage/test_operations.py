@@ -9,6 +9,7 @@ from core.diagnosis.verdict import Diagnosis, Verdict
 from core.operation import Operation
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.storage.repository.kept_recordings import Keeping
 from service.storage.repository.retention import ExpiredRecordings
 from service.storage.states import RecordingState
 from testing.service.job_runner import RUNNER
@@ -113,8 +114,7 @@ def test_retention_keeps_the_newest_starts(recorded: Recorded) -> None:
             RecordingState.DIAGNOSED,
             Verdict.UNDIAGNOSABLE,
             NOW_NS + 60 * SECOND_NS,
-            keep_newest=1,
-            keep_starts=1,
+            Keeping(newest=1, starts=1),
             says_nothing=says_nothing,
         )
         before = {one.id for one in recorded.repository.recordings(limit=10).items}
