@@ -10,7 +10,7 @@ WORDS: Mapping[StayReason, str] = MappingProxyType(
         StayReason.RUNNING: "a diagnosis of it is running",
         StayReason.UNOBSERVED: "its motor's condition does not know it yet",
         StayReason.BASELINE: "it is part of the motor's baseline",
-        StayReason.ALARM: "a standing alarm of the motor rests on it",
+        StayReason.ALARM: "an alarm of the motor rests on it that is not over",
         StayReason.NOTE: "it is next to what somebody told of the motor",
         StayReason.CHECKPOINT: "the motor's condition is folded up to it",
         StayReason.NEWEST: "one of the newest of the motor (retention.keep_newest)",

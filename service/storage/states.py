@@ -150,7 +150,7 @@ class StayReason(StrEnum):
     RUNNING = "running-diagnosis"
     UNOBSERVED = "not-observed-yet"
     BASELINE = "baseline"
-    ALARM = "standing-alarm"
+    ALARM = "open-alarm"
     NOTE = "note"
     CHECKPOINT = "condition-checkpoint"
     NEWEST = "newest"

@@ -40,7 +40,7 @@ from service.storage.models import (
     UnobservedRecordingRow,
 )
 from service.storage.repository.motor_health import is_usable_start
-from service.storage.states import JobState, RecordingState, StayReason
+from service.storage.states import AlarmState, JobState, RecordingState, StayReason
 
 FIGURES = (Verdict.HEALTHY, Verdict.WATCH, Verdict.FAULT)
 """Verdicts that say something of the winding: one that was refused changes none."""
@@ -89,7 +89,7 @@ def conditions(session: Session, motor: str, keeping: Keeping) -> Conditions:
         ),
         StayReason.UNOBSERVED: exists().where(UnobservedRecordingRow.recording_id == RecordingRow.id),
         StayReason.BASELINE: exists().where(BaselineRecordingRow.recording_id == RecordingRow.id),
-        StayReason.ALARM: _of_a_standing_alarm(motor),
+        StayReason.ALARM: _of_an_open_alarm(motor),
         StayReason.NOTE: _beside_an_event(motor),
         StayReason.CHECKPOINT: exists().where(
             ConditionCheckpointRow.motor == motor, ConditionCheckpointRow.time_ns == RecordingRow.recorded_ns
@@ -139,15 +139,17 @@ def _is_early(session: Session, motor: str, within_ns: int | None) -> ColumnElem
     return RecordingRow.announced_ns < min(known) + within_ns if known else false()
 
 
-def _of_a_standing_alarm(motor: str) -> ColumnElement[bool]:
-    """Those at which the condition changed that an alarm of the motor stands for."""
+def _of_an_open_alarm(motor: str) -> ColumnElement[bool]:
+    """The one that raised an alarm of the motor, and those at which the condition became what it tells."""
+    is_open = (AlarmRow.motor == motor, AlarmRow.state != AlarmState.NORMAL)
     changed = and_(
         ConditionChangeRow.motor == motor,
         ConditionChangeRow.recording_id == RecordingRow.id,
         ConditionChangeRow.time_ns >= func.coalesce(_since(motor), EARLIEST_NS),
     )
-    return and_(
-        exists().where(AlarmRow.motor == motor, AlarmRow.cleared_ns.is_(None)), exists().where(changed)
+    return or_(
+        exists().where(*is_open, AlarmRow.recording_id == RecordingRow.id),
+        and_(exists().where(*is_open), exists().where(changed)),
     )
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from time import monotonic
+from typing import Any
 
 from sqlalchemy import ColumnElement, and_, case, delete, exists, func, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
@@ -65,9 +66,9 @@ class RetentionRows(Sessions):
         with self._read() as session:
             kept = conditions(session, motor, expired.keeping)
             why = case(*((condition, reason.value) for reason, condition in kept.items()), else_=None)
-            query = select(*columns, why).where(_old(motor, expired))
+            query = select(*columns, why.label("stays")).where(_old(motor, expired))
             rows = session.execute(query.order_by(RecordingRow.announced_ns, RecordingRow.id)).all()
-        return tuple(_old_recording(*row) for row in rows)
+        return tuple(map(_old_recording, rows))
 
     def forget_recordings(
         self, motor: str, rows: int, *, expired: ExpiredRecordings, reason: str, now_ns: int
@@ -193,17 +194,11 @@ def _amount(
     return Amount(int(number or 0), int(size[0] or 0) if size else 0, oldest_ns, newest_ns)
 
 
-def _old_recording(
-    id_: str,
-    motor: str,
-    name: str,
-    size_bytes: int,
-    announced_ns: int,
-    recorded_ns: int | None,
-    stays: str | None,
-) -> OldRecording:
-    reason = None if stays is None else StayReason(stays)
-    return OldRecording(id_, motor, name, size_bytes, announced_ns, recorded_ns, reason)
+def _old_recording(row: Any) -> OldRecording:
+    """Return the recording of a row that has the columns of one, and why it stays."""
+    values = {field.name: getattr(row, field.name) for field in fields(OldRecording)}
+    reason = values.pop("stays")
+    return OldRecording(**values, stays=None if reason is None else StayReason(reason))
 
 
 def _expired(session: Session, motor: str, expired: ExpiredRecordings) -> ColumnElement[bool]:

@@ -34,7 +34,15 @@ from service.storage.models import (
     MotorRow,
     RecordingRow,
 )
-from service.storage.states import AlarmKind, JobState, RecordingSource, RecordingState, StayReason
+from service.storage.states import (
+    AlarmKind,
+    AlarmPriority,
+    AlarmState,
+    JobState,
+    RecordingSource,
+    RecordingState,
+    StayReason,
+)
 from testing.service.plants import NOW_NS
 
 SAYING = (Verdict.HEALTHY, Verdict.WATCH, Verdict.FAULT)
@@ -256,10 +264,9 @@ def test_a_recording_of_wrong_time_does_not_move_the_first_year(planted: Planted
     assert stays(planted, kept, motor)[first[1]] is StayReason.FIRST, "though the first one is deleted"
 
 
-def test_what_a_standing_alarm_rests_on_stays_until_it_is_cleared(planted: PlantedRepository) -> None:
+def test_what_an_alarm_rests_on_stays_until_it_is_over(planted: PlantedRepository) -> None:
     motor = planted.add_motor()
-    ids = planted.add(motor, [Made(24.0 * day, Verdict.FAULT) for day in range(6)])
-    alarm = str(uuid.uuid4())
+    ids = planted.add(motor, [Made(24.0 * day, Verdict.FAULT) for day in range(7)])
     planted.put(
         ConditionChangeRow(
             id=ids[2],
@@ -270,22 +277,33 @@ def test_what_a_standing_alarm_rests_on_stays_until_it_is_cleared(planted: Plant
             kind=Kind.SHORTED_TURNS,
         ),
         AlarmRow(
-            id=alarm,
+            id=str(uuid.uuid4()),
+            site="FACTORY_A",
             ied="A1_SEL710",
+            motor=motor,
             kind=AlarmKind.CONDITION_FAULT,
             subject="shorted-turns",
             reason="a test",
+            recording_id=ids[4],
+            priority=AlarmPriority.HIGH,
+            state=AlarmState.RETURNED_UNACKNOWLEDGED,
+            urgency=1,
             raised_ns=NOW_NS,
-            motor=motor,
+            raises=1,
+            cleared_ns=NOW_NS + DAY_NS,
+            changed_ns=NOW_NS,
+            changed_by="a test",
         ),
     )
-    assert stays(planted, settings_of(), motor)[ids[2]] is StayReason.ALARM
+    reasons = stays(planted, settings_of(), motor)
+    assert {reasons[ids[2]], reasons[ids[4]]} == {StayReason.ALARM}, "nobody has acknowledged it"
     apply(planted, settings_of())
-    assert left(planted, motor) == {ids[2], ids[5]}
+    assert left(planted, motor) == {ids[2], ids[4], ids[6]}
     with planted._write() as session:
-        session.delete(session.get_one(AlarmRow, alarm))
+        alarm = session.query(AlarmRow).filter_by(motor=motor).one()
+        alarm.state = AlarmState.NORMAL
     apply(planted, settings_of())
-    assert left(planted, motor) == {ids[5]}
+    assert left(planted, motor) == {ids[6]}
 
 
 def test_what_notes_and_checkpoints_of_the_condition_need_stays(planted: PlantedRepository) -> None:
