@@ -34,7 +34,8 @@ def set_baseline(context: Context, name: Name, wanted: BaselineRequest, caller: 
         name,
         ids,
         reason=wanted.reason,
-        by=wanted.by or caller.name,
+        by=caller,
+        told_by=wanted.by,
         now_ns=time.time_ns(),
     )
     return Baseline.model_validate(baseline)
@@ -54,4 +55,4 @@ def drop_baseline(
     by: Annotated[Person | None, Query(description="Who says so; it is kept.")] = None,
 ) -> None:
     """Delete a motor's baseline; its recordings stay, and a note of the motor keeps who did so and why."""
-    context.repository.delete_baseline(name, reason=reason, by=by or caller.name, now_ns=time.time_ns())
+    context.repository.delete_baseline(name, by=caller, reason=reason, told_by=by, now_ns=time.time_ns())

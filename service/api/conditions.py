@@ -28,6 +28,7 @@ from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, pa
 from service.api.problems import FieldError, ProblemError, problems
 from service.api.times import rfc3339
 from service.condition.staleness import stale_after_ns
+from service.storage.records import Actor
 
 LATEST_POINTS = 20
 MOST_POINTS = 100
@@ -92,7 +93,7 @@ def add_note(
     context: Context, request: Request, response: Response, name: Name, wanted: NoteRequest, caller: By
 ) -> Note:
     """Keep what a person tells of a motor; its condition follows within seconds."""
-    note = _add(context, name, wanted.kind, wanted.text, wanted.by or caller.name, wanted.time)
+    note = _add(context, name, wanted.kind, wanted.text, caller, wanted.by, wanted.time)
     response.headers["Location"] = request.url_for("get_note", name=name, note_id=note.id).path
     return note
 
@@ -111,7 +112,7 @@ def get_note(context: Context, name: Name, note_id: UUID) -> Note:
 def withdraw_note(context: Context, name: Name, note_id: UUID, wanted: Withdrawal, caller: By) -> Note:
     """Let a note that was wrong count no more; the condition follows as if nobody had told it."""
     note = context.repository.withdraw_event(
-        name, str(note_id), by=wanted.by or caller.name, reason=wanted.reason, now_ns=time.time_ns()
+        name, str(note_id), by=caller, told_by=wanted.by, reason=wanted.reason, now_ns=time.time_ns()
     )
     context.on_new_job()
     return Note.model_validate(note)
@@ -128,12 +129,20 @@ def restart_reference(
 ) -> Note:
     """Take the motor for healthy as it is: its standing asymmetry is learnt anew. The answer is a note."""
     kind = EventKind.REFERENCE_RESTARTED
-    note = _add(context, name, kind, wanted.reason, wanted.by or caller.name, wanted.time)
+    note = _add(context, name, kind, wanted.reason, caller, wanted.by, wanted.time)
     response.headers["Location"] = request.url_for("get_note", name=name, note_id=note.id).path
     return note
 
 
-def _add(context: ApiContext, motor: str, kind: EventKind, text: str, by: str, time_ns: int | None) -> Note:
+def _add(
+    context: ApiContext,
+    motor: str,
+    kind: EventKind,
+    text: str,
+    by: Actor,
+    told_by: str | None,
+    time_ns: int | None,
+) -> Note:
     if kind is EventKind.PARAMETERS_EDITED:
         raise _refused(
             "body.kind",
@@ -148,7 +157,7 @@ def _add(context: ApiContext, motor: str, kind: EventKind, text: str, by: str, t
     # However much was noted of a motor before: who tested it can say that it is healthy.
     most_notes = None if kind is EventKind.REFERENCE_RESTARTED else context.settings.max_notes
     event = context.repository.add_event(
-        motor, Event(time_ns, kind, text), by=by, now_ns=now_ns, most_notes=most_notes
+        motor, Event(time_ns, kind, text), by=by, told_by=told_by, now_ns=now_ns, most_notes=most_notes
     )
     context.on_new_job()
     return Note.model_validate(event)

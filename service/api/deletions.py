@@ -10,6 +10,7 @@ from pydantic import Field, StringConstraints
 
 from core.diagnosis.verdict import Verdict
 from service.access.permissions import Permission
+from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Document
@@ -56,9 +57,11 @@ class Deletion(Document):
     responses=problems(404, 409),
     dependencies=[require(Permission.RECORDINGS)],
 )
-def delete_recording(context: Context, recording_id: UUID, reason: Reason) -> None:
+def delete_recording(context: Context, recording_id: UUID, reason: Reason, caller: By) -> None:
     """Delete a recording with its files and diagnoses; it is not pulled from its relay again."""
-    delete_with_folder(context.repository, context.store, str(recording_id), reason, now_ns=time.time_ns())
+    delete_with_folder(
+        context.repository, context.store, str(recording_id), reason, by=caller, now_ns=time.time_ns()
+    )
 
 
 @router.get("/deletions", responses=problems(404), dependencies=[require(Permission.VIEW)])

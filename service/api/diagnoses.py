@@ -8,6 +8,7 @@ from uuid import UUID
 from fastapi import APIRouter, Query, Request, Response
 
 from service.access.permissions import Permission
+from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
@@ -33,12 +34,14 @@ def request_diagnosis(
     request: Request,
     response: Response,
     recording_id: UUID,
+    caller: By,
     wanted: DiagnosisRequest | None = None,
 ) -> DiagnosisRun:
     """Queue another diagnosis of a stored recording; when done, it takes the place of the earlier one."""
     wanted = wanted or DiagnosisRequest()
     job = context.repository.request_diagnosis(
         str(recording_id),
+        by=caller,
         method=wanted.method,
         model=wanted.model,
         now_ns=time.time_ns(),

@@ -8,6 +8,7 @@ from uuid import UUID
 from fastapi import APIRouter, Header, Query, Request, Response
 
 from service.access.permissions import Permission
+from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
@@ -43,11 +44,13 @@ def request_event_report(
     request: Request,
     response: Response,
     name: Name,
+    caller: By,
     idempotency_key: IdempotencyKey = None,
 ) -> EventReport:
     """Request a recording from the motor's relay. Follow the request until it is diagnosed or failed."""
     recording_request = context.repository.request_recording(
         name,
+        by=caller,
         now_ns=time.time_ns(),
         idempotency_key=idempotency_key,
         most_open=context.settings.max_open_requests,

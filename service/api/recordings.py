@@ -16,6 +16,7 @@ from fastapi.responses import StreamingResponse
 from core.operation import Operation
 from core.recordings import Envelope, RecordingError, read_envelope
 from service.access.permissions import Permission
+from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.archive import archive_name, zipped
 from service.api.context import ApiContext, Context
@@ -27,7 +28,7 @@ from service.api.waveform import MAX_POINTS, Waveform, WaveformResponse, interva
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
 from service.retention.deletion import remove_discarded_folder_if_possible
 from service.storage.errors import FolderGoneError, TooManyWaitingError
-from service.storage.records import RecordingEntry
+from service.storage.records import Actor, RecordingEntry
 from service.storage.repository.recordings import AddedRecording
 from service.storage.states import RecordingState
 
@@ -82,6 +83,7 @@ async def upload_recording(
     context: Context,
     request: Request,
     response: Response,
+    caller: By,
     motor: Annotated[str, Form(min_length=1, max_length=200, description="Name of the motor recorded.")],
     files: Annotated[
         list[UploadFile],
@@ -93,7 +95,7 @@ async def upload_recording(
 ) -> RecordingDetails:
     """Store the files of one recording and queue its diagnosis; one the motor has stays as it is."""
     async with context.uploads.admitted():
-        added, details = await run_in_threadpool(_upload, context, motor, files)
+        added, details = await run_in_threadpool(_upload, context, caller, motor, files)
     if not added.created:
         response.status_code = HTTPStatus.OK
     response.headers["Location"] = request.url_for("get_recording", recording_id=added.recording.id).path
@@ -170,23 +172,23 @@ def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
 
 
 def _upload(
-    context: ApiContext, motor: str, files: list[UploadFile]
+    context: ApiContext, by: Actor, motor: str, files: list[UploadFile]
 ) -> tuple[AddedRecording, RecordingDetails]:
     context.repository.motor(motor)
     try:
-        added = _add(context, motor, files)
+        added = _add(context, by, motor, files)
     except FolderGoneError:  # a recording of the same content was deleted just now
-        added = _add(context, motor, files)
+        added = _add(context, by, motor, files)
     context.on_new_job()
     return added, _details(context, added.recording)
 
 
-def _add(context: ApiContext, motor: str, files: list[UploadFile]) -> AddedRecording:
+def _add(context: ApiContext, by: Actor, motor: str, files: list[UploadFile]) -> AddedRecording:
     stored = _store_upload(context, files)
     now_ns = time.time_ns()
     try:
         added = context.repository.add_recording(
-            stored, motor=motor, now_ns=now_ns, most_queued=context.settings.max_queued_diagnoses
+            stored, motor=motor, by=by, now_ns=now_ns, most_queued=context.settings.max_queued_diagnoses
         )
     except TooManyWaitingError:
         context.repository.discard_stored(stored.digest, now_ns=now_ns)

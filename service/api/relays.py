@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Query
 
 from service.access.permissions import Permission
+from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
@@ -68,9 +69,9 @@ def get_ied(context: Context, name: Name) -> IedDetails:
     responses=problems(404),
     dependencies=[require(Permission.RELEASE)],
 )
-def release_ied(context: Context, name: Name) -> None:
+def release_ied(context: Context, name: Name, caller: By) -> None:
     """Visit a relay again that was set aside, with a clean sheet; harmless where it was not."""
-    context.repository.release(name, now_ns=time.time_ns())
+    context.repository.release(name, by=caller, now_ns=time.time_ns())
 
 
 def _acquisition(findings: RelayFindings | None) -> Acquisition | None:

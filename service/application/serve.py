@@ -88,7 +88,7 @@ def _prepared(settings: Settings, plant: Plant) -> Repository:
     try:
         migrate(settings.database_url)
         repository = Repository(connect(settings.database_url))
-        repository.sync_plant(plant)
+        repository.sync_plant(plant, noted_ns=time.time_ns())
         documents = {motor.name: document_of(motor.motor) for motor in plant.motors}
         repository.note_motors(documents, now_ns=time.time_ns())
         repository.settle_alarms(now_ns=time.time_ns())

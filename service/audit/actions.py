@@ -18,6 +18,7 @@ class AuditAction(StrEnum):
     REFERENCE_RESTARTED = "reference-restarted"
     QUARANTINE_RELEASED = "quarantine-released"
     PLANT_CHANGED = "plant-changed"
+    PARAMETERS_CHANGED = "parameters-changed"
     RETENTION_APPLIED = "retention-applied"
 
 
@@ -32,7 +33,11 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.NOTE_WITHDRAWN: "Somebody let a note count no more.",
     AuditAction.REFERENCE_RESTARTED: "Somebody took a motor for healthy as it is.",
     AuditAction.QUARANTINE_RELEASED: "Somebody had a relay visited again; `before` is why it was set aside.",
-    AuditAction.PLANT_CHANGED: "The service started with other plant files; what differs, before and after.",
+    AuditAction.PLANT_CHANGED: (
+        "The service started with other plant files: a site, relay or motor came (no `before`), left (no "
+        "`after`) or is told otherwise."
+    ),
+    AuditAction.PARAMETERS_CHANGED: "The service started with other figures of a motor in its motors file.",
     AuditAction.RETENTION_APPLIED: "Rules of `[retention]` deleted what they say; how much of what.",
 }
 """What each action means, for the reference page."""

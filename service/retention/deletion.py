@@ -12,17 +12,23 @@ from threading import Event
 import structlog
 
 from service.recording_store.store import RecordingStore
-from service.storage.records import Deletion
+from service.storage.records import SERVICE, Actor, Deletion
 from service.storage.repository import Repository
 
 log = structlog.get_logger(__name__)
 
 
 def delete_recording(
-    repository: Repository, store: RecordingStore, recording_id: str, reason: str, *, now_ns: int
+    repository: Repository,
+    store: RecordingStore,
+    recording_id: str,
+    reason: str,
+    *,
+    by: Actor = SERVICE,
+    now_ns: int,
 ) -> Deletion:
     """Delete a recording for a person who says why. Raises NotFoundError, RecordingInUseError."""
-    deletion = repository.delete_recording(recording_id, reason, now_ns=now_ns)
+    deletion = repository.delete_recording(recording_id, reason, by=by, now_ns=now_ns)
     log.info("recording deleted", recording=recording_id, motor=deletion.motor, reason=reason)
     if deletion.digest is not None:
         remove_discarded_folder_if_possible(repository, store, deletion.digest)

@@ -17,6 +17,7 @@ from service.storage.records import (
     ConditionPoint,
     FoldResult,
 )
+from service.storage.records.actors import SERVICE
 from testing.service.plants import NOW_NS
 
 HEALTHY = Condition(
@@ -112,7 +113,7 @@ def tell(repository: Repository, condition: Condition, *, now_ns: int = NOW_NS) 
     It is folded as if an event had made it.
     """
     event = Event(now_ns, EventKind.MAINTENANCE, "new bearing")
-    kept = repository.add_event(condition.motor, event, by="ann", now_ns=now_ns)
+    kept = repository.add_event(condition.motor, event, by=SERVICE, told_by="ann", now_ns=now_ns)
     fold = repository.begin_fold(condition.motor, 1000)
     assert fold is not None
     entry = entry_of(condition)

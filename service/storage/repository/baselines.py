@@ -12,6 +12,7 @@ from sqlalchemy.orm import Session
 from core.condition.events import Event, EventKind
 from core.condition.kinds import Kind, State
 from core.diagnosis.verdict import Verdict, is_relative
+from service.audit.actions import AuditAction
 from service.storage.errors import DoubtfulBaselineError, NotFoundError, UnusableBaselineError
 from service.storage.models import (
     BaselineRecordingRow,
@@ -23,6 +24,8 @@ from service.storage.models import (
     UnobservedRecordingRow,
 )
 from service.storage.records import BaselineDoubt, BaselineEntry, RecordingEntry
+from service.storage.records.actors import Actor
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.condition_events import keep_event
 from service.storage.repository.sessions import Sessions, found, only, record_of
 from service.storage.texts import storable
@@ -31,9 +34,6 @@ NOT_KNOWN_YET = (
     "the motor's condition at it is not known yet: ask again when the condition follows it, seconds after"
     " its diagnosis"
 )
-
-NOBODY = "not said"
-"""Who deleted a baseline, where the request does not say."""
 
 
 class BaselineRows(Sessions):
@@ -48,8 +48,9 @@ class BaselineRows(Sessions):
         motor: str,
         recording_ids: Sequence[str],
         *,
+        by: Actor,
         reason: str | None = None,
-        by: str | None = None,
+        told_by: str | None = None,
         now_ns: int,
     ) -> BaselineEntry:
         """Replace the motor's baseline by these recordings.
@@ -57,7 +58,8 @@ class BaselineRows(Sessions):
         It is used for diagnoses that begin from now on. A reason is also kept as a note of the motor, where
         it stays when the baseline is replaced.
 
-        reason, by: why the recordings stand for health, and who says so; needed where one is in doubt.
+        reason: why the recordings stand for health; needed where one is in doubt. told_by: who says so, where
+        it is another than who asks.
         Raises NotFoundError (for another motor's recording too), UnusableBaselineError (one that is not
         diagnosed, or was refused), DoubtfulBaselineError.
         """
@@ -66,37 +68,44 @@ class BaselineRows(Sessions):
             found(session, MotorRow, motor, "motor", lock=True)
             causes = {one: _doubt(session, motor, one) for one in chosen}
             doubts = [BaselineDoubt(one, cause) for one, cause in causes.items() if cause is not None]
-            if doubts and (reason is None or by is None):
+            if doubts and reason is None:
                 raise DoubtfulBaselineError(motor, doubts, len(chosen))
+            before = _noted(_entry(session, motor))
             _delete(session, motor)
             session.add(
                 BaselineRow(
                     motor=motor,
                     chosen_ns=now_ns,
                     reason=None if reason is None else storable(reason),
-                    by=None if by is None else storable(by),
+                    by=storable(told_by or by.name),
                 )
             )
             session.add_all(
                 BaselineRecordingRow(motor=motor, recording_id=one, chosen_ns=now_ns, doubt=cause)
                 for one, cause in causes.items()
             )
-            if reason is not None and by is not None:
-                keep_event(session, motor, _note(now_ns, chosen, doubts, reason), by, now_ns)
+            if reason is not None:
+                keep_event(session, motor, _note(now_ns, chosen, doubts, reason), told_by or by.name, now_ns)
             session.flush()
-            return _entry(session, motor)
+            entry = _entry(session, motor)
+            subject = ("motor", motor)
+            after = _noted(entry)
+            action = AuditAction.BASELINE_SET
+            note_change(session, by, action, subject, now_ns=now_ns, before=before, after=after)
+            return entry
 
     def delete_baseline(
         self,
         motor: str,
         *,
+        by: Actor,
         reason: str | None = None,
-        by: str | None = None,
+        told_by: str | None = None,
         now_ns: int,
     ) -> None:
         """Delete the motor's baseline, if it has one; its recordings stay.
 
-        A note of the motor keeps when, and reason and by: why and who did so, where it is said.
+        A note of the motor keeps when, who did so, and why, where it is said.
         Raises NotFoundError.
         """
         with self._write() as session:
@@ -107,7 +116,16 @@ class BaselineRows(Sessions):
             _delete(session, motor)
             what = f"baseline of {len(baseline.recordings)} recordings deleted"
             note = what if reason is None else f"{what}: {reason}"
-            keep_event(session, motor, Event(now_ns, EventKind.NOTE, note), by or NOBODY, now_ns)
+            keep_event(session, motor, Event(now_ns, EventKind.NOTE, note), told_by or by.name, now_ns)
+            note_change(
+                session,
+                by,
+                AuditAction.BASELINE_DELETED,
+                ("motor", motor),
+                now_ns=now_ns,
+                before=_noted(baseline),
+                after={"reason": reason, "told_by": told_by},
+            )
 
 
 def baseline_rows(session: Session, motor: str) -> Sequence[RecordingRow]:
@@ -137,6 +155,14 @@ def _entry(session: Session, motor: str) -> BaselineEntry:
         by=row.by,
         doubts=tuple(record_of(BaselineDoubt, one) for one in session.scalars(doubtful)),
     )
+
+
+def _noted(baseline: BaselineEntry) -> dict[str, object] | None:
+    """Return what the audit trail keeps of a baseline; None where there is none."""
+    if baseline.chosen_ns is None:
+        return None
+    ids = [recording.id for recording in baseline.recordings]
+    return {"recordings": ids, "reason": baseline.reason, "told_by": baseline.by}
 
 
 def _delete(session: Session, motor: str) -> None:

@@ -6,6 +6,8 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from core.condition.events import Event, EventKind
+from core.time_stamps import rfc3339
+from service.audit.actions import AuditAction
 from service.storage.errors import (
     NotFoundError,
     OutOfServiceError,
@@ -14,6 +16,8 @@ from service.storage.errors import (
 )
 from service.storage.models import ConditionEventRow, MotorRow
 from service.storage.records import ConditionEvent, Cursor, Page
+from service.storage.records.actors import Actor
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.fold_marks import mark
 from service.storage.repository.motor_versions import MOTORS_FILE
 from service.storage.repository.sessions import (
@@ -30,12 +34,20 @@ from service.storage.texts import storable
 
 class ConditionEventRows(Sessions):
     def add_event(
-        self, motor: str, event: Event, *, by: str, now_ns: int, most_notes: int | None = None
+        self,
+        motor: str,
+        event: Event,
+        *,
+        by: Actor,
+        told_by: str | None = None,
+        now_ns: int,
+        most_notes: int | None = None,
     ) -> ConditionEvent:
         """Keep what somebody tells of a motor, and have its condition follow.
 
-        most_notes: so many of them the motor may have, those that baselines leave counted; None: any number.
-        Raises NotFoundError, OutOfServiceError, TooManyNotesError.
+        told_by: who says so, where it is another than who asks. most_notes: so many notes the motor may have,
+        those that baselines leave counted; None: any number. Raises NotFoundError, OutOfServiceError,
+        TooManyNotesError.
         """
         with self._write() as session:
             if not found(session, MotorRow, motor, "motor", lock=True).in_service:
@@ -45,14 +57,26 @@ class ConditionEventRows(Sessions):
             )
             if most_notes is not None and has_as_many(session, told, most_notes):
                 raise TooManyNotesError(motor, most_notes)
-            return record_of(ConditionEvent, keep_event(session, motor, event, by, now_ns))
+            kept = keep_event(session, motor, event, told_by or by.name, now_ns)
+            is_restart = event.kind is EventKind.REFERENCE_RESTARTED
+            action = AuditAction.REFERENCE_RESTARTED if is_restart else AuditAction.NOTE_ADDED
+            note_change(session, by, action, ("motor", motor), now_ns=now_ns, after=_noted(kept))
+            return record_of(ConditionEvent, kept)
 
     def withdraw_event(
-        self, motor: str, event_id: str, *, by: str, reason: str, now_ns: int
+        self,
+        motor: str,
+        event_id: str,
+        *,
+        by: Actor,
+        told_by: str | None = None,
+        reason: str,
+        now_ns: int,
     ) -> ConditionEvent:
         """Let an event that was wrong count no more, as if nobody had told it; it is kept with the reason.
 
-        Raises NotFoundError, StateConflictError (it was withdrawn before, or is what the motors file tells).
+        told_by: who says so, where it is another than who asks. Raises NotFoundError, StateConflictError (it
+        was withdrawn before, or is what the motors file tells).
         """
         with self._write() as session:
             found(session, MotorRow, motor, "motor", lock=True)
@@ -62,9 +86,20 @@ class ConditionEventRows(Sessions):
             if row.withdrawn_ns is not None or is_of_the_file:
                 present = "withdrawn" if row.withdrawn_ns is not None else "what the motors file tells"
                 raise StateConflictError("note", event_id, present=present, wanted="withdrawn")
-            row.withdrawn_ns, row.withdrawn_by, row.withdrawn_reason = now_ns, storable(by), storable(reason)
+            row.withdrawn_ns, row.withdrawn_reason = now_ns, storable(reason)
+            row.withdrawn_by = storable(told_by or by.name)
             if row.kind is not EventKind.NOTE:
                 mark(session, motor, row.time_ns)
+            after = {"reason": reason, "told_by": row.withdrawn_by}
+            note_change(
+                session,
+                by,
+                AuditAction.NOTE_WITHDRAWN,
+                ("motor", motor),
+                now_ns=now_ns,
+                before=_noted(row),
+                after=after,
+            )
             return record_of(ConditionEvent, row)
 
     def event(self, motor: str, event_id: str) -> ConditionEvent:
@@ -98,6 +133,17 @@ def keep_event(session: Session, motor: str, event: Event, by: str, now_ns: int)
     if event.kind is not EventKind.NOTE:
         mark(session, motor, event.time_ns)
     return row
+
+
+def _noted(row: ConditionEventRow) -> dict[str, object]:
+    """Return what the audit trail keeps of an event."""
+    return {
+        "note": row.id,
+        "kind": row.kind,
+        "text": row.reason,
+        "time": rfc3339(row.time_ns),
+        "told_by": row.by,
+    }
 
 
 def _event(session: Session, motor: str, event_id: str) -> ConditionEventRow:

@@ -11,6 +11,7 @@ from sqlalchemy import Select, delete, select
 from sqlalchemy.orm import Session
 
 from core.diagnosis.verdict import Verdict
+from service.audit.actions import AuditAction
 from service.recording_store.store import StoredFile, StoredRecording, waveform_digest
 from service.storage.errors import RecordingInUseError
 from service.storage.models import (
@@ -30,6 +31,8 @@ from service.storage.models import (
     UnobservedRecordingRow,
 )
 from service.storage.records import Cursor, Deletion, Page, RemoteRecord
+from service.storage.records.actors import SERVICE, Actor
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.folders import discard_folder, lock_folder
 from service.storage.repository.observations import forget_observation
 from service.storage.repository.recording_requests import KIND, fail_row, fail_rows
@@ -41,7 +44,13 @@ from service.storage.states import DeletedBy, JobState, RecordingState
 
 class DeletionRows(Sessions):
     def delete_recording(
-        self, recording_id: str, reason: str, *, now_ns: int, deleted_by: DeletedBy = DeletedBy.PERSON
+        self,
+        recording_id: str,
+        reason: str,
+        *,
+        by: Actor = SERVICE,
+        now_ns: int,
+        deleted_by: DeletedBy = DeletedBy.PERSON,
     ) -> Deletion:
         """Delete a recording with its diagnoses and jobs; remember what it was, and why it was deleted.
 
@@ -57,7 +66,24 @@ class DeletionRows(Sessions):
             cause = in_use(session, row)
             if cause is not None:
                 raise RecordingInUseError(recording_id, cause)
-            return delete_row(session, row, reason, deleted_by, now_ns)
+            deletion = delete_row(session, row, reason, deleted_by, now_ns)
+            before = {
+                "motor": deletion.motor,
+                "name": deletion.name,
+                "digest": deletion.digest,
+                "state": deletion.state,
+                "verdict": deletion.verdict,
+            }
+            note_change(
+                session,
+                by,
+                AuditAction.RECORDING_DELETED,
+                ("recording", recording_id),
+                now_ns=now_ns,
+                before=before,
+                after={"reason": reason},
+            )
+            return deletion
 
     def deletion(self, recording_id: str) -> Deletion:
         """Return what is remembered of a deleted recording. Raises NotFoundError."""

@@ -12,6 +12,7 @@ from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
 from core.operation import AT_REST, EXPECTED
 from core.units import NANOSECONDS_PER_SECOND
+from service.audit.actions import AuditAction
 from service.storage.errors import (
     NotFoundError,
     RunnerEndedError,
@@ -20,6 +21,8 @@ from service.storage.errors import (
 )
 from service.storage.models import DiagnosisRow, JobRow, JobRunnerRow, RecordingRequestRow, RecordingRow
 from service.storage.records import ClaimedJob, Cursor, DiagnosisEntry, Job, JobResult, Page
+from service.storage.records.actors import SERVICE, Actor
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
 from service.storage.repository.conditions import note_standstill
@@ -43,6 +46,7 @@ class JobRows(Sessions):
         self,
         recording_id: str,
         *,
+        by: Actor = SERVICE,
         now_ns: int,
         method: str = DEFAULT_METHOD,
         model: str = DEFAULT_MODEL,
@@ -64,6 +68,14 @@ class JobRows(Sessions):
             row = new_job(recording, method, model, JobPriority.REPETITION, now_ns)
             session.add(row)
             session.flush()
+            note_change(
+                session,
+                by,
+                AuditAction.DIAGNOSIS_REQUESTED,
+                ("recording", recording_id),
+                now_ns=now_ns,
+                after={"diagnosis": row.id, "motor": recording.motor, "method": method, "model": model},
+            )
             return job(row)
 
     def claim_job(self, *, now_ns: int, runner: str) -> ClaimedJob | None:

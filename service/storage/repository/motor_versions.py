@@ -8,9 +8,12 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from core.condition.events import EventKind
+from service.audit.actions import AuditAction
 from service.storage.engine import one_at_a_time
 from service.storage.models import ConditionEventRow, ConditionRow, MotorVersionRow, ObservationRow
-from service.storage.records import MotorVersion
+from service.storage.records import SERVICE, MotorVersion
+from service.storage.repository.audit.entries import note_change
+from service.storage.repository.audit.values import changed
 from service.storage.repository.fold_marks import EARLIEST_NS, mark
 from service.storage.repository.sessions import Sessions, found, record_of
 
@@ -55,6 +58,9 @@ def _note(session: Session, motor: str, document: Mapping[str, Any], now_ns: int
     before: Mapping[str, Any] = latest.document
     if before == document:
         return
+    was, now = changed(_figures(before), _figures(document))
+    action = AuditAction.PARAMETERS_CHANGED
+    note_change(session, SERVICE, action, ("motor", motor), now_ns=now_ns, before=was, after=now)
     for version in versions:
         others = {table: figures for table, figures in document.items() if table not in MACHINE}
         version.document = {**version.document, **others}
@@ -90,6 +96,13 @@ def _note(session: Session, motor: str, document: Mapping[str, Any], now_ns: int
         )
     )
     mark(session, motor, now_ns)
+
+
+def _figures(document: Mapping[str, Any]) -> dict[str, object]:
+    """Return all figures of all tables, by the names of both."""
+    return {
+        f"{table}.{name}": value for table, figures in document.items() for name, value in figures.items()
+    }
 
 
 def _edits(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:

@@ -7,7 +7,8 @@ from sqlalchemy import delete, select, update
 from service.plant import Plant, PlantMotor, Schedule
 from service.storage.engine import one_at_a_time
 from service.storage.models import ConditionRow, IedRow, MotorRow, SiteRow, UnobservedRecordingRow
-from service.storage.records import ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
+from service.storage.records import SERVICE, ClockReading, Cursor, IedEntry, MotorEntry, Page, SiteEntry
+from service.storage.repository.audit.plant_changes import note_plant_changes, plant_in_service
 from service.storage.repository.conditions import new_condition
 from service.storage.repository.fold_marks import EARLIEST_NS, mark
 from service.storage.repository.sessions import Sessions, columns_of, found, page_of, record_of
@@ -15,15 +16,18 @@ from service.storage.states import LinkState
 
 
 class PlantRows(Sessions):
-    def sync_plant(self, plant: Plant) -> None:
+    def sync_plant(self, plant: Plant, *, noted_ns: int | None = None) -> None:
         """Make the tables say what the plant's files say.
 
         What left the plant is put out of service, not deleted: its recordings stay, and those
         of a motor that are yet to be observed never are. Motors of a bus that
         others joined or left are folded anew, because what its motors see is compared.
+
+        noted_ns: the audit trail keeps what differs, as of this time; None: it keeps nothing.
         """
         with self._write() as session:
             one_at_a_time(session.connection(), "sync plant")
+            before = plant_in_service(session)
             for table in (SiteRow, IedRow, MotorRow):
                 session.execute(update(table).values(in_service=False))
             for site in plant.sites:
@@ -58,6 +62,8 @@ class PlantRows(Sessions):
             session.execute(
                 delete(UnobservedRecordingRow).where(UnobservedRecordingRow.motor.in_(out_of_service))
             )
+            if noted_ns is not None:
+                note_plant_changes(session, before, SERVICE, now_ns=noted_ns)
             for name in _of_changed_buses(buses_before, plant):
                 mark(session, name, EARLIEST_NS)
             for motor in plant.motors:

@@ -6,14 +6,18 @@ from datetime import UTC, datetime
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
+from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_SECOND
+from service.audit.actions import AuditAction
 from service.storage.models import IedRow, QuarantineRow
 from service.storage.records import Quarantine
+from service.storage.records.actors import SERVICE, Actor
 from service.storage.repository.alarms.causes import clear_standing, raised
 from service.storage.repository.alarms.suppression import (
     suppress_those_of_quarantine,
     unsuppress_those_of_relay,
 )
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.links import change_link
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmKind, LinkState
@@ -45,12 +49,15 @@ class QuarantineRows(Sessions):
                 if pause_s > 0:
                     suppress_those_of_quarantine(session, relay, now_ns=now_ns)
 
-    def release(self, relay: str, *, now_ns: int) -> None:
+    def release(self, relay: str, *, by: Actor = SERVICE, now_ns: int) -> None:
         """Forget whatever was held against a relay; harmless where nothing was. Raises NotFoundError."""
         with self._write() as session:
             relay_row = found(session, IedRow, relay, "relay", lock=True)
             row = session.get(QuarantineRow, relay)
             if row is not None:
+                before = {"reason": row.reason, "times": row.times, "until": rfc3339(row.until_ns)}
+                action = AuditAction.QUARANTINE_RELEASED
+                note_change(session, by, action, ("relay", relay), now_ns=now_ns, before=before)
                 session.delete(row)
                 session.flush()
             if relay_row.link_state is LinkState.QUARANTINED:

@@ -9,9 +9,12 @@ import uuid
 from sqlalchemy import exists, select
 from sqlalchemy.orm import Session
 
+from service.audit.actions import AuditAction
 from service.storage.errors import OutOfServiceError, StateConflictError, TooManyWaitingError
 from service.storage.models import IedRow, LeaseRow, MotorRow, RecordingRequestRow
 from service.storage.records import Cursor, Page, RecordingRequest
+from service.storage.records.actors import SERVICE, Actor
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.conditions import note_standstill
 from service.storage.repository.leases import require_lease
 from service.storage.repository.sessions import (
@@ -40,7 +43,13 @@ KIND = "event report"
 
 class RecordingRequestRows(Sessions):
     def request_recording(
-        self, motor: str, *, now_ns: int, idempotency_key: str | None = None, most_open: int | None = None
+        self,
+        motor: str,
+        *,
+        by: Actor = SERVICE,
+        now_ns: int,
+        idempotency_key: str | None = None,
+        most_open: int | None = None,
     ) -> RecordingRequest:
         """Request an event recording of a motor; the same key again gives the first one's request.
 
@@ -58,7 +67,16 @@ class RecordingRequestRows(Sessions):
                 raise OutOfServiceError("motor", motor)
             if most_open is not None:
                 _require_room(session, where, most_open)
-            return _request(session, where, RecordingRequestOrigin.REQUEST, idempotency_key, now_ns)
+            made = _request(session, where, RecordingRequestOrigin.REQUEST, idempotency_key, now_ns)
+            note_change(
+                session,
+                by,
+                AuditAction.RECORDING_REQUESTED,
+                ("motor", motor),
+                now_ns=now_ns,
+                after={"request": made.id, "relay": where.ied},
+            )
+            return made
 
     def schedule_recording(self, motor: str, *, due_ns: int, now_ns: int) -> RecordingRequest | None:
         """Request what a motor's schedule asks for at `due_ns`; asked again, it gives the same request.

@@ -8,6 +8,7 @@ from sqlalchemy.orm import Session
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.operation import Operation
+from service.audit.actions import AuditAction
 from service.recording_store.store import StoredRecording
 from service.storage.errors import TooManyWaitingError
 from service.storage.models import (
@@ -19,6 +20,8 @@ from service.storage.models import (
     RecordingRow,
 )
 from service.storage.records import Cursor, Page, RecordingEntry, RecordingFile, RemoteRecord
+from service.storage.records.actors import SERVICE, Actor
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.clocks import give_clock
 from service.storage.repository.folders import discard_folder, require_folder
 from service.storage.repository.recording_requests import KIND, diagnose_rows, fail_rows, fetch_row
@@ -50,6 +53,7 @@ class RecordingRows(Sessions):
         stored: StoredRecording,
         *,
         motor: str,
+        by: Actor = SERVICE,
         now_ns: int,
         relay: str | None = None,
         remote: RemoteRecord | None = None,
@@ -66,8 +70,8 @@ class RecordingRows(Sessions):
         The request gets what its relay had not sent before: a record that is listed again, under another
         time, is none that a trigger made. A folder that nothing needs after all is discarded.
 
-        most_queued: so many diagnoses of the motor may be queued; beyond that nothing new is added. Raises
-        NotFoundError, StateConflictError, TooManyWaitingError, FolderGoneError.
+        by: who uploads it. most_queued: so many diagnoses of the motor may be queued; beyond that nothing new
+        is added. Raises NotFoundError, StateConflictError, TooManyWaitingError, FolderGoneError.
         """
         if (relay is None) != (remote is None):
             raise ValueError("a recording comes from a relay (relay and remote) or is uploaded (neither)")
@@ -87,6 +91,8 @@ class RecordingRows(Sessions):
                 _fill(session, row, stored, now_ns)
                 priority = JobPriority.UPLOAD if relay is None else JobPriority.RELAY_RECORD
                 session.add(new_job(row, method, model, priority, now_ns))
+                if relay is None:
+                    _note_upload(session, by, row, now_ns)
             elif relay is not None and remote is not None:
                 link_remote_record(session, relay, remote, row)
                 if row.ied == relay:
@@ -134,6 +140,12 @@ class RecordingRows(Sessions):
         order: Order = [RecordingRow.announced_ns, RecordingRow.id]
         with self._read() as session:
             return page_of(session, query, order, RecordingEntry, limit=limit, after=after, descending=True)
+
+
+def _note_upload(session: Session, by: Actor, row: RecordingRow, now_ns: int) -> None:
+    after = {"motor": row.motor, "name": row.name, "digest": row.digest, "size_bytes": row.size_bytes}
+    action = AuditAction.RECORDING_UPLOADED
+    note_change(session, by, action, ("recording", row.id), now_ns=now_ns, after=after)
 
 
 def require_room(session: Session, motor: str, most_queued: int) -> None:

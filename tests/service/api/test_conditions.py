@@ -18,7 +18,7 @@ from core.units import NANOSECONDS_PER_DAY
 from service.plant import Schedule
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.records import FoldResult
+from service.storage.records import SERVICE, FoldResult
 from service.storage.repository.motor_versions import MOTORS_FILE
 from testing.service.conditions import DRIFTING, FAULT, HEALTHY, tell
 from testing.service.job_runner import RUNNER
@@ -363,7 +363,7 @@ def test_a_note_that_was_wrong_is_withdrawn_and_counts_no_more(
 
 def test_what_the_motors_file_tells_is_not_withdrawn(client: httpx.Client, repository: Repository) -> None:
     event = Event(NOW_NS, EventKind.PARAMETERS_EDITED, "stator_resistance_ohm")
-    kept = repository.add_event("PUMP-A1", event, by=MOTORS_FILE, now_ns=NOW_NS)
+    kept = repository.add_event("PUMP-A1", event, by=SERVICE, told_by=MOTORS_FILE, now_ns=NOW_NS)
     withdrawal = {"reason": "it is as before", "by": "B. Moore"}
     refused = client.post(f"{MOTOR}/notes/{kept.id}/withdrawal", json=withdrawal)
     assert refused.status_code == 409

@@ -25,7 +25,7 @@ from service.plant import Bus
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.models import ConditionCheckpointRow, MotorVersionRow
-from service.storage.records import FoldInput, FoldResult
+from service.storage.records import SERVICE, FoldInput, FoldResult
 from service.storage.repository.folding import FoldingRows
 from testing.service.following import FAN, PUMP, Recorder, fold_all, note_motors, on_one_bus
 from testing.service.observations import records_of_a_motor
@@ -103,7 +103,7 @@ def test_without_records_nothing_is_known(repository: Repository, recorder: Reco
     fold_all(repository)
     assert repository.condition(PUMP).state == "healthy"
     repository.delete_recording(only, "of another motor", now_ns=NOW_NS)
-    repository.add_event(PUMP, Event(NOW_NS, EventKind.MAINTENANCE, "cleaned"), by="ann", now_ns=NOW_NS)
+    repository.add_event(PUMP, Event(NOW_NS, EventKind.MAINTENANCE, "cleaned"), by=SERVICE, now_ns=NOW_NS)
     fold_all(repository)
     condition = repository.condition(PUMP)
     assert (condition.state, condition.as_of_ns) == ("unknown", None)
@@ -118,7 +118,7 @@ def test_an_event_counts_from_its_time_and_is_in_the_history(
     recorder.record_all(RECORDS)
     fold_all(repository)
     event = Event(RECORDS[22].time_ns, kind, "winding of phase b replaced")
-    kept = repository.add_event(PUMP, event, by="ann", now_ns=NOW_NS)
+    kept = repository.add_event(PUMP, event, by=SERVICE, now_ns=NOW_NS)
     fold_all(repository)
     follower = followed(RECORDS[:22])
     follower.apply(event)

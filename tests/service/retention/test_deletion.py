@@ -14,7 +14,7 @@ from service.recording_store.store import RecordingStore
 from service.retention.deletion import delete_recording, remove_discarded_folders
 from service.storage import NotFoundError, Repository
 from service.storage.errors import FolderGoneError, RecordingInUseError
-from service.storage.records import RecordingEntry, RemoteRecord
+from service.storage.records import SERVICE, RecordingEntry, RemoteRecord
 from service.storage.states import DeletedBy, RecordingRequestState, RecordingState
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant
@@ -128,10 +128,10 @@ def test_what_is_in_use_is_not_deleted(repository: Repository, store: RecordingS
     repository.release_job(running.job.id, runner=RUNNER)
     for _ in ids:
         diagnose(repository)
-    repository.set_baseline(MOTOR, ids, reason="new winding", by="A. Fitter", now_ns=NOW_NS)
+    repository.set_baseline(MOTOR, ids, reason="new winding", by=SERVICE, told_by="A. Fitter", now_ns=NOW_NS)
     with pytest.raises(RecordingInUseError, match=r"part of the baseline of motor PUMP-A1; replace"):
         repository.delete_recording(ids[0], "x", now_ns=NOW_NS)
-    repository.delete_baseline(MOTOR, now_ns=NOW_NS)
+    repository.delete_baseline(MOTOR, by=SERVICE, now_ns=NOW_NS)
     repository.delete_recording(ids[0], "x", now_ns=NOW_NS)
 
 

@@ -20,7 +20,7 @@ from service.recording_store.store import RecordingStore
 from service.retention.batches import Batches
 from service.retention.rules import rules
 from service.storage import Repository, migrate, migrations
-from service.storage.records import Amount, Sample
+from service.storage.records import SERVICE, Amount, Sample
 from service.storage.states import DeletedBy
 from service.timing.wall_clock import SETTLING_S
 from testing.service.job_runner import RUNNER
@@ -94,7 +94,7 @@ def test_the_newest_and_the_baseline_stay(
 ) -> None:
     ids = [uploaded(repository, store, day, healthy()) for day in range(8)]
     alone = uploaded(repository, store, 0, healthy(), "FAN-A2")
-    repository.set_baseline(MOTOR, ids[:3], now_ns=NOW_NS)
+    repository.set_baseline(MOTOR, ids[:3], by=SERVICE, now_ns=NOW_NS)
     settings = settings_of(tmp_path, healthy_days=1, keep_newest=2)
     assert apply(settings, repository, 1000)["healthy_days"][1] == 3
     assert left(repository) == [ids[7], ids[6], *ids[2::-1]]

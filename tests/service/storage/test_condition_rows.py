@@ -16,6 +16,7 @@ from service.storage import NotFoundError, Repository
 from service.storage.errors import UnstorableDiagnosisError
 from service.storage.models import UnobservedRecordingRow
 from service.storage.records import (
+    SERVICE,
     Checkpoint,
     ConditionChange,
     ConditionEntry,
@@ -184,7 +185,7 @@ def test_a_fold_goes_on_from_the_last_checkpoint_before_what_changed(
 
     event = Event(NOW_NS + 3 * HOUR_NS, EventKind.MAINTENANCE, "new bearing")
     repository.finish_fold(fold, nothing_more(fold), now_ns=NOW_NS)
-    kept = repository.add_event(PUMP, event, by="ann", now_ns=NOW_NS)
+    kept = repository.add_event(PUMP, event, by=SERVICE, now_ns=NOW_NS)
     fold = began(repository)
     assert fold.checkpoint is not None
     assert fold.checkpoint.time_ns == NOW_NS + 2 * HOUR_NS
@@ -198,7 +199,7 @@ def test_a_long_fold_is_done_in_parts(repository: Repository, recorder: Recorder
     for hour in hours:
         recorder.record(observation(hour))
     event = Event(NOW_NS + HOUR_NS + 1, EventKind.REWOUND)
-    repository.add_event(PUMP, event, by="ann", now_ns=NOW_NS)
+    repository.add_event(PUMP, event, by=SERVICE, now_ns=NOW_NS)
     parts = []
     while (fold := repository.begin_fold(PUMP, 2)) is not None:
         parts.append([one.observation.time_ns for one in fold.observations])

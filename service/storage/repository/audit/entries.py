@@ -63,9 +63,10 @@ def _write_entries(session: Session) -> None:
         return
     session.flush()
     head = session.scalars(select(AuditHeadRow).with_for_update()).one()
-    for number, entry in enumerate(noted, head.number + 1):
-        chained = sealed(entry.following(number, head.hash))
-        session.execute(insert(AuditEntryRow).values(asdict(chained)))
-        head.hash = chained.hash
-    head.number += len(noted)
+    rows = []
+    for entry in noted:
+        chained = sealed(entry.following(head.number + 1, head.hash))
+        head.number, head.hash = chained.number, chained.hash
+        rows.append(asdict(chained))
+    session.execute(insert(AuditEntryRow), rows)
     session.flush()
