@@ -24,6 +24,7 @@ from service.api import (
 )
 from service.api.access.requirements import require
 from service.api.context import ApiContext
+from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
 from service.api.limits.arrivals import Arrivals
 from service.api.limits.body_limits import BodyLimits, Route, document
@@ -59,6 +60,7 @@ def create_app(context: ApiContext) -> FastAPI:
         recordings,
         diagnoses,
         deletions,
+        exports,
     ):
         api.include_router(part.router)
     app.include_router(api)

@@ -25,6 +25,7 @@ class ApiContext:
 
     uploads: those stored at a time, after they have arrived.
     waveforms_read: one at a time, because each may have much to read. waveforms_sent: to slow clients, too.
+    exports: files of lists, which are made while they are sent.
     """
 
     settings: Settings
@@ -35,6 +36,7 @@ class ApiContext:
     uploads: Admission = field(default_factory=lambda: Admission("uploads", 3, wait_s=10.0))
     waveforms_read: Admission = field(default_factory=lambda: Admission("waveforms", 1, wait_s=10.0))
     waveforms_sent: Admission = field(default_factory=lambda: Admission("waveforms", 16, wait_s=10.0))
+    exports: Admission = field(default_factory=lambda: Admission("exports", 4, wait_s=10.0))
 
     def require_motor(self, name: str | None) -> None:
         """Raise NotFoundError where a list is asked for of a motor that there is not; None asks for all."""

@@ -3,25 +3,34 @@
 from typing import Annotated
 
 from fastapi import APIRouter, Query
+from fastapi.responses import StreamingResponse
 
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.context import Context
 from service.api.document import Name
+from service.api.exports.answers import FILES, ListAnswer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.schemas import Measurement
 from service.api.times import TimeParameter
+from service.exports import measurements as table
 from service.plant import AveragingStep
 from service.storage.records import Measurement as StoredMeasurement
 
 router = APIRouter(tags=["condition"])
 
 
-@router.get("/motors/{name}/measurements", responses=problems(404), dependencies=[require(Permission.VIEW)])
+@router.get(
+    "/motors/{name}/measurements",
+    response_model=Page[Measurement],
+    responses=problems(404) | FILES,
+    dependencies=[require(Permission.VIEW)],
+)
 def list_measurements(
     context: Context,
     name: Name,
+    file: ListAnswer,
     step: Annotated[
         AveragingStep, Query(description="0: as sampled; 60, 900: means of so many seconds, kept for longer.")
     ] = AveragingStep.AS_SAMPLED,
@@ -29,8 +38,12 @@ def list_measurements(
     to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[Measurement]:
+) -> Page[Measurement] | StreamingResponse:
     """Return what a motor's relay measures, oldest first: currents, voltages, power and frequency."""
+    if file is not None:
+        context.require_motor(name)
+        rows = table.measurements(context.repository, [name], step, from_ns=from_, to_ns=to)
+        return file.of(table.TABLE, rows, [name])
     measurements = context.repository.measurements(
         name, int(step), from_ns=from_, to_ns=to, limit=limit, after=decode(cursor, int)
     )

@@ -5,6 +5,7 @@ from functools import partial
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Query
+from fastapi.responses import StreamingResponse
 
 from core.machines.parameters import ParametersSource
 from core.operation import Operation
@@ -13,6 +14,7 @@ from service.api.access.requirements import require
 from service.api.condition_documents import condition_document
 from service.api.context import Context
 from service.api.document import Name
+from service.api.exports.answers import FILES, ListAnswer
 from service.api.listed_recordings import listed
 from service.api.operations import offer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
@@ -30,6 +32,7 @@ from service.api.schemas import (
 from service.api.times import TimeParameter, rfc3339
 from service.condition.staleness import stale_after_ns
 from service.configuration.settings import Settings
+from service.exports import recordings, trends
 from service.storage.records import ConditionPoint, MotorHealth, Quantity
 
 ConditionQuantity = Literal["condition_level", "change"]
@@ -85,7 +88,8 @@ def get_health(context: Context, name: Name) -> Health:
 
 @router.get(
     "/motors/{name}/trend",
-    responses=problems(404),
+    response_model=Page[TrendPoint],
+    responses=problems(404) | FILES,
     tags=["condition"],
     response_model_exclude_unset=True,
     dependencies=[require(Permission.VIEW)],
@@ -93,17 +97,22 @@ def get_health(context: Context, name: Name) -> Health:
 def get_trend(
     context: Context,
     name: Name,
+    file: ListAnswer,
     quantity: Literal[Quantity, ConditionQuantity] = "mu_f",
     from_: Annotated[TimeParameter | None, Query(alias="from", description="First time.")] = None,
     to: Annotated[TimeParameter | None, Query(description="First time not to be included.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[TrendPoint]:
+) -> Page[TrendPoint] | StreamingResponse:
     """Return one figure for each recording of a motor, oldest first.
 
     The figures of the motor's condition, as it was seen from that recording on, are `condition_level` and
-    `change`; the others are what the recording says by itself.
+    `change`; the others are what the recording says by itself. A file has them all, whatever `quantity` is.
     """
+    if file is not None:
+        context.require_motor(name)
+        rows = trends.trends(context.repository, [name], from_ns=from_, to_ns=to)
+        return file.of(trends.TABLE, rows, [name])
     after = decode(cursor, int, str)
     if quantity == "condition_level" or quantity == "change":
         seen = context.repository.condition_trend(name, from_ns=from_, to_ns=to, limit=limit, after=after)
@@ -114,23 +123,28 @@ def get_trend(
 
 @router.get(
     "/motors/{name}/recordings",
-    responses=problems(404),
+    response_model=Page[ListedRecording],
+    responses=problems(404) | FILES,
     tags=["recordings"],
     dependencies=[require(Permission.VIEW)],
 )
 def list_recordings_of_motor(
     context: Context,
     name: Name,
+    file: ListAnswer,
     operation: Annotated[Operation | None, Query(description="What the motor does in them.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[ListedRecording]:
+) -> Page[ListedRecording] | StreamingResponse:
     """Return the recordings of a motor, latest first."""
-    context.repository.motor(name)
-    recordings = context.repository.recordings(
+    context.require_motor(name)
+    if file is not None:
+        rows = recordings.recordings(context.repository, [name], operation=operation)
+        return file.of(recordings.TABLE, rows, [name])
+    found = context.repository.recordings(
         motor=name, operation=operation, limit=limit, after=decode(cursor, int, str)
     )
-    return listed(context, recordings)
+    return listed(context, found)
 
 
 def _point_of_condition(point: ConditionPoint, quantity: ConditionQuantity) -> TrendPoint:

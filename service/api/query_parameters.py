@@ -1,6 +1,8 @@
 """Query parameters that a route does not have are refused: a misspelt one would silently select nothing."""
 
+from collections.abc import Mapping
 from http import HTTPStatus
+from typing import get_args, get_origin
 
 from fastapi import Request, params
 from fastapi.dependencies.utils import get_flat_params
@@ -13,7 +15,10 @@ LONGEST_QUOTED = 100
 
 
 def refuse_unknown_parameters(request: Request) -> None:
-    """Raise ProblemError (422) for a query parameter that the route does not have, or that is given twice."""
+    """Raise ProblemError (422) for a query parameter that the route does not have, or that is given twice.
+
+    One that takes a list may be given several times.
+    """
     if not request.query_params:
         return
     known = _known(request)
@@ -22,23 +27,31 @@ def refuse_unknown_parameters(request: Request) -> None:
     errors = [
         FieldError(location=location(("query", name)), message=_fault(name, known))
         for name in dict.fromkeys(names)
-        if name not in known or names.count(name) > 1
+        if name not in known or (names.count(name) > 1 and not known[name])
     ][:MAX_ERRORS]
     if errors:
         detail = "; ".join(f"{error.location}: {error.message}" for error in errors[:3])
         raise ProblemError(HTTPStatus.UNPROCESSABLE_ENTITY, detail[:1000], errors=errors)
 
 
-def _known(request: Request) -> list[str]:
-    """Return the names of the query parameters of the route that answers."""
+def _known(request: Request) -> Mapping[str, bool]:
+    """Return the query parameters of the route that answers, and whether each takes a list."""
     route = request.scope["route"]
     if not isinstance(route, APIRoute):
-        return []
+        return {}
     fields = get_flat_params(route.dependant)
-    return [field.alias for field in fields if isinstance(field.field_info, params.Query)]
+    return {
+        field.alias: _is_list(field.field_info.annotation)
+        for field in fields
+        if isinstance(field.field_info, params.Query)
+    }
 
 
-def _fault(name: str, known: list[str]) -> str:
+def _is_list(annotation: object) -> bool:
+    return get_origin(annotation) is list or any(map(_is_list, get_args(annotation)))
+
+
+def _fault(name: str, known: Mapping[str, bool]) -> str:
     if name in known:
         return "expected it once, found it several times"
     quoted = ascii(name[:LONGEST_QUOTED])

@@ -20,11 +20,13 @@ from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.archive import archive_name, zipped
 from service.api.context import ApiContext, Context
+from service.api.exports.answers import FILES, ListAnswer
 from service.api.listed_recordings import listed
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode
 from service.api.problems import FieldError, ProblemError, problems
 from service.api.schemas import Diagnosis, ListedRecording, Recording, RecordingDetails, RecordingFile
 from service.api.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
+from service.exports import recordings as table
 from service.recording_store.store import WAVEFORM_SUFFIXES, RecordingStoreError, StoredRecording
 from service.retention.deletion import remove_discarded_folder_if_possible
 from service.storage.errors import FolderGoneError, TooManyWaitingError
@@ -40,15 +42,21 @@ UPLOAD_ROUTES = frozenset({("POST", "/recordings")})
 """Routes that take files; bodies of others are small."""
 
 
-@router.get("/recordings", responses=problems(404), dependencies=[require(Permission.VIEW)])
+@router.get(
+    "/recordings",
+    response_model=Page[ListedRecording],
+    responses=problems(404) | FILES,
+    dependencies=[require(Permission.VIEW)],
+)
 def list_recordings(
     context: Context,
+    file: ListAnswer,
     motor: Annotated[str | None, Query(max_length=200)] = None,
     state: RecordingState | None = None,
     operation: Annotated[Operation | None, Query(description="What the motor does in them.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[ListedRecording]:
+) -> Page[ListedRecording] | StreamingResponse:
     """Return recordings, of one motor or of all, in one state or in any, of any operation, latest first."""
     context.require_motor(motor)
     if state is not None and operation is not None:
@@ -58,6 +66,10 @@ def list_recordings(
             f"query.operation: {message}",
             errors=[FieldError(location="query.operation", message=message)],
         )
+    if file is not None:
+        chosen = None if motor is None else [motor]
+        rows = table.recordings(context.repository, chosen, state=state, operation=operation)
+        return file.of(table.TABLE, rows, chosen)
     recordings = context.repository.recordings(
         motor=motor, state=state, operation=operation, limit=limit, after=decode(cursor, int, str)
     )

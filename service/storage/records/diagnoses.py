@@ -94,6 +94,25 @@ class TrendPoint:
 
 
 @dataclass(frozen=True, slots=True)
+class DiagnosisPoint:
+    """All figures of one recording; None where the recording does not tell them."""
+
+    time_ns: int
+    recording_id: str
+    verdict: Verdict
+    mu_f: float | None
+    mu_f_ci95_low: float | None
+    mu_f_ci95_high: float | None
+    mu_f_scatter95_low: float | None
+    mu_f_scatter95_high: float | None
+    detection_limit: float | None
+    theta_f: int | None
+    load_level: float | None
+    load_level_ci95_low: float | None
+    load_level_ci95_high: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class LatestDiagnosis:
     """What the diagnosis of a motor's latest recording says, without the findings behind it."""
 

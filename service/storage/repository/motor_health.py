@@ -1,6 +1,7 @@
 """What is known of motors: the latest diagnosis, the relay, and the trend."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
 
 from sqlalchemy import ColumnElement, Select, and_, func, null, select, union_all
 from sqlalchemy.orm import Session, aliased
@@ -15,6 +16,7 @@ from service.storage.models import (
 )
 from service.storage.records import (
     Cursor,
+    DiagnosisPoint,
     IedEntry,
     LatestDiagnosis,
     LatestFigures,
@@ -30,6 +32,8 @@ from service.storage.records import (
 from service.storage.repository.conditions import conditions_of
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 from service.storage.states import RecordingState
+
+Point = TypeVar("Point")
 
 _LEVEL = (
     DiagnosisRow.mu_f,
@@ -113,13 +117,51 @@ class MotorHealthRows(Sessions):
 
         Recordings of a motor that stands, starts, stops or trips are not among them.
         """
-        # All of these columns are in the index: no row with its document is read.
-        query = select(
+        columns = (
             DiagnosisRow.recorded_ns,
             *_FIGURES[quantity],
             DiagnosisRow.verdict,
             DiagnosisRow.recording_id,
-        ).where(DiagnosisRow.motor == motor, DiagnosisRow.current, DiagnosisRow.says_nothing.is_(False))
+        )
+        return self._points(motor, columns, _point, from_ns=from_ns, to_ns=to_ns, limit=limit, after=after)
+
+    def diagnosis_trend(
+        self,
+        motor: str,
+        *,
+        limit: int,
+        from_ns: int | None = None,
+        to_ns: int | None = None,
+        after: Cursor | None = None,
+    ) -> Page[DiagnosisPoint]:
+        """Return all figures of each recording that the trend has, oldest first. Raises NotFoundError."""
+        columns = (
+            DiagnosisRow.recorded_ns,
+            DiagnosisRow.recording_id,
+            DiagnosisRow.verdict,
+            *_LEVEL,
+            DiagnosisRow.theta_f,
+            *_LOAD,
+        )
+        return self._points(
+            motor, columns, DiagnosisPoint, from_ns=from_ns, to_ns=to_ns, limit=limit, after=after
+        )
+
+    def _points(
+        self,
+        motor: str,
+        columns: Sequence[Any],
+        to_point: Callable[..., Point],
+        *,
+        limit: int,
+        from_ns: int | None,
+        to_ns: int | None,
+        after: Cursor | None,
+    ) -> Page[Point]:
+        # All of these columns are in the index: no row with its document is read.
+        query = select(*columns).where(
+            DiagnosisRow.motor == motor, DiagnosisRow.current, DiagnosisRow.says_nothing.is_(False)
+        )
         if from_ns is not None:
             query = query.where(DiagnosisRow.recorded_ns >= from_ns)
         if to_ns is not None:
@@ -127,7 +169,7 @@ class MotorHealthRows(Sessions):
         order: Order = [DiagnosisRow.recorded_ns, DiagnosisRow.id]
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(session, query, order, _point, limit=limit, after=after)
+            return page_of(session, query, order, to_point, limit=limit, after=after)
 
 
 def _health_of(session: Session, motors: Sequence[MotorEntry]) -> tuple[MotorHealth, ...]:

@@ -1,0 +1,108 @@
+"""The table of trends: of each recording what it says by itself, and what is said of the motor from it on."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from heapq import merge
+from itertools import chain, groupby
+from operator import attrgetter
+
+from service.exports.paging import PAGE, pages
+from service.exports.tables import Column, ColumnType, Table, text, time
+from service.storage.records import ConditionPoint, DiagnosisPoint
+from service.storage.repository import Repository
+
+
+@dataclass(slots=True)
+class TrendRow:
+    """A recording. diagnosed: None where a rule of retention deleted it.  said: None until it is folded."""
+
+    motor: str
+    time_ns: int
+    recording_id: str
+    diagnosed: DiagnosisPoint | None = None
+    said: ConditionPoint | None = None
+
+
+def _diagnosed(
+    name: str, meaning: str, *, column_type: ColumnType = ColumnType.NUMBER, unit: str = "1"
+) -> Column[TrendRow]:
+    """Return a column of what the recording says by itself."""
+    return Column(name, column_type, unit, meaning, lambda row: getattr(row.diagnosed, name, None))
+
+
+def _said(
+    name: str, meaning: str, of: str, *, column_type: ColumnType = ColumnType.NUMBER, unit: str = "1"
+) -> Column[TrendRow]:
+    """Return a column of what is said of the motor from the recording on; of: name of the figure there."""
+    return Column(name, column_type, unit, meaning, lambda row: getattr(row.said, of, None))
+
+
+_LOW = "lower bound of its 95 % interval"
+_HIGH = "upper bound of its 95 % interval"
+_SCATTER = "from the record's own scatter alone"
+
+TABLE: Table[TrendRow] = Table(
+    "trend",
+    (
+        text("motor", "motor", attrgetter("motor")),
+        time("time", "trigger time written in the record", attrgetter("time_ns")),
+        _diagnosed("verdict", "verdict of the recording by itself", column_type=ColumnType.TEXT, unit=""),
+        _diagnosed("mu_f", "fault level: share of the turns of a phase"),
+        _diagnosed("mu_f_ci95_low", f"{_LOW}, from all causes"),
+        _diagnosed("mu_f_ci95_high", f"{_HIGH}, from all causes"),
+        _diagnosed("mu_f_scatter95_low", f"{_LOW}, {_SCATTER}"),
+        _diagnosed("mu_f_scatter95_high", f"{_HIGH}, {_SCATTER}"),
+        _diagnosed("detection_limit", "fault level that nine of ten such recordings show"),
+        _diagnosed(
+            "theta_f",
+            "winding with the fault: 0, 1, 2 on terminals a, b, c",
+            column_type=ColumnType.WHOLE,
+            unit="",
+        ),
+        _diagnosed("load_level", "load torque over the rated one"),
+        _diagnosed("load_level_ci95_low", _LOW),
+        _diagnosed("load_level_ci95_high", _HIGH),
+        _said("state", "state of the motor from here on", "state", column_type=ColumnType.TEXT, unit=""),
+        _said("kind", "kind of what stands out", "kind", column_type=ColumnType.TEXT, unit=""),
+        _said("phase", "phase of that: a, b or c", "phase", column_type=ColumnType.TEXT, unit=""),
+        _said("condition_level", "fault level in all, from all recordings so far", "mu_f"),
+        _said("condition_level_ci95_low", _LOW, "mu_f_ci95_low"),
+        _said("condition_level_ci95_high", _HIGH, "mu_f_ci95_high"),
+        _said("change", "change of the fault level since the reference", "change"),
+        _said("change_ci95_low", _LOW, "change_ci95_low"),
+        _said("change_ci95_high", _HIGH, "change_ci95_high"),
+        text("recording_id", "id of the recording", attrgetter("recording_id")),
+    ),
+)
+
+
+def trends(
+    repository: Repository, motors: Sequence[str], *, from_ns: int | None = None, to_ns: int | None = None
+) -> Iterator[Sequence[TrendRow]]:
+    """Return the trends of motors, one motor after another, oldest first, from_ns <= time < to_ns."""
+    for motor in motors:
+        diagnosed = pages(partial(repository.diagnosis_trend, motor, from_ns=from_ns, to_ns=to_ns))
+        said = pages(partial(repository.condition_trend, motor, from_ns=from_ns, to_ns=to_ns))
+        yield from _joined(motor, chain.from_iterable(diagnosed), chain.from_iterable(said))
+
+
+def _joined(
+    motor: str, diagnosed: Iterator[DiagnosisPoint], said: Iterator[ConditionPoint]
+) -> Iterator[Sequence[TrendRow]]:
+    """Return a row for each recording that is in one of both; both are in the order of time."""
+    batch: list[TrendRow] = []
+    points: Iterator[DiagnosisPoint | ConditionPoint] = merge(diagnosed, said, key=attrgetter("time_ns"))
+    for time_ns, together in groupby(points, key=attrgetter("time_ns")):
+        rows: dict[str, TrendRow] = {}
+        for point in together:
+            row = rows.setdefault(point.recording_id, TrendRow(motor, time_ns, point.recording_id))
+            if isinstance(point, DiagnosisPoint):
+                row.diagnosed = point
+            else:
+                row.said = point
+        batch += rows.values()
+        if len(batch) >= PAGE:
+            yield batch
+            batch = []
+    yield batch
