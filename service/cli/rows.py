@@ -12,12 +12,10 @@ from core.error_words import one_line
 from service.cli.output import WRONG_USE, CommandError, print_document, results
 from service.client.rest_client import Document
 from service.client.tables import FittedTable
+from service.exports.csv_file import without_formula
 
 Column = Callable[[Document], str | Text]
 """This returns what a table shows of a row."""
-
-FIRST_OF_FORMULA = ("=", "+", "-", "@")
-"""A spreadsheet takes a text that begins so for a formula."""
 
 
 def require_one_format(*, as_csv: bool, as_json: bool) -> None:
@@ -89,5 +87,4 @@ def _cell(value: object) -> str:
         return ""
     if not isinstance(value, str):
         return str(value)
-    text = one_line(value)
-    return f"'{text}" if text.startswith(FIRST_OF_FORMULA) else text
+    return without_formula(one_line(value))

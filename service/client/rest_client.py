@@ -4,13 +4,16 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from http import HTTPStatus
 from types import TracebackType
-from typing import Self
+from typing import BinaryIO, Self
 from urllib.parse import quote
 
 import httpx
 
 API = "/api/v1"
 TIMEOUT_S = 30.0
+FILE_TIMEOUT_S = 600.0
+"""An Excel file begins to come when its last row is written."""
+
 DISPOSITION = "Content-Disposition"
 
 PART_OF_REQUEST = re.compile(r"(^|; )(?:body|path|query)\.(?=\w+: )")
@@ -127,6 +130,30 @@ class ServiceClient:
         named = re.search(r'filename="([A-Za-z0-9_-][A-Za-z0-9._-]*)"', response.headers.get(DISPOSITION, ""))
         return named[1] if named else f"{segment(recording_id)}.zip", response.content
 
+    def save(self, path: str, query: Sequence[tuple[str, str]], sink: BinaryIO) -> int:
+        """Write a file that the service makes into `sink`, as it comes, and return its size in bytes.
+
+        Raises ServiceError, also where the service broke it off; OSError of the sink.
+        """
+        size_bytes = 0
+        address = f"{API}{path}"
+        try:
+            with self._http.stream("GET", address, params=list(query), timeout=FILE_TIMEOUT_S) as response:
+                if not response.is_success:
+                    response.read()
+                    raise ServiceError(_problem(response), status=response.status_code)
+                for piece in response.iter_bytes():
+                    sink.write(piece)
+                    size_bytes += len(piece)
+        except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
+            if size_bytes:
+                raise ServiceError(
+                    f"{self._url}{address}: broken off after {size_bytes} bytes ({error}); the log of the "
+                    "service says why"
+                ) from error
+            raise ServiceError(self._nobody(error)) from error
+        return size_bytes
+
     def request_diagnosis(self, recording_id: str, *, method: str, model: str) -> Document:
         """Ask for another diagnosis of a recording. Raises ServiceError."""
         path = f"{API}/recordings/{segment(recording_id)}/diagnoses"
@@ -166,12 +193,14 @@ class ServiceClient:
                 method, path, params=query, headers=headers, json=document, data=form, files=files
             )
         except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
-            raise ServiceError(
-                f"no service answers at {self._url} ({error}); start it with mcc serve"
-            ) from error
+            raise ServiceError(self._nobody(error)) from error
         if response.is_success:
             return response
         raise ServiceError(_problem(response), status=response.status_code)
+
+    def _nobody(self, error: Exception) -> str:
+        """Return in words that nothing answers."""
+        return f"no service answers at {self._url} ({error}); start it with mcc serve"
 
 
 def without_credentials(url: str) -> str:

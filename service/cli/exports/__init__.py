@@ -1,0 +1,1 @@
+"""`mcc export`: files of what the service keeps, for spreadsheets and programs."""
