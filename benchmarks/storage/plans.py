@@ -40,6 +40,10 @@ PARTIAL = {
     "ix_alarms_cleared_ied_raised_ns_id": "cleared_ns",
     "ix_alarms_standing_motor_raised_ns_id": "cleared_ns",
     "ix_alarms_cleared_motor_raised_ns_id": "cleared_ns",
+    "ix_alarms_open_urgency_raised_ns_id": "state",
+    "ix_alarms_open_site_urgency": "state",
+    "ix_alarms_open_ied_urgency": "state",
+    "ix_alarms_open_motor_urgency": "state",
 }
 """Indexes that have just the rows of one filter, and the column that it is about."""
 

@@ -23,6 +23,8 @@ from service.api import (
     relays,
 )
 from service.api.access.requirements import require
+from service.api.alarms import lists as alarm_lists
+from service.api.alarms import people as alarm_people
 from service.api.context import ApiContext
 from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
@@ -56,6 +58,8 @@ def create_app(context: ApiContext) -> FastAPI:
         baselines,
         measurements,
         relays,
+        alarm_lists,
+        alarm_people,
         event_reports,
         recordings,
         diagnoses,

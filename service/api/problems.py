@@ -17,6 +17,8 @@ from structlog.typing import FilteringBoundLogger
 from service.process.disk_space import is_disk_full
 from service.recording_store.store import RecordingStoreError
 from service.storage.errors import (
+    AlarmActionError,
+    AlarmCannotGrowError,
     DoubtfulBaselineError,
     FolderGoneError,
     NotFoundError,
@@ -40,6 +42,8 @@ STATUS_OF: dict[type[Exception], HTTPStatus] = {
     StateConflictError: HTTPStatus.CONFLICT,
     TooManyNotesError: HTTPStatus.CONFLICT,
     RecordingInUseError: HTTPStatus.CONFLICT,
+    AlarmActionError: HTTPStatus.CONFLICT,
+    AlarmCannotGrowError: HTTPStatus.CONFLICT,
 }
 """The HTTP status that answers each refusal of the storage."""
 

@@ -4,17 +4,12 @@ from typing import Literal
 
 from pydantic import Field
 
+from service.api.alarms.schemas import Alarm
 from service.api.document import Document, Listed, Seconds
 from service.api.times import Time
 from service.plant.differences import DifferenceKind
 from service.plant.overrides import TriggerAction
-from service.storage.states import (
-    AlarmKind,
-    AlarmPriority,
-    AlarmState,
-    ClockQuality,
-    LinkState,
-)
+from service.storage.states import ClockQuality, LinkState
 
 
 class RelayClock(Document):
@@ -65,43 +60,6 @@ class LinkChange(Document):
     time: Time = Field(validation_alias="changed_ns")
     state: LinkState
     reason: str | None
-
-
-class Alarm(Document):
-    """What somebody has to look after; its cause stands while `cleared_time` is null.
-
-    state: what people and the plant's design have made of it. site, ied, motor: null where it is not about
-    one. subject: the record or file it is about, as printable text, empty where it is about the relay; of a
-    motor's condition (`condition-...`), its cause. advice: what to do. recording: the one that shows it.
-    value: how bad the cause is, where it can grow; seen_value: when somebody acknowledged or shelved it.
-    raised_time: the latest; raises: how often. changed_...: the latest change of the state, by whom and with
-    which comment. shelved_until, shelved_above: the time and the value that end the shelving.
-    suppressed_because: why the plant's design suppresses it.
-    """
-
-    id: str
-    site: str | None
-    ied: str | None
-    motor: str | None
-    kind: AlarmKind
-    priority: AlarmPriority
-    state: AlarmState
-    standing: bool
-    subject: str
-    reason: str
-    advice: str | None
-    recording: str | None = Field(validation_alias="recording_id")
-    value: float | None
-    seen_value: float | None
-    raised_time: Time = Field(validation_alias="raised_ns")
-    raises: int
-    cleared_time: Time | None = Field(validation_alias="cleared_ns")
-    changed_time: Time = Field(validation_alias="changed_ns")
-    changed_by: str
-    comment: str | None
-    shelved_until: Time | None = Field(validation_alias="shelved_until_ns")
-    shelved_above: float | None
-    suppressed_because: str | None
 
 
 class Quarantine(Document):

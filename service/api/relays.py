@@ -2,20 +2,19 @@
 
 import time
 from http import HTTPStatus
-from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter
 
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
+from service.api.alarms.schemas import Alarm
 from service.api.context import Context
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.relay_schemas import (
     Acquisition,
-    Alarm,
     Difference,
     Gateway,
     Ied,
@@ -94,28 +93,3 @@ def list_gateways(context: Context) -> Page[Gateway]:
     """Return the processes that visit the relays, on all hosts, by id; always one page."""
     gateways = context.repository.gateways()
     return Page(items=[Gateway.model_validate(gateway) for gateway in gateways], next_cursor=None)
-
-
-@router.get("/alarms", responses=problems(404), dependencies=[require(Permission.VIEW)])
-def list_alarms(
-    context: Context,
-    ied: Annotated[
-        str | None, Query(max_length=200, description="Only alarms of this relay and its motors.")
-    ] = None,
-    motor: Annotated[
-        str | None, Query(max_length=200, description="Only alarms of this motor's condition.")
-    ] = None,
-    standing: Annotated[
-        bool | None, Query(description="true: those not cleared; false: those cleared; without: both.")
-    ] = None,
-    limit: Limit = DEFAULT_LIMIT,
-    cursor: CursorText = None,
-) -> Page[Alarm]:
-    """Return the alarms of the relays and of the motors' conditions, latest first."""
-    context.require_motor(motor)
-    if ied is not None:
-        context.repository.relay(ied)
-    alarms = context.repository.alarms(
-        relay=ied, motor=motor, standing=standing, limit=limit, after=decode(cursor, int, str)
-    )
-    return page(alarms, Alarm.model_validate)

@@ -17,6 +17,11 @@ class AuditAction(StrEnum):
     NOTE_WITHDRAWN = "note-withdrawn"
     REFERENCE_RESTARTED = "reference-restarted"
     QUARANTINE_RELEASED = "quarantine-released"
+    ALARM_ACKNOWLEDGED = "alarm-acknowledged"
+    ALARM_SHELVED = "alarm-shelved"
+    ALARM_UNSHELVED = "alarm-unshelved"
+    ALARM_TAKEN_OUT_OF_SERVICE = "alarm-taken-out-of-service"
+    ALARM_PUT_BACK_IN_SERVICE = "alarm-put-back-in-service"
     PLANT_CHANGED = "plant-changed"
     PARAMETERS_CHANGED = "parameters-changed"
     RETENTION_APPLIED = "retention-applied"
@@ -33,6 +38,11 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.NOTE_WITHDRAWN: "Somebody let a note count no more.",
     AuditAction.REFERENCE_RESTARTED: "Somebody took a motor for healthy as it is.",
     AuditAction.QUARANTINE_RELEASED: "Somebody had a relay visited again; `before` is why it was set aside.",
+    AuditAction.ALARM_ACKNOWLEDGED: "Somebody took notice of an alarm, with the comment in `after`.",
+    AuditAction.ALARM_SHELVED: "Somebody set an alarm aside; `after` says until when, or until which value.",
+    AuditAction.ALARM_UNSHELVED: "Somebody ended the shelving of an alarm.",
+    AuditAction.ALARM_TAKEN_OUT_OF_SERVICE: "Somebody set an alarm aside without an end.",
+    AuditAction.ALARM_PUT_BACK_IN_SERVICE: "Somebody put an alarm back in service.",
     AuditAction.PLANT_CHANGED: (
         "The service started with other plant files: a site, relay or motor came (no `before`), left (no "
         "`after`) or is told otherwise."

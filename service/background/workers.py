@@ -5,7 +5,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from threading import Event
 
-from service.background import housekeeping, orphaned_requests, retention, scheduling
+from service.background import alarm_steps, housekeeping, orphaned_requests, retention, scheduling
+from service.background.alarm_steps import AlarmSteps
 from service.background.housekeeping import Housekeeping
 from service.background.orphaned_requests import OrphanedRequestEnder
 from service.background.retention import Retention
@@ -25,6 +26,7 @@ class Periods:
     housekeeping_s: float = housekeeping.PERIOD_S
     retention_s: float = retention.PERIOD_S
     orphaned_requests_s: float = orphaned_requests.PERIOD_S
+    alarm_steps_s: float = alarm_steps.PERIOD_S
 
 
 PERIODS = Periods()
@@ -48,7 +50,8 @@ def background_workers(
     scheduler = Scheduler(
         plant.motors, repository, buses=plant.buses, metering_period_s=settings.metering_period_s
     )
-    housekeeping_ends, retention_ends = Event(), Event()
+    housekeeping_ends, retention_ends, alarm_steps_end = Event(), Event(), Event()
+    steps = AlarmSteps(repository, alarm_steps_end)
     keeper = Housekeeping(settings, repository, housekeeping_ends)
     retained = Retention(settings, repository, store, retention_ends)
     ender = OrphanedRequestEnder(
@@ -76,5 +79,12 @@ def background_workers(
             "ending of orphaned requests",
             lambda: ender.end_overdue(time.monotonic()),
             period_s=periods.orphaned_requests_s,
+        ),
+        "alarm_steps": PeriodicWorker(
+            "ending of shelvings and suppressions",
+            lambda: steps.take(time.time_ns()),
+            period_s=periods.alarm_steps_s,
+            at_once=True,
+            stopping=alarm_steps_end,
         ),
     }

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from service.storage.alarm_transitions import possible_for_people
 from service.storage.records import BaselineDoubt
-from service.storage.states import AlarmEvent, AlarmState
+from service.storage.states import AlarmEvent, AlarmKind, AlarmState
 
 
 class StorageError(Exception):
@@ -133,6 +133,15 @@ class AlarmActionError(StorageError):
         super().__init__(
             f"alarm {alarm_id} cannot be {PARTICIPLE.get(event, event.value)}: it is {state.value} ({why}); "
             f"possible now: {can}"
+        )
+
+
+class AlarmCannotGrowError(StorageError):
+    """An alarm is to be shelved until it grows, and its cause has no measure."""
+
+    def __init__(self, alarm_id: str, kind: AlarmKind) -> None:
+        super().__init__(
+            f"alarm {alarm_id} ({kind.value}) has no value that could grow; shelve it until a time"
         )
 
 

@@ -11,7 +11,7 @@ from sqlalchemy import (
     bindparam,
     text,
 )
-from sqlalchemy.orm import Mapped, mapped_column
+from sqlalchemy.orm import InstrumentedAttribute, Mapped, mapped_column
 
 from service.storage.models.base import Base
 from service.storage.states import AlarmEvent, AlarmKind, AlarmPriority, AlarmState
@@ -83,6 +83,10 @@ class AlarmRow(Base):
         _partial("ix_alarms_cleared_motor_raised_ns_id", CLEARED, "motor", "raised_ns", "id"),
         _partial("ix_alarms_open_cause", OPEN, "ied", "motor", "kind", "subject"),
         _partial("ix_alarms_open_urgency_raised_ns_id", OPEN, "urgency", "raised_ns", "id"),
+        _partial("ix_alarms_open_site_urgency", OPEN, "site", "urgency", "raised_ns", "id"),
+        _partial("ix_alarms_open_ied_urgency", OPEN, "ied", "urgency", "raised_ns", "id"),
+        _partial("ix_alarms_open_motor_urgency", OPEN, "motor", "urgency", "raised_ns", "id"),
+        _partial("ix_alarms_open_state_urgency", OPEN, "state", "urgency", "raised_ns", "id"),
         _partial("ix_alarms_shelved_until_ns", SHELVED, "shelved_until_ns"),
     )
 
@@ -90,7 +94,8 @@ class AlarmRow(Base):
 class AlarmChangeRow(Base):
     """One thing that happened to an alarm, in the order of `sequence`. Rows are added, never changed.
 
-    routed_ns: when the notifications had a look at it; null until then.
+    routed_ns: when the notifications had a look at it; null until then. What was raised may have been
+    acknowledged, shelved or suppressed since, even in the same transaction: the alarm itself tells.
     """
 
     __tablename__ = "alarm_changes"
@@ -119,13 +124,18 @@ def in_state(state: AlarmState) -> ColumnElement[bool]:
 
     SQLite takes such an index only where the statement has the value in it, not as a parameter.
     """
-    return AlarmRow.state == _literal(state)
+    return AlarmRow.state == _literal(AlarmRow.state, state)
 
 
 def is_open() -> ColumnElement[bool]:
     """Return the condition that alarms are not over, as the partial indexes say it."""
-    return AlarmRow.state != _literal(AlarmState.NORMAL)
+    return AlarmRow.state != _literal(AlarmRow.state, AlarmState.NORMAL)
 
 
-def _literal(state: AlarmState) -> ColumnElement[AlarmState]:
-    return bindparam(None, state, type_=AlarmRow.state.type, literal_execute=True)
+def announced() -> ColumnElement[bool]:
+    """Return the condition that changes made alarms call for somebody, as the partial index says it."""
+    return AlarmChangeRow.after == _literal(AlarmChangeRow.after, AlarmState.UNACKNOWLEDGED)
+
+
+def _literal(column: InstrumentedAttribute[AlarmState], state: AlarmState) -> ColumnElement[AlarmState]:
+    return bindparam(None, state, type_=column.type, literal_execute=True)

@@ -1,7 +1,15 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
 from service.storage.records.actors import SERVICE, Actor, Role
-from service.storage.records.alarms import Alarm, AlarmChange, AlarmPlace, AlarmSpec
+from service.storage.records.alarms import (
+    Alarm,
+    AlarmCause,
+    AlarmChange,
+    AlarmFigures,
+    AlarmPlace,
+    AlarmSpec,
+    CallsOfDay,
+)
 from service.storage.records.backups import BackupEntry
 from service.storage.records.baselines import BaselineDoubt, BaselineEntry
 from service.storage.records.conditions import (
@@ -53,7 +61,9 @@ __all__ = [
     "SERVICE",
     "Actor",
     "Alarm",
+    "AlarmCause",
     "AlarmChange",
+    "AlarmFigures",
     "AlarmPlace",
     "AlarmSpec",
     "Amount",
@@ -62,6 +72,7 @@ __all__ = [
     "BaselineDoubt",
     "BaselineEntry",
     "BusMotor",
+    "CallsOfDay",
     "Checkpoint",
     "ClaimedJob",
     "ClockReading",

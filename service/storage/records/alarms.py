@@ -1,7 +1,9 @@
 """Alarms: what somebody has to look after, where, and what has happened to it."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
+from core.units import NANOSECONDS_PER_DAY
 from service.storage.states import AlarmEvent, AlarmKind, AlarmPriority, AlarmState
 
 
@@ -88,3 +90,49 @@ class AlarmChange:
     after: AlarmState
     by: str
     comment: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmCause:
+    """A cause of alarms, and how often it called for somebody."""
+
+    site: str | None
+    ied: str | None
+    motor: str | None
+    kind: AlarmKind
+    subject: str
+    calls: int
+
+
+@dataclass(frozen=True, slots=True)
+class CallsOfDay:
+    """How often alarms called for somebody on a day of UTC, which begins at `day_ns`."""
+
+    day_ns: int
+    calls: int
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmFigures:
+    """Key figures of the alarms since a time.
+
+    days: how often alarms called for somebody on each day of UTC, oldest first. frequent: the causes that
+    called most often. chattering: those that called three times within an hour, with how often they did that
+    in all. by_state: how many alarms are open. standing_long: those whose cause has stood for longer than a
+    day, oldest first, the first of `standing_long_in_all`.
+    """
+
+    from_ns: int
+    to_ns: int
+    days: tuple[CallsOfDay, ...]
+    frequent: tuple[AlarmCause, ...]
+    chattering: tuple[AlarmCause, ...]
+    by_state: Mapping[AlarmState, int]
+    standing_long: tuple[Alarm, ...]
+    standing_long_in_all: int
+
+    @property
+    def calls_per_day(self) -> float:
+        """Return how often alarms called for somebody in a day, on average."""
+        days = (self.to_ns - self.from_ns) / NANOSECONDS_PER_DAY
+        return sum(day.calls for day in self.days) / days

@@ -24,8 +24,14 @@ from tests.service.fixtures import database_url, engine, store
 
 __all__ = ["database_url", "engine", "store"]
 
-OFTEN = Periods(scheduling_s=0.01, housekeeping_s=0.01, retention_s=0.01, orphaned_requests_s=0.01)
-PARTS = ("schedules", "housekeeping", "retention", "orphaned_requests")
+OFTEN = Periods(
+    scheduling_s=0.01,
+    housekeeping_s=0.01,
+    retention_s=0.01,
+    orphaned_requests_s=0.01,
+    alarm_steps_s=0.01,
+)
+PARTS = ("schedules", "housekeeping", "retention", "orphaned_requests", "alarm_steps")
 
 
 class FaultyRepository(Repository):
@@ -48,6 +54,10 @@ class FaultyRepository(Repository):
     def held_relays(self) -> frozenset[str]:
         self._fail_for("orphaned_requests")
         return super().held_relays()
+
+    def end_shelvings(self, *, now_ns: int) -> int:
+        self._fail_for("alarm_steps")
+        return super().end_shelvings(now_ns=now_ns)
 
     def _fail_for(self, part: str) -> None:
         if part == self.part:

@@ -37,6 +37,10 @@ BEFORE: dict[str, tuple[list[str], sa.TextClause | None]] = {
 AFTER = BEFORE | {
     "ix_alarms_open_cause": (["ied", "motor", "kind", "subject"], OPEN),
     "ix_alarms_open_urgency_raised_ns_id": (["urgency", "raised_ns", "id"], OPEN),
+    **{
+        f"ix_alarms_open_{column}_urgency": ([column, "urgency", "raised_ns", "id"], OPEN)
+        for column in ("site", "ied", "motor", "state")
+    },
     "ix_alarms_shelved_until_ns": (["shelved_until_ns"], SHELVED),
 }
 

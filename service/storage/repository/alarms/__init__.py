@@ -2,12 +2,20 @@
 
 from service.storage.repository.alarms.causes import AlarmCauseRows
 from service.storage.repository.alarms.conditions import ConditionAlarmRows
+from service.storage.repository.alarms.figures import AlarmFigureRows
 from service.storage.repository.alarms.lists import AlarmLists
 from service.storage.repository.alarms.people import AlarmPeopleRows
 from service.storage.repository.alarms.suppression import AlarmSuppressionRows
 
 
-class AlarmRows(AlarmLists, AlarmCauseRows, AlarmPeopleRows, AlarmSuppressionRows, ConditionAlarmRows):
+class AlarmRows(
+    AlarmLists,
+    AlarmCauseRows,
+    AlarmPeopleRows,
+    AlarmSuppressionRows,
+    ConditionAlarmRows,
+    AlarmFigureRows,
+):
     """All there is to ask of and tell the database about alarms."""
 
 

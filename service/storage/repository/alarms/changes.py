@@ -8,11 +8,9 @@ from sqlalchemy.orm import Session
 from service.storage.alarm_transitions import following
 from service.storage.errors import AlarmActionError
 from service.storage.models import AlarmChangeRow, AlarmRow
+from service.storage.records.actors import SERVICE
 from service.storage.states import AlarmEvent, AlarmPriority, AlarmState
 from service.storage.texts import storable
-
-SERVICE = "statorwatch"
-"""Who did what came by itself."""
 
 MOST_CHANGES = 1000
 """So many changes are kept of each alarm: one that comes and goes all day must not fill the disk."""
@@ -50,7 +48,7 @@ def change(
     event: AlarmEvent,
     *,
     now_ns: int,
-    by: str = SERVICE,
+    by: str = SERVICE.name,
     comment: str | None = None,
 ) -> None:
     """Let an event happen to a locked alarm, whose `cleared_ns` tells the cause as it is afterwards.

@@ -10,10 +10,10 @@ from service.storage.models import AlarmRow, ConditionRow, MotorRow
 from service.storage.models.alarms import is_open
 from service.storage.records import AlarmPlace, AlarmSpec, ConditionEntry
 from service.storage.repository.alarms.causes import clear, forget_cleared, raised_at, supersede
-from service.storage.repository.alarms.changes import locked
+from service.storage.repository.alarms.changes import change, locked, urgency
 from service.storage.repository.alarms.suppression import suppress_by_design
 from service.storage.repository.sessions import Sessions, found, record_of
-from service.storage.states import AlarmKind, AlarmState
+from service.storage.states import AlarmEvent, AlarmKind, AlarmState
 
 ALARM_OF = {State.WATCH: AlarmKind.CONDITION_WATCH, State.FAULT: AlarmKind.CONDITION_FAULT}
 
@@ -68,9 +68,20 @@ def settle_alarm(session: Session, motor: MotorRow, condition: ConditionEntry, *
     successor = raised_at(session, place, spec, now_ns=now_ns)
     for row in others:
         if row.cleared_ns is None or row.state is AlarmState.RETURNED_UNACKNOWLEDGED:
-            supersede(session, row, successor, now_ns=now_ns)
+            _hand_over(session, row, successor, now_ns)
     if others:
         forget_cleared(session, AlarmRow.motor == motor.name)
+
+
+def _hand_over(session: Session, row: AlarmRow, successor: AlarmRow, now_ns: int) -> None:
+    """End an alarm in favour of another. Who acknowledged a fault need not be called for a mere watch."""
+    known = row.state is AlarmState.ACKNOWLEDGED and row.urgency > urgency(row.state, successor.priority)
+    by = row.changed_by
+    supersede(session, row, successor, now_ns=now_ns)
+    if known and successor.state is AlarmState.UNACKNOWLEDGED:
+        comment = f"known as {row.kind.value}, alarm {row.id}"
+        change(session, successor, AlarmEvent.ACKNOWLEDGED, now_ns=now_ns, by=by, comment=comment)
+        successor.seen_value = successor.value
 
 
 def _cause(condition: ConditionEntry, document: Mapping[str, object]) -> str:

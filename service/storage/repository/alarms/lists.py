@@ -15,6 +15,7 @@ from service.storage.repository.sessions import (
     page_of,
     record_of,
 )
+from service.storage.states import AlarmState
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,7 @@ class AlarmFilter:
     relay: str | None = None
     motor: str | None = None
     standing: bool | None = None
+    state: AlarmState | None = None
 
 
 class AlarmLists(Sessions):
@@ -70,9 +72,13 @@ class AlarmLists(Sessions):
         site: str | None = None,
         relay: str | None = None,
         motor: str | None = None,
+        state: AlarmState | None = None,
     ) -> Page[Alarm]:
-        """Return a page of the alarms that are not over, what to act on first at the top."""
-        query = _chosen(AlarmFilter(site=site, relay=relay, motor=motor)).where(is_open())
+        """Return a page of the alarms that are not over, what to act on first at the top.
+
+        site, relay, motor, state: None for all.
+        """
+        query = _chosen(AlarmFilter(site, relay, motor, state=state)).where(is_open())
         order: Order = [AlarmRow.urgency, AlarmRow.raised_ns, AlarmRow.id]
         with self._read() as session:
             return page_of(session, query, order, Alarm, limit=limit, after=after, descending=True)
@@ -94,6 +100,8 @@ def _chosen(chosen: AlarmFilter) -> Select[*tuple[object, ...]]:
         query = query.where(AlarmRow.ied == chosen.relay)
     if chosen.motor is not None:
         query = query.where(AlarmRow.motor == chosen.motor)
+    if chosen.state is not None:
+        query = query.where(AlarmRow.state == chosen.state)
     if chosen.standing is not None:
         cleared = AlarmRow.cleared_ns
         query = query.where(cleared.is_(None) if chosen.standing else cleared.is_not(None))

@@ -1,75 +1,157 @@
 """What people do about alarms. A step that is not possible is refused with what is."""
 
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
 from sqlalchemy.orm import Session
 
+from service.audit.actions import AuditAction
+from service.storage.errors import AlarmActionError, AlarmCannotGrowError, NotFoundError
 from service.storage.models import AlarmRow
-from service.storage.records import Alarm
-from service.storage.repository.alarms.changes import change
+from service.storage.records import Actor, Alarm
+from service.storage.repository.alarms.changes import change, locked
 from service.storage.repository.alarms.suppression import suppress_by_design
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.sessions import Sessions, found, record_of
 from service.storage.states import AlarmEvent
 
+ACTIONS: Mapping[AlarmEvent, AuditAction] = {
+    AlarmEvent.ACKNOWLEDGED: AuditAction.ALARM_ACKNOWLEDGED,
+    AlarmEvent.SHELVED: AuditAction.ALARM_SHELVED,
+    AlarmEvent.UNSHELVED: AuditAction.ALARM_UNSHELVED,
+    AlarmEvent.TAKEN_OUT_OF_SERVICE: AuditAction.ALARM_TAKEN_OUT_OF_SERVICE,
+    AlarmEvent.PUT_BACK_IN_SERVICE: AuditAction.ALARM_PUT_BACK_IN_SERVICE,
+}
+
+SEEN = (AlarmEvent.ACKNOWLEDGED, AlarmEvent.SHELVED)
+"""Who does this knows how bad the cause is now."""
+
+
+@dataclass(frozen=True, slots=True)
+class AcknowledgedAlarms:
+    """What came of acknowledging several alarms. refused: why, by their ids."""
+
+    alarms: tuple[Alarm, ...]
+    refused: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class _Deed:
+    event: AlarmEvent
+    by: Actor
+    now_ns: int
+    comment: str | None
+
 
 class AlarmPeopleRows(Sessions):
-    def acknowledge_alarm(self, alarm_id: str, *, by: str, now_ns: int, comment: str | None = None) -> Alarm:
+    def acknowledge_alarms(
+        self, alarm_ids: Collection[str], *, by: Actor, now_ns: int, comment: str | None = None
+    ) -> AcknowledgedAlarms:
+        """Note that somebody has taken notice of alarms: of all for which that is possible."""
+        deed = _Deed(AlarmEvent.ACKNOWLEDGED, by, now_ns, comment)
+        refused = {one: str(NotFoundError("alarm", one)) for one in alarm_ids}
+        done: list[Alarm] = []
+        with self._write() as session:
+            for row in locked(session, AlarmRow.id.in_(alarm_ids)):
+                del refused[row.id]
+                try:
+                    _do(session, row, deed)
+                except AlarmActionError as error:
+                    refused[row.id] = str(error)
+                else:
+                    done.append(record_of(Alarm, row))
+        return AcknowledgedAlarms(tuple(done), refused)
+
+    def acknowledge_alarm(
+        self, alarm_id: str, *, by: Actor, now_ns: int, comment: str | None = None
+    ) -> Alarm:
         """Note that somebody has taken notice of an alarm. Raises NotFoundError, AlarmActionError."""
-        return self._do(alarm_id, AlarmEvent.ACKNOWLEDGED, by, now_ns, comment)
+        return self._do(alarm_id, _Deed(AlarmEvent.ACKNOWLEDGED, by, now_ns, comment))
 
     def shelve_alarm(
         self,
         alarm_id: str,
         *,
-        by: str,
+        by: Actor,
         now_ns: int,
         until_ns: int | None = None,
         growth: float | None = None,
         comment: str | None = None,
     ) -> Alarm:
-        """Set an alarm aside until a time, until its value has grown by so much, or whichever comes first.
+        """Set an alarm aside until a time, until its value has grown by so much, or what comes first.
 
-        Raises NotFoundError, AlarmActionError, ValueError (no end, or growth of an alarm without a value).
+        Raises NotFoundError, AlarmActionError, AlarmCannotGrowError, ValueError (neither of both is given).
         """
+        if until_ns is None and growth is None:
+            raise ValueError("expected an end of the shelving: a time, or by how much the alarm may grow")
         with self._write() as session:
             row = found(session, AlarmRow, alarm_id, "alarm", lock=True)
-            if until_ns is None and growth is None:
-                raise ValueError("expected a time, or by how much it may grow, at which the shelving ends")
             if growth is not None and row.value is None:
-                raise ValueError(f"alarm {alarm_id} ({row.kind.value}) has no value that could grow")
-            _change(session, row, AlarmEvent.SHELVED, by, now_ns, comment)
+                raise AlarmCannotGrowError(alarm_id, row.kind)
+            before = _audited(row)
+            _change(session, row, _Deed(AlarmEvent.SHELVED, by, now_ns, comment))
             row.shelved_until_ns = until_ns
             row.shelved_above = None if growth is None or row.value is None else row.value + growth
+            _audit(session, row, before, _Deed(AlarmEvent.SHELVED, by, now_ns, comment))
             return record_of(Alarm, row)
 
-    def unshelve_alarm(self, alarm_id: str, *, by: str, now_ns: int, comment: str | None = None) -> Alarm:
+    def unshelve_alarm(self, alarm_id: str, *, by: Actor, now_ns: int, comment: str | None = None) -> Alarm:
         """End the shelving of an alarm: it calls again if its cause stands.
 
         Raises NotFoundError, AlarmActionError.
         """
-        return self._do(alarm_id, AlarmEvent.UNSHELVED, by, now_ns, comment)
+        return self._do(alarm_id, _Deed(AlarmEvent.UNSHELVED, by, now_ns, comment))
 
     def take_alarm_out_of_service(
-        self, alarm_id: str, *, by: str, now_ns: int, comment: str | None = None
+        self, alarm_id: str, *, by: Actor, now_ns: int, comment: str | None = None
     ) -> Alarm:
         """Set an alarm aside until somebody puts it back. Raises NotFoundError, AlarmActionError."""
-        return self._do(alarm_id, AlarmEvent.TAKEN_OUT_OF_SERVICE, by, now_ns, comment)
+        return self._do(alarm_id, _Deed(AlarmEvent.TAKEN_OUT_OF_SERVICE, by, now_ns, comment))
 
     def put_alarm_back_in_service(
-        self, alarm_id: str, *, by: str, now_ns: int, comment: str | None = None
+        self, alarm_id: str, *, by: Actor, now_ns: int, comment: str | None = None
     ) -> Alarm:
         """Have an alarm call again, if its cause stands. Raises NotFoundError, AlarmActionError."""
-        return self._do(alarm_id, AlarmEvent.PUT_BACK_IN_SERVICE, by, now_ns, comment)
+        return self._do(alarm_id, _Deed(AlarmEvent.PUT_BACK_IN_SERVICE, by, now_ns, comment))
 
-    def _do(self, alarm_id: str, event: AlarmEvent, by: str, now_ns: int, comment: str | None) -> Alarm:
+    def _do(self, alarm_id: str, deed: _Deed) -> Alarm:
         with self._write() as session:
             row = found(session, AlarmRow, alarm_id, "alarm", lock=True)
-            _change(session, row, event, by, now_ns, comment)
+            _do(session, row, deed)
             return record_of(Alarm, row)
 
 
-def _change(
-    session: Session, row: AlarmRow, event: AlarmEvent, by: str, now_ns: int, comment: str | None
-) -> None:
-    if event in {AlarmEvent.ACKNOWLEDGED, AlarmEvent.SHELVED}:
+def _do(session: Session, row: AlarmRow, deed: _Deed) -> None:
+    before = _audited(row)
+    _change(session, row, deed)
+    _audit(session, row, before, deed)
+
+
+def _change(session: Session, row: AlarmRow, deed: _Deed) -> None:
+    change(session, row, deed.event, now_ns=deed.now_ns, by=deed.by.name, comment=deed.comment)
+    if deed.event in SEEN:
         row.seen_value = row.value
-    change(session, row, event, now_ns=now_ns, by=by, comment=comment)
-    suppress_by_design(session, row, now_ns=now_ns)
+    suppress_by_design(session, row, now_ns=deed.now_ns)
+
+
+def _audited(row: AlarmRow) -> dict[str, object]:
+    """Return what of an alarm people may change."""
+    return {
+        "state": row.state,
+        "comment": row.comment,
+        "shelved_until_ns": row.shelved_until_ns,
+        "shelved_above": row.shelved_above,
+    }
+
+
+def _audit(session: Session, row: AlarmRow, before: Mapping[str, object], deed: _Deed) -> None:
+    after = _audited(row) | {"comment": deed.comment}
+    note_change(
+        session,
+        deed.by,
+        ACTIONS[deed.event],
+        ("alarm", row.id),
+        now_ns=deed.now_ns,
+        before=before,
+        after=after,
+    )

@@ -1,0 +1,1 @@
+"""Alarms: listed with what to act on first, looked after by people, counted."""
