@@ -25,6 +25,7 @@ from service.api import (
 from service.api.access.requirements import require
 from service.api.alarms import lists as alarm_lists
 from service.api.alarms import people as alarm_people
+from service.api.audit import trail as audit_trail
 from service.api.context import ApiContext
 from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
@@ -65,6 +66,7 @@ def create_app(context: ApiContext) -> FastAPI:
         diagnoses,
         deletions,
         exports,
+        audit_trail,
     ):
         api.include_router(part.router)
     app.include_router(api)

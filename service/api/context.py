@@ -38,6 +38,11 @@ class ApiContext:
     waveforms_sent: Admission = field(default_factory=lambda: Admission("waveforms", 16, wait_s=10.0))
     exports: Admission = field(default_factory=lambda: Admission("exports", 4, wait_s=10.0))
 
+    audit_trails: Admission = field(default_factory=lambda: Admission("audit trails", 4, wait_s=10.0))
+    audit_verifications: Admission = field(
+        default_factory=lambda: Admission("verifications of the audit trail", 1, wait_s=10.0)
+    )
+
     def require_motor(self, name: str | None) -> None:
         """Raise NotFoundError where a list is asked for of a motor that there is not; None asks for all."""
         if name is not None:

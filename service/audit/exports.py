@@ -36,8 +36,8 @@ class _Line(BaseModel):
     subject: str
     before: str | None
     after: str | None
-    previous: Hash
-    hash: Hash
+    previous: str
+    hash: str
 
 
 class _Anchor(BaseModel):
@@ -56,9 +56,9 @@ def read_export(path: Path) -> Iterator[AuditEntry]:
             if len(text) > MOST_BYTES_OF_A_LINE:
                 raise AuditFileError(f"{path}, line {number}: longer than {MOST_BYTES_OF_A_LINE} bytes")
             try:
-                yield _entry(text)
-            except ValueError as error:
-                raise AuditFileError(f"{path}, line {number}: {_in_words(error)}") from error
+                yield entry_of_line(text)
+            except AuditFileError as error:
+                raise AuditFileError(f"{path}, line {number}: {error}") from error
 
 
 def read_anchor(path: Path) -> Anchor:
@@ -76,14 +76,18 @@ def read_anchor(path: Path) -> Anchor:
     except ValidationError as error:
         raise AuditFileError(
             f"{path}: expected number and hash of an entry in the last line, as mcc audit export and mcc "
-            f"audit verify --json write them; {_in_words(error)}"
+            f"audit verify --write-anchor write them; {_in_words(error)}"
         ) from error
     return Anchor(found.number, found.hash)
 
 
-def _entry(text: bytes) -> AuditEntry:
-    fields = dict(_Line.model_validate_json(text))
-    return AuditEntry(time_ns=nanoseconds(fields.pop("time")), **fields)
+def entry_of_line(text: str | bytes) -> AuditEntry:
+    """Return the entry that a line of an export tells. Raises AuditFileError."""
+    try:
+        fields = dict(_Line.model_validate_json(text))
+        return AuditEntry(time_ns=nanoseconds(fields.pop("time")), **fields)
+    except ValueError as error:
+        raise AuditFileError(_in_words(error)) from error
 
 
 def _in_words(error: ValueError) -> str:

@@ -8,7 +8,16 @@ from typing import Annotated
 import typer
 
 from core.error_words import one_line
-from service.cli.commands import data_sheets, exports, plant_files, programs, record_files, service, stored
+from service.cli.commands import (
+    audit,
+    data_sheets,
+    exports,
+    plant_files,
+    programs,
+    record_files,
+    service,
+    stored,
+)
 from service.cli.output import DONE, FAILED, WRONG_USE, CommandError, print_failure
 
 app = typer.Typer(
@@ -40,7 +49,7 @@ def options(
     """Read the options that come before a command."""
 
 
-for _part in (programs, record_files, data_sheets, service, stored, exports, plant_files):
+for _part in (programs, record_files, data_sheets, service, stored, exports, plant_files, audit):
     app.add_typer(_part.commands)
 
 

@@ -85,6 +85,17 @@ class ServiceClient:
                 return
             cursor = {"cursor": following}
 
+    def lines(self, path: str, **query: str) -> Iterator[str]:
+        """Yield the lines of a text, while it comes. Raises ServiceError."""
+        try:
+            with self._http.stream("GET", f"{API}{path}", params=query) as response:
+                if not response.is_success:
+                    response.read()
+                    raise ServiceError(_problem(response), status=response.status_code)
+                yield from response.iter_lines()
+        except (httpx.TransportError, httpx.UnsupportedProtocol) as error:
+            raise ServiceError(f"{self._url} did not send all of its answer ({error})") from error
+
     def request_recording(self, motor: str, *, idempotency_key: str | None = None) -> Document:
         """Request a recording of the motor; the same key again requests nothing new.
 

@@ -29,6 +29,7 @@ NO_WRONG_REQUESTS = {
     "GET /healthz",
     "GET /readyz",
     "GET /metrics",
+    "GET /api/v1/audit/head",
     "GET /api/v1/gateways",
     "GET /api/v1/ieds/{name}",
     "GET /api/v1/motors/{name}",

@@ -1,6 +1,6 @@
 """Reads the audit trail: pages of it for people, all of it for who verifies or exports it."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -48,6 +48,17 @@ class AuditRows(Sessions):
             head = session.scalars(select(AuditHeadRow)).one()
             yield AuditTrail(Anchor(head.number, head.hash), session)
 
+    def audit_entries_from(self, first: int, last: int) -> tuple[AuditEntry, ...]:
+        """Return some of the entries from one number to another, oldest first; none where there are none."""
+        query = (
+            select(*columns_of(AuditEntry, AuditEntryRow))
+            .where(AuditEntryRow.number.between(first, last))
+            .order_by(AuditEntryRow.number)
+            .limit(READ_AT_ONCE)
+        )
+        with self._read() as session:
+            return tuple(AuditEntry(*row) for row in session.execute(query))
+
     def audit_entries(
         self,
         *,
@@ -82,7 +93,7 @@ class AuditRows(Sessions):
         subject: tuple[str, str],
         *,
         now_ns: int,
-        after: dict[str, object] | None = None,
+        after: Mapping[str, object] | None = None,
     ) -> None:
         """Write an entry on what changes nothing in the database, such as an export."""
         with self._write() as session:
