@@ -23,11 +23,6 @@ def has_grown(told: float, seen: LevelSeen, least_ratio: float) -> bool:
     return seen.low > told and seen.value >= told * (1.0 + least_ratio)
 
 
-def has_grown_by(shelved_at: float, step: float, seen: LevelSeen) -> bool:
-    """Tell whether a level has grown by a step since an alarm was shelved until then."""
-    return seen.value >= shelved_at + step
-
-
 def is_another_kind(told: frozenset[str], seen: frozenset[str]) -> bool:
     """Tell whether what a motor shows is something else than what people were told.
 

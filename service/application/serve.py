@@ -91,7 +91,7 @@ def _prepared(settings: Settings, plant: Plant) -> Repository:
         repository.sync_plant(plant, noted_ns=time.time_ns())
         documents = {motor.name: document_of(motor.motor) for motor in plant.motors}
         repository.note_motors(documents, now_ns=time.time_ns())
-        repository.settle_alarms(now_ns=time.time_ns())
+        repository.settle_alarms(now_ns=time.time_ns(), rules=settings.alarms.condition_rules)
         repository.reset_links(now_ns=time.time_ns())
     except OperationalError as error:
         raise ServeError(
@@ -157,6 +157,7 @@ def _parts(
         motors,
         database_url=settings.database_url,
         most_observing=max(1, settings.workers - 1),
+        alarm_rules=settings.alarms.condition_rules,
     )
     jobs = JobRunner(
         repository,

@@ -15,6 +15,7 @@ from structlog.typing import FilteringBoundLogger
 from core.condition.rules import RULES
 from core.machines.parameters import Motor
 from core.units import NANOSECONDS_PER_DAY
+from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.condition.errors import RecordFoldError
 from service.condition.worker import FoldTask, ObserveTask, fold_motor, observe_recordings
 from service.recording_store.store import RecordingStore
@@ -97,8 +98,13 @@ class ConditionWork:
         *,
         database_url: str,
         most_observing: int = 1,
+        alarm_rules: ConditionRules = AT_ONCE,
     ) -> None:
-        """most_observing: so many tasks may observe at a time; the other workers are free for what is new."""
+        """most_observing: so many tasks may observe at a time; the other workers are free for what is new.
+
+        alarm_rules: when a motor's condition makes an alarm.
+        """
+        self._alarm_rules = alarm_rules
         self._repository = repository
         self._motors = motors
         self._database_url = database_url
@@ -180,7 +186,8 @@ class ConditionWork:
         self._folded_s[motor] = time.monotonic()
         # They may be many, and are of use only where the motor is about to be set aside.
         marks = self._repository.fold_marks(motor) if motor in self._trouble else ()
-        return ConditionTask(motor, fold_motor, FoldTask(self._database_url, self._motors[motor]), marks)
+        task = FoldTask(self._database_url, self._motors[motor], alarm_rules=self._alarm_rules)
+        return ConditionTask(motor, fold_motor, task, marks)
 
     def _next_judged_again(self) -> ConditionTask | None:
         """Begin with another motor that other rules have judged, where none waits to be folded.

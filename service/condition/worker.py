@@ -15,6 +15,7 @@ from core.condition.observation import Observation
 from core.diagnosis.errors import DiagnosisError
 from core.machines.parameters import Motor
 from core.recordings import RecordingError, read
+from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.condition.record_times import ImpossibleTimeError, require_possible_time
 from service.recording_store.store import RecordingStore, RecordingStoreError
 from service.storage.engine import connect
@@ -35,11 +36,12 @@ MOST_VALUES = 8_000_000
 
 @dataclass(frozen=True, slots=True)
 class FoldTask:
-    """Name a motor to fold, as the motors file has it, and the database."""
+    """Name a motor to fold, as the motors file has it, the database, and when its alarms are raised."""
 
     database_url: str
     motor: Motor
     round_s: float = ROUND_S
+    alarm_rules: ConditionRules = AT_ONCE
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +59,12 @@ def fold_motor(task: FoldTask) -> int:
 
     Raises NotFoundError, RecordFoldError, SQLAlchemyError.
     """
-    return fold_due(_repository(task.database_url), task.motor, task.round_s)
+    return fold_due(_repository(task.database_url), task.motor, task.round_s, alarm_rules=task.alarm_rules)
 
 
-def fold_due(repository: Repository, motor: Motor, round_s: float = ROUND_S) -> int:
+def fold_due(
+    repository: Repository, motor: Motor, round_s: float = ROUND_S, *, alarm_rules: ConditionRules = AT_ONCE
+) -> int:
     """Fold what is due of a motor, for about a round; return how many records that were.
 
     Of two that fold the same motor, the slower begins again.
@@ -77,7 +81,7 @@ def fold_due(repository: Repository, motor: Motor, round_s: float = ROUND_S) -> 
             log.info("folded from the first record on", motor=motor.name, reason=str(error))
             repository.forget_checkpoints(motor.name)
             continue
-        if repository.finish_fold(due, result, now_ns=time_ns()):
+        if repository.finish_fold(due, result, now_ns=time_ns(), rules=alarm_rules):
             number += len(due.observations)
         if monotonic() >= end_s:
             break

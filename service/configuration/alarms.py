@@ -5,6 +5,7 @@ from typing import Self
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from service.alarms.condition_rules import ConditionRules
 from service.alarms.confirmation import Confirmation
 
 MOST_RECORDS = 100
@@ -50,6 +51,11 @@ class AlarmSettings(BaseModel):
                     "alarm again that is just over"
                 )
         return self
+
+    @property
+    def condition_rules(self) -> ConditionRules:
+        """Return when a motor's condition is told."""
+        return ConditionRules(self.watch, self.fault, self.growth_share, self.forecast_days)
 
     @property
     def watch(self) -> Confirmation:

@@ -2,6 +2,9 @@
 
 from enum import IntEnum, StrEnum
 
+from service.alarms.kinds import AlarmKind as AlarmKind
+from service.alarms.kinds import AlarmPriority as AlarmPriority
+
 
 class LinkState(StrEnum):
     """Whether a relay answers."""
@@ -10,42 +13,6 @@ class LinkState(StrEnum):
     UP = "up"
     DOWN = "down"
     QUARANTINED = "quarantined"
-
-
-class AlarmKind(StrEnum):
-    """What somebody has to look after: at a relay, or (`condition-...`) at a motor."""
-
-    FILE_REFUSED = "file-refused"
-    FILE_TOO_LARGE = "file-too-large"
-    FILE_UNSTEADY = "file-unsteady"
-    DAILY_LIMIT = "daily-limit"
-    QUARANTINED = "quarantined"
-    RELAY_DIFFERS = "relay-differs"
-    TIME_ZONE = "time-zone"
-    CONDITION_WATCH = "condition-watch"
-    CONDITION_FAULT = "condition-fault"
-
-
-FOLLOW_FROM_QUARANTINE = frozenset(
-    {
-        AlarmKind.FILE_REFUSED,
-        AlarmKind.FILE_TOO_LARGE,
-        AlarmKind.FILE_UNSTEADY,
-        AlarmKind.DAILY_LIMIT,
-        AlarmKind.RELAY_DIFFERS,
-        AlarmKind.TIME_ZONE,
-    }
-)
-"""Nobody can look after these while the relay is set aside: its quarantine is the alarm then."""
-
-
-class AlarmPriority(StrEnum):
-    """How soon somebody has to act."""
-
-    CRITICAL = "critical"
-    HIGH = "high"
-    MEDIUM = "medium"
-    LOW = "low"
 
 
 class AlarmState(StrEnum):

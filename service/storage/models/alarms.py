@@ -13,6 +13,7 @@ from sqlalchemy import (
 )
 from sqlalchemy.orm import InstrumentedAttribute, Mapped, mapped_column
 
+from core.condition.kinds import Kind
 from service.storage.models.base import Base
 from service.storage.states import AlarmEvent, AlarmKind, AlarmPriority, AlarmState
 
@@ -20,6 +21,7 @@ STANDING = text("cleared_ns IS NULL")
 CLEARED = text("cleared_ns IS NOT NULL")
 OPEN = text("state <> 'normal'")
 SHELVED = text("state = 'shelved'")
+MEMBER = text("part_of IS NOT NULL")
 UNROUTED = text("routed_ns IS NULL")
 ANNOUNCED = text("after = 'unacknowledged'")
 
@@ -40,6 +42,8 @@ class AlarmRow(Base):
     seen_value: how bad it was when somebody last acknowledged or shelved the alarm. raised_ns: the latest
     time; raises: how often. changed_ns, changed_by, comment: of the latest change of the state.
     shelved_until_ns, shelved_above: what ends the shelving, time or a value. suppressed_because: by design.
+    part_of: the alarm that tells many like this one in one line. causes: of a motor's condition, the kinds of
+    asymmetry that people were told.
     """
 
     __tablename__ = "alarms"
@@ -67,6 +71,8 @@ class AlarmRow(Base):
     shelved_until_ns: Mapped[int | None]
     shelved_above: Mapped[float | None]
     suppressed_because: Mapped[str | None]
+    part_of: Mapped[str | None] = mapped_column(String(36))
+    causes: Mapped[tuple[Kind, ...]] = mapped_column(nullable=True)
 
     __table_args__ = (
         Index("ix_alarms_ied_cleared_ns", "ied", "cleared_ns"),
@@ -88,6 +94,8 @@ class AlarmRow(Base):
         _partial("ix_alarms_open_motor_urgency", OPEN, "motor", "urgency", "raised_ns", "id"),
         _partial("ix_alarms_open_state_urgency", OPEN, "state", "urgency", "raised_ns", "id"),
         _partial("ix_alarms_shelved_until_ns", SHELVED, "shelved_until_ns"),
+        _partial("ix_alarms_part_of", MEMBER, "part_of"),
+        _partial("ix_alarms_standing_site_kind", STANDING, "site", "kind"),
     )
 
 

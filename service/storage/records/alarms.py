@@ -46,7 +46,7 @@ class Alarm:
     site, ied, motor: None where it is not about one. value: how bad the cause is, if it can grow; seen_value:
     how bad it was when somebody acknowledged or shelved it. raised_ns: the latest time; raises: how often.
     changed_ns, changed_by, comment: of the latest change of the state. shelved_until_ns, shelved_above: what
-    ends its shelving.
+    ends its shelving. part_of: the alarm that tells this one and many others in one line.
     """
 
     id: str
@@ -71,6 +71,7 @@ class Alarm:
     shelved_until_ns: int | None
     shelved_above: float | None
     suppressed_because: str | None
+    part_of: str | None = None
 
     @property
     def standing(self) -> bool:

@@ -13,6 +13,7 @@ from sqlalchemy.orm import Session
 
 from core.condition.events import EventKind
 from core.condition.observation import SAME_SUPPLY_WITHIN_NS
+from service.alarms.condition_rules import AT_ONCE, ConditionRules
 from service.storage.models import (
     Base,
     ConditionChangeRow,
@@ -160,11 +161,13 @@ class FoldingRows(Sessions):
                 latest_change=_latest_change(session, motor, done_ns),
             )
 
-    def finish_fold(self, fold: FoldInput, result: FoldResult, *, now_ns: int) -> bool:
+    def finish_fold(
+        self, fold: FoldInput, result: FoldResult, *, now_ns: int, rules: ConditionRules = AT_ONCE
+    ) -> bool:
         """Keep what a fold found, all of it or nothing; have the rest folded, if there is one.
 
-        With the condition goes the motor's alarm: it is raised or cleared at `now_ns`. Returns False, and
-        keeps nothing, where another fold of the motor has ended since this one began.
+        With the condition go the motor's alarms: they are raised or cleared at `now_ns` by these rules.
+        Returns False, and keeps nothing, where another fold of the motor has ended since this one began.
         """
         done_ns = EARLIEST_NS if fold.checkpoint is None else fold.checkpoint.time_ns
         with self._write() as session:
@@ -187,7 +190,7 @@ class FoldingRows(Sessions):
                 for name in set(figures) - {"motor", "version"}:
                     setattr(row, name, figures[name])
                 motor = found(session, MotorRow, fold.motor, "motor")
-                settle_alarm(session, motor, result.condition, now_ns=now_ns)
+                settle_alarm(session, motor, result.condition, now_ns=now_ns, rules=rules)
                 told = None if row.standing is None else row.standing.get(TOLD)
                 if is_material(told, result.standing):
                     told = result.standing

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.alarms.growth import LevelSeen, has_grown, has_grown_by, is_another_kind
+from service.alarms.growth import LevelSeen, has_grown, is_another_kind
 
 LEVELS = st.floats(1e-4, 0.5)
 
@@ -45,11 +45,6 @@ def test_steady_growth_calls_again_now_and_then(first: float, records: int) -> N
 
 def test_without_an_interval_nothing_is_known_to_have_grown() -> None:
     assert not has_grown(0.01, LevelSeen(0.5, None, None), 0.1)
-
-
-def test_growth_by_a_step_ends_a_shelving() -> None:
-    assert not has_grown_by(0.010, 0.005, LevelSeen(0.014, 0.013, 0.015))
-    assert has_grown_by(0.010, 0.005, LevelSeen(0.016, 0.014, 0.018))
 
 
 def test_only_another_kind_is_new() -> None:

@@ -18,6 +18,7 @@ from core.condition.observation import Observation
 from core.condition.verdict.condition import condition_of
 from core.machines.parameters import Motor, ParametersSource
 from core.machines.typical import TYPICAL_TOLERANCES, typical_parameters
+from service.alarms.condition_rules import ConditionRules
 from service.condition import worker
 from service.condition.motor_data import document_of
 from service.condition.worker import fold_due
@@ -255,12 +256,14 @@ def killed(database_url: str, step: str) -> None:
     worker.RECORDS_A_FOLD = 7
     finish = FoldingRows.finish_fold
 
-    def finish_and_die(repository: FoldingRows, due: FoldInput, result: FoldResult, *, now_ns: int) -> bool:
+    def finish_and_die(
+        repository: FoldingRows, due: FoldInput, result: FoldResult, *, now_ns: int, rules: ConditionRules
+    ) -> bool:
         if step == "before":
             os.kill(os.getpid(), signal.SIGKILL)
         if step == "within":
             result = replace(result, kept_checkpoints=_Deadly(result.kept_checkpoints))
-        kept = finish(repository, due, result, now_ns=now_ns)
+        kept = finish(repository, due, result, now_ns=now_ns, rules=rules)
         os.kill(os.getpid(), signal.SIGKILL)
         return kept
 

@@ -21,6 +21,7 @@ from sqlalchemy.orm import Session
 from core.machines.parameters import Motor, ParametersSource
 from core.recordings.comtrade.writer import write
 from core.time_stamps import nanoseconds
+from service.alarms.condition_rules import ConditionRules
 from service.api.condition_documents import condition_document
 from service.condition import work, worker
 from service.condition.work import ConditionWork
@@ -278,10 +279,12 @@ def die_of_the_pump() -> None:
     """Prepare a worker that is killed by each fold of the pump."""
     follow_service()
 
-    def fold_or_die(repository: Repository, motor: Motor, round_s: float) -> int:
+    def fold_or_die(
+        repository: Repository, motor: Motor, round_s: float, *, alarm_rules: ConditionRules
+    ) -> int:
         if motor.name == PUMP:
             os.kill(os.getpid(), signal.SIGKILL)
-        return fold_due(repository, motor, round_s)
+        return fold_due(repository, motor, round_s, alarm_rules=alarm_rules)
 
     worker.fold_due = fold_or_die  # type: ignore[assignment]  # in a process of its own
 

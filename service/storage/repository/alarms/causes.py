@@ -10,7 +10,7 @@ from collections.abc import Collection
 from sqlalchemy import ColumnElement, delete, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
-from service.storage.alarm_priorities import PRIORITY_OF
+from service.alarms.catalogue import CATALOGUE
 from service.storage.alarm_transitions import TRANSITIONS
 from service.storage.engine import one_at_a_time
 from service.storage.models import AlarmRow, IedRow, MotorRow
@@ -195,7 +195,7 @@ def alarm(row: AlarmRow) -> Alarm:
 
 
 def _new(place: AlarmPlace, spec: AlarmSpec, now_ns: int) -> AlarmRow:
-    priority = spec.priority or PRIORITY_OF[spec.kind]
+    priority = spec.priority or CATALOGUE[spec.kind].priority
     return AlarmRow(
         id=str(uuid.uuid4()),
         site=place.site,
@@ -217,7 +217,7 @@ def _new(place: AlarmPlace, spec: AlarmSpec, now_ns: int) -> AlarmRow:
 def _tell(row: AlarmRow, spec: AlarmSpec) -> None:
     """Give an alarm the present words, priority and value of its cause."""
     row.subject, row.reason = storable(spec.subject), storable(spec.reason)
-    row.priority = spec.priority or PRIORITY_OF[spec.kind]
+    row.priority = spec.priority or CATALOGUE[spec.kind].priority
     row.urgency = urgency(row.state, row.priority)
     row.value = spec.value
     if spec.advice is not None:

@@ -3,11 +3,12 @@
 from sqlalchemy import ColumnElement, or_, select
 from sqlalchemy.orm import Session
 
+from service.alarms.kinds import FOLLOW_FROM_QUARANTINE, FOLLOW_FROM_SITE_LOST
 from service.storage.models import AlarmRow, MotorRow, QuarantineRow
 from service.storage.models.alarms import in_state
 from service.storage.repository.alarms.changes import change, locked
 from service.storage.repository.sessions import Sessions
-from service.storage.states import FOLLOW_FROM_QUARANTINE, AlarmEvent, AlarmState
+from service.storage.states import AlarmEvent, AlarmKind, AlarmState
 
 AT_A_TIME = 500
 """So many alarms are changed in one transaction, so that nobody waits for long."""
@@ -78,7 +79,20 @@ def why_suppressed(session: Session, row: AlarmRow, *, now_ns: int) -> str | Non
         quarantine = session.get(QuarantineRow, row.ied)
         if quarantine is not None and quarantine.until_ns > now_ns:
             return _in_quarantine(row.ied)
+    if row.part_of is not None:
+        group = session.get(AlarmRow, row.part_of)
+        if group is not None and group.cleared_ns is None:
+            return f"one of {group.subject}, alarm {group.id}"
+    if row.site is not None and row.kind in FOLLOW_FROM_SITE_LOST and _is_lost(session, row.site):
+        return f"site {row.site} is lost"
     return None
+
+
+def _is_lost(session: Session, site: str) -> bool:
+    lost = select(AlarmRow.id).where(
+        AlarmRow.site == site, AlarmRow.kind == AlarmKind.SITE_LOST, AlarmRow.cleared_ns.is_(None)
+    )
+    return session.scalar(lost.limit(1)) is not None
 
 
 def _unsuppress(session: Session, *which: ColumnElement[bool], now_ns: int) -> int:

@@ -57,7 +57,7 @@ def test_an_alarm_stays_while_the_state_does_and_tells_the_present_cause(
     settle(named, NOW_NS + 1)
     (alarm,) = standing(repository)
     assert alarm == replace(
-        first, subject="voltage channel in phase c", reason="named; why", advice="look at it"
+        first, subject="voltage channel in phase c", reason="named; why", advice="look at it", value=0.004
     )
     assert repository.counts().alarms == {AlarmKind.CONDITION_WATCH: 1}
 
