@@ -14,7 +14,8 @@ from service.alarms.kinds import AlarmKind, AlarmPriority
 from service.configuration.alarms import AlarmSettings
 from service.storage import Repository
 from service.storage.models import MotorRow, ObservationRow
-from service.storage.records import Alarm
+from service.storage.records import Actor, Alarm
+from service.storage.records.actors import SERVICE
 from service.storage.repository.alarms.conditions import settle_alarm
 from service.storage.repository.observations import keep_observation
 from service.storage.states import AlarmEvent, AlarmState
@@ -22,6 +23,7 @@ from testing.service.conditions import DRIFTING, FAULT, HEALTHY, UNKNOWN, entry_
 from testing.service.observations import HOUR_NS, observation
 from testing.service.plants import NOW_NS
 
+ANN = Actor("ann", "command line")
 RULES = AlarmSettings().condition_rules
 TURNS = replace(DRIFTING, kind=Kind.SHORTED_TURNS, candidates=(), mu_f=0.004, mu_f_ci95=(0.003, 0.005))
 CHANNEL = replace(DRIFTING, kind=Kind.VOLTAGE_CHANNEL, candidates=(), size=0.010, size_ci95=(0.009, 0.011))
@@ -53,7 +55,7 @@ class Course:
     def tell(self, kind: EventKind, condition: Condition) -> None:
         """Have somebody tell of the motor, from which on this is said."""
         self.repository.add_event(
-            "PUMP-A1", Event(self.now_ns + 1, kind, "why"), by="ann", now_ns=self.now_ns
+            "PUMP-A1", Event(self.now_ns + 1, kind, "why"), by=SERVICE, now_ns=self.now_ns
         )
         with Session(self._engine) as session, session.begin():
             self._settle(session, condition)
@@ -83,7 +85,7 @@ class Course:
         )
 
     def acknowledge(self) -> None:
-        self.repository.acknowledge_alarm(self.alarm().id, by="ann", now_ns=self.now_ns)
+        self.repository.acknowledge_alarm(self.alarm().id, by=ANN, now_ns=self.now_ns)
 
 
 @pytest.fixture
@@ -152,7 +154,7 @@ def test_growth_beyond_the_interval_reopens_an_acknowledged_alarm_and_only_that(
 
 def test_an_alarm_that_is_shelved_until_it_grows_calls_when_it_has(course: Course) -> None:
     course.record(CALM_FAULT)
-    course.repository.shelve_alarm(course.alarm().id, by="ann", now_ns=course.now_ns, growth=0.005)
+    course.repository.shelve_alarm(course.alarm().id, by=ANN, now_ns=course.now_ns, growth=0.005)
     course.record(replace(CALM_FAULT, mu_f=0.0165, mu_f_ci95=(0.014, 0.02)))
     assert course.alarm().state is AlarmState.SHELVED
     course.record(replace(CALM_FAULT, mu_f=0.0175, mu_f_ci95=(0.016, 0.02)))
@@ -178,7 +180,7 @@ def test_another_kind_of_asymmetry_is_another_alarm(course: Course) -> None:
 def test_what_was_taken_out_of_service_stays_so_whatever_is_seen(course: Course) -> None:
     course.record(CHANNEL)
     course.record(CHANNEL)
-    course.repository.take_alarm_out_of_service(course.alarm().id, by="ann", now_ns=course.now_ns)
+    course.repository.take_alarm_out_of_service(course.alarm().id, by=ANN, now_ns=course.now_ns)
     course.record(TURNS)
     assert course.alarm().state is AlarmState.OUT_OF_SERVICE
     assert course.alarm().subject == "shorted turns in phase c"
