@@ -9,6 +9,7 @@ import typer
 
 from core.error_words import one_line
 from service.cli.commands import (
+    alarms,
     audit,
     data_sheets,
     exports,
@@ -49,7 +50,7 @@ def options(
     """Read the options that come before a command."""
 
 
-for _part in (programs, record_files, data_sheets, service, stored, exports, plant_files, audit):
+for _part in (programs, record_files, data_sheets, service, stored, alarms, exports, plant_files, audit):
     app.add_typer(_part.commands)
 
 

@@ -184,6 +184,22 @@ class ServiceClient:
         """Forget a motor's baseline; `said`: why and by whom. Raises ServiceError."""
         self._request("DELETE", f"{API}/motors/{segment(motor)}/baseline", said)
 
+    def acknowledge_alarms(self, alarm_ids: Sequence[str], said: Document) -> Document:
+        """Take notice of alarms; return those that were acknowledged and those refused.
+
+        Raises ServiceError (also where none could be).
+        """
+        path = f"{API}/alarms/acknowledgements"
+        return _document(self._request("POST", path, {}, document={"alarms": list(alarm_ids), **said}))
+
+    def set_alarm_aside(self, alarm_id: str, how: str, wanted: Document) -> Document:
+        """Set an alarm aside, and return it. `how`: "shelving" or "out-of-service". Raises ServiceError."""
+        return _document(self._request("PUT", f"{API}/alarms/{segment(alarm_id)}/{how}", {}, document=wanted))
+
+    def bring_alarm_back(self, alarm_id: str, how: str, said: Mapping[str, str]) -> Document:
+        """End what `set_alarm_aside` began, and return the alarm. Raises ServiceError."""
+        return _document(self._request("DELETE", f"{API}/alarms/{segment(alarm_id)}/{how}", said))
+
     def recording_request(self, request_id: str) -> Document:
         """Return a recording request, with its present state. Raises ServiceError."""
         return self.get(f"/event-reports/{segment(request_id)}")

@@ -1,9 +1,9 @@
-"""Arguments and options that several commands have."""
+"""Arguments, options and groups that several commands have."""
 
 import os
 from math import isfinite
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -44,3 +44,13 @@ Config = Annotated[
 ]
 
 DEFAULT_URL = "http://127.0.0.1:8710"
+
+
+class DefaultGroup(typer.core.TyperGroup):
+    """A group of commands whose first one is run where none is named."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the words after the group's name."""
+        if not args or (args[0] not in self.commands and args[0] != "--help"):
+            args = [next(iter(self.commands)), *args]
+        return super().parse_args(ctx, args)

@@ -1,13 +1,13 @@
-"""Commands on what a running service has kept: trends, alarms, recordings, their diagnoses and baselines."""
+"""Commands on what a running service has kept: trends, recordings, their diagnoses and baselines."""
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 import typer
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from core.operation import Operation
-from service.cli.commands.options import DEFAULT_URL, Json, Url, finite_seconds
+from service.cli.commands.options import DEFAULT_URL, DefaultGroup, Json, Url, finite_seconds
 
 commands = typer.Typer()
 
@@ -22,16 +22,6 @@ Reason = Annotated[str | None, typer.Option(metavar="TEXT", help="Why; it is kep
 By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
 Quantity = Literal["mu_f", "theta_f", "load_level", "condition_level", "change"]
 State = Literal["announced", "fetched", "diagnosed", "rejected", "failed"]
-
-
-class DefaultGroup(typer.core.TyperGroup):
-    """A group of commands whose first one is run where none is named."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Read the words after the group's name."""
-        if not args or (args[0] not in self.commands and args[0] != "--help"):
-            args = [next(iter(self.commands)), *args]
-        return super().parse_args(ctx, args)
 
 
 @commands.command()
@@ -58,25 +48,6 @@ def trend(
     from service.cli.trend import show_trend
 
     show_trend(url, motor, quantity, first=from_, end=to, limit=limit, as_csv=as_csv, as_json=as_json)
-
-
-@commands.command()
-def alarms(
-    motor: OneMotor = None,
-    url: Url = DEFAULT_URL,
-    relay: Annotated[
-        str | None, typer.Option(metavar="RELAY", help="Only this relay's and its motors'.")
-    ] = None,
-    limit: Limit = 100,
-    *,
-    cleared: Annotated[bool, typer.Option("--all", help="Also those that are over.")] = False,
-    as_csv: Csv = False,
-    as_json: Json = False,
-) -> None:
-    """Show what somebody has to look after at relays and motors, latest first."""
-    from service.cli.alarms import show_alarms
-
-    show_alarms(url, motor, relay, cleared=cleared, limit=limit, as_csv=as_csv, as_json=as_json)
 
 
 recordings = typer.Typer(cls=DefaultGroup, help="List recordings that the service has, or download one.")

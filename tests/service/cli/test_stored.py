@@ -1,4 +1,4 @@
-"""`mcc trend`, `alarms`, `recordings`, `upload`, `rediagnose`, `baseline`: against the API on a real port."""
+"""`mcc trend`, `recordings`, `upload`, `rediagnose`, `baseline`: against the API on a real port."""
 
 import csv
 import io
@@ -15,7 +15,6 @@ from service.cli.app import main
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
-from service.storage.states import AlarmKind
 from testing.service.conditions import FAULT, tell
 from testing.service.job_runner import RUNNER
 from testing.service.plants import NOW_NS, SECOND_NS, fault, healthy
@@ -86,34 +85,6 @@ def test_a_trend(mcc: Mcc, recorded: list[str]) -> None:
 def test_the_trend_of_a_condition(mcc: Mcc, repository: Repository) -> None:
     tell(repository, FAULT)
     assert mcc("trend", "PUMP-A1", "--quantity", "condition_level") == "no points\n"
-
-
-def test_alarms(mcc: Mcc, repository: Repository) -> None:
-    assert mcc("alarms") == "no alarms\n"
-    repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "X.CFG", FORMULA, now_ns=NOW_NS)
-    over = repository.raise_alarm("A2_SEL710", AlarmKind.RELAY_DIFFERS, "trigger", "none", now_ns=NOW_NS)
-    repository.clear_alarms("A2_SEL710", [over.id], now_ns=NOW_NS + SECOND_NS)
-    shown = mcc("alarms")
-    assert shown.startswith("A1_SEL710: file-refused, since 2025-10-09 08:53:20 UTC\n")
-    assert f"    X.CFG: {FORMULA}" in shown.splitlines()
-    assert "A2_SEL710" not in shown
-    assert "2025-10-09 08:53:21 UTC" in mcc("alarms", "--all")
-    assert mcc("alarms", "--relay", "A2_SEL710") == "no alarms\n"
-    assert mcc("alarms", "FAN-A2", "--all") == "no alarms\n"
-    [alarm] = rows(mcc("alarms", "--csv"))
-    assert (alarm["ied"], alarm["kind"], alarm["cleared_time"]) == ("A1_SEL710", "file-refused", "")
-    assert alarm["reason"] == f"'{FORMULA}", "a spreadsheet would compute it"
-    assert json.loads(mcc("alarms", "--json"))["alarms"][0]["reason"] == FORMULA
-
-
-def test_an_alarm_has_its_advice(mcc: Mcc, repository: Repository, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
-    tell(repository, FAULT)
-    shown = mcc("alarms")
-    [alarm] = json.loads(mcc("alarms", "--json"))["alarms"]
-    assert alarm["advice"]
-    assert " ".join(alarm["advice"].split()) in " ".join(shown.split())
-    assert max(map(len, shown.splitlines())) <= 80
 
 
 @pytest.mark.parametrize("words", [("recordings",), ("recordings", "list")])

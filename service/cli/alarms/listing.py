@@ -1,0 +1,143 @@
+"""`mcc alarms list` and `show`: what to act on first with what to do, and what happened to one alarm."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+
+from rich.padding import Padding
+from rich.text import Text
+
+from core.error_words import one_line
+from service.cli.alarms.choosing import whole_id
+from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
+from service.cli.rows import print_rows, require_one_format
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.client.verdicts import to_the_second
+
+FIELDS = (
+    "priority", "state", "standing", "raised_time", "cleared_time", "site", "ied", "motor", "kind", "subject",
+    "reason", "advice", "value", "raises", "changed_time", "changed_by", "comment", "shelved_until",
+    "shelved_above", "suppressed_because", "id",
+)  # fmt: skip
+
+COLOURS = {"critical": "bold red", "high": "red", "medium": "yellow"}
+MOST_CHANGES = 1000
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """Which alarms are shown; None for all. over: also those that are over, the latest at the top."""
+
+    motor: str | None
+    site: str | None
+    relay: str | None
+    state: str | None
+    over: bool
+
+    @property
+    def path(self) -> str:
+        """Return the list that has them."""
+        return "/alarms" if self.over else "/alarms/open"
+
+    @property
+    def query(self) -> dict[str, str]:
+        """Return the parameters of that list."""
+        words = {"motor": self.motor, "site": self.site, "ied": self.relay, "state": self.state}
+        return {name: word for name, word in words.items() if word is not None}
+
+
+def show_alarms(url: str, chosen: Chosen, *, limit: int, as_csv: bool, as_json: bool) -> None:
+    """Print alarms. Raises CommandError."""
+    require_one_format(as_csv=as_csv, as_json=as_json)
+    if chosen.over and (chosen.site is not None or chosen.state is not None):
+        raise CommandError(
+            "--all: expected neither --site nor --state beside it, which choose among open alarms",
+            details={"type": "WrongUse"},
+            exit_code=WRONG_USE,
+        )
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        pages = service.items(chosen.path, limit=str(min(limit, 1000)), **chosen.query)
+        found = list(islice(pages, limit))
+    if as_csv or as_json or not found:
+        print_rows("alarms", found, FIELDS, {}, as_csv=as_csv, as_json=as_json)
+        return
+    for alarm in found:
+        print_alarm(alarm)
+
+
+def show_alarm(url: str, alarm_id: str, *, as_json: bool) -> None:
+    """Print one alarm and what happened to it, the latest at the top. Raises CommandError."""
+    with failing_clearly(ServiceError), ServiceClient(url) as service:
+        path = f"/alarms/{segment(whole_id(service, alarm_id))}"
+        alarm = service.get(path)
+        changes = list(islice(service.items(f"{path}/changes", limit="1000"), MOST_CHANGES))
+    if as_json:
+        print_document({**alarm, "changes": changes})
+        return
+    print_alarm(alarm)
+    results().print()
+    columns = {
+        "time": lambda change: to_the_second(change["time"]),
+        "what": lambda change: str(change["event"]),
+        "state": lambda change: str(change["after"]),
+        "by": lambda change: str(change["by"]),
+        "comment": lambda change: str(change["comment"] or ""),
+    }
+    print_rows("changes", changes, (), columns, as_csv=False, as_json=False)
+
+
+def print_alarm(alarm: Document) -> None:
+    """Print how urgent an alarm is, where and what, since when, and below it why and what to do."""
+    console = results()
+    line = Text(f"{alarm['priority']}, {alarm['state']}", style=COLOURS.get(str(alarm["priority"]), ""))
+    where = alarm["motor"] or alarm["ied"] or alarm["site"] or "the service"
+    line.append(f"  {one_line(str(where))}: {alarm['kind']}, {_since(alarm)}", style="default not bold")
+    console.print(line)
+    for words in _details(alarm):
+        console.print(Padding(Text(one_line(words), overflow="fold"), (0, 0, 0, 4), expand=False))
+
+
+def _since(alarm: Document) -> str:
+    """Return since when the cause stands, and until when it stood."""
+    since = f"since {to_the_second(alarm['raised_time'])}"
+    if isinstance(alarm["raises"], int) and alarm["raises"] > 1:
+        since += f" ({alarm['raises']} times)"
+    return (
+        since if alarm["cleared_time"] is None else f"{since}, until {to_the_second(alarm['cleared_time'])}"
+    )
+
+
+def _details(alarm: Document) -> Iterator[str]:
+    yield from _words([": ".join(str(alarm[key]) for key in ("subject", "reason") if alarm[key])])
+    yield from _words([alarm["advice"]])
+    yield from _words([_what_was_done(alarm)])
+    yield f"id {alarm['id']}"
+
+
+def _what_was_done(alarm: Document) -> str | None:
+    """Return what somebody, or the plant's design, has made of an alarm."""
+    said = "" if alarm["comment"] is None else f": {alarm['comment']}"
+    by = f"by {alarm['changed_by']} {to_the_second(alarm['changed_time'])}"
+    match alarm["state"]:
+        case "acknowledged":
+            return f"acknowledged {by}{said}"
+        case "shelved":
+            return f"shelved until {' or '.join(_ends(alarm))} {by}{said}"
+        case "suppressed":
+            return f"suppressed: {alarm['suppressed_because']}"
+        case "out-of-service":
+            return f"taken out of service {by}{said}"
+    return None if alarm["comment"] is None else f"{by}{said}"
+
+
+def _ends(alarm: Document) -> Sequence[str]:
+    ends = []
+    if alarm["shelved_until"] is not None:
+        ends.append(to_the_second(alarm["shelved_until"]))
+    if alarm["shelved_above"] is not None:
+        ends.append(f"its value is above {alarm['shelved_above']:.4g}")
+    return ends
+
+
+def _words(found: Iterable[object]) -> Iterator[str]:
+    return (str(words) for words in found if words)
