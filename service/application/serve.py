@@ -30,6 +30,7 @@ from service.configuration.settings import Settings
 from service.jobs import JobRunner
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
+from service.notifications.work import NotificationWork
 from service.plant import Plant, read_plant
 from service.process.disk_space import disk_problem
 from service.process.garbage_collection import spare_what_stays
@@ -185,7 +186,10 @@ def _parts(
         gateway_problem=gateways.not_running,
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
     )
-    return jobs, {"collector": gateways, "jobs": jobs, **workers}
+    notifications = NotificationWork(
+        settings, repository, installation=installation_id(settings.data_directory)
+    )
+    return jobs, {"collector": gateways, "jobs": jobs, **workers, "notifications": notifications}
 
 
 def _written(settings: Settings) -> list[Path]:

@@ -65,6 +65,7 @@ async def _end(process: asyncio.subprocess.Process) -> int:
     finally:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
+        await process.wait()
 
 
 @asynccontextmanager

@@ -4,6 +4,7 @@ One address a mail: a server may take a mail for some addresses and refuse it fo
 it should not get it again.
 """
 
+import asyncio
 import socket
 import ssl
 from datetime import UTC, datetime
@@ -53,6 +54,9 @@ async def send_mail(name: str, channel: MailChannel, recipient: str, message: Me
         raise _refused(channel, error.code, error.message) from error
     except (aiosmtplib.SMTPException, OSError, ssl.SSLError) as error:
         raise SendError(f"mail server {channel.host}:{channel.server_port}: {error}") from error
+    finally:
+        client.close()  # where the connection failed half-way
+        await asyncio.sleep(0)
 
 
 def mail_document(channel: MailChannel, recipient: str, message: Message) -> bytes:

@@ -143,3 +143,34 @@ class JobPriority(IntEnum):
     RELAY_RECORD = 0
     UPLOAD = 1
     REPETITION = 2
+
+
+class NotificationKind(StrEnum):
+    """What a message is about."""
+
+    ALARMS = "alarms"
+    ESCALATION = "escalation"
+    DIGEST = "digest"
+    TEST = "test"
+
+
+class NotificationState(StrEnum):
+    """queued -> sending -> sent; queued again after a failure, dead after the last attempt.
+
+    withdrawn: there was nothing left to tell when its time came.
+    """
+
+    QUEUED = "queued"
+    SENDING = "sending"
+    SENT = "sent"
+    DEAD = "dead"
+    WITHDRAWN = "withdrawn"
+
+
+class NotifiedEvent(StrEnum):
+    """What people may want to be told of an alarm."""
+
+    RAISED = "raised"
+    REOPENED = "reopened"
+    CLEARED = "cleared"
+    ACKNOWLEDGED = "acknowledged"

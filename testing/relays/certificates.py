@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from ipaddress import ip_address
 from pathlib import Path
 
 from cryptography import x509
@@ -24,9 +25,12 @@ class Identity:
 
 def identity(
     folder: Path, name: str, *, issuer: Identity | None = None, authority: bool = False,
-    since: timedelta = -timedelta(hours=1), until: timedelta = VALID,
+    since: timedelta = -timedelta(hours=1), until: timedelta = VALID, address: str = "127.0.0.1",
 ) -> Identity:  # fmt: skip
-    """A new one called `name`, signed by its issuer or by itself; `since` and `until` from now."""
+    """A new one called `name`, signed by its issuer or by itself; `since` and `until` from now.
+
+    address: at which a server with it is.
+    """
     private_key = ec.generate_private_key(ec.SECP256R1())
     subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, name)])
     now = datetime.now(UTC)
@@ -39,6 +43,7 @@ def identity(
         .not_valid_before(now + since)
         .not_valid_after(now + until)
         .add_extension(x509.BasicConstraints(ca=authority, path_length=None), critical=True)
+        .add_extension(x509.SubjectAlternativeName([x509.IPAddress(ip_address(address))]), critical=False)
         .sign(private_key if issuer is None else issuer.private_key, hashes.SHA256())
     )
     certificate_file, key_file = folder / f"{name}.pem", folder / f"{name}.key"

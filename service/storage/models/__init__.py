@@ -21,6 +21,7 @@ from service.storage.models.counts import StandingAlarmCountRow, StateCountRow
 from service.storage.models.deletions import DeletedRemoteRecordRow, DeletionRow, DiscardedFolderRow
 from service.storage.models.diagnoses import DiagnosisRow, JobRow, JobRunnerRow
 from service.storage.models.measurements import MeasurementRow
+from service.storage.models.notifications import NotificationAlarmRow, NotificationRow
 from service.storage.models.plant import IedRow, MotorRow, SiteRow
 from service.storage.models.recordings import (
     BaselineRecordingRow,
@@ -67,6 +68,8 @@ __all__ = [
     "MeasurementRow",
     "MotorRow",
     "MotorVersionRow",
+    "NotificationAlarmRow",
+    "NotificationRow",
     "ObservationRow",
     "QuarantineRow",
     "RecordingFileRow",

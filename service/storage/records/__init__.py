@@ -43,6 +43,13 @@ from service.storage.records.diagnoses import (
 )
 from service.storage.records.health import MotorHealth, RecordedStarts
 from service.storage.records.measurements import Measurement, Sample
+from service.storage.records.notifications import (
+    Gathering,
+    NewNotification,
+    Notification,
+    NotificationTarget,
+    Occurrence,
+)
 from service.storage.records.pages import Cursor, Page
 from service.storage.records.plant import IedEntry, MotorEntry, SiteEntry
 from service.storage.records.recordings import RecordingEntry, RecordingFile, RecordingRequest, RemoteRecord
@@ -90,6 +97,7 @@ __all__ = [
     "FoldInput",
     "FoldResult",
     "GatewayEntry",
+    "Gathering",
     "IedEntry",
     "Job",
     "JobResult",
@@ -103,6 +111,10 @@ __all__ = [
     "MotorEntry",
     "MotorHealth",
     "MotorVersion",
+    "NewNotification",
+    "Notification",
+    "NotificationTarget",
+    "Occurrence",
     "OldRecording",
     "Page",
     "Quantity",

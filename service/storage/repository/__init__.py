@@ -17,6 +17,7 @@ from service.storage.repository.links import LinkRows
 from service.storage.repository.measurements import MeasurementRows
 from service.storage.repository.motor_health import MotorHealthRows
 from service.storage.repository.motor_versions import MotorVersionRows
+from service.storage.repository.notifications import NotificationRows
 from service.storage.repository.observations import ObservationRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.quarantines import QuarantineRows
@@ -53,6 +54,7 @@ class Repository(
     RetentionRows,
     BackupRows,
     AuditRows,
+    NotificationRows,
 ):
     """All there is to ask of and tell the database; every method is one transaction.
 
