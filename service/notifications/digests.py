@@ -23,6 +23,7 @@ MOST_NAMED = 20
 
 PERIODS = {"daily": timedelta(days=1), "weekly": timedelta(days=7)}
 BAD_FIRST = (State.FAULT, State.WATCH)
+WORST_FIRST = (*BAD_FIRST, *(state for state in State if state not in BAD_FIRST))
 
 
 def due_digests(settings: Settings, repository: Repository, now_ns: int) -> Iterator[NewNotification]:
@@ -57,6 +58,7 @@ def _document(
     to_ns = round(due.timestamp()) * NANOSECONDS_PER_SECOND
     from_ns = round((due - PERIODS[digest.period]).timestamp()) * NANOSECONDS_PER_SECOND
     motors = list(_motors(repository, digest.sites))
+    states_of = Counter(motor.condition.state for motor in motors)
     calls = repository.calls_of_alarms(from_ns=from_ns, to_ns=to_ns, sites=digest.sites)
     states = repository.open_alarm_states(sites=digest.sites)
     down = sorted({motor.ied.name for motor in motors if motor.ied.link_state is not LinkState.UP})
@@ -66,7 +68,7 @@ def _document(
         "from_ns": from_ns,
         "to_ns": to_ns,
         "sites": None if digest.sites is None else list(digest.sites),
-        "motors": dict(Counter(motor.condition.state.value for motor in motors)),
+        "motors": {state.value: states_of[state] for state in WORST_FIRST if states_of[state]},
         "attention": [_facts(motor) for motor in _worst(motors)[:MOST_NAMED]],
         "alarms_raised": {kind.value: number for kind, number in calls.items()},
         "alarms_open": {state.value: number for state, number in states.items()},

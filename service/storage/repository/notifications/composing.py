@@ -28,7 +28,7 @@ def compose(session: Session, row: NotificationRow) -> tuple[Mapping[str, object
         .where(NotificationAlarmRow.notification == row.id)
         .order_by(NotificationAlarmRow.sequence)
     )
-    everything = _latest(session.execute(query).tuples().all())
+    everything = _latest(session.execute(query).all())
     kept = [told for told in everything if _is_told(row, told)]
     if not kept:
         waits = any(alarm.state is AlarmState.RETURNED_UNACKNOWLEDGED for _, alarm, _ in everything)

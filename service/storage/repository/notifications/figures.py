@@ -29,7 +29,7 @@ class AlarmFigureRows(Sessions):
         if sites is not None:
             query = query.where(AlarmRow.site.in_(sites))
         with self._read() as session:
-            return dict(session.execute(query).tuples().all())
+            return dict(session.execute(query).all())
 
     def open_alarm_states(self, *, sites: Collection[str] | None = None) -> Mapping[AlarmState, int]:
         """Return how many alarms are in each state, of those that are not over; sites: None for all."""
@@ -37,7 +37,7 @@ class AlarmFigureRows(Sessions):
         if sites is not None:
             query = query.where(AlarmRow.site.in_(sites))
         with self._read() as session:
-            return dict(session.execute(query).tuples().all())
+            return dict(session.execute(query).all())
 
     def given_up_notifications(self, *, from_ns: int, to_ns: int) -> int:
         """Return how many messages were given up, from_ns <= time < to_ns."""

@@ -48,4 +48,4 @@ class NotificationLists(Sessions):
             .group_by(NotificationRow.channel, NotificationRow.state)
         )
         with self._read() as session:
-            return {(channel, state): number for channel, state, number in session.execute(counted).tuples()}
+            return {(channel, state): number for channel, state, number in session.execute(counted)}

@@ -119,7 +119,7 @@ class OutboxRows(Sessions):
             NotificationRow.state == NotificationState.SENDING
         )
         with self._read() as session:
-            return {notification: claim or "" for notification, claim in session.execute(query).tuples()}
+            return {notification: claim or "" for notification, claim in session.execute(query)}
 
     def release_claims(self, claims: Collection[str], *, now_ns: int, most_attempts: int) -> int:
         """Queue the messages again whose senders are dead; return how many they are."""

@@ -53,7 +53,7 @@ class RoutingRows(Sessions):
                 .order_by(AlarmChangeRow.sequence)
                 .limit(limit)
             )
-            found = session.execute(query).tuples().all()
+            found = session.execute(query).all()
             bundles = _Bundles(session, gathering, now_ns)
             for change, alarm in found:
                 change.routed_ns = now_ns
