@@ -5,12 +5,21 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from threading import Event
 
-from service.background import alarm_steps, housekeeping, orphaned_requests, retention, scheduling
+from service.background import (
+    alarm_steps,
+    audit_forwarding,
+    housekeeping,
+    orphaned_requests,
+    retention,
+    scheduling,
+)
 from service.background.alarm_steps import AlarmSteps
+from service.background.audit_forwarding import AuditForwarding
 from service.background.housekeeping import Housekeeping
 from service.background.orphaned_requests import OrphanedRequestEnder
 from service.background.retention import Retention
 from service.background.scheduling import Scheduler
+from service.configuration.audit import AuditSyslog
 from service.configuration.settings import Settings
 from service.plant import Plant
 from service.recording_store.store import RecordingStore
@@ -27,6 +36,7 @@ class Periods:
     retention_s: float = retention.PERIOD_S
     orphaned_requests_s: float = orphaned_requests.PERIOD_S
     alarm_steps_s: float = alarm_steps.PERIOD_S
+    audit_forwarding_s: float = audit_forwarding.PERIOD_S
 
 
 PERIODS = Periods()
@@ -57,7 +67,7 @@ def background_workers(
     ender = OrphanedRequestEnder(
         settings, repository, gateway_problem=gateway_problem, restart_delay_s=restart_delay_s
     )
-    return {
+    workers = {
         "schedules": PeriodicWorker(
             "scheduling", lambda: scheduler.request_due(time.time_ns()), period_s=periods.scheduling_s
         ),
@@ -88,3 +98,19 @@ def background_workers(
             stopping=alarm_steps_end,
         ),
     }
+    if settings.audit.syslog is not None:
+        workers["audit_forwarding"] = _forwarding(settings.audit.syslog, repository, periods)
+    return workers
+
+
+def _forwarding(syslog: AuditSyslog, repository: Repository, periods: Periods) -> PeriodicWorker:
+    ends = Event()
+    forwarding = AuditForwarding(repository, syslog, ends)
+    return PeriodicWorker(
+        "sending of the audit trail",
+        forwarding.forward,
+        period_s=periods.audit_forwarding_s,
+        at_once=True,
+        stopping=ends,
+        overdue_s=2 * syslog.timeout_s + audit_forwarding.LONGEST_BACKLOG_S,
+    )

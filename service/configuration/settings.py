@@ -16,6 +16,7 @@ from pydantic_settings import SettingsError as UnreadableEnvironment
 
 from core.units import SECONDS_PER_DAY
 from service.configuration.alarms import AlarmSettings
+from service.configuration.audit import AuditSettings
 from service.configuration.backup import BackupSettings
 from service.configuration.channels import CHANNEL_PATHS
 from service.configuration.notifications import NotificationSettings
@@ -84,6 +85,7 @@ class Settings(BaseSettings):
     backup: BackupSettings = Field(default_factory=BackupSettings)
     alarms: AlarmSettings = Field(default_factory=AlarmSettings)
     notifications: NotificationSettings = Field(default_factory=NotificationSettings)
+    audit: AuditSettings = Field(default_factory=AuditSettings)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
     relays_per_gateway: int = Field(default=100, ge=1, le=1000)
@@ -185,6 +187,7 @@ def _table(text: str, config: Path) -> dict[str, object]:
         table["backup"] = {**backup, "directory": config.absolute().parent / backup["directory"]}
     _anchor_each(table, "relays", RELAY_PATHS, config.absolute().parent)
     _anchor_each(table.get("notifications"), "channels", CHANNEL_PATHS, config.absolute().parent)
+    _anchor_each(table, "audit", CHANNEL_PATHS, config.absolute().parent)
     return table
 
 

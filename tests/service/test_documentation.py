@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 from service.api import ApiContext, create_app
 from service.configuration.alarms import AlarmSettings
+from service.configuration.audit import AuditSettings, AuditSyslog
 from service.configuration.backup import BackupSettings
 from service.configuration.channels import (
     AppriseChannel,
@@ -38,6 +39,14 @@ def test_every_rule_of_retention_is_documented() -> None:
     page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| `retention\.(\w+)`", page, re.MULTILINE)
     assert rows == list(RetentionSettings.model_fields)
+
+
+def test_every_setting_of_the_audit_trail_is_documented() -> None:
+    page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `audit\.(\w+)` \|(.*)$", page, re.MULTILINE)
+    assert [name for name, _ in rows] == list(AuditSettings.model_fields)
+    keys = set(re.findall(r"`(\w+)`", dict(rows)["syslog"])) - {"syslog", "audit"}
+    assert keys == set(AuditSyslog.model_fields) - {"kind"}
 
 
 def test_every_setting_of_the_back_up_is_documented() -> None:

@@ -48,6 +48,12 @@ class AuditHead(Document):
     hash: str
 
 
+class AuditState(AuditHead):
+    """The last entry, and `forwarded`, the last one that the syslog server has; null where none is set."""
+
+    forwarded: int | None
+
+
 class AuditVerification(Document):
     """What came of reading the whole trail.
 

@@ -11,7 +11,7 @@ from starlette.responses import Response
 
 from service.access.permissions import Permission
 from service.api.access.requirements import require
-from service.api.audit.schemas import AuditEntry, AuditHead, AuditVerification
+from service.api.audit.schemas import AuditEntry, AuditState, AuditVerification
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import FieldError, ProblemError, problems
@@ -59,10 +59,13 @@ def list_audit_entries(
 
 
 @router.get("/head", responses=problems())
-def get_audit_head(context: Context) -> AuditHead:
+def get_audit_head(context: Context) -> AuditState:
     """Return number and hash of the last entry. Keep them elsewhere to verify the trail against."""
     with context.repository.audit_trail() as trail:
-        return AuditHead.model_validate(trail.head)
+        head = trail.head
+    is_forwarded = context.settings.audit.syslog is not None
+    forwarded = context.repository.forwarded_audit_entry() if is_forwarded else None
+    return AuditState(number=head.number, hash=head.hash, forwarded=forwarded)
 
 
 async def _turn(context: Context) -> AsyncIterator[None]:

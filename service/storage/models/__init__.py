@@ -4,7 +4,7 @@ The code says relay; the tables, their columns and the REST API say IED, as IEC 
 """
 
 from service.storage.models.alarms import AlarmChangeRow, AlarmRow
-from service.storage.models.audit import AuditEntryRow, AuditHeadRow
+from service.storage.models.audit import AuditEntryRow, AuditForwardingRow, AuditHeadRow
 from service.storage.models.backups import BackupRow
 from service.storage.models.base import Base
 from service.storage.models.conditions import (
@@ -44,6 +44,7 @@ __all__ = [
     "AlarmChangeRow",
     "AlarmRow",
     "AuditEntryRow",
+    "AuditForwardingRow",
     "AuditHeadRow",
     "BackupRow",
     "Base",

@@ -41,3 +41,12 @@ class AuditHeadRow(Base):
     hash: Mapped[str] = mapped_column(String(64))
 
     __table_args__ = (CheckConstraint("id = 1", name="only_row"),)
+
+
+class AuditForwardingRow(Base):
+    """The last entry that the syslog server has: the one row of its table; 0 before the first."""
+
+    __tablename__ = "audit_forwarding"
+
+    id: Mapped[int] = mapped_column(primary_key=True, autoincrement=False)
+    number: Mapped[int]

@@ -4,12 +4,12 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from sqlalchemy import select
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from service.audit.actions import AuditAction
 from service.audit.entries import Anchor, AuditEntry
-from service.storage.models import AuditEntryRow, AuditHeadRow
+from service.storage.models import AuditEntryRow, AuditForwardingRow, AuditHeadRow
 from service.storage.records import Cursor, Page
 from service.storage.records.actors import Actor
 from service.storage.repository.audit.entries import note_change
@@ -85,6 +85,21 @@ class AuditRows(Sessions):
         with self._read() as session:
             order = [AuditEntryRow.number]
             return page_of(session, query, order, AuditEntry, limit=limit, after=after, descending=True)
+
+    def forwarded_audit_entry(self) -> int:
+        """Return the number of the last entry that the syslog server has; 0 before the first."""
+        with self._read() as session:
+            return session.scalars(select(AuditForwardingRow.number)).one()
+
+    def note_forwarded_audit_entries(self, before: int, last: int) -> None:
+        """Note that the syslog server has the entries up to `last`.
+
+        before: what it had when they were sent. Where another service has sent them meanwhile, nothing
+        changes.
+        """
+        row = update(AuditForwardingRow).where(AuditForwardingRow.number == before)
+        with self._write() as session:
+            session.execute(row.values(number=last))
 
     def note_by(
         self,
