@@ -5,14 +5,17 @@ from typing import Annotated
 from uuid import UUID
 
 from fastapi import APIRouter, Query
+from fastapi.responses import StreamingResponse
 
 from core.units import NANOSECONDS_PER_DAY
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.alarms.schemas import Alarm, AlarmChange, AlarmFigures
 from service.api.context import Context
+from service.api.exports.answers import FILES, ListAnswer
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
+from service.exports import alarms as table
 from service.storage.states import AlarmState
 
 router = APIRouter(tags=["alarms"])
@@ -25,9 +28,15 @@ OfRelay = Annotated[
 OfMotor = Annotated[str | None, Query(max_length=200, description="Only alarms of this motor.")]
 
 
-@router.get("/alarms", responses=problems(404), dependencies=[require(Permission.VIEW)])
+@router.get(
+    "/alarms",
+    response_model=Page[Alarm],
+    responses=problems(404) | FILES,
+    dependencies=[require(Permission.VIEW)],
+)
 def list_alarms(
     context: Context,
+    file: ListAnswer,
     ied: OfRelay = None,
     motor: OfMotor = None,
     standing: Annotated[
@@ -36,27 +45,37 @@ def list_alarms(
     ] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[Alarm]:
+) -> Page[Alarm] | StreamingResponse:
     """Return the alarms, over or not, latest first."""
     context.require_motor(motor)
     if ied is not None:
         context.repository.relay(ied)
+    if file is not None:
+        chosen = None if motor is None else [motor]
+        rows = table.alarms(context.repository, chosen, relay=ied, standing=standing)
+        return file.of(table.TABLE, rows, chosen)
     alarms = context.repository.alarms(
         relay=ied, motor=motor, standing=standing, limit=limit, after=decode(cursor, int, str)
     )
     return page(alarms, Alarm.model_validate)
 
 
-@router.get("/alarms/open", responses=problems(404), dependencies=[require(Permission.VIEW)])
+@router.get(
+    "/alarms/open",
+    response_model=Page[Alarm],
+    responses=problems(404) | FILES,
+    dependencies=[require(Permission.VIEW)],
+)
 def list_open_alarms(
     context: Context,
+    file: ListAnswer,
     site: Annotated[str | None, Query(max_length=200, description="Only alarms of this site.")] = None,
     ied: OfRelay = None,
     motor: OfMotor = None,
     state: Annotated[AlarmState | None, Query(description="Only alarms in this state.")] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
-) -> Page[Alarm]:
+) -> Page[Alarm] | StreamingResponse:
     """Return the alarms that are not over, what to act on first at the top.
 
     Those that nobody has taken notice of come first, then those acknowledged, those whose cause is gone, and
@@ -65,6 +84,9 @@ def list_open_alarms(
     context.require_motor(motor)
     if ied is not None:
         context.repository.relay(ied)
+    if file is not None:
+        rows = table.open_alarms(context.repository, site=site, relay=ied, motor=motor, state=state)
+        return file.of(table.TABLE, rows, None if motor is None else [motor])
     alarms = context.repository.open_alarms(
         site=site, relay=ied, motor=motor, state=state, limit=limit, after=decode(cursor, int, int, str)
     )

@@ -6,7 +6,7 @@ from prometheus_client.core import GaugeMetricFamily
 from prometheus_client.registry import Collector
 
 from service.storage.repository import Repository
-from service.storage.states import AlarmKind
+from service.storage.states import AlarmKind, AlarmPriority, AlarmState
 
 
 class StateMetrics(Collector):
@@ -34,3 +34,14 @@ class StateMetrics(Collector):
         for kind in AlarmKind:
             alarms.add_metric([kind], counts.alarms.get(kind, 0))
         yield alarms
+        opened = GaugeMetricFamily(
+            "mcc_alarms_open",
+            "Number of alarms that are not over, by state and priority",
+            labels=["state", "priority"],
+        )
+        open_alarms = self._repository.open_alarm_counts()
+        for state in AlarmState:
+            for priority in AlarmPriority:
+                if state is not AlarmState.NORMAL:
+                    opened.add_metric([state, priority], open_alarms.get((state, priority), 0))
+        yield opened

@@ -59,8 +59,12 @@ def test_the_metrics_read_no_table_that_grows(
 ) -> None:
     diagnose(repository)
     statements = asked("/metrics")
-    for table in ("recordings", "recording_requests", "jobs", "alarms"):
+    for table in ("recordings", "recording_requests", "jobs"):
         assert not [statement for statement in statements if f"FROM {table}" in statement]
+    for statement in statements:
+        if "FROM alarms" in statement:
+            plan = " ".join(plan_of(engine, statement))
+            assert "SEARCH alarms USING" in plan, "alarms that are over are passed by"
     (latest,) = [statement for statement in statements if "FROM diagnoses" in statement]
     assert "FROM motors" in latest, "one look into the index of the trend for each motor"
     plan = " ".join(plan_of(engine, latest))

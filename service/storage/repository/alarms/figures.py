@@ -1,17 +1,18 @@
 """Key figures of the alarms: how many a day, the most frequent, chattering and long-standing ones."""
 
+from collections.abc import Mapping
 from heapq import nsmallest
 from typing import Any
 
-from sqlalchemy import ColumnElement, Select, func, select
+from sqlalchemy import ColumnElement, Select, func, or_, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
-from service.storage.models import AlarmChangeRow, AlarmRow
+from service.storage.models import AlarmChangeRow, AlarmRow, IedRow
 from service.storage.models.alarms import announced, is_open
 from service.storage.records import Alarm, AlarmCause, AlarmFigures, CallsOfDay
 from service.storage.repository.sessions import Sessions, columns_of
-from service.storage.states import AlarmState
+from service.storage.states import AlarmPriority, AlarmState
 
 MOST_CAUSES = 20
 """So many of the most frequent, of the chattering and of the long-standing ones are named."""
@@ -49,6 +50,17 @@ class AlarmFigureRows(Sessions):
                 standing_long=long,
                 standing_long_in_all=in_all,
             )
+
+    def open_alarm_counts(self) -> Mapping[tuple[AlarmState, AlarmPriority], int]:
+        """Count the alarms that are not over, by state and priority; of relays, those in service only."""
+        query = (
+            select(AlarmRow.state, AlarmRow.priority, func.count())
+            .outerjoin(IedRow, IedRow.name == AlarmRow.ied)
+            .where(is_open(), AlarmRow.state.in_(OPEN), or_(AlarmRow.ied.is_(None), IedRow.in_service))
+            .group_by(AlarmRow.state, AlarmRow.priority)
+        )
+        with self._read() as session:
+            return {(state, priority): number for state, priority, number in session.execute(query)}
 
 
 def _days(session: Session, from_ns: int, now_ns: int) -> tuple[CallsOfDay, ...]:

@@ -169,6 +169,24 @@ def test_hostile_words_of_a_relay_are_no_formulas(client: httpx.Client, reposito
     assert row["subject"] == "=cmd|' /C calc'!A0"
 
 
+def test_alarms_as_the_lists_have_them(client: httpx.Client, repository: Repository) -> None:
+    for at, relay in enumerate(("A1_SEL710", "A2_SEL710", "A1_SEL710")):
+        repository.raise_alarm(relay, AlarmKind.FILE_REFUSED, f"{at}", "odd", now_ns=NOW_NS + at)
+    for path in (
+        "/api/v1/alarms",
+        "/api/v1/alarms?ied=A1_SEL710",
+        "/api/v1/alarms?standing=false",
+        "/api/v1/alarms/open",
+        "/api/v1/alarms/open?state=acknowledged",
+        "/api/v1/alarms/open?ied=A2_SEL710",
+    ):
+        items = client.get(path).json()["items"]
+        rows = read(client.get(path, headers={"Accept": "text/csv"}))
+        assert [(row["alarm_id"], row["priority"], row["state"]) for row in rows] == [
+            (item["id"], item["priority"], item["state"]) for item in items
+        ]
+
+
 def test_what_is_wrong_is_told_in_words(client: httpx.Client, trend: Sequence[str]) -> None:
     for path, status, words in (
         (f"{TREND}?format=pdf", 422, "csv"),

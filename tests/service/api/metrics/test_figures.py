@@ -13,6 +13,7 @@ from core.units import NANOSECONDS_PER_SECOND
 from service.plant import PlantMotor
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from service.storage.states import AlarmKind
 from testing.service.conditions import FAULT, HEALTHY, tell
 from testing.service.diagnosed import add_diagnosed
 from testing.service.plants import NOW_NS, fault, motor, two_motor_plant, undiagnosable
@@ -81,6 +82,22 @@ def test_the_latest_valid_recording_tells_load_and_detection_limit(
     assert found[("load_ratio",)] == 0.9
     assert found[("detection_limit_ratio",)] == 0.021
     assert found[("recording_timestamp_seconds",)] == (NOW_NS + 2 * HOUR_NS) / NANOSECONDS_PER_SECOND
+
+
+def test_open_alarms_are_counted_by_state_and_priority(client: httpx.Client, repository: Repository) -> None:
+    raised = repository.raise_alarm("A1_SEL710", AlarmKind.QUARANTINED, "", "crashed", now_ns=NOW_NS)
+    repository.raise_alarm("A2_SEL710", AlarmKind.FILE_REFUSED, "x", "odd", now_ns=NOW_NS)
+
+    def counted() -> dict[tuple[str, str], float]:
+        samples = scraped(client)["mcc_alarms_open"].samples
+        return {(one.labels["state"], one.labels["priority"]): one.value for one in samples}
+
+    assert len(counted()) == 6 * 4, "those that there are none of are 0"
+    assert sum(counted().values()) == 2
+    assert counted()["unacknowledged", raised.priority] >= 1
+    plant = two_motor_plant()
+    repository.sync_plant(replace(plant, relays=plant.relays[:1], motors=plant.motors[:1]))
+    assert sum(counted().values()) == 1, "a relay that left the plant calls nobody"
 
 
 def test_names_of_any_kind_are_read_back_as_they_are(client: httpx.Client, repository: Repository) -> None:
