@@ -1,4 +1,4 @@
-"""What happens to alarms by itself: shelvings end when their time has come, and so do suppressions.
+"""What happens to alarms by itself: shelvings end when their time has come, suppressions begin and end.
 
 Several services may do this on one database: each alarm is changed once.
 """
@@ -11,7 +11,7 @@ PERIOD_S = 10.0
 
 
 class AlarmSteps:
-    """Ends shelvings and suppressions that are over."""
+    """Ends shelvings that are over, and suppresses alarms as the plant's design says."""
 
     def __init__(self, repository: Repository, stopping: Event | None = None) -> None:
         """stopping: set when the work should end, though there is more."""
@@ -19,7 +19,12 @@ class AlarmSteps:
         self._stopping = stopping or Event()
 
     def take(self, now_ns: int) -> None:
-        """End what is over at this time. Raises SQLAlchemyError."""
-        for end in (self._repository.end_shelvings, self._repository.end_suppressions):
-            while not self._stopping.is_set() and end(now_ns=now_ns):
+        """Do what is due at this time. Raises SQLAlchemyError."""
+        steps = (
+            self._repository.end_shelvings,
+            self._repository.begin_suppressions,
+            self._repository.end_suppressions,
+        )
+        for step in steps:
+            while not self._stopping.is_set() and step(now_ns=now_ns):
                 pass

@@ -91,7 +91,7 @@ def background_workers(
             period_s=periods.orphaned_requests_s,
         ),
         "alarm_steps": PeriodicWorker(
-            "ending of shelvings and suppressions",
+            "shelving and suppression of alarms",
             lambda: steps.take(time.time_ns()),
             period_s=periods.alarm_steps_s,
             at_once=True,

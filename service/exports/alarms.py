@@ -23,7 +23,7 @@ TABLE: Table[Alarm] = Table(
         text("kind", "kind of alarm", attrgetter("kind")),
         text("subject", "record, file or cause that it is about", attrgetter("subject")),
         text("reason", "why it was raised", attrgetter("reason")),
-        text("advice", "what to do", attrgetter("advice")),
+        text("advice", "what to do", attrgetter("what_to_do")),
         number("value", "", "how bad its cause is, if it can grow", attrgetter("value")),
         whole("raises", "1", "how often it was raised", attrgetter("raises")),
         time("changed_time", "when its state changed", attrgetter("changed_ns")),

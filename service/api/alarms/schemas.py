@@ -20,11 +20,12 @@ class Alarm(Document):
 
     state: what people and the plant's design have made of it. site, ied, motor: null where it is not about
     one. subject: the record or file it is about, as printable text, empty where it is about the relay; of a
-    motor's condition (`condition-...`), its cause. advice: what to do. recording: the one that shows it.
+    motor's condition (`condition-...`), its cause. cause, consequence: of all of its kind, in a sentence.
+    advice: what to do. recording: the one that shows it.
     value: how bad the cause is, where it can grow; seen_value: when somebody acknowledged or shelved it.
     raised_time: the latest; raises: how often. changed_...: the latest change of the state, by whom and with
     which comment. shelved_until, shelved_above: the time and the value that end the shelving.
-    suppressed_because: why the plant's design suppresses it.
+    suppressed_because: why the plant's design suppresses it. part_of: the alarm that tells it with others.
     """
 
     id: str
@@ -37,7 +38,9 @@ class Alarm(Document):
     standing: bool
     subject: str
     reason: str
-    advice: str | None
+    cause: str
+    consequence: str
+    advice: str = Field(validation_alias="what_to_do")
     recording: str | None = Field(validation_alias="recording_id")
     value: float | None
     seen_value: float | None
@@ -50,6 +53,7 @@ class Alarm(Document):
     shelved_until: Time | None = Field(validation_alias="shelved_until_ns")
     shelved_above: float | None
     suppressed_because: str | None
+    part_of: str | None
 
 
 class AlarmChange(Document):

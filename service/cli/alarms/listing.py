@@ -1,6 +1,6 @@
 """`mcc alarms list` and `show`: what to act on first with what to do, and what happened to one alarm."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
@@ -16,8 +16,8 @@ from service.client.verdicts import to_the_second
 
 FIELDS = (
     "priority", "state", "standing", "raised_time", "cleared_time", "site", "ied", "motor", "kind", "subject",
-    "reason", "advice", "value", "raises", "changed_time", "changed_by", "comment", "shelved_until",
-    "shelved_above", "suppressed_because", "id",
+    "reason", "cause", "consequence", "advice", "value", "raises", "changed_time", "changed_by", "comment",
+    "shelved_until", "shelved_above", "suppressed_because", "part_of", "id",
 )  # fmt: skip
 
 COLOURS = {"critical": "bold red", "high": "red", "medium": "yellow"}
@@ -75,6 +75,8 @@ def show_alarm(url: str, alarm_id: str, *, as_json: bool) -> None:
         print_document({**alarm, "changes": changes})
         return
     print_alarm(alarm)
+    for words in (alarm["cause"], alarm["consequence"]):
+        results().print(Padding(Text(one_line(str(words)), overflow="fold"), (0, 0, 0, 4), expand=False))
     results().print()
     columns = {
         "time": lambda change: to_the_second(change["time"]),
@@ -108,9 +110,8 @@ def _since(alarm: Document) -> str:
 
 
 def _details(alarm: Document) -> Iterator[str]:
-    yield from _words([": ".join(str(alarm[key]) for key in ("subject", "reason") if alarm[key])])
-    yield from _words([alarm["advice"]])
-    yield from _words([_what_was_done(alarm)])
+    why = ": ".join(str(alarm[key]) for key in ("subject", "reason") if alarm[key])
+    yield from (words for words in (why, str(alarm["advice"]), _what_was_done(alarm)) if words)
     yield f"id {alarm['id']}"
 
 
@@ -137,7 +138,3 @@ def _ends(alarm: Document) -> Sequence[str]:
     if alarm["shelved_above"] is not None:
         ends.append(f"its value is above {alarm['shelved_above']:.4g}")
     return ends
-
-
-def _words(found: Iterable[object]) -> Iterator[str]:
-    return (str(words) for words in found if words)

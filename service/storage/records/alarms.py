@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from core.units import NANOSECONDS_PER_DAY
+from service.alarms.catalogue import CATALOGUE
 from service.storage.states import AlarmEvent, AlarmKind, AlarmPriority, AlarmState
 
 
@@ -77,6 +78,21 @@ class Alarm:
     def standing(self) -> bool:
         """Tell whether the cause stands."""
         return self.cleared_ns is None
+
+    @property
+    def cause(self) -> str:
+        """Return in a sentence what has happened, of all alarms of this kind."""
+        return CATALOGUE[self.kind].cause
+
+    @property
+    def consequence(self) -> str:
+        """Return in a sentence what follows if nobody acts."""
+        return CATALOGUE[self.kind].consequence
+
+    @property
+    def what_to_do(self) -> str:
+        """Return what to do about this alarm, or about all of its kind."""
+        return self.advice or CATALOGUE[self.kind].action
 
 
 @dataclass(frozen=True, slots=True)

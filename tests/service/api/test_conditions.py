@@ -15,6 +15,8 @@ from core.condition.verdict.condition import Condition
 from core.diagnosis.verdict import Diagnosis
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
+from service.alarms.catalogue import CATALOGUE
+from service.alarms.kinds import AlarmKind
 from service.plant import Schedule
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
@@ -232,11 +234,11 @@ def test_an_alarm_says_what_to_do_about_a_motor(client: httpx.Client, repository
         "subject": "shorted turns in phase b",
         "reason": "; ".join(FAULT.reasons),
         "advice": FAULT.advice,
-        "priority": "high",
+        "priority": "critical",
         "state": "unacknowledged",
         "standing": True,
         "recording": None,
-        "value": FAULT.change,
+        "value": FAULT.mu_f,
         "seen_value": None,
         "raised_time": rfc3339(NOW_NS),
         "raises": 1,
@@ -247,6 +249,9 @@ def test_an_alarm_says_what_to_do_about_a_motor(client: httpx.Client, repository
         "shelved_until": None,
         "shelved_above": None,
         "suppressed_because": None,
+        "part_of": None,
+        "cause": CATALOGUE[AlarmKind.CONDITION_FAULT].cause,
+        "consequence": CATALOGUE[AlarmKind.CONDITION_FAULT].consequence,
     }
     assert client.get("/api/v1/ieds/A1_SEL710").json()["alarms"] == []
     assert client.get("/api/v1/alarms", params={"motor": "FAN-A2"}).json()["items"] == []

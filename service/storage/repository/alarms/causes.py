@@ -120,7 +120,7 @@ def raised_at(session: Session, place: AlarmPlace, spec: AlarmSpec, *, now_ns: i
     """Raise an alarm at a complete place that is locked, and return its row."""
     about = [is_open(), AlarmRow.kind == spec.kind, *_at(place)]
     if not spec.one_of_kind:
-        about.append(AlarmRow.subject == spec.subject)
+        about.append(AlarmRow.subject == storable(spec.subject))
     rows = locked(session, *about)
     row = rows[0] if rows else _new(place, spec, now_ns)
     _tell(row, spec)
@@ -184,8 +184,14 @@ def reopen(session: Session, row: AlarmRow, reason: str, *, now_ns: int, value: 
 
 
 def forget_cleared(session: Session, *of: ColumnElement[bool]) -> None:
-    """Delete the oldest cleared alarms of a place beyond those that are kept, with their history."""
-    cleared = select(AlarmRow.id).where(*of, AlarmRow.cleared_ns.is_not(None))
+    """Delete the oldest cleared alarms of a place beyond those that are kept, with their history.
+
+    Those that people have set aside stay: they wait for their causes to come again.
+    """
+    set_aside = (AlarmState.SHELVED, AlarmState.OUT_OF_SERVICE)
+    cleared = select(AlarmRow.id).where(
+        *of, AlarmRow.cleared_ns.is_not(None), AlarmRow.state.not_in(set_aside)
+    )
     too_old = cleared.order_by(AlarmRow.cleared_ns.desc(), AlarmRow.id.desc()).offset(MOST_CLEARED)
     session.execute(delete(AlarmRow).where(AlarmRow.id.in_(session.scalars(too_old).all())))
 

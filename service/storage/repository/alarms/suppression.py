@@ -4,7 +4,7 @@ from sqlalchemy import ColumnElement, or_, select
 from sqlalchemy.orm import Session
 
 from service.alarms.kinds import FOLLOW_FROM_QUARANTINE, FOLLOW_FROM_SITE_LOST
-from service.storage.models import AlarmRow, MotorRow, QuarantineRow
+from service.storage.models import AlarmRow, IedRow, MotorRow, QuarantineRow
 from service.storage.models.alarms import in_state
 from service.storage.repository.alarms.changes import change, locked
 from service.storage.repository.sessions import Sessions
@@ -31,6 +31,24 @@ class AlarmSuppressionRows(Sessions):
                 change(session, row, AlarmEvent.SHELVING_ENDED, now_ns=now_ns)
                 suppress_by_design(session, row, now_ns=now_ns)
             return len(rows)
+
+    def begin_suppressions(self, *, now_ns: int) -> int:
+        """Suppress what calls for somebody at motors and relays that left the plant.
+
+        Returns how many, at most 500 at a time.
+        """
+        motors = select(MotorRow.name).where(MotorRow.in_service.is_(False))
+        relays = select(IedRow.name).where(IedRow.in_service.is_(False))
+        left = or_(AlarmRow.motor.in_(motors), AlarmRow.motor.is_(None) & AlarmRow.ied.in_(relays))
+        with self._read() as session:
+            ids = session.scalars(select(AlarmRow.id).where(_calling(), left).limit(AT_A_TIME)).all()
+        if not ids:
+            return 0
+        with self._write() as session:
+            rows = locked(session, AlarmRow.id.in_(ids), _calling())
+            for row in rows:
+                suppress_by_design(session, row, now_ns=now_ns)
+            return sum(row.state is AlarmState.SUPPRESSED for row in rows)
 
     def end_suppressions(self, *, now_ns: int) -> int:
         """End the suppressions whose reason is gone; return how many, at most 500 at a time."""
@@ -59,8 +77,8 @@ def suppress(session: Session, row: AlarmRow, reason: str, *, now_ns: int) -> No
 
 def suppress_those_of_quarantine(session: Session, relay: str, *, now_ns: int) -> None:
     """Suppress the alarms that follow from the quarantine of their relay."""
-    calling = or_(*(in_state(state) for state in CALLING))
-    for row in locked(session, AlarmRow.ied == relay, AlarmRow.kind.in_(FOLLOW_FROM_QUARANTINE), calling):
+    of_quarantine = AlarmRow.kind.in_(FOLLOW_FROM_QUARANTINE)
+    for row in locked(session, AlarmRow.ied == relay, of_quarantine, _calling()):
         suppress(session, row, _in_quarantine(relay), now_ns=now_ns)
 
 
@@ -75,6 +93,10 @@ def why_suppressed(session: Session, row: AlarmRow, *, now_ns: int) -> str | Non
         motor = session.get(MotorRow, row.motor)
         if motor is None or not motor.in_service:
             return f"motor {row.motor} is out of service"
+    elif row.ied is not None:
+        relay = session.get(IedRow, row.ied)
+        if relay is None or not relay.in_service:
+            return f"relay {row.ied} is out of service"
     if row.ied is not None and row.kind in FOLLOW_FROM_QUARANTINE:
         quarantine = session.get(QuarantineRow, row.ied)
         if quarantine is not None and quarantine.until_ns > now_ns:
@@ -104,6 +126,10 @@ def _unsuppress(session: Session, *which: ColumnElement[bool], now_ns: int) -> i
     for row in over:
         change(session, row, AlarmEvent.UNSUPPRESSED, now_ns=now_ns)
     return len(over)
+
+
+def _calling() -> ColumnElement[bool]:
+    return or_(*(in_state(state) for state in CALLING))
 
 
 def _in_quarantine(relay: str) -> str:

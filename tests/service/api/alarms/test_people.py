@@ -9,6 +9,7 @@ import httpx
 import pytest
 
 from core.units import NANOSECONDS_PER_DAY
+from service.alarms.catalogue import CATALOGUE
 from service.api.times import rfc3339
 from service.storage import Repository
 from service.storage.records import Alarm, AlarmPlace, AlarmSpec
@@ -214,3 +215,14 @@ def test_what_people_do_is_in_the_audit_trail(
     ]
     assert '"comment":"seen"' in str(entries[-1].after)
     assert '"shelved_above":0.51' in str(entries[-2].after).replace('"0.51"', "0.51")
+
+
+def test_an_alarm_says_what_has_happened_what_follows_and_what_to_do(
+    client: httpx.Client, alarm: Alarm
+) -> None:
+    found = client.get(f"{URL}/{alarm.id}").json()
+    description = CATALOGUE[AlarmKind.FILE_REFUSED]
+    assert (found["cause"], found["consequence"], found["advice"]) == (
+        (description.cause, description.consequence, description.action)
+    )
+    assert found["priority"] == description.priority

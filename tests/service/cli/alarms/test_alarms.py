@@ -66,7 +66,7 @@ def test_what_to_act_on_first_is_at_the_top(mcc: Mcc, repository: Repository, al
     repository.clear_alarms("A2_SEL710", [over.id], now_ns=NOW_NS + SECOND_NS)
     first, second, third = (line for line in mcc().splitlines() if not line.startswith(" "))
     since = "since 2025-10-09 08:53:20 UTC"
-    assert first == f"high, unacknowledged  PUMP-A1: condition-fault, {since}"
+    assert first == f"critical, unacknowledged  PUMP-A1: condition-fault, {since}"
     assert second == f"low, unacknowledged  {RELAY}: file-refused, {since}"
     until = "until 2025-10-09 08:53:21 UTC"
     assert third.startswith("low, returned-unacknowledged  A2_SEL710: relay-differs, since")
