@@ -22,7 +22,7 @@ from service.api.condition_schemas import (
     RestartRequest,
     Withdrawal,
 )
-from service.api.context import ApiContext, Context
+from service.api.context import ApiContext, Context, path_to
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import FieldError, ProblemError, problems
@@ -94,7 +94,7 @@ def add_note(
 ) -> Note:
     """Keep what a person tells of a motor; its condition follows within seconds."""
     note = _add(context, name, wanted.kind, wanted.text, caller, wanted.by, wanted.time)
-    response.headers["Location"] = request.url_for("get_note", name=name, note_id=note.id).path
+    response.headers["Location"] = path_to(request, "get_note", name=name, note_id=note.id)
     return note
 
 
@@ -130,7 +130,7 @@ def restart_reference(
     """Take the motor for healthy as it is: its standing asymmetry is learnt anew. The answer is a note."""
     kind = EventKind.REFERENCE_RESTARTED
     note = _add(context, name, kind, wanted.reason, caller, wanted.by, wanted.time)
-    response.headers["Location"] = request.url_for("get_note", name=name, note_id=note.id).path
+    response.headers["Location"] = path_to(request, "get_note", name=name, note_id=note.id)
     return note
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Annotated
+from urllib.parse import quote
 
 from fastapi import Depends, Request
 
@@ -54,6 +55,17 @@ def _context_of(request: Request) -> ApiContext:
     if not isinstance(context, ApiContext):
         raise TypeError("the application was not made by create_app")
     return context
+
+
+def path_to(request: Request, route: str, **parameters: object) -> str:
+    """Return the path of a route, for a header: names in it may have any characters."""
+    quoted = {name: _segment(str(value)) for name, value in parameters.items()}
+    return request.url_for(route, **quoted).path
+
+
+def _segment(name: str) -> str:
+    """Return a name as a segment of a path; dots alone would lead elsewhere."""
+    return quote(name, safe="") if name.strip(".") else name.replace(".", "%2E")
 
 
 Context = Annotated[ApiContext, Depends(_context_of)]

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
-from service.api.context import Context
+from service.api.context import Context, path_to
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.schemas import Diagnosis, DiagnosisRequest, DiagnosisRun
@@ -48,7 +48,7 @@ def request_diagnosis(
         most_queued=context.settings.max_queued_diagnoses,
     )
     context.on_new_job()
-    path = request.url_for("get_diagnosis", recording_id=recording_id, diagnosis_id=job.id).path
+    path = path_to(request, "get_diagnosis", recording_id=recording_id, diagnosis_id=job.id)
     response.headers["Location"] = path
     return DiagnosisRun.model_validate(job)
 

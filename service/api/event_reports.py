@@ -10,7 +10,7 @@ from fastapi import APIRouter, Header, Query, Request, Response
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
-from service.api.context import Context
+from service.api.context import Context, path_to
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
@@ -55,7 +55,7 @@ def request_event_report(
         idempotency_key=idempotency_key,
         most_open=context.settings.max_open_requests,
     )
-    response.headers["Location"] = request.url_for("get_event_report", report_id=recording_request.id).path
+    response.headers["Location"] = path_to(request, "get_event_report", report_id=recording_request.id)
     return EventReport.model_validate(recording_request)
 
 

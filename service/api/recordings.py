@@ -19,7 +19,7 @@ from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
 from service.api.archive import archive_name, zipped
-from service.api.context import ApiContext, Context
+from service.api.context import ApiContext, Context, path_to
 from service.api.exports.answers import FILES, ListAnswer
 from service.api.listed_recordings import listed
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode
@@ -110,7 +110,7 @@ async def upload_recording(
         added, details = await run_in_threadpool(_upload, context, caller, motor, files)
     if not added.created:
         response.status_code = HTTPStatus.OK
-    response.headers["Location"] = request.url_for("get_recording", recording_id=added.recording.id).path
+    response.headers["Location"] = path_to(request, "get_recording", recording_id=added.recording.id)
     return details
 
 
