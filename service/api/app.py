@@ -32,6 +32,7 @@ from service.api.host_guard import HostGuard
 from service.api.limits.arrivals import Arrivals
 from service.api.limits.body_limits import BodyLimits, Route, document
 from service.api.limits.long_lists import LongLists
+from service.api.notifications import routes as notifications
 from service.api.query_parameters import refuse_unknown_parameters
 
 PREFIX = "/api/v1"
@@ -66,6 +67,7 @@ def create_app(context: ApiContext) -> FastAPI:
         diagnoses,
         deletions,
         exports,
+        notifications,
         audit_trail,
     ):
         api.include_router(part.router)

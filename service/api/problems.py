@@ -26,6 +26,7 @@ from service.storage.errors import (
     RecordingInUseError,
     StateConflictError,
     TooManyNotesError,
+    TooManyTestsError,
     TooManyWaitingError,
     UnusableBaselineError,
 )
@@ -252,6 +253,7 @@ def install(app: FastAPI) -> None:
         app.add_exception_handler(error_type, _with_status(status))
     app.add_exception_handler(DataError, _unstorable)
     app.add_exception_handler(TooManyWaitingError, _too_many)
+    app.add_exception_handler(TooManyTestsError, _too_many)
     app.add_exception_handler(BusyError, _busy)
     app.add_exception_handler(DoubtfulBaselineError, _doubtful)
     app.add_exception_handler(FolderGoneError, _busy)

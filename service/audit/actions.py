@@ -22,6 +22,8 @@ class AuditAction(StrEnum):
     ALARM_UNSHELVED = "alarm-unshelved"
     ALARM_TAKEN_OUT_OF_SERVICE = "alarm-taken-out-of-service"
     ALARM_PUT_BACK_IN_SERVICE = "alarm-put-back-in-service"
+    CHANNEL_TESTED = "channel-tested"
+    NOTIFICATION_RETRIED = "notification-retried"
     PLANT_CHANGED = "plant-changed"
     PARAMETERS_CHANGED = "parameters-changed"
     RETENTION_APPLIED = "retention-applied"
@@ -43,6 +45,8 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.ALARM_UNSHELVED: "Somebody ended the shelving of an alarm.",
     AuditAction.ALARM_TAKEN_OUT_OF_SERVICE: "Somebody set an alarm aside without an end.",
     AuditAction.ALARM_PUT_BACK_IN_SERVICE: "Somebody put an alarm back in service.",
+    AuditAction.CHANNEL_TESTED: "Somebody had a test message sent through a channel.",
+    AuditAction.NOTIFICATION_RETRIED: "Somebody had a message tried again that was given up.",
     AuditAction.PLANT_CHANGED: (
         "The service started with other plant files: a site, relay or motor came (no `before`), left (no "
         "`after`) or is told otherwise."

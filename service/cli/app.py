@@ -13,6 +13,7 @@ from service.cli.commands import (
     audit,
     data_sheets,
     exports,
+    notifications,
     plant_files,
     programs,
     record_files,
@@ -50,7 +51,19 @@ def options(
     """Read the options that come before a command."""
 
 
-for _part in (programs, record_files, data_sheets, service, stored, alarms, exports, plant_files, audit):
+_PARTS = (
+    programs,
+    record_files,
+    data_sheets,
+    service,
+    stored,
+    alarms,
+    notifications,
+    exports,
+    plant_files,
+    audit,
+)
+for _part in _PARTS:
     app.add_typer(_part.commands)
 
 

@@ -200,6 +200,18 @@ class ServiceClient:
         """End what `set_alarm_aside` began, and return the alarm. Raises ServiceError."""
         return _document(self._request("DELETE", f"{API}/alarms/{segment(alarm_id)}/{how}", said))
 
+    def test_channel(self, name: str) -> Sequence[Document]:
+        """Have a test sent through a channel, and return its messages. Raises ServiceError."""
+        answer = _document(self._request("POST", f"{API}/notification-channels/{segment(name)}/tests", {}))
+        items = answer.get("items")
+        return items if isinstance(items, list) else []
+
+    def retry_notification(self, notification_id: str) -> Document:
+        """Have a message tried again that was given up, and return it. Raises ServiceError."""
+        return _document(
+            self._request("POST", f"{API}/notifications/{segment(notification_id)}/attempts", {})
+        )
+
     def recording_request(self, request_id: str) -> Document:
         """Return a recording request, with its present state. Raises ServiceError."""
         return self.get(f"/event-reports/{segment(request_id)}")

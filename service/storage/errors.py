@@ -47,6 +47,13 @@ class TooManyWaitingError(StorageError):
         )
 
 
+class TooManyTestsError(StorageError):
+    """As many tests of a channel wait as may."""
+
+    def __init__(self, channel: str, most: int) -> None:
+        super().__init__(f"{most} tests of channel {channel} wait to be sent; ask again when some have ended")
+
+
 class TooManyNotesError(StorageError):
     """A motor has as many notes as it may have."""
 

@@ -1,11 +1,11 @@
 """Commands on the files of a plant: its settings' data, and its SCL."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
-from service.cli.commands.options import Config, Json
+from service.cli.commands.options import DEFAULT_URL, Config, Json, Url
 
 commands = typer.Typer()
 
@@ -40,12 +40,26 @@ def check(
     connect: Annotated[
         bool, typer.Option("--connect", help="Also ask each relay what it offers: a line a relay.")
     ] = False,
+    fail_on: Annotated[
+        Literal["watch", "fault"] | None,
+        typer.Option(
+            help="Ask the running service instead: print the motors at this state or a worse one, and end "
+            "with 1 if there are any, with 0 and no word if not; for cron.",
+        ),
+    ] = None,
+    url: Url = DEFAULT_URL,
     as_json: Json = False,
 ) -> int:
     """Tell all that is wrong in the settings, the motors file and the SCL files of a plant, at once.
 
     Nothing is started, and no relay is triggered. The exit code is 1 where mcc serve would not start.
     """
+    if fail_on is not None:
+        if config is not None or connect:
+            raise typer.BadParameter("--fail-on asks the running service: expected no --config or --connect")
+        from service.cli.plant.conditions_check import check_conditions
+
+        return check_conditions(url, fail_on, as_json=as_json)
     from service.cli.plant.check import check_plant
 
     return check_plant(config, connect=connect, as_json=as_json)

@@ -34,6 +34,8 @@ NO_WRONG_REQUESTS = {
     "GET /api/v1/ieds/{name}",
     "GET /api/v1/motors/{name}",
     "GET /api/v1/motors/{name}/health",
+    "GET /api/v1/notification-channels",
+    "POST /api/v1/notification-channels/{name}/tests",
 }
 """Routes that take nothing but a name: any text is one."""
 

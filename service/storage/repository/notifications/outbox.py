@@ -10,12 +10,15 @@ from collections.abc import Collection, Mapping, Sequence
 
 from sqlalchemy import delete, func, or_, select
 
+from service.audit.actions import AuditAction
 from service.storage.engine import one_at_a_time
-from service.storage.errors import StateConflictError
+from service.storage.errors import StateConflictError, TooManyTestsError
 from service.storage.models import NotificationRow
 from service.storage.records import NewNotification, Notification
+from service.storage.records.actors import Actor
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.notifications.composing import compose
-from service.storage.repository.sessions import Sessions, found, only, record_of
+from service.storage.repository.sessions import Sessions, found, has_as_many, only, record_of
 from service.storage.states import NotificationKind, NotificationState
 from service.storage.texts import storable
 from service.timing.backoff import Backoff
@@ -27,7 +30,8 @@ POSTPONED_NS = 60 * 10**9
 LONGEST_POSTPONED_NS = 7 * 86_400 * 10**9
 """An escalation waits so long, minute by minute, for the cause of an alarm that comes and goes."""
 
-FINISHED = (NotificationState.SENT, NotificationState.DEAD, NotificationState.WITHDRAWN)
+MOST_TESTS = 100
+"""So many tests of a channel may wait."""
 
 
 class OutboxRows(Sessions):
@@ -137,7 +141,29 @@ class OutboxRows(Sessions):
                     _queue(row, INTERRUPTED, not_before_ns=now_ns)
             return len(rows)
 
-    def retry_notification(self, notification_id: str, *, now_ns: int) -> Notification:
+    def request_test_notifications(
+        self, channel: str, recipients: Sequence[str], *, by: Actor, now_ns: int
+    ) -> tuple[Notification, ...]:
+        """Queue a test for each receiver of a channel. Raises TooManyTestsError."""
+        waiting = select(NotificationRow.id).where(
+            NotificationRow.channel == channel,
+            NotificationRow.kind == NotificationKind.TEST,
+            NotificationRow.state.in_((NotificationState.QUEUED, NotificationState.SENDING)),
+        )
+        document: Mapping[str, object] = {"by": by.name}
+        with self._write() as session:
+            if has_as_many(session, waiting, MOST_TESTS):
+                raise TooManyTestsError(channel, MOST_TESTS)
+            rows = [
+                _new_row(NewNotification(NotificationKind.TEST, channel, one, document), now_ns)
+                for one in recipients
+            ]
+            session.add_all(rows)
+            note_change(session, by, AuditAction.CHANNEL_TESTED, ("channel", channel), now_ns=now_ns)
+            session.flush()
+            return tuple(record_of(Notification, row) for row in rows)
+
+    def retry_notification(self, notification_id: str, *, by: Actor, now_ns: int) -> Notification:
         """Queue a message again that was given up. Raises NotFoundError, StateConflictError."""
         with self._write() as session:
             row = found(session, NotificationRow, notification_id, "notification", lock=True)
@@ -145,6 +171,9 @@ class OutboxRows(Sessions):
                 raise StateConflictError(
                     "notification", notification_id, present=row.state, wanted=NotificationState.QUEUED
                 )
+            before = {"attempts": row.attempts, "error": row.error}
+            subject = ("notification", notification_id)
+            note_change(session, by, AuditAction.NOTIFICATION_RETRIED, subject, now_ns=now_ns, before=before)
             row.attempts, row.finished_ns = 0, None
             _queue(row, row.error, not_before_ns=now_ns)
             session.flush()

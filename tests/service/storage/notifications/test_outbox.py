@@ -7,11 +7,13 @@ import pytest
 from service.storage import Repository
 from service.storage.errors import StateConflictError
 from service.storage.records import NewNotification, Notification
+from service.storage.records.actors import Actor, Role
 from service.storage.repository.notifications.outbox import INTERRUPTED
 from service.storage.states import NotificationKind, NotificationState
 from service.timing.backoff import Backoff
 from testing.service.plants import NOW_NS, SECOND_NS
 
+ANN = Actor("ann", "command line", frozenset({Role.ENGINEER}))
 BACKOFF = Backoff(10.0, 3600.0)
 
 
@@ -70,10 +72,10 @@ def test_attempts_follow_each_other_with_growing_pauses_until_the_message_is_giv
     dead = repository.notification(queued.id)
     assert (dead.error, dead.attempts, dead.finished_ns) == ("no answer", 3, now_ns)
     assert repository.waiting_notifications() == {("ops", NotificationState.DEAD): 1}
-    again = repository.retry_notification(queued.id, now_ns=now_ns)
+    again = repository.retry_notification(queued.id, by=ANN, now_ns=now_ns)
     assert (again.state, again.attempts) == (NotificationState.QUEUED, 0)
     with pytest.raises(StateConflictError):
-        repository.retry_notification(queued.id, now_ns=now_ns)
+        repository.retry_notification(queued.id, by=ANN, now_ns=now_ns)
     assert claim(repository, "a 4", now_ns).id == queued.id
 
 

@@ -1,0 +1,1 @@
+"""Messages about alarms: what was sent to whom, channels and their tests."""
