@@ -39,7 +39,7 @@ from mms.errors import (
     ValueRefused,
 )
 from mms.references import FunctionalConstraint
-from mms.security.credential_files import read_secret
+from mms.security.credential_files import read_certificates, read_secret
 from mms.security.passwords import PASSWORD_RULE, is_password
 from mms.security.tls import TlsConfiguration, TlsVersion
 from mms.server.controls import ControlAction
@@ -104,5 +104,6 @@ __all__ = [
     "ValueRefused",
     "filter_tls_log_from_stderr",
     "is_password",
+    "read_certificates",
     "read_secret",
 ]

@@ -51,18 +51,15 @@ def floods(fresh: Iterable[FreshAlarm], most: int) -> tuple[Flood, ...]:
     return tuple(found)
 
 
-def told(flood: Flood) -> str:
-    """Return in words how many alarms there are, and of what kinds, the most frequent first."""
-    kinds = Counter(alarm.kind for alarm in flood.members).most_common()
-    parts = ", ".join(f"{number} {kind}" for kind, number in kinds)
-    return f"{len(flood.members)} alarms within a minute ({parts})"
+def told(numbers: Mapping[str, int], standing: int) -> str:
+    """Return in words how many alarms a flood has, of what kinds, the most frequent first, and what stands.
+
+    numbers: how many of each kind.
+    """
+    parts = ", ".join(f"{number} {kind}" for kind, number in Counter(numbers).most_common())
+    return f"{sum(numbers.values())} alarms at once: {parts}; {standing} of them stand"
 
 
 def is_over(standing_members: int, most: int) -> bool:
     """Tell whether a flood has run off: those of its alarms that still stand can be read one by one."""
     return standing_members <= most / 2.0
-
-
-def sites_of(flood: Flood) -> Mapping[str | None, int]:
-    """Return how many alarms of a flood are of each site."""
-    return Counter(alarm.site for alarm in flood.members)

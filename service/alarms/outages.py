@@ -17,14 +17,14 @@ def down_since(periods: Sequence[LinkPeriod], now_ns: int, settle_ns: int) -> in
     """Return since when a link is down; None where it is up.
 
     An answer now and then ends no outage: a link counts as up when it was up for `settle_ns` without a break.
-    periods: oldest first.
+    periods: oldest first; of a link that nobody looked at yet there are none.
     """
     down_ns: int | None = None
-    ends_ns = [*(later.since_ns for _, later in pairwise(periods)), now_ns]
-    for period, end_ns in zip(periods, ends_ns, strict=True):
-        if not period.is_up:
-            down_ns = period.since_ns if down_ns is None else down_ns
-        elif end_ns - period.since_ns >= settle_ns:
+    lasting = pairwise([*((one.since_ns, one.is_up) for one in periods), (now_ns, True)])
+    for (since_ns, is_up), (end_ns, _) in lasting:
+        if not is_up:
+            down_ns = since_ns if down_ns is None else down_ns
+        elif end_ns - since_ns >= settle_ns:
             down_ns = None
     return down_ns
 
@@ -41,8 +41,11 @@ class SiteRule:
     within_ns: int
     least: int
 
-    def is_lost(self, down_ns: Iterable[int], relays: int) -> bool:
-        """Tell whether a site of so many relays is lost, of which some are down since `down_ns`."""
+    def lost_since(self, down_ns: Iterable[int], relays: int) -> int | None:
+        """Return since when a site of so many relays is lost, of which some are down since `down_ns`.
+
+        None where it is not.
+        """
         needed = max(self.share * relays, self.least)
         began_ns = sorted(down_ns)
         first = 0
@@ -50,8 +53,8 @@ class SiteRule:
             while since_ns - began_ns[first] > self.within_ns:
                 first += 1
             if last - first + 1 >= needed:
-                return True
-        return False
+                return began_ns[first]
+        return None
 
     def is_back(self, down: int, relays: int) -> bool:
         """Tell whether a lost site is back, of whose relays so many are down."""

@@ -185,6 +185,7 @@ def _parts(
         store,
         gateway_problem=gateways.not_running,
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
+        directories=_written(settings),
     )
     notifications = NotificationWork(
         settings, repository, installation=installation_id(settings.data_directory)

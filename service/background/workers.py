@@ -1,8 +1,9 @@
 """The workers of the service's periodic work, by the names that GET /readyz lists."""
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from threading import Event
 
 from service.background import (
@@ -13,6 +14,8 @@ from service.background import (
     retention,
     scheduling,
 )
+from service.background.alarm_sources import worker as alarm_sources
+from service.background.alarm_sources.worker import AlarmSources
 from service.background.alarm_steps import AlarmSteps
 from service.background.audit_forwarding import AuditForwarding
 from service.background.housekeeping import Housekeeping
@@ -37,6 +40,7 @@ class Periods:
     orphaned_requests_s: float = orphaned_requests.PERIOD_S
     alarm_steps_s: float = alarm_steps.PERIOD_S
     audit_forwarding_s: float = audit_forwarding.PERIOD_S
+    alarm_sources_s: float = alarm_sources.PERIOD_S
 
 
 PERIODS = Periods()
@@ -50,18 +54,20 @@ def background_workers(
     *,
     gateway_problem: Callable[[], str | None],
     restart_delay_s: float,
+    directories: Iterable[Path] = (),
     periods: Periods = PERIODS,
 ) -> Mapping[str, PeriodicWorker]:
     """Return one worker for each periodic work, not started yet.
 
     gateway_problem: why gateways of this service do not run; None while all do.  restart_delay_s: the longest
-    pause before a gateway that ended is started again.
+    pause before a gateway that ended is started again.  directories: those that the service writes to.
     """
     scheduler = Scheduler(
         plant.motors, repository, buses=plant.buses, metering_period_s=settings.metering_period_s
     )
     housekeeping_ends, retention_ends, alarm_steps_end = Event(), Event(), Event()
     steps = AlarmSteps(repository, alarm_steps_end)
+    sources = AlarmSources(settings, repository, directories, started_ns=time.time_ns())
     keeper = Housekeeping(settings, repository, housekeeping_ends)
     retained = Retention(settings, repository, store, retention_ends)
     ender = OrphanedRequestEnder(
@@ -89,6 +95,11 @@ def background_workers(
             "ending of orphaned requests",
             lambda: ender.end_overdue(time.monotonic()),
             period_s=periods.orphaned_requests_s,
+        ),
+        "alarm_sources": PeriodicWorker(
+            "looking for what raises alarms",
+            lambda: sources.look(time.time_ns(), time.monotonic_ns()),
+            period_s=periods.alarm_sources_s,
         ),
         "alarm_steps": PeriodicWorker(
             "shelving and suppression of alarms",

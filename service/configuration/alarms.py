@@ -29,6 +29,7 @@ class AlarmSettings(BaseModel):
     forecast_days: float = Field(default=30.0, ge=0, le=3650)
     link_down_s: float = Field(default=600.0, ge=0, le=604_800)
     link_up_s: float = Field(default=60.0, ge=0, le=86_400)
+    site_lost_s: float = Field(default=30.0, ge=0, le=86_400)
     site_lost_share: float = Field(default=0.8, ge=0.1, le=1)
     site_lost_relays: int = Field(default=3, ge=2, le=10_000)
     flood_alarms: int = Field(default=10, ge=2, le=10_000)

@@ -43,7 +43,9 @@ def test_what_is_no_flood_stays_as_it_is(seen: list[tuple[str | None, str]], mos
 def test_a_flood_of_minor_alarms_hides_no_urgent_one() -> None:
     (flood,) = floods(fresh([("A", "low")] * 1000 + [("A", "critical")] * 2), 10)
     assert (flood.site, flood.priority, len(flood.members)) == ("A", "low", 1000)
-    assert told(flood) == "1000 alarms within a minute (1000 link-down)"
+    assert told({"file-refused": 20, "link-down": 980}, 640) == (
+        "1000 alarms at once: 980 link-down, 20 file-refused; 640 of them stand"
+    )
 
 
 def test_floods_of_many_sites_are_one() -> None:

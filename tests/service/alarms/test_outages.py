@@ -49,28 +49,29 @@ def test_an_answer_now_and_then_ends_no_outage() -> None:
     assert down_since([*flapping, up(2000)], 2059, SETTLE) == 1000
     assert down_since([*flapping, up(2000)], 2060, SETTLE) is None
     assert down_since([up(0)], 10, SETTLE) is None
+    assert down_since([], 10, SETTLE) is None
 
 
 RULE = SiteRule(share=0.8, within_ns=60, least=3)
 
 
 def test_most_relays_within_a_minute_are_a_site_that_is_lost() -> None:
-    assert RULE.is_lost(range(40), 50)
-    assert RULE.is_lost([0, 30, 60], 3)
-    assert not RULE.is_lost([0, 30, 61], 3)
-    assert not RULE.is_lost(range(39), 50)
+    assert RULE.lost_since([5, *range(100, 140)], 50) == 100
+    assert RULE.lost_since([0, 30, 60], 3) == 0
+    assert RULE.lost_since([0, 30, 61], 3) is None
+    assert RULE.lost_since(range(39), 50) is None
 
 
 def test_relays_that_fail_one_by_one_speak_for_themselves() -> None:
-    assert not RULE.is_lost(range(0, 50 * 61, 61), 50)
+    assert RULE.lost_since(range(0, 50 * 61, 61), 50) is None
 
 
 def test_two_relays_are_no_site() -> None:
-    assert not RULE.is_lost([0, 0], 2)
+    assert RULE.lost_since([0, 0], 2) is None
 
 
 @given(st.integers(1, 100), st.lists(st.integers(0, 1000), max_size=100))
 def test_a_site_that_is_lost_is_not_back(relays: int, down: list[int]) -> None:
-    if RULE.is_lost(down, relays):
+    if RULE.lost_since(down, relays) is not None:
         assert not RULE.is_back(len(down), relays)
     assert RULE.is_back(0, relays)

@@ -30,8 +30,9 @@ OFTEN = Periods(
     retention_s=0.01,
     orphaned_requests_s=0.01,
     alarm_steps_s=0.01,
+    alarm_sources_s=0.01,
 )
-PARTS = ("schedules", "housekeeping", "retention", "orphaned_requests", "alarm_steps")
+PARTS = ("schedules", "housekeeping", "retention", "orphaned_requests", "alarm_steps", "alarm_sources")
 
 
 class FaultyRepository(Repository):
@@ -58,6 +59,10 @@ class FaultyRepository(Repository):
     def end_shelvings(self, *, now_ns: int) -> int:
         self._fail_for("alarm_steps")
         return super().end_shelvings(now_ns=now_ns)
+
+    def gather_floods(self, most: int, *, now_ns: int) -> int:
+        self._fail_for("alarm_sources")
+        return super().gather_floods(most, now_ns=now_ns)
 
     def _fail_for(self, part: str) -> None:
         if part == self.part:

@@ -3,8 +3,10 @@
 from service.storage.repository.alarms.causes import AlarmCauseRows
 from service.storage.repository.alarms.conditions import ConditionAlarmRows
 from service.storage.repository.alarms.figures import AlarmFigureRows
+from service.storage.repository.alarms.groups import AlarmGroupRows
 from service.storage.repository.alarms.lists import AlarmLists
 from service.storage.repository.alarms.people import AlarmPeopleRows
+from service.storage.repository.alarms.sources import AlarmSourceRows
 from service.storage.repository.alarms.suppression import AlarmSuppressionRows
 
 
@@ -15,6 +17,8 @@ class AlarmRows(
     AlarmSuppressionRows,
     ConditionAlarmRows,
     AlarmFigureRows,
+    AlarmSourceRows,
+    AlarmGroupRows,
 ):
     """All there is to ask of and tell the database about alarms."""
 

@@ -45,7 +45,7 @@ class AlarmCauseRows(Sessions):
         One that is shelved until it grows is reopened when its value is beyond that. Raises NotFoundError.
         """
         with self._write() as session:
-            return alarm(raised_at(session, _locked_place(session, place), spec, now_ns=now_ns))
+            return alarm(raised_at(session, locked_place(session, place), spec, now_ns=now_ns))
 
     def clear_alarms_at(
         self,
@@ -64,13 +64,13 @@ class AlarmCauseRows(Sessions):
         if subject is not None:
             about.append(AlarmRow.subject == subject)
         with self._read() as session:
-            about += _at(_completed(session, place))
+            about += at_place(_completed(session, place))
             if session.scalars(select(AlarmRow.id).where(*about).limit(1)).first() is None:
                 return 0
         with self._write() as session:
-            complete = _locked_place(session, place)
+            complete = locked_place(session, place)
             number = clear(session, now_ns, *about, why=why)
-            forget_cleared(session, *_at(complete))
+            forget_cleared(session, *at_place(complete))
             return number
 
     def supersede_alarm(self, alarm_id: str, by_alarm: str, *, now_ns: int) -> None:
@@ -118,7 +118,7 @@ def raised(session: Session, relay: str, kind: AlarmKind, subject: str, reason: 
 
 def raised_at(session: Session, place: AlarmPlace, spec: AlarmSpec, *, now_ns: int) -> AlarmRow:
     """Raise an alarm at a complete place that is locked, and return its row."""
-    about = [is_open(), AlarmRow.kind == spec.kind, *_at(place)]
+    about = [is_open(), AlarmRow.kind == spec.kind, *at_place(place)]
     if not spec.one_of_kind:
         about.append(AlarmRow.subject == storable(spec.subject))
     rows = locked(session, *about)
@@ -134,6 +134,8 @@ def raised_at(session: Session, place: AlarmPlace, spec: AlarmSpec, *, now_ns: i
     if row.ied is not None:
         count_raised(session, row.ied, row.kind)
     why = why_suppressed(session, row, now_ns=now_ns)
+    if why is None:
+        row.part_of = None  # the flood that it came with has run off
     if why is not None and row.state in TRANSITIONS[AlarmEvent.SUPPRESSED]:
         suppress(session, row, why, now_ns=now_ns)
     elif why is None and row.state is AlarmState.SUPPRESSED:
@@ -252,7 +254,7 @@ def _completed(session: Session, place: AlarmPlace) -> AlarmPlace:
     return place
 
 
-def _locked_place(session: Session, place: AlarmPlace) -> AlarmPlace:
+def locked_place(session: Session, place: AlarmPlace) -> AlarmPlace:
     """Return a complete place, and let no other raise an alarm there until this transaction has ended."""
     if place.motor is not None:
         found(session, MotorRow, place.motor, "motor", lock=True)
@@ -263,7 +265,7 @@ def _locked_place(session: Session, place: AlarmPlace) -> AlarmPlace:
     return _completed(session, place)
 
 
-def _at(place: AlarmPlace) -> list[ColumnElement[bool]]:
+def at_place(place: AlarmPlace) -> list[ColumnElement[bool]]:
     """Return the conditions that alarms are about a place. A motor may have moved to another relay."""
     if place.motor is not None:
         return [AlarmRow.motor == place.motor]

@@ -10,7 +10,7 @@ from service.storage.repository.alarms.changes import change, locked
 from service.storage.repository.sessions import Sessions
 from service.storage.states import AlarmEvent, AlarmKind, AlarmState
 
-AT_A_TIME = 500
+AT_A_TIME = 100
 """So many alarms are changed in one transaction, so that nobody waits for long."""
 
 CALLING = (AlarmState.UNACKNOWLEDGED, AlarmState.RETURNED_UNACKNOWLEDGED)
@@ -18,7 +18,7 @@ CALLING = (AlarmState.UNACKNOWLEDGED, AlarmState.RETURNED_UNACKNOWLEDGED)
 
 class AlarmSuppressionRows(Sessions):
     def end_shelvings(self, *, now_ns: int) -> int:
-        """End the shelvings whose time has come; return how many, at most 500 at a time."""
+        """End the shelvings whose time has come; return how many, at most 100 at a time."""
         due = select(AlarmRow.id).where(in_state(AlarmState.SHELVED), AlarmRow.shelved_until_ns <= now_ns)
         with self._read() as session:
             ids = session.scalars(due.order_by(AlarmRow.shelved_until_ns).limit(AT_A_TIME)).all()
@@ -35,7 +35,7 @@ class AlarmSuppressionRows(Sessions):
     def begin_suppressions(self, *, now_ns: int) -> int:
         """Suppress what calls for somebody at motors and relays that left the plant.
 
-        Returns how many, at most 500 at a time.
+        Returns how many, at most 100 at a time.
         """
         motors = select(MotorRow.name).where(MotorRow.in_service.is_(False))
         relays = select(IedRow.name).where(IedRow.in_service.is_(False))
@@ -51,14 +51,15 @@ class AlarmSuppressionRows(Sessions):
             return sum(row.state is AlarmState.SUPPRESSED for row in rows)
 
     def end_suppressions(self, *, now_ns: int) -> int:
-        """End the suppressions whose reason is gone; return how many, at most 500 at a time."""
+        """End the suppressions whose reason is gone; return how many, at most 100 at a time."""
         with self._read() as session:
             suppressed = session.scalars(select(AlarmRow).where(in_state(AlarmState.SUPPRESSED)))
-            over = [row.id for row in suppressed if why_suppressed(session, row, now_ns=now_ns) is None]
+            design = _Design(session, now_ns)
+            over = [row.id for row in suppressed if design.why(row) is None]
         if not over:
             return 0
         with self._write() as session:
-            return _unsuppress(session, AlarmRow.id.in_(over[:AT_A_TIME]), now_ns=now_ns)
+            return unsuppress(session, AlarmRow.id.in_(over[:AT_A_TIME]), now_ns=now_ns)
 
 
 def suppress_by_design(session: Session, row: AlarmRow, *, now_ns: int) -> None:
@@ -84,44 +85,63 @@ def suppress_those_of_quarantine(session: Session, relay: str, *, now_ns: int) -
 
 def unsuppress_those_of_relay(session: Session, relay: str, *, now_ns: int) -> None:
     """Have those alarms of a relay call again that nothing suppresses any more."""
-    _unsuppress(session, AlarmRow.ied == relay, now_ns=now_ns)
+    unsuppress(session, AlarmRow.ied == relay, now_ns=now_ns)
 
 
 def why_suppressed(session: Session, row: AlarmRow, *, now_ns: int) -> str | None:
     """Return why the plant's design suppresses an alarm; None where it does not."""
-    if row.motor is not None:
-        motor = session.get(MotorRow, row.motor)
-        if motor is None or not motor.in_service:
-            return f"motor {row.motor} is out of service"
-    elif row.ied is not None:
-        relay = session.get(IedRow, row.ied)
-        if relay is None or not relay.in_service:
-            return f"relay {row.ied} is out of service"
-    if row.ied is not None and row.kind in FOLLOW_FROM_QUARANTINE:
-        quarantine = session.get(QuarantineRow, row.ied)
-        if quarantine is not None and quarantine.until_ns > now_ns:
+    return _Design(session, now_ns).why(row)
+
+
+class _Design:
+    """The plant's design as it is at a time, asked about many alarms of one transaction."""
+
+    def __init__(self, session: Session, now_ns: int) -> None:
+        self._session = session
+        self._now_ns = now_ns
+        self._quarantined: dict[str, bool] = {}
+        self._lost: dict[str, bool] = {}
+
+    def why(self, row: AlarmRow) -> str | None:
+        """Return why an alarm is suppressed; None where it is not."""
+        if row.motor is not None:
+            motor = self._session.get(MotorRow, row.motor)
+            if motor is None or not motor.in_service:
+                return f"motor {row.motor} is out of service"
+        elif row.ied is not None:
+            relay = self._session.get(IedRow, row.ied)
+            if relay is None or not relay.in_service:
+                return f"relay {row.ied} is out of service"
+        if row.ied is not None and row.kind in FOLLOW_FROM_QUARANTINE and self._is_quarantined(row.ied):
             return _in_quarantine(row.ied)
-    if row.part_of is not None:
-        group = session.get(AlarmRow, row.part_of)
-        if group is not None and group.cleared_ns is None:
-            return f"one of {group.subject}, alarm {group.id}"
-    if row.site is not None and row.kind in FOLLOW_FROM_SITE_LOST and _is_lost(session, row.site):
-        return f"site {row.site} is lost"
-    return None
+        if row.part_of is not None:
+            group = self._session.get(AlarmRow, row.part_of)
+            if group is not None and group.cleared_ns is None:
+                return f"one of {group.subject}, alarm {group.id}"
+        if row.site is not None and row.kind in FOLLOW_FROM_SITE_LOST and self._is_lost(row.site):
+            return f"site {row.site} is lost"
+        return None
+
+    def _is_quarantined(self, relay: str) -> bool:
+        if relay not in self._quarantined:
+            quarantine = self._session.get(QuarantineRow, relay)
+            self._quarantined[relay] = quarantine is not None and quarantine.until_ns > self._now_ns
+        return self._quarantined[relay]
+
+    def _is_lost(self, site: str) -> bool:
+        if site not in self._lost:
+            lost = select(AlarmRow.id).where(
+                AlarmRow.site == site, AlarmRow.kind == AlarmKind.SITE_LOST, AlarmRow.cleared_ns.is_(None)
+            )
+            self._lost[site] = self._session.scalar(lost.limit(1)) is not None
+        return self._lost[site]
 
 
-def _is_lost(session: Session, site: str) -> bool:
-    lost = select(AlarmRow.id).where(
-        AlarmRow.site == site, AlarmRow.kind == AlarmKind.SITE_LOST, AlarmRow.cleared_ns.is_(None)
-    )
-    return session.scalar(lost.limit(1)) is not None
-
-
-def _unsuppress(session: Session, *which: ColumnElement[bool], now_ns: int) -> int:
+def unsuppress(session: Session, *which: ColumnElement[bool], now_ns: int) -> int:
+    """Have those alarms call again, of these, that nothing suppresses any more; return how many."""
+    design = _Design(session, now_ns)
     over = [
-        row
-        for row in locked(session, in_state(AlarmState.SUPPRESSED), *which)
-        if why_suppressed(session, row, now_ns=now_ns) is None
+        row for row in locked(session, in_state(AlarmState.SUPPRESSED), *which) if design.why(row) is None
     ]
     for row in over:
         change(session, row, AlarmEvent.UNSUPPRESSED, now_ns=now_ns)
