@@ -11,6 +11,7 @@ from rich.text import Text
 from sqlalchemy.exc import SQLAlchemyError
 
 from core.units import NANOSECONDS_PER_SECOND
+from service.cli.audit.actor import command_line_actor
 from service.cli.output import failing_clearly, print_document, progress, results
 from service.client.tables import FittedTable
 from service.configuration.settings import Settings, SettingsError
@@ -78,7 +79,7 @@ def apply_retention(config: Path | None, *, dry_run: bool, each: bool = False, a
 def _outcomes(settings: Settings, repository: Repository, *, dry_run: bool, each: bool) -> list[Outcome]:
     outcomes = []
     batches = Batches(UNTIL_DONE)
-    for rule in rules(settings, repository, time.time_ns()):
+    for rule in rules(settings, repository, time.time_ns(), command_line_actor()):
         amount = rule.amount()
         listed = tuple(rule.listed()) if each else ()
         deleted = None

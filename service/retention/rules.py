@@ -11,7 +11,7 @@ from service.configuration.settings import Settings
 from service.plant import AveragingStep
 from service.retention.batches import Batches
 from service.retention.row_sizes import ROW_BYTES
-from service.storage.records import Amount, DeletedRows, OldRecording
+from service.storage.records import SERVICE, Actor, Amount, AppliedRule, DeletedRows, OldRecording
 from service.storage.repository import Repository
 from service.storage.repository.kept_recordings import Keeping
 from service.storage.repository.retention import NOTHING, ExpiredRecordings
@@ -40,14 +40,16 @@ class Rule:
     listed: Callable[[], Iterator[OldRecording]] = _no_recordings
 
 
-def rules(settings: Settings, repository: Repository, now_ns: int) -> tuple[Rule, ...]:
+def rules(settings: Settings, repository: Repository, now_ns: int, by: Actor = SERVICE) -> tuple[Rule, ...]:
     """Return the rules of the table [retention], also those that keep everything.
+
+    by: who applies them, for the audit trail.
 
     The rules of the measured values are not among them: values are averaged before they are deleted.
     """
     return (
-        *_recording_rules(settings, repository, now_ns),
-        *_other_rules(settings, repository, now_ns),
+        *_recording_rules(settings, repository, now_ns, by),
+        *_other_rules(settings, repository, now_ns, by),
     )
 
 
@@ -72,7 +74,7 @@ def _old_recordings(repository: Repository, expired: ExpiredRecordings) -> Itera
         yield from repository.old_recordings(motor, expired)
 
 
-def _recording_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
+def _recording_rules(settings: Settings, repository: Repository, now_ns: int, by: Actor) -> Iterator[Rule]:
     """Yield the rules of recordings, by verdict or, where there is none, by state."""
     kept = settings.retention
     keeping = keeping_of(kept)
@@ -92,12 +94,13 @@ def _recording_rules(settings: Settings, repository: Repository, now_ns: int) ->
             yield _keeping(setting)
             continue
         expired = ExpiredRecordings(state, verdict, _before(now_ns, days), keeping, says_nothing)
-        forget = partial(_forget_recordings, repository, expired, f"older than {setting} = {days:g}", now_ns)
+        rule = AppliedRule(setting, by, now_ns)
+        forget = partial(_forget_recordings, repository, expired, f"older than {setting} = {days:g}", rule)
         amount = partial(repository.expired_recordings, expired)
         yield Rule(setting, days, amount, forget, partial(_old_recordings, repository, expired))
 
 
-def _other_rules(settings: Settings, repository: Repository, now_ns: int) -> Iterator[Rule]:
+def _other_rules(settings: Settings, repository: Repository, now_ns: int, by: Actor) -> Iterator[Rule]:
     """Yield the rules of what is no recording: diagnoses, jobs, recording requests, deletions."""
     kept = settings.retention
     kinds: tuple[tuple[str, float | None, str, Callable[..., Amount], Callable[..., DeletedRows]], ...] = (
@@ -140,7 +143,7 @@ def _other_rules(settings: Settings, repository: Repository, now_ns: int) -> Ite
             setting,
             days,
             partial(_sized, partial(amount, before_ns=before_ns), table),
-            partial(_forget, partial(forget, before_ns=before_ns)),
+            partial(_forget, partial(forget, before_ns=before_ns, rule=AppliedRule(setting, by, now_ns))),
         )
 
 
@@ -177,10 +180,17 @@ def _forget(delete: Callable[[int], DeletedRows], batches: Batches) -> int:
 
 
 def _forget_recordings(
-    repository: Repository, expired: ExpiredRecordings, reason: str, now_ns: int, batches: Batches
+    repository: Repository, expired: ExpiredRecordings, reason: str, rule: AppliedRule, batches: Batches
 ) -> int:
     number = 0
     for motor in repository.all_motors():
-        delete = partial(repository.forget_recordings, motor, expired=expired, reason=reason, now_ns=now_ns)
+        delete = partial(
+            repository.forget_recordings,
+            motor,
+            expired=expired,
+            reason=reason,
+            now_ns=rule.now_ns,
+            rule=rule,
+        )
         number += batches.run(delete, first_rows=FIRST_RECORDINGS)
     return number

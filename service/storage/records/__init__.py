@@ -27,7 +27,7 @@ from service.storage.records.conditions import (
     RecordObservation,
     ToObserve,
 )
-from service.storage.records.deletions import Amount, DeletedRows, Deletion, OldRecording
+from service.storage.records.deletions import Amount, AppliedRule, DeletedRows, Deletion, OldRecording
 from service.storage.records.diagnoses import (
     ClaimedJob,
     Counts,
@@ -74,6 +74,7 @@ __all__ = [
     "AlarmPlace",
     "AlarmSpec",
     "Amount",
+    "AppliedRule",
     "Backlog",
     "BackupEntry",
     "BaselineDoubt",

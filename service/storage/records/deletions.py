@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from core.diagnosis.verdict import Verdict
+from service.storage.records.actors import Actor
 from service.storage.states import DeletedBy, RecordingSource, RecordingState, StayReason
 
 
@@ -12,6 +13,15 @@ class DeletedRows:
 
     rows: int
     took_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class AppliedRule:
+    """The setting whose rule deletes something, who applies it, and when: for the audit trail."""
+
+    setting: str
+    by: Actor
+    now_ns: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,7 @@ from sqlalchemy import ColumnElement, and_, case, delete, exists, func, select
 from sqlalchemy.orm import InstrumentedAttribute, Session
 
 from core.diagnosis.verdict import Verdict
+from service.audit.actions import AuditAction
 from service.storage.models import (
     DeletedRemoteRecordRow,
     DeletionRow,
@@ -19,7 +20,8 @@ from service.storage.models import (
     RecordingRequestRow,
     RecordingRow,
 )
-from service.storage.records import Amount, DeletedRows, OldRecording
+from service.storage.records import Amount, AppliedRule, DeletedRows, OldRecording
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.deletions import delete_row, to_delete
 from service.storage.repository.kept_recordings import Keeping, conditions
 from service.storage.repository.recording_requests import ENDED
@@ -71,15 +73,22 @@ class RetentionRows(Sessions):
         return tuple(map(_old_recording, rows))
 
     def forget_recordings(
-        self, motor: str, rows: int, *, expired: ExpiredRecordings, reason: str, now_ns: int
+        self,
+        motor: str,
+        rows: int,
+        *,
+        expired: ExpiredRecordings,
+        reason: str,
+        now_ns: int,
+        rule: AppliedRule | None = None,
     ) -> DeletedRows:
         """Delete the oldest of a motor's expired recordings, at most so many, as one deletes one by hand.
 
         Each is looked at again once nobody else can change it: it may have another verdict by then, or have
-        become one of the newest.
+        become one of the newest. rule: what the audit trail keeps of it; None: nothing.
         """
         while ids := self._oldest_expired(motor, expired, rows):
-            deleted = self._delete_expired(motor, ids, expired=expired, reason=reason, now_ns=now_ns)
+            deleted = self._delete_expired(motor, ids, expired, reason, now_ns, rule)
             if deleted.rows:
                 return deleted
         return DeletedRows(0, 0.0)
@@ -93,9 +102,15 @@ class RetentionRows(Sessions):
             ).all()
 
     def _delete_expired(
-        self, motor: str, ids: Sequence[str], *, expired: ExpiredRecordings, reason: str, now_ns: int
+        self,
+        motor: str,
+        ids: Sequence[str],
+        expired: ExpiredRecordings,
+        reason: str,
+        now_ns: int,
+        rule: AppliedRule | None,
     ) -> DeletedRows:
-        number = 0
+        deleted = []
         with self._write() as session:
             session.connection()
             began_s = monotonic()
@@ -106,8 +121,9 @@ class RetentionRows(Sessions):
             for row in locked:
                 if row is not None and row.id in expired_ids:
                     delete_row(session, row, reason, DeletedBy.RETENTION, now_ns)
-                    number += 1
-        return DeletedRows(number, monotonic() - began_s)
+                    deleted.append(row.id)
+            _note(session, rule, len(deleted), motor=motor, recordings=deleted)
+        return DeletedRows(len(deleted), monotonic() - began_s)
 
     def old_measurements(self, step_s: int, *, before_ns: int) -> Amount:
         with self._read() as session:
@@ -119,7 +135,9 @@ class RetentionRows(Sessions):
         with self._read() as session:
             return _amount(session, DiagnosisRow.created_ns, _superseded(before_ns))
 
-    def forget_superseded_diagnoses(self, rows: int, *, before_ns: int) -> DeletedRows:
+    def forget_superseded_diagnoses(
+        self, rows: int, *, before_ns: int, rule: AppliedRule | None = None
+    ) -> DeletedRows:
         """Delete some of them, each with its job."""
         old = select(DiagnosisRow.id, DiagnosisRow.job_id).where(_superseded(before_ns)).limit(rows)
         with self._write() as session:
@@ -128,26 +146,32 @@ class RetentionRows(Sessions):
             found = session.execute(old).all()
             session.execute(delete(DiagnosisRow).where(DiagnosisRow.id.in_([row.id for row in found])))
             _delete_jobs(session, JobRow.id.in_([row.job_id for row in found]))
+            _note(session, rule, len(found))
         return DeletedRows(len(found), monotonic() - began_s)
 
     def failed_jobs(self, *, before_ns: int) -> Amount:
         with self._read() as session:
             return _amount(session, JobRow.finished_ns, _failed(before_ns))
 
-    def forget_failed_jobs(self, rows: int, *, before_ns: int) -> DeletedRows:
+    def forget_failed_jobs(
+        self, rows: int, *, before_ns: int, rule: AppliedRule | None = None
+    ) -> DeletedRows:
         """Delete some of the jobs that were given up; their recordings keep the reason."""
         with self._write() as session:
             session.connection()
             began_s = monotonic()
             ids = session.scalars(select(JobRow.id).where(_failed(before_ns)).limit(rows)).all()
             _delete_jobs(session, JobRow.id.in_(ids))
+            _note(session, rule, len(ids))
         return DeletedRows(len(ids), monotonic() - began_s)
 
     def ended_requests(self, *, before_ns: int) -> Amount:
         with self._read() as session:
             return _amount(session, RecordingRequestRow.requested_ns, _ended(before_ns))
 
-    def forget_ended_requests(self, rows: int, *, before_ns: int) -> DeletedRows:
+    def forget_ended_requests(
+        self, rows: int, *, before_ns: int, rule: AppliedRule | None = None
+    ) -> DeletedRows:
         """Delete the oldest recording requests that have ended, at most so many."""
         old = (
             select(RecordingRequestRow)
@@ -161,13 +185,14 @@ class RetentionRows(Sessions):
             found = session.scalars(old).all()
             for row in found:
                 session.delete(row)
+            _note(session, rule, len(found))
         return DeletedRows(len(found), monotonic() - began_s)
 
     def old_deletions(self, *, before_ns: int) -> Amount:
         with self._read() as session:
             return _amount(session, DeletionRow.deleted_ns, DeletionRow.deleted_ns < before_ns)
 
-    def forget_deletions(self, rows: int, *, before_ns: int) -> DeletedRows:
+    def forget_deletions(self, rows: int, *, before_ns: int, rule: AppliedRule | None = None) -> DeletedRows:
         """Forget some of what was deleted long ago; a relay that still lists it is asked for it again."""
         old = select(DeletionRow.id).where(DeletionRow.deleted_ns < before_ns)
         with self._write() as session:
@@ -177,7 +202,15 @@ class RetentionRows(Sessions):
             of_these = DeletedRemoteRecordRow.deletion_id.in_(ids)
             session.execute(delete(DeletedRemoteRecordRow).where(of_these))
             session.execute(delete(DeletionRow).where(DeletionRow.id.in_(ids)))
+            _note(session, rule, len(ids))
         return DeletedRows(len(ids), monotonic() - began_s)
+
+
+def _note(session: Session, rule: AppliedRule | None, number: int, **more: object) -> None:
+    """Tell the audit trail what a rule deleted, if that is anything."""
+    if rule is not None and number:
+        action, subject = AuditAction.RETENTION_APPLIED, ("rule", rule.setting)
+        note_change(session, rule.by, action, subject, now_ns=rule.now_ns, before={"deleted": number, **more})
 
 
 def _amount(

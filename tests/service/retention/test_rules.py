@@ -89,6 +89,24 @@ def test_each_verdict_and_state_has_its_time(
     assert told[ids["healthy"][0]].reason == "older than retention.healthy_days = 15"
 
 
+def test_what_a_rule_deletes_is_told_in_the_audit_trail(
+    repository: Repository, store: RecordingStore, tmp_path: Path
+) -> None:
+    ids = [uploaded(repository, store, day, healthy()) for day in range(3)]
+    before = repository.audit_entries(limit=1).items[0].number
+    apply(settings_of(tmp_path, healthy_days=1, keep_newest=1), repository, 1000)
+    apply(settings_of(tmp_path, healthy_days=1, deletions_days=1), repository, 2000)
+    entries = [entry for entry in repository.audit_entries(limit=10).items if entry.number > before]
+    assert {(entry.actor, entry.origin, entry.action) for entry in entries} == {
+        ("statorwatch", "service", "retention-applied")
+    }
+    told = [(entry.subject, json.loads(entry.before or "")) for entry in entries]
+    recordings = [one for rule, values in told for one in values.get("recordings", ())]
+    assert set(recordings) < set(ids)
+    assert sum(values["deleted"] for rule, values in told if rule == "retention.healthy_days") == 2
+    assert sum(values["deleted"] for rule, values in told if rule == "retention.deletions_days") == 2
+
+
 def test_the_newest_and_the_baseline_stay(
     repository: Repository, store: RecordingStore, tmp_path: Path
 ) -> None:
@@ -233,6 +251,12 @@ def test_the_command_shows_what_would_go_and_deletes_it(
     assert (rule["rule"], rule["days"], rule["rows"], rule["deleted"]) == ("retention.healthy_days", 30, 2, 2)
     assert left(repository) == ids[2:]
     assert len(list(store.root.glob("??/*"))) == 1
+    entry = repository.audit_entries(limit=1).items[0]
+    assert (entry.origin, entry.action, entry.subject) == (
+        "command line",
+        "retention-applied",
+        "retention.healthy_days",
+    )
 
 
 @pytest.mark.parametrize("database_url", ["sqlite"], indirect=True)
