@@ -40,6 +40,7 @@ PARTIAL = {
     "ix_alarms_cleared_ied_raised_ns_id": "cleared_ns",
     "ix_alarms_standing_motor_raised_ns_id": "cleared_ns",
     "ix_alarms_cleared_motor_raised_ns_id": "cleared_ns",
+    "ix_alarm_changes_announced": "after",
     "ix_alarms_open_urgency_raised_ns_id": "state",
     "ix_alarms_open_site_urgency": "state",
     "ix_alarms_open_ied_urgency": "state",

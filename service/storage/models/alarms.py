@@ -130,9 +130,10 @@ class AlarmChangeRow(Base):
 def in_state(state: AlarmState) -> ColumnElement[bool]:
     """Return the condition that alarms are in this state, as the partial indexes say it.
 
-    SQLite takes such an index only where the statement has the value in it, not as a parameter.
+    SQLite takes such an index only where the statement has the index's own words, not a parameter. Not for
+    those that are normal.
     """
-    return AlarmRow.state == _literal(AlarmRow.state, state)
+    return (AlarmRow.state == _literal(AlarmRow.state, state)) & is_open()
 
 
 def is_open() -> ColumnElement[bool]:
