@@ -26,6 +26,7 @@ from service.api.access.requirements import require
 from service.api.alarms import lists as alarm_lists
 from service.api.alarms import people as alarm_people
 from service.api.audit import trail as audit_trail
+from service.api.backups import routes as backups
 from service.api.context import ApiContext
 from service.api.exports import routes as exports
 from service.api.host_guard import HostGuard
@@ -69,6 +70,7 @@ def create_app(context: ApiContext) -> FastAPI:
         exports,
         notifications,
         audit_trail,
+        backups,
     ):
         api.include_router(part.router)
     app.include_router(api)

@@ -6,9 +6,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Event
 
+from core.units import SECONDS_PER_DAY
 from service.background import (
     alarm_steps,
     audit_forwarding,
+    backups,
     housekeeping,
     orphaned_requests,
     retention,
@@ -18,6 +20,7 @@ from service.background.alarm_sources import worker as alarm_sources
 from service.background.alarm_sources.worker import AlarmSources
 from service.background.alarm_steps import AlarmSteps
 from service.background.audit_forwarding import AuditForwarding
+from service.background.backups import DailyBackup
 from service.background.housekeeping import Housekeeping
 from service.background.orphaned_requests import OrphanedRequestEnder
 from service.background.retention import Retention
@@ -41,6 +44,7 @@ class Periods:
     alarm_steps_s: float = alarm_steps.PERIOD_S
     audit_forwarding_s: float = audit_forwarding.PERIOD_S
     alarm_sources_s: float = alarm_sources.PERIOD_S
+    backups_s: float = backups.PERIOD_S
 
 
 PERIODS = Periods()
@@ -65,9 +69,10 @@ def background_workers(
     scheduler = Scheduler(
         plant.motors, repository, buses=plant.buses, metering_period_s=settings.metering_period_s
     )
-    housekeeping_ends, retention_ends, alarm_steps_end = Event(), Event(), Event()
+    housekeeping_ends, retention_ends, alarm_steps_end, backup_ends = Event(), Event(), Event(), Event()
     steps = AlarmSteps(repository, alarm_steps_end)
     sources = AlarmSources(settings, repository, directories, started_ns=time.time_ns())
+    backup = DailyBackup(settings, repository, backup_ends)
     keeper = Housekeeping(settings, repository, housekeeping_ends)
     retained = Retention(settings, repository, store, retention_ends)
     ender = OrphanedRequestEnder(
@@ -107,6 +112,13 @@ def background_workers(
             period_s=periods.alarm_steps_s,
             at_once=True,
             stopping=alarm_steps_end,
+        ),
+        "backups": PeriodicWorker(
+            "daily back-up",
+            lambda: backup.back_up_if_due(time.time_ns()),
+            period_s=periods.backups_s,
+            overdue_s=SECONDS_PER_DAY,
+            stopping=backup_ends,
         ),
     }
     if settings.audit.syslog is not None:

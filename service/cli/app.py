@@ -11,6 +11,7 @@ from core.error_words import one_line
 from service.cli.commands import (
     alarms,
     audit,
+    backups,
     data_sheets,
     exports,
     notifications,
@@ -61,6 +62,7 @@ _PARTS = (
     notifications,
     exports,
     plant_files,
+    backups,
     audit,
 )
 for _part in _PARTS:

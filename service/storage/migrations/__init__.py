@@ -15,8 +15,8 @@ from service.storage.errors import StorageError
 START_ONCE = "start the service once with these settings (mcc serve), which makes the tables"
 
 
-def migrate(url: str) -> None:
-    """Create the tables, or bring older ones up to date.
+def migrate(url: str, revision: str = "head") -> None:
+    """Create the tables, or bring older ones up to date, or to an older revision that is newer than theirs.
 
     Do nothing where they are up to date. Raises StorageError (no such URL, a newer version's database),
     sqlalchemy.exc.SQLAlchemyError (the database does not answer).
@@ -27,7 +27,7 @@ def migrate(url: str) -> None:
             one_at_a_time(connection, "migrate")
             settings = config(connection)
             _require_known(connection, settings)
-            command.upgrade(settings, "head")
+            command.upgrade(settings, revision)
     finally:
         engine.dispose()
 

@@ -3,23 +3,29 @@
 import uuid
 
 from sqlalchemy import select, update
+from sqlalchemy.orm import Session
 
+from core.units import NANOSECONDS_PER_SECOND
 from service.storage.models import BackupRow
 from service.storage.records import BackupEntry, Cursor, Page
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import BackupState
+
+REPEATED_AFTER_NS = 3600 * NANOSECONDS_PER_SECOND
+"""A back-up that failed is tried again an hour after it began."""
 
 INTERRUPTED = "it was interrupted: the next back-up into this directory has begun"
 
 
 class BackupRows(Sessions):
     def begin_backup(self, directory: str, *, now_ns: int, due_ns: int | None = None) -> BackupEntry | None:
-        """Note that a back-up begins. Return None where one for the same due time has begun already.
+        """Note that a back-up begins. Return None where the one of the same due time is verified, or is new.
 
-        One that was under way in the same directory has failed: two cannot be made there at once.
+        The caller holds the lock of the directory: one that was under way there has failed. One that failed
+        is tried again after a while.
         """
         with self._write() as session:
-            if due_ns is not None and only(session, select(BackupRow).where(BackupRow.due_ns == due_ns)):
+            if due_ns is not None and not _may_begin(session, due_ns, now_ns):
                 return None
             earlier = (BackupRow.state == BackupState.RUNNING, BackupRow.directory == directory)
             session.execute(
@@ -37,6 +43,12 @@ class BackupRows(Sessions):
             session.add(row)
             session.flush()
             return record_of(BackupEntry, row)
+
+    def is_backup_due(self, due_ns: int, *, now_ns: int) -> bool:
+        """Return whether the back-up of a due time is to be made, or to be tried again."""
+        with self._read() as session:
+            row = only(session, select(BackupRow).where(BackupRow.due_ns == due_ns))
+            return row is None or _is_to_be_repeated(row, now_ns)
 
     def finish_backup(
         self, backup_id: str, *, name: str, recordings: int, files: int, size_bytes: int, now_ns: int
@@ -71,3 +83,18 @@ class BackupRows(Sessions):
         with self._read() as session:
             row = only(session, query)
             return None if row is None else record_of(BackupEntry, row)
+
+
+def _may_begin(session: Session, due_ns: int, now_ns: int) -> bool:
+    earlier = only(session, select(BackupRow).where(BackupRow.due_ns == due_ns))
+    if earlier is None:
+        return True
+    if not _is_to_be_repeated(earlier, now_ns):
+        return False
+    earlier.due_ns = None
+    session.flush()
+    return True
+
+
+def _is_to_be_repeated(row: BackupRow, now_ns: int) -> bool:
+    return row.state is not BackupState.VERIFIED and not 0 <= now_ns - row.began_ns < REPEATED_AFTER_NS

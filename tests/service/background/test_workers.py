@@ -31,8 +31,17 @@ OFTEN = Periods(
     orphaned_requests_s=0.01,
     alarm_steps_s=0.01,
     alarm_sources_s=0.01,
+    backups_s=0.01,
 )
-PARTS = ("schedules", "housekeeping", "retention", "orphaned_requests", "alarm_steps", "alarm_sources")
+PARTS = (
+    "schedules",
+    "housekeeping",
+    "retention",
+    "orphaned_requests",
+    "alarm_steps",
+    "alarm_sources",
+    "backups",
+)
 
 
 class FaultyRepository(Repository):
@@ -64,6 +73,10 @@ class FaultyRepository(Repository):
         self._fail_for("alarm_sources")
         return super().gather_floods(most, now_ns=now_ns)
 
+    def is_backup_due(self, due_ns: int, *, now_ns: int) -> bool:
+        self._fail_for("backups")
+        return super().is_backup_due(due_ns, now_ns=now_ns)
+
     def _fail_for(self, part: str) -> None:
         if part == self.part:
             raise RuntimeError("a bug")
@@ -78,7 +91,8 @@ class AlwaysDue(Schedule):
 
 @contextmanager
 def serving_workers(repository: Repository, store: RecordingStore, directory: Path) -> Iterator[httpx.Client]:
-    settings = Settings(data_directory=directory)
+    backup = {"directory": directory / "backups"}
+    settings = Settings.model_validate({"data_directory": directory, "backup": backup})
     plant = two_motor_plant()
     often = tuple(replace(motor, schedule=AlwaysDue("* * * * *")) for motor in plant.motors)
     workers = background_workers(

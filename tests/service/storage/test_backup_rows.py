@@ -1,5 +1,6 @@
 """Back-ups as the database remembers them."""
 
+from core.units import NANOSECONDS_PER_DAY as DAY_NS
 from service.storage import Repository
 from service.storage.states import BackupState
 from testing.service.plants import NOW_NS, SECOND_NS
@@ -34,9 +35,25 @@ def test_the_latest_verified_back_up_is_known(repository: Repository) -> None:
 
 def test_of_several_services_one_makes_the_back_up_that_is_due(repository: Repository) -> None:
     due_ns = NOW_NS
-    assert repository.begin_backup("/backup", now_ns=NOW_NS, due_ns=due_ns) is not None
+    assert repository.is_backup_due(due_ns, now_ns=NOW_NS)
+    begun = repository.begin_backup("/backup", now_ns=NOW_NS, due_ns=due_ns)
+    assert begun is not None
+    assert not repository.is_backup_due(due_ns, now_ns=NOW_NS + 1)
     assert repository.begin_backup("/backup", now_ns=NOW_NS + 1, due_ns=due_ns) is None
+    repository.finish_backup(begun.id, name="a", recordings=0, files=1, size_bytes=1, now_ns=NOW_NS + 1)
+    assert repository.begin_backup("/backup", now_ns=NOW_NS + DAY_NS, due_ns=due_ns) is None
     assert repository.begin_backup("/backup", now_ns=NOW_NS + 2, due_ns=due_ns + SECOND_NS) is not None
+
+
+def test_a_back_up_that_failed_is_tried_again_after_an_hour(repository: Repository) -> None:
+    begun = repository.begin_backup("/backup", now_ns=NOW_NS, due_ns=NOW_NS)
+    assert begun is not None
+    repository.fail_backup(begun.id, "the disk is full", now_ns=NOW_NS + SECOND_NS)
+    assert not repository.is_backup_due(NOW_NS, now_ns=NOW_NS + 3599 * SECOND_NS)
+    later_ns = NOW_NS + 3600 * SECOND_NS
+    assert repository.is_backup_due(NOW_NS, now_ns=later_ns)
+    assert repository.begin_backup("/backup", now_ns=later_ns, due_ns=NOW_NS) is not None
+    assert not repository.is_backup_due(NOW_NS, now_ns=later_ns + SECOND_NS)
 
 
 def test_a_back_up_that_was_interrupted_has_failed_when_the_next_begins(repository: Repository) -> None:

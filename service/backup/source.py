@@ -1,0 +1,20 @@
+"""What the settings say is to be backed up, and where a back-up is put."""
+
+from service.backup.making import Source
+from service.backup.restoring import Place
+from service.configuration.settings import Settings
+
+
+def source_of(settings: Settings) -> Source:
+    """Return what a back-up of this service consists of."""
+    files = {"settings.toml": settings.file, "plant.scd": settings.scd, "motors.toml": settings.motors}
+    return Source(
+        database_url=settings.database_url,
+        recordings=settings.recordings_directory,
+        configuration={name: path for name, path in files.items() if path is not None and path.is_file()},
+    )
+
+
+def place_of(settings: Settings) -> Place:
+    """Return where these settings have the data of the service."""
+    return Place(settings.data_directory, settings.database_url, settings.recordings_directory)

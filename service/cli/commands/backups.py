@@ -1,0 +1,63 @@
+"""Commands that back a service up, and put a back-up in place."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.cli.commands.options import Config, Json
+
+commands = typer.Typer()
+
+
+@commands.command()
+def backup(
+    directory: Annotated[
+        Path | None,
+        typer.Argument(metavar="[DIRECTORY]", help="Where back-ups are kept (default: backup.directory)."),
+    ] = None,
+    config: Config = None,
+    keep: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="Remove the oldest back-ups beyond so many.")
+    ] = None,
+    *,
+    verify: Annotated[
+        bool, typer.Option("--verify", help="Make none: read the latest one again, or the one named.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Back up database, recordings and plant files while the service runs, and verify the back-up.
+
+    Recordings that an earlier back-up has are not copied again.
+    """
+    from service.cli.backup.make import back_up
+    from service.cli.backup.make import verify as verify_backup
+
+    if not verify:
+        back_up(config, directory, keep=keep, as_json=as_json)
+        return
+    if keep is not None:
+        raise typer.BadParameter("--keep is for a new back-up: leave out --keep or --verify")
+    verify_backup(config, directory, as_json=as_json)
+
+
+@commands.command()
+def restore(
+    backup: Annotated[
+        Path, typer.Argument(metavar="BACKUP", help="A back-up, or a directory of them: its latest one.")
+    ],
+    config: Config = None,
+    into: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Restore into this data directory instead of that of the settings."),
+    ] = None,
+    *,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace a database that is there already.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Put a back-up in the place of a service's data, all of it or nothing; the service has to be stopped."""
+    from service.cli.backup.restore import restore as restore_backup
+
+    restore_backup(config, backup, into=into, overwrite=overwrite, as_json=as_json)

@@ -1,0 +1,73 @@
+"""`mcc backup` and `mcc restore` as a person uses them."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from service.cli.app import main
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from testing.service.plants import NOW_NS
+from tests.service.fixtures import database_url, engine, repository, store
+
+__all__ = ["database_url", "engine", "repository", "store"]
+
+
+@pytest.fixture
+def config(repository: Repository, store: RecordingStore, tmp_path: Path) -> Path:
+    repository.add_recording(store.store({"R.CFF": b"samples"}), motor="PUMP-A1", now_ns=NOW_NS)
+    (tmp_path / "plant.scd").write_text("<SCL/>")
+    file = tmp_path / "mcc.toml"
+    file.write_text('data_directory = "."\nscd = "plant.scd"\n[backup]\ndirectory = "copies"\n')
+    return file
+
+
+def run(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, object]:
+    assert main([str(one) for one in (*arguments, "--json")]) == 0
+    document: dict[str, object] = json.loads(capsys.readouterr().out)
+    return document
+
+
+def test_from_a_back_up_to_a_service_elsewhere(
+    config: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made = run(capsys, "backup", "--config", config)
+    assert (made["recordings"], made["copied"], made["verified"]) == (1, 1, True)
+    assert run(capsys, "backup", "--config", config)["copied"] == 0
+    verified = run(capsys, "backup", "--verify", tmp_path / "copies")
+    assert verified["name"] != made["name"], "the latest"
+    folder = tmp_path / "copies" / str(made["name"])
+    assert (folder / "configuration" / "plant.scd").read_text() == "<SCL/>"
+    assert (folder / "configuration" / "settings.toml").read_text() == config.read_text()
+    elsewhere = tmp_path / "elsewhere"
+    restored = run(capsys, "restore", folder, "--into", elsewhere)
+    assert (restored["name"], restored["added"]) == (made["name"], 1)
+    assert sorted(path.name for path in elsewhere.iterdir()) == [
+        "recordings",
+        "service.lock",
+        "statorwatch.sqlite",
+    ]
+
+
+def test_in_words(config: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["backup", str(tmp_path / "usb"), "--config", str(config), "--keep", "1"]) == 0
+    assert ": 1 recordings (1 new), 4 files, " in capsys.readouterr().out
+    assert main(["backup", "--verify", str(tmp_path / "usb")]) == 0
+    assert ": whole: 1 recordings, 4 files, " in capsys.readouterr().out
+    assert main(["restore", str(tmp_path / "usb"), "--config", str(config)]) == 1
+    assert "--overwrite it is replaced, and kept" in " ".join(capsys.readouterr().err.split())
+    next((tmp_path / "usb").glob("recordings/??/*/R.CFF")).write_bytes(b"damaged")
+    assert main(["backup", "--verify", str(tmp_path / "usb")]) == 1
+    assert "R.CFF: expected SHA-256" in " ".join(capsys.readouterr().err.split())
+
+
+def test_what_is_missing_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    config = tmp_path / "mcc.toml"
+    config.write_text('data_directory = "."\n')
+    assert main(["backup", "--config", str(config)]) == 1
+    assert "expected a DIRECTORY, or the setting backup.directory" in capsys.readouterr().err
+    assert main(["backup", str(tmp_path / "usb"), "--config", str(config)]) == 1
+    assert "start the service once" in " ".join(capsys.readouterr().err.split())
+    assert main(["backup", "--verify", "--keep", "2"]) == 2
+    assert list(tmp_path.iterdir()) == [config]
