@@ -78,7 +78,7 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         AlarmPriority.MEDIUM,
         "More alarms of one priority were raised within a minute than a person can read (`flood_alarms`).",
         "They are set aside behind this line, so that nobody has to read each of them.",
-        "Look for what they have in common; `mcc alarms --all` lists them.",
+        "Look for what they have in common; `mcc alarms --part-of ALARM` lists them.",
         "so few of them stand that they can be read: these are then told one by one",
     ),
     AlarmKind.CLOCK_OFF: AlarmDescription(

@@ -45,10 +45,12 @@ def alarms(
     *,
     relay: str | None = None,
     standing: bool | None = None,
+    part_of: str | None = None,
 ) -> Iterator[Sequence[Alarm]]:
     """Return the alarms of these motors, one motor after another, or of all; latest first."""
     for motor in motors or (None,):
-        yield from pages(partial(repository.alarms, motor=motor, relay=relay, standing=standing))
+        of_motor = partial(repository.alarms, motor=motor, relay=relay, standing=standing, part_of=part_of)
+        yield from pages(of_motor)
 
 
 def open_alarms(

@@ -43,6 +43,9 @@ def list_alarms(
         bool | None,
         Query(description="true: those whose cause stands; false: those whose is gone; without: both."),
     ] = None,
+    part_of: Annotated[
+        UUID | None, Query(description="Only those that this alarm tells in one line.")
+    ] = None,
     limit: Limit = DEFAULT_LIMIT,
     cursor: CursorText = None,
 ) -> Page[Alarm] | StreamingResponse:
@@ -50,12 +53,18 @@ def list_alarms(
     context.require_motor(motor)
     if ied is not None:
         context.repository.relay(ied)
+    group = None if part_of is None else str(part_of)
     if file is not None:
         chosen = None if motor is None else [motor]
-        rows = table.alarms(context.repository, chosen, relay=ied, standing=standing)
+        rows = table.alarms(context.repository, chosen, relay=ied, standing=standing, part_of=group)
         return file.of(table.TABLE, rows, chosen)
     alarms = context.repository.alarms(
-        relay=ied, motor=motor, standing=standing, limit=limit, after=decode(cursor, int, str)
+        relay=ied,
+        motor=motor,
+        standing=standing,
+        part_of=group,
+        limit=limit,
+        after=decode(cursor, int, str),
     )
     return page(alarms, Alarm.model_validate)
 

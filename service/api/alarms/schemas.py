@@ -2,9 +2,10 @@
 
 from datetime import UTC, datetime
 from typing import Annotated
+from urllib.parse import quote
 from uuid import UUID
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, computed_field, model_validator
 
 from core.units import NANOSECONDS_PER_SECOND
 from service.api.document import Document, Listed, Reason, RequestDocument
@@ -13,6 +14,15 @@ from service.storage.states import AlarmEvent, AlarmKind, AlarmPriority, AlarmSt
 
 MOST_AT_ONCE = 100
 """So many alarms may be acknowledged in one request."""
+
+
+class AlarmLinks(Document):
+    """Where to look further: addresses of this API. null: the alarm is not about one."""
+
+    motor: str | None
+    ied: str | None
+    recording: str | None
+    part_of: str | None
 
 
 class Alarm(Document):
@@ -26,6 +36,7 @@ class Alarm(Document):
     raised_time: the latest; raises: how often. changed_...: the latest change of the state, by whom and with
     which comment. shelved_until, shelved_above: the time and the value that end the shelving.
     suppressed_because: why the plant's design suppresses it. part_of: the alarm that tells it with others.
+    links: addresses of its motor, relay, recording and of that alarm.
     """
 
     id: str
@@ -54,6 +65,20 @@ class Alarm(Document):
     shelved_above: float | None
     suppressed_because: str | None
     part_of: str | None
+
+    @computed_field
+    def links(self) -> AlarmLinks:
+        """Return where to look further."""
+        return AlarmLinks(
+            motor=_address("motors", self.motor),
+            ied=_address("ieds", self.ied),
+            recording=_address("recordings", self.recording),
+            part_of=_address("alarms", self.part_of),
+        )
+
+
+def _address(collection: str, name: str | None) -> str | None:
+    return None if name is None else f"/api/v1/{collection}/{quote(name, safe='')}"
 
 
 class AlarmChange(Document):

@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from datetime import UTC
 from pathlib import Path
 
+from pydantic import BaseModel
+
 from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 from mms import CredentialFileError, read_certificates
 from service.alarms.confirmation import DeadBand, Decision
@@ -19,8 +21,11 @@ from service.storage.records.alarm_sources import AlarmFinding
 URGENT_DAYS = 7.0
 """From then on the alarm has a higher priority, and calls again."""
 
-MOST_RELAYS = 3
-"""So many relays are named that use a file."""
+MOST_USERS = 3
+"""So many relays, or others, are named that use a file."""
+
+CERTIFICATES = frozenset(("certificate", "tls_certificate", "ca", "pinned"))
+"""Settings of these names, wherever they stand, are files with certificates."""
 
 
 class CertificateSource:
@@ -78,15 +83,36 @@ class CertificateSource:
         return standing.finding(subject, AlarmPlace(), spec, decision, f"it {reason}")
 
 
-def certificate_files(settings: Settings) -> Mapping[Path, Sequence[str]]:
-    """Return the files with certificates that the settings name, each with the relays that use it."""
+def certificate_files(settings: BaseModel) -> Mapping[Path, Sequence[str]]:
+    """Return the files with certificates that the settings name, each with what uses it."""
     files: dict[Path, list[str]] = defaultdict(list)
-    for relay, access in sorted(settings.relays.items()):
-        if access.tls is not None:
-            ca = () if access.tls.ca is None else (access.tls.ca,)
-            for path in dict.fromkeys((access.tls.certificate, *ca, *access.tls.pinned)):
-                files[path].append(relay)
+    for keys, path in _named(settings, ()):
+        user = _user(keys)
+        if user not in files[path]:
+            files[path].append(user)
     return files
+
+
+def _named(value: object, keys: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Path]]:
+    """Yield each file with certificates in a part of the settings, with the keys that lead to it."""
+    if isinstance(value, BaseModel):
+        for name in type(value).model_fields:
+            yield from _named(getattr(value, name), (*keys, name))
+    elif isinstance(value, Mapping):
+        for name, part in value.items():
+            yield from _named(part, (*keys, str(name)))
+    elif isinstance(value, tuple | list):
+        for part in value:
+            yield from _named(part, keys)
+    elif isinstance(value, Path) and keys[-1] in CERTIFICATES:
+        yield keys, value
+
+
+def _user(keys: tuple[str, ...]) -> str:
+    """Return in words what uses a file."""
+    if keys[0] == "relays":
+        return f"relay {keys[1]}"
+    return "the REST API" if len(keys) == 1 else f"[{'.'.join(keys[:-1])}]"
 
 
 def _spec(subject: str, reason: str, priority: AlarmPriority | None) -> AlarmSpec:
@@ -94,6 +120,6 @@ def _spec(subject: str, reason: str, priority: AlarmPriority | None) -> AlarmSpe
 
 
 def _used_by(users: Sequence[str]) -> str:
-    named = ", ".join(users[:MOST_RELAYS])
-    more = len(users) - MOST_RELAYS
-    return f"for {named}" + (f" and {more} other relays" if more > 0 else "")
+    named = ", ".join(users[:MOST_USERS])
+    more = len(users) - MOST_USERS
+    return f"for {named}" + (f" and {more} others" if more > 0 else "")

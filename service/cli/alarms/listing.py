@@ -26,18 +26,22 @@ MOST_CHANGES = 1000
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """Which alarms are shown; None for all. over: also those that are over, the latest at the top."""
+    """Which alarms are shown; None for all. over: also those that are over, the latest at the top.
+
+    part_of: only those that this alarm tells in one line, over or not.
+    """
 
     motor: str | None
     site: str | None
     relay: str | None
     state: str | None
     over: bool
+    part_of: str | None = None
 
     @property
     def path(self) -> str:
         """Return the list that has them."""
-        return "/alarms" if self.over else "/alarms/open"
+        return "/alarms" if self.over or self.part_of is not None else "/alarms/open"
 
     @property
     def query(self) -> dict[str, str]:
@@ -49,14 +53,17 @@ class Chosen:
 def show_alarms(url: str, chosen: Chosen, *, limit: int, as_csv: bool, as_json: bool) -> None:
     """Print alarms. Raises CommandError."""
     require_one_format(as_csv=as_csv, as_json=as_json)
-    if chosen.over and (chosen.site is not None or chosen.state is not None):
+    if chosen.path == "/alarms" and (chosen.site is not None or chosen.state is not None):
         raise CommandError(
-            "--all: expected neither --site nor --state beside it, which choose among open alarms",
+            "--all, --part-of: expected neither --site nor --state beside it, which choose among open alarms",
             details={"type": "WrongUse"},
             exit_code=WRONG_USE,
         )
     with failing_clearly(ServiceError), ServiceClient(url) as service:
-        pages = service.items(chosen.path, limit=str(min(limit, 1000)), **chosen.query)
+        query = chosen.query
+        if chosen.part_of is not None:
+            query["part_of"] = whole_id(service, chosen.part_of)
+        pages = service.items(chosen.path, limit=str(min(limit, 1000)), **query)
         found = list(islice(pages, limit))
     if as_csv or as_json or not found:
         print_rows("alarms", found, FIELDS, {}, as_csv=as_csv, as_json=as_json)

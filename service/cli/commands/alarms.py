@@ -32,6 +32,9 @@ def list_alarms(
         str | None, typer.Option(metavar="RELAY", help="Only this relay's and its motors'.")
     ] = None,
     state: Annotated[State | None, typer.Option(help="Only those in this state.")] = None,
+    part_of: Annotated[
+        str | None, typer.Option(metavar="ALARM", help="Only those that this alarm tells in one line.")
+    ] = None,
     limit: Annotated[int, typer.Option("--limit", min=1, max=100_000, help="Show so many.")] = 100,
     *,
     over: Annotated[
@@ -45,7 +48,7 @@ def list_alarms(
     """Show the alarms that are not over: what to act on first at the top, with what to do."""
     from service.cli.alarms.listing import Chosen, show_alarms
 
-    chosen = Chosen(motor=motor, site=site, relay=relay, state=state, over=over)
+    chosen = Chosen(motor=motor, site=site, relay=relay, state=state, over=over, part_of=part_of)
     show_alarms(url, chosen, limit=limit, as_csv=as_csv, as_json=as_json)
 
 

@@ -27,6 +27,7 @@ class AlarmFilter:
     motor: str | None = None
     standing: bool | None = None
     state: AlarmState | None = None
+    part_of: str | None = None
 
 
 class AlarmLists(Sessions):
@@ -53,13 +54,14 @@ class AlarmLists(Sessions):
         relay: str | None = None,
         motor: str | None = None,
         standing: bool | None = None,
+        part_of: str | None = None,
     ) -> Page[Alarm]:
         """Return a page of alarms, latest first.
 
         relay, motor: None for all. standing: True for alarms whose cause stands, False for cleared ones, None
-        for both.
+        for both. part_of: only those that this alarm tells in one line.
         """
-        query = _chosen(AlarmFilter(relay=relay, motor=motor, standing=standing))
+        query = _chosen(AlarmFilter(relay=relay, motor=motor, standing=standing, part_of=part_of))
         order: Order = [AlarmRow.raised_ns, AlarmRow.id]
         with self._read() as session:
             return page_of(session, query, order, Alarm, limit=limit, after=after, descending=True)
@@ -100,6 +102,8 @@ def _chosen(chosen: AlarmFilter) -> Select[*tuple[object, ...]]:
         query = query.where(AlarmRow.ied == chosen.relay)
     if chosen.motor is not None:
         query = query.where(AlarmRow.motor == chosen.motor)
+    if chosen.part_of is not None:
+        query = query.where(AlarmRow.part_of == chosen.part_of)
     if chosen.state is not None:
         query = query.where(AlarmRow.state == chosen.state)
     if chosen.standing is not None:

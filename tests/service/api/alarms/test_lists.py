@@ -97,3 +97,30 @@ def test_key_figures_of_a_service_without_alarms(client: httpx.Client) -> None:
     found = client.get(f"{URL}/figures").json()
     assert (len(found["days"]), found["calls_per_day"], found["open"]) == (30, 0.0, {})
     assert (found["frequent"], found["chattering"], found["standing_long"]) == ([], [], [])
+
+
+def test_an_alarm_leads_to_its_motor_relay_and_recording_and_a_flood_to_its_members(
+    client: httpx.Client, repository: Repository
+) -> None:
+    fault = AlarmSpec(AlarmKind.CONDITION_FAULT, "why", "shorted turns in phase b", recording_id="5b0e")
+    repository.raise_alarm_at(AlarmPlace(motor="PUMP-A1"), fault, now_ns=NOW_NS)
+    for number in range(12):
+        spec = AlarmSpec(AlarmKind.FILE_REFUSED, "outside", f"file {number}")
+        repository.raise_alarm_at(AlarmPlace(relay=OTHER), spec, now_ns=NOW_NS + number)
+    repository.gather_floods(10, now_ns=NOW_NS + 12)
+    alarm, flood, *members = client.get(f"{URL}/open").json()["items"]
+    assert alarm["links"] == {
+        "motor": "/api/v1/motors/PUMP-A1",
+        "ied": "/api/v1/ieds/A1_SEL710",
+        "recording": "/api/v1/recordings/5b0e",
+        "part_of": None,
+    }
+    assert client.get(alarm["links"]["motor"]).status_code == 200
+    assert flood["links"] == dict.fromkeys(alarm["links"])
+    assert len(members) == 12
+    assert {one["links"]["part_of"] for one in members} == {f"{URL}/{flood['id']}"}
+    told = client.get(URL, params={"part_of": flood["id"]}).json()["items"]
+    assert {one["id"] for one in told} == {one["id"] for one in members}
+    assert client.get(URL, params={"part_of": "no id"}).status_code == 422
+    rows = client.get(URL, params={"part_of": flood["id"], "format": "csv"}).text.splitlines()
+    assert sum("file-refused" in row for row in rows) == 12

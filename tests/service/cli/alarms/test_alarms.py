@@ -82,6 +82,18 @@ def test_what_to_act_on_first_is_at_the_top(mcc: Mcc, repository: Repository, al
     assert "expected neither --site nor --state" in mcc("--all", "--state", "shelved", ends=2)
 
 
+def test_a_flood_leads_to_its_members(mcc: Mcc, repository: Repository) -> None:
+    for number in range(12):
+        repository.raise_alarm(RELAY, AlarmKind.FILE_REFUSED, f"file {number}", "outside", now_ns=NOW_NS)
+    repository.gather_floods(10, now_ns=NOW_NS)
+    first, *_ = mcc().splitlines()
+    assert first.startswith("low, unacknowledged  FACTORY_A: alarm-flood")
+    [flood] = [one for one in json.loads(mcc("--json"))["alarms"] if one["kind"] == "alarm-flood"]
+    members = json.loads(mcc("--part-of", flood["id"][:8], "--json"))["alarms"]
+    assert {one["subject"] for one in members} == {f"file {number}" for number in range(12)}
+    assert "expected neither --site" in mcc("--part-of", flood["id"], "--site", "FACTORY_A", ends=2)
+
+
 def test_rows_for_spreadsheets_and_programs(mcc: Mcc, alarm: Alarm) -> None:
     [row] = csv.DictReader(io.StringIO(mcc("--csv")))
     assert (row["ied"], row["kind"], row["cleared_time"], row["state"], row["id"]) == (
