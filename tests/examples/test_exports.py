@@ -44,8 +44,16 @@ def client(repository: Repository, store: RecordingStore, tmp_path: Path) -> Ite
         yield client
 
 
-def test_python_reads_them(client: httpx.Client) -> None:
-    words = [sys.executable, str(ROOT / "examples/read_exports.py"), str(client.base_url), "PUMP-A1"]
+def token_of(client: httpx.Client) -> str:
+    """The token that the client shows, if the service wants one."""
+    return str(client.headers.get("authorization", "Bearer none")).removeprefix("Bearer ")
+
+
+def test_python_reads_them(client: httpx.Client, tmp_path: Path) -> None:
+    token = tmp_path / "statorwatch.token"
+    token.write_text(f"{token_of(client)}\n")
+    example = ROOT / "examples/read_exports.py"
+    words = [sys.executable, str(example), str(client.base_url), "PUMP-A1", str(token)]
     done = subprocess.run(words, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines() == [
         "2025-10-09 08:53 UTC fault           2.000% fault",
@@ -115,7 +123,7 @@ def test_octave_reads_them(client: httpx.Client) -> None:
         pytest.skip("no GNU Octave: apt-get install --no-install-recommends octave")
     program = f"""
         addpath('{ROOT / "examples/matlab"}');
-        trend = read_trend('{client.base_url}', 'PUMP-A1', 'any');
+        trend = read_trend('{client.base_url}', 'PUMP-A1', '{token_of(client)}');
         printf('%s|', trend.motor{{:}}, trend.verdict{{:}}, trend.state{{:}});
         printf('%.4f|', trend.mu_f, trend.condition_level);
         printf('%s|', datestr(trend.time(1), 31));
