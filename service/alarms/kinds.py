@@ -43,6 +43,9 @@ FOLLOW_FROM_QUARANTINE = frozenset(
         AlarmKind.DAILY_LIMIT,
         AlarmKind.RELAY_DIFFERS,
         AlarmKind.TIME_ZONE,
+        AlarmKind.CLOCK_OFF,
+        AlarmKind.LINK_DOWN,
+        AlarmKind.MISSING_DATA,
     }
 )
 """Nobody can look after these while the relay is set aside: its quarantine is the alarm then."""

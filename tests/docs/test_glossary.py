@@ -9,7 +9,10 @@ from core.condition.events import EventKind
 from core.condition.kinds import Kind, State
 from core.diagnosis.verdict import Verdict
 from service.storage.states import (
+    AlarmEvent,
     AlarmKind,
+    AlarmPriority,
+    AlarmState,
     ClockQuality,
     JobState,
     LinkState,
@@ -27,6 +30,9 @@ SHOWN = [
     Kind,
     EventKind,
     AlarmKind,
+    AlarmState,
+    AlarmPriority,
+    AlarmEvent,
     ClockQuality,
     JobState,
     LinkState,

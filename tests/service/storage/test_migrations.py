@@ -7,10 +7,13 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import Engine, inspect, text
 
+from service.alarms.kinds import AlarmKind
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, StorageError, connect, migrate
 from service.storage.migrations import config
 from service.storage.models import Base
+from service.storage.records import AlarmPlace, AlarmSpec
+from service.storage.states import AlarmState
 from testing.service.conditions import DRIFTING, tell
 from testing.service.plants import NOW_NS, fault
 
@@ -161,6 +164,31 @@ def test_what_an_older_condition_may_be_is_not_known(
     assert (change.kind, change.candidates) == ("unclear", ())
     tell(repository, DRIFTING, now_ns=NOW_NS + 1)
     assert repository.condition("PUMP-A1").candidates == DRIFTING.candidates
+
+
+def test_older_alarms_have_a_life_and_call_nobody(
+    database_url: str, engine: Engine, repository: Repository
+) -> None:
+    stands = repository.raise_alarm("A1_SEL710", AlarmKind.FILE_REFUSED, "X", "outside", now_ns=NOW_NS)
+    over = repository.raise_alarm("A1_SEL710", AlarmKind.DAILY_LIMIT, "", "full", now_ns=NOW_NS + 1)
+    repository.clear_alarms("A1_SEL710", [over.id], now_ns=NOW_NS + 2)
+    repository.raise_alarm_at(AlarmPlace(), AlarmSpec(AlarmKind.DISK_FILLING, "full"), now_ns=NOW_NS)
+    with engine.begin() as connection:
+        command.downgrade(config(connection), "0030")
+        assert connection.scalar(text("SELECT count(*) FROM alarms")) == 2, "those of no relay are gone"
+    migrate(database_url)
+    assert [
+        (one.id, one.state, one.site, one.raises, one.priority) for one in repository.alarms(limit=9).items
+    ] == [
+        (over.id, AlarmState.NORMAL, "FACTORY_A", 1, "low"),
+        (stands.id, AlarmState.UNACKNOWLEDGED, "FACTORY_A", 1, "low"),
+    ]
+    assert [one.event for one in repository.alarm_changes(over.id, limit=9).items] == ["cleared", "raised"]
+    with engine.connect() as connection:
+        unrouted = text("SELECT count(*) FROM alarm_changes WHERE routed_ns IS NULL")
+        assert connection.scalar(unrouted) == 0
+    repository.clear_alarms("A1_SEL710", [stands.id], now_ns=NOW_NS + 3)
+    assert repository.alarm(stands.id).state is AlarmState.RETURNED_UNACKNOWLEDGED
 
 
 def test_every_step_leads_back(database_url: str) -> None:
