@@ -52,18 +52,19 @@ class ServeError(RuntimeError):
     """The service cannot listen, or keep its data, where it should."""
 
 
-def serve(settings: Settings) -> None:
+def serve(settings: Settings, settings_file: Path | None = None) -> None:
     """Run until SIGTERM or SIGINT; every process of the service has ended afterwards.
 
+    settings_file: where the settings are from; it goes into back-ups.
     Raises PlantError, SettingsError, StorageError, AlreadyRunningError, ServeError.
     """
     termination = Termination()
     with termination.heeded():
-        _serve(settings, termination)
+        _serve(settings, settings_file, termination)
     log.info("service ended")
 
 
-def _serve(settings: Settings, termination: Termination) -> None:
+def _serve(settings: Settings, settings_file: Path | None, termination: Termination) -> None:
     """Start step by step, and answer requests until a signal comes. Raises SystemExit during the start."""
     plant = _plant(settings)
     _require_writable(settings.data_directory)
@@ -73,7 +74,7 @@ def _serve(settings: Settings, termination: Termination) -> None:
         termination.step()
         store = RecordingStore(settings.recordings_directory, installation_id(settings.data_directory))
         store.discard_incoming()
-        jobs, parts = _parts(settings, plant, repository, store, termination)
+        jobs, parts = _parts(settings, settings_file, plant, repository, store, termination)
         room = {"disk": partial(disk_problem, _written(settings))}
         readiness = room | {name: part.problem for name, part in parts.items()}
         context = ApiContext(settings, repository, store, readiness=readiness, on_new_job=jobs.wake)
@@ -144,6 +145,7 @@ def _answer(context: ApiContext, listener: socket.socket, termination: Terminati
 
 def _parts(
     settings: Settings,
+    settings_file: Path | None,
     plant: Plant,
     repository: Repository,
     store: RecordingStore,
@@ -185,6 +187,7 @@ def _parts(
         store,
         gateway_problem=gateways.not_running,
         restart_delay_s=RESTART_POLICY.backoff.longest_s,
+        settings_file=settings_file,
         directories=_written(settings),
     )
     notifications = NotificationWork(

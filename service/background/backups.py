@@ -1,6 +1,7 @@
 """Backs the service up once a day, where the settings say where to."""
 
 from datetime import UTC, datetime, time, timedelta
+from pathlib import Path
 from threading import Event
 
 import structlog
@@ -23,8 +24,16 @@ class DailyBackup:
     A time that passed while no service ran is made up for: what matters of a back-up is its age.
     """
 
-    def __init__(self, settings: Settings, repository: Repository, stopping: Event | None = None) -> None:
-        """stopping: set when a back-up under way should end."""
+    def __init__(
+        self,
+        settings: Settings,
+        repository: Repository,
+        stopping: Event | None = None,
+        *,
+        settings_file: Path | None = None,
+    ) -> None:
+        """stopping: set when a back-up under way should end.  settings_file: goes into the back-up."""
+        self._settings_file = settings_file
         self._settings = settings
         self._repository = repository
         self._stopping = stopping or Event()
@@ -43,7 +52,7 @@ class DailyBackup:
         try:
             made = make_noted_backup(
                 self._repository,
-                source_of(self._settings),
+                source_of(self._settings, self._settings_file),
                 backup.directory,
                 keep=backup.keep,
                 due_ns=due_ns,

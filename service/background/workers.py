@@ -59,12 +59,14 @@ def background_workers(
     gateway_problem: Callable[[], str | None],
     restart_delay_s: float,
     directories: Iterable[Path] = (),
+    settings_file: Path | None = None,
     periods: Periods = PERIODS,
 ) -> Mapping[str, PeriodicWorker]:
     """Return one worker for each periodic work, not started yet.
 
     gateway_problem: why gateways of this service do not run; None while all do.  restart_delay_s: the longest
     pause before a gateway that ended is started again.  directories: those that the service writes to.
+    settings_file: goes into back-ups.
     """
     scheduler = Scheduler(
         plant.motors, repository, buses=plant.buses, metering_period_s=settings.metering_period_s
@@ -72,7 +74,7 @@ def background_workers(
     housekeeping_ends, retention_ends, alarm_steps_end, backup_ends = Event(), Event(), Event(), Event()
     steps = AlarmSteps(repository, alarm_steps_end)
     sources = AlarmSources(settings, repository, directories, started_ns=time.time_ns())
-    backup = DailyBackup(settings, repository, backup_ends)
+    backup = DailyBackup(settings, repository, backup_ends, settings_file=settings_file)
     keeper = Housekeeping(settings, repository, housekeeping_ends)
     retained = Retention(settings, repository, store, retention_ends)
     ender = OrphanedRequestEnder(

@@ -1,13 +1,15 @@
 """What the settings say is to be backed up, and where a back-up is put."""
 
+from pathlib import Path
+
 from service.backup.making import Source
 from service.backup.restoring import Place
 from service.configuration.settings import Settings
 
 
-def source_of(settings: Settings) -> Source:
+def source_of(settings: Settings, settings_file: Path | None) -> Source:
     """Return what a back-up of this service consists of."""
-    files = {"settings.toml": settings.file, "plant.scd": settings.scd, "motors.toml": settings.motors}
+    files = {"settings.toml": settings_file, "plant.scd": settings.scd, "motors.toml": settings.motors}
     return Source(
         database_url=settings.database_url,
         recordings=settings.recordings_directory,

@@ -20,7 +20,7 @@ def run_service(config: Path | None) -> None:
     with failing_clearly(*TROUBLES, SQLAlchemyError):
         settings = Settings.load(config)
         configure_logging("service", settings.log_format)
-        serve(settings)
+        serve(settings, config)
 
 
 def run_gateways(config: Path | None) -> None:

@@ -4,7 +4,15 @@ import re
 from datetime import time
 from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    model_validator,
+)
 
 from core.error_words import nearest, shown
 from service.configuration.channels import Channel, ChannelName, variable_part
@@ -45,7 +53,12 @@ def _address(url: str) -> str:
 
 
 TimeZone = Annotated[str, AfterValidator(_zone)]
-Clock = Annotated[time, BeforeValidator(_clock)]
+Clock = Annotated[
+    time,
+    BeforeValidator(_clock),
+    # A gateway process gets the settings as JSON, and reads what this writes.
+    PlainSerializer(lambda clock: f"{clock:%H:%M}", return_type=str, when_used="json"),
+]
 Address = Annotated[str, Field(max_length=500), AfterValidator(_address)]
 Names = Annotated[tuple[ChannelName, ...], Field(min_length=1, max_length=MOST_CHANNELS)]
 

@@ -10,7 +10,7 @@ from ipaddress import IPv4Address, IPv6Address
 from pathlib import Path
 from typing import Literal, Self
 
-from pydantic import Field, PrivateAttr, ValidationError
+from pydantic import Field, ValidationError
 from pydantic_settings import BaseSettings, EnvSettingsSource, PydanticBaseSettingsSource, SettingsConfigDict
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
@@ -103,13 +103,6 @@ class Settings(BaseSettings):
     max_file_bytes: int = Field(default=64 * MIB, ge=1, le=GIB)
     max_relay_bytes_per_day: int = Field(default=GIB, ge=1, le=1024 * GIB)
 
-    _file: Path | None = PrivateAttr(default=None)
-
-    @property
-    def file(self) -> Path | None:
-        """The file that was read; None where there is none."""
-        return self._file
-
     @classmethod
     def settings_customise_sources(
         cls,
@@ -150,9 +143,7 @@ class Settings(BaseSettings):
         except SettingsError as error:
             problems.extend(error.problems)
             return None
-        settings = cls._examined(table, Sources(config, TomlLines(text), options or {}), problems)
-        settings._file = config  # noqa: SLF001 - of this class
-        return settings
+        return cls._examined(table, Sources(config, TomlLines(text), options or {}), problems)
 
     @classmethod
     def _examined(cls, table: Mapping[str, object], sources: Sources, problems: Problems) -> Self:

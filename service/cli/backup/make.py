@@ -30,7 +30,7 @@ def back_up(config: Path | None, directory: Path | None, *, keep: int | None, as
         try:
             made = make_noted_backup(
                 Repository(engine),
-                source_of(settings),
+                source_of(settings, config),
                 target,
                 keep=keep,
                 progress=lambda told: progress().print(Text(told), soft_wrap=True),

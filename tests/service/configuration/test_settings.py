@@ -286,3 +286,38 @@ def test_the_rules_of_alarms_follow_from_the_settings() -> None:
     alarms = Settings().alarms
     assert alarms.watch == Confirmation(2, 3, 2)
     assert alarms.fault == Confirmation(1, 1, 2)
+
+
+def test_a_gateway_reads_the_settings_that_it_is_given(tmp_path: Path) -> None:
+    """They go to its process as JSON."""
+    config = tmp_path / "mcc.toml"
+    config.write_text(
+        """
+[backup]
+directory = "copies"
+[retention]
+keep_operations = ["start"]
+[notifications.channels.shift]
+kind = "mail"
+host = "mail.example"
+from = "mcc@plant.example"
+to = ["shift@plant.example"]
+[notifications.channels.chat]
+kind = "webhook"
+url = "https://chat.example/hook"
+[notifications.channels.log]
+kind = "syslog"
+host = "log.example"
+[[notifications.routes]]
+channels = ["shift"]
+from = "18:00"
+until = "06:00"
+escalations = [{ after_min = 30, channels = ["chat"] }]
+[[notifications.digests]]
+period = "weekly"
+at = "07:30"
+channels = ["log"]
+"""
+    )
+    settings = Settings.load(config)
+    assert Settings.model_validate_json(settings.model_dump_json()) == settings
