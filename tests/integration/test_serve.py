@@ -30,6 +30,7 @@ from testing.service.processes import (
 )
 from testing.waiting import eventually
 
+LOST = "3 of 3 relays do not answer"
 API_PAGE = Path(__file__).parents[2] / "docs" / "reference" / "api.md"
 
 pytestmark = pytest.mark.timeout(300)
@@ -39,14 +40,26 @@ pytestmark = pytest.mark.timeout(300)
 def test_every_part_is_documented_and_ready_and_sigterm_ends_every_process(tmp_path: Path) -> None:
     page = API_PAGE.read_text(encoding="utf-8")
     documented = re.findall(r"^\| `(\w+)` \|", page.partition("| Part of `/readyz` |")[2], re.MULTILINE)
-    with running_service(tmp_path, switched_off_plant(tmp_path)) as service:
+    rules = '{"link_down_s": 0.5, "site_lost_s": 1}'
+    with running_service(tmp_path, switched_off_plant(tmp_path), MCC_ALARMS=rules) as service:
         parts = httpx.get(f"{service.url}/readyz", trust_env=False, timeout=30).json()["parts"]
-        assert parts == dict.fromkeys(documented, "ready")
+        assert parts == dict.fromkeys(set(documented) - {"audit_forwarding"}, "ready"), "no server is set"
+        assert eventually(lambda: lost_sites(service.url) == ["FACTORY_A", "FACTORY_B"], 60)
         below = descendants(service.process_id)
         assert len(below) >= 3, "a collector and two workers"
         assert service.stop() == 0
         assert eventually(lambda: not any(is_alive(process_id) for process_id in below), 5)
     assert "Traceback" not in service.log.read_text()
+
+
+def lost_sites(url: str) -> list[str] | None:
+    """The sites of which one alarm says that they are lost; None where anything else calls for somebody."""
+    calling = httpx.get(
+        f"{url}/api/v1/alarms/open", params={"state": "unacknowledged"}, trust_env=False, timeout=30
+    ).json()["items"]
+    if any((alarm["kind"], alarm["reason"]) != ("site-lost", LOST) for alarm in calling):
+        return None
+    return sorted(alarm["site"] for alarm in calling)
 
 
 def test_ctrl_c_is_an_ordinary_end(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -168,6 +169,40 @@ def test_two_services_on_one_database_raise_each_alarm_once(site: Site40, tmp_pa
         other.look(site.ns(at_s))
     assert site.calling() == {AlarmKind.LINK_DOWN: 5}
     assert all(alarm.raises == 1 for alarm in site.standing())
+
+
+def test_services_that_look_at_the_same_time_raise_and_clear_each_alarm_once(
+    engine: Engine, site: Site40, tmp_path: Path
+) -> None:
+    settings = Settings(data_directory=tmp_path)
+    services = [
+        AlarmSources(settings, Repository(engine), [], started_ns=NOW_NS, slow_period_s=0.0) for _ in range(3)
+    ]
+
+    def look(at_s: float) -> None:
+        with ThreadPoolExecutor(len(services)) as threads:
+            now_ns = site.ns(at_s)
+            for done in [threads.submit(one.look, now_ns, now_ns) for one in services]:
+                done.result()
+
+    for name in ("A1_SEL710", "R00", "R01", "R02"):
+        site.set(name, LinkState.DOWN, 0.0)
+    look(600.0)
+    assert site.calling() == {AlarmKind.LINK_DOWN: 4}
+    for name in site.relays[3:]:
+        site.set(name, LinkState.DOWN, 700.0)
+    look(800.0)
+    assert site.calling() == {AlarmKind.LINK_DOWN: 4, AlarmKind.SITE_LOST: 1}
+    look(1400.0)
+    assert len(site.standing(AlarmState.SUPPRESSED)) == 37
+    for name in site.relays:
+        site.set(name, LinkState.UP, 1500.0)
+    look(1600.0)
+    assert site.calling() == {AlarmKind.LINK_DOWN: 1}
+    for alarm in site.repository.alarms(limit=1000).items:
+        events = [one.event for one in site.repository.alarm_changes(alarm.id, limit=100).items]
+        assert len(events) == len(set(events)), (alarm.kind, events)
+    assert len(site.repository.alarms(limit=1000).items) == 42
 
 
 @pytest.mark.parametrize("number", [40, pytest.param(1000, marks=pytest.mark.campaign)])
