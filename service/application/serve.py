@@ -26,10 +26,11 @@ from service.condition.motor_data import document_of
 from service.condition.work import ConditionWork
 from service.configuration.problems import Problems
 from service.configuration.relay_access import clear_passwords
-from service.configuration.settings import Settings
+from service.configuration.settings import Settings, SettingsError
 from service.jobs import JobRunner
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
+from service.notifications.checking import channel_problems, route_problems, warnings
 from service.notifications.work import NotificationWork
 from service.plant import Plant, read_plant
 from service.process.disk_space import disk_problem
@@ -129,6 +130,14 @@ def _plant(settings: Settings) -> Plant:
     plant = read_plant(settings, problems)
     for warning in problems.warnings:
         log.warning("the plant's files", warning=warning)
+    sites = [site.name for site in plant.sites]
+    wrong = route_problems(settings.notifications, sites, "settings")
+    if wrong:
+        raise SettingsError(wrong)
+    for problem in channel_problems(settings.notifications, "settings"):
+        log.error("a channel cannot be used; its messages wait", problem=str(problem))
+    for warning in warnings(settings.notifications, sites):
+        log.warning("notifications", warning=warning)
     for relay in clear_passwords(settings.relays, [relay.name for relay in plant.relays]):
         log.warning("the relay's password goes over the network in clear: configure TLS for it", relay=relay)
     return plant

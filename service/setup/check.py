@@ -11,6 +11,7 @@ from mms import CredentialFileError
 from service.configuration.problems import Problem, Problems
 from service.configuration.relay_access import AccessError, clear_passwords, credentials
 from service.configuration.settings import Settings
+from service.notifications.checking import channel_problems, route_problems, warnings
 from service.plant import Plant
 from service.plant.files import examine_plant
 from service.storage import StorageError, connect
@@ -41,7 +42,11 @@ def check(config: Path | None) -> CheckedPlant:
     source = "settings" if config is None else str(config)
     problems.extend(_database(settings, source))
     problems.extend(_directories(settings, source))
+    problems.extend(channel_problems(settings.notifications, source))
     if plant is not None:
+        sites = [site.name for site in plant.sites]
+        problems.extend(route_problems(settings.notifications, sites, source))
+        problems.warnings.extend(warnings(settings.notifications, sites))
         names = [relay.name for relay in plant.relays]
         for name in names:
             problems.extend(_credentials(settings, name))
