@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from core.units import NANOSECONDS_PER_SECOND
+from service.alarms.kinds import AlarmKind
 from service.configuration.channels import Channel
 from service.configuration.notifications import NotificationSettings, Route
 from service.notifications.hours import is_within, local, next_begin
@@ -59,10 +60,15 @@ def _to(
 def _fits(route: Route, occurrence: Occurrence) -> bool:
     return (
         occurrence.event.value in route.events
-        and (route.sites is None or occurrence.site in route.sites)
+        and (route.sites is None or occurrence.site in route.sites or _is_of_all_sites(occurrence))
         and (route.priorities is None or occurrence.priority.value in route.priorities)
         and (route.kinds is None or occurrence.kind in route.kinds)
     )
+
+
+def _is_of_all_sites(occurrence: Occurrence) -> bool:
+    """Tell whether an alarm tells those of several sites in one line."""
+    return occurrence.site is None and occurrence.kind == AlarmKind.ALARM_FLOOD
 
 
 def _begin(target: NotificationTarget) -> int:

@@ -45,3 +45,14 @@ class StateMetrics(Collector):
                 if state is not AlarmState.NORMAL:
                     opened.add_metric([state, priority], open_alarms.get((state, priority), 0))
         yield opened
+        yield self._messages()
+
+    def _messages(self) -> GaugeMetricFamily:
+        messages = GaugeMetricFamily(
+            "mcc_notifications",
+            "Number of messages that wait, are being sent, or were given up, by channel",
+            labels=["channel", "state"],
+        )
+        for (channel, state), number in sorted(self._repository.waiting_notifications().items()):
+            messages.add_metric([channel, state], number)
+        return messages

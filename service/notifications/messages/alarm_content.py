@@ -6,6 +6,7 @@ from urllib.parse import quote
 
 from core.time_stamps import rfc3339
 from service.alarms.catalogue import CATALOGUE, AlarmDescription
+from service.alarms.kinds import AlarmKind
 from service.configuration.notifications import NotificationSettings
 from service.notifications.hours import local
 from service.notifications.messages.content import Content, Section
@@ -68,7 +69,8 @@ def _subject(notification: Notification, alarms: Sequence[ToldAlarm], number: in
         mark += "Not acknowledged: "
     if number == 1 and alarms:
         alarm = alarms[0]
-        cause = f": {alarm.subject}" if alarm.subject and alarm.calls else ""
+        told = alarm.reason if alarm.kind == AlarmKind.ALARM_FLOOD else alarm.subject
+        cause = f": {told}" if told and alarm.calls else ""
         return f"{mark}{alarm.place}: {alarm.what}{cause}"
     where = notification.site or "the service"
     return f"{mark}{where}: {_counted(notification.document or {}, number)}"

@@ -57,6 +57,7 @@ def told(wanted: NotificationSettings, now_ns: int = NOON, **what: Any) -> list[
         ({"sites": ["SOUTH"]}, {}, False),
         ({"sites": ["NORTH"]}, {"site": None}, False),
         ({}, {"site": None}, True),
+        ({"sites": ["NORTH"]}, {"site": None, "kind": "alarm-flood"}, True),
         ({"priorities": ["critical", "high"]}, {}, True),
         ({"priorities": ["critical"]}, {}, False),
         ({"kinds": ["condition-watch"]}, {}, True),

@@ -93,6 +93,18 @@ def test_a_thousand_alarms_are_one_message_of_bearable_size(repository: Reposito
     assert taken(repository, NOW_NS + 10**15) is None
 
 
+def test_a_flood_is_one_line(repository: Repository) -> None:
+    for number in range(30):
+        raise_alarm(repository, f"file {number}")
+    route(repository)
+    assert repository.gather_floods(10, now_ns=NOW_NS + 5 * SECOND_NS) == 1
+    route(repository, NOW_NS + 6 * SECOND_NS)
+    told = document(taken(repository, NOW_NS + 10 * SECOND_NS))
+    (line,) = told["alarms"]
+    assert (told["number"], line["kind"], line["site"]) == (1, "alarm-flood", "FACTORY_A")
+    assert line["reason"].startswith("30 alarms")
+
+
 def test_services_that_look_at_once_tell_each_alarm_once(repository: Repository) -> None:
     for number in range(40):
         raise_alarm(repository, f"file {number}")
