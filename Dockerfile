@@ -21,7 +21,7 @@ RUN echo "setuptools==84.2.1" > build-constraints.txt \
 FROM docker.io/library/python:3.11-slim-bookworm
 LABEL org.opencontainers.image.title="StatorWatch" org.opencontainers.image.licenses="GPL-3.0-or-later"
 RUN useradd --uid 10001 --no-create-home --home-dir /tmp --shell /usr/sbin/nologin statorwatch \
- && install --directory --owner statorwatch --group statorwatch --mode 0750 /data
+ && install --directory --owner statorwatch --group statorwatch --mode 0750 /data /token
 COPY --from=build /opt/statorwatch /opt/statorwatch
 ENV PATH=/opt/statorwatch/bin:$PATH PYTHONUNBUFFERED=1 PYTHONDONTWRITEBYTECODE=1 OPENBLAS_NUM_THREADS=1
 # The machine models, compiled. Numba compares a source's time to the nanosecond, layers keep whole seconds.

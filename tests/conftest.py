@@ -8,6 +8,7 @@ import pytest
 from hypothesis import settings
 
 from testing.memory_folder import memory_folder
+from testing.service.accounts import keep_apart
 
 # How long an example takes says more about what else the machine is doing: times are benchmarks' business.
 settings.register_profile("untimed", deadline=None)
@@ -25,8 +26,12 @@ FILES_BYTES = 4 * 1024**3
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Have the tests' files lie in memory where there is room: commits of databases wait for a disk."""
+    """Have the tests' files lie in memory where there is room: commits of databases wait for a disk.
+
+    What tests log in with is kept apart.
+    """
     del config
+    keep_apart()
     folder = memory_folder()
     if folder is not None and shutil.disk_usage(folder).free >= FILES_BYTES:
         os.environ.setdefault("PYTEST_DEBUG_TEMPROOT", str(folder))

@@ -9,6 +9,8 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from service.client.credentials import bearer
+
 ANSWER_LIMIT_S = 120.0
 """An attacker gives up after so long; what the service does afterwards still counts."""
 
@@ -20,11 +22,12 @@ Statuses = Counter[str]
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """The address of a service, its SQLite database, and the recording that a preparation left in it."""
+    """A service: its address and database, a token, and the recording that a preparation left there."""
 
     host: str
     port: int
     database: Path
+    token: str
     recording: str = ""
 
     def ask(
@@ -36,7 +39,7 @@ class Target:
     ) -> str:
         """Send one request and read its answer without keeping it; an iterable body is sent in chunks."""
         connection = http.client.HTTPConnection(self.host, self.port, timeout=ANSWER_LIMIT_S)
-        headers = {} if body is None else {"Content-Type": content_type}
+        headers = bearer(self.token) | ({} if body is None else {"Content-Type": content_type})
         try:
             with suppress(BrokenPipeError, ConnectionResetError):  # answered before all of it was read
                 connection.request(method, path, body, headers)

@@ -19,11 +19,12 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from multiprocessing.synchronize import Event
 from pathlib import Path
 
 from benchmarks.reporting import table
+from service.client.credentials import headers_for
 from testing.ports import LOOPBACK
 from testing.service.processes import Service, running_service, switched_off_plant
 
@@ -39,9 +40,10 @@ HEALTHZ_P95_LIMIT_S = 0.5
 MEMORY_LIMIT_MB = 300.0
 LOG_LIMIT_BYTES = 100_000
 
-HEADER = b"POST /api/v1/recordings HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+HOST = b"Host: 127.0.0.1\r\n"
+HEADER = b"POST /api/v1/recordings HTTP/1.1\r\n" + HOST
 FORM = b"Content-Type: multipart/form-data; boundary=x\r\n"
-GET = b"GET %s HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+GET = b"GET %s HTTP/1.1\r\n" + HOST + b"\r\n"
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,6 +145,7 @@ def measure(attack: Attack, connections: int, seconds: float, others: str = ADDR
         running_service(Path(directory), switched_off_plant(Path(directory))) as service,
     ):
         _raise_limit()
+        attack = _as_somebody(attack, service.url)
         port = int(service.url.rpartition(":")[2])
         for path in figures.times_s:
             _ask(port, path, others)
@@ -156,6 +159,12 @@ def measure(attack: Attack, connections: int, seconds: float, others: str = ADDR
         time.sleep(SETTLING_S)
         figures.left_over = _descriptors(service) - resting
     return figures
+
+
+def _as_somebody(attack: Attack, url: str) -> Attack:
+    """Return the same attack by somebody who may do everything: others are turned away before it begins."""
+    said = "".join(f"{name}: {value}\r\n" for name, value in headers_for(url).items()).encode()
+    return replace(attack, first=attack.first.replace(HOST, HOST + said))
 
 
 def _probe(service: Service, port: int, figures: Figures, seconds: float, others: str) -> None:
@@ -177,7 +186,7 @@ def _ask(port: int, path: str, address: str) -> str:
     """Ask like a new client, and return why there was no good answer; "" where there was one."""
     client = http.client.HTTPConnection(LOOPBACK, port, timeout=PROBE_TIMEOUT_S, source_address=(address, 0))
     try:
-        client.request("GET", path)
+        client.request("GET", path, headers=headers_for(f"http://{LOOPBACK}:{port}"))
         answer = client.getresponse()
         content = answer.read()
     except (OSError, http.client.HTTPException) as error:

@@ -5,11 +5,12 @@ import time
 from collections import Counter
 from dataclasses import replace
 from functools import cache, partial
-from urllib.request import urlopen
+from urllib.request import Request, urlopen
 
 import numpy as np
 
 from benchmarks.attacks.attack import Attack, Statuses, Target, at_once
+from service.client.credentials import bearer
 
 CHANNELS, SAMPLES = 1600, 20_000
 LONGEST_SAMPLES = 800_000
@@ -78,7 +79,10 @@ def uploaded(target: Target, form: bytes | None = None) -> Target:
     assert status == "201", status
     deadline = time.monotonic() + SETTLED_WITHIN_S
     while time.monotonic() < deadline:
-        with urlopen(f"http://{target.host}:{target.port}{RECORDINGS}", timeout=30) as answer:
+        with urlopen(
+            Request(f"http://{target.host}:{target.port}{RECORDINGS}", headers=bearer(target.token)),
+            timeout=30,
+        ) as answer:
             (recording,) = json.load(answer)["items"]
         if recording["state"] not in ("announced", "fetched"):
             break

@@ -12,6 +12,7 @@ from pathlib import Path
 from benchmarks.attacks.attack import Target
 from benchmarks.attacks.observation import cpu_s
 from service.demo.addresses import free_ports
+from testing.service.accounts import log_in_before_start
 from testing.service.processes import service_environment, switched_off_plant
 
 ADDRESS_SPACE_BYTES = 8 << 30
@@ -37,18 +38,20 @@ def victim(source: Path, **settings: str) -> Iterator[tuple[int, Target]]:
             "PYTHONPATH": str(source),
             **settings,
         }
+        environment = service_environment(directory / "data", settings)
+        token = log_in_before_start(environment, f"http://127.0.0.1:{port}")
         with (
             (directory / "log").open("wb") as log,
             subprocess.Popen(
                 [sys.executable, "-m", "service.cli", "serve"],
                 cwd=source,
-                env=service_environment(directory / "data", settings),
+                env=environment,
                 stdout=log,
                 stderr=log,
                 preexec_fn=_bound,
             ) as process,
         ):
-            target = Target("127.0.0.1", port, directory / "data" / "statorwatch.sqlite")
+            target = Target("127.0.0.1", port, directory / "data" / "statorwatch.sqlite", token)
             try:
                 _wait_until_ready(process, target, directory / "log")
                 yield process.pid, target

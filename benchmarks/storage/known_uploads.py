@@ -15,9 +15,11 @@ from pathlib import Path
 from fastapi.testclient import TestClient
 
 from service.api import ApiContext, create_app
+from service.client.credentials import bearer
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
+from testing.service.accounts import token_of
 from testing.service.database import make_database
 from testing.service.plants import two_motor_plant
 
@@ -34,7 +36,9 @@ def main() -> int:
         repository.sync_plant(two_motor_plant())
         store = RecordingStore(settings.recordings_directory)
         with TestClient(
-            create_app(ApiContext(settings, repository, store)), base_url="http://localhost"
+            create_app(ApiContext(settings, repository, store)),
+            base_url="http://localhost",
+            headers=bearer(token_of(repository)),
         ) as client:
             _upload(client, b"the first")
             first = _show("after the first upload", store)

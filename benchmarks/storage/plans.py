@@ -12,6 +12,8 @@ import httpx
 from fastapi import FastAPI
 from sqlalchemy import Connection, Engine, event
 
+from service.client.credentials import bearer
+
 GROWING = frozenset(
     {
         "recordings",
@@ -106,7 +108,8 @@ def _noted(engine: Engine) -> Iterator[list[Statement]]:
 
 async def _get(app: FastAPI, path: str) -> None:
     transport = httpx.ASGITransport(app)
-    async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1") as client:
+    headers = bearer(app.state.token)
+    async with httpx.AsyncClient(transport=transport, base_url="http://127.0.0.1", headers=headers) as client:
         answer = await client.get(path)
     assert answer.status_code == HTTPStatus.OK, f"{path}: {answer.status_code} {answer.text[:300]}"
 

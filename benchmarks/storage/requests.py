@@ -22,6 +22,12 @@ UNTIMED = {
     "/api/v1/recordings/{recording_id}/waveform": "reads one record from the recording store",
     "/api/v1/recordings/{recording_id}/file": "reads one record from the recording store",
     "/healthz": "asks the database nothing",
+    "/api/v1/login": "asks the database nothing",
+    "/api/v1/account": "reads one row of users, who are few",
+    "/api/v1/account/tokens": "reads the tokens of one user, a hundred at most",
+    "/api/v1/tokens": "reads tokens, which are few",
+    "/api/v1/users": "reads users, who are few",
+    "/api/v1/users/{name}": "reads one row of users, who are few",
 }
 """Routes that read, and why they are not timed."""
 

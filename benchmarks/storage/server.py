@@ -13,22 +13,25 @@ from service.configuration.settings import Settings
 from service.process.garbage_collection import spare_what_stays
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
+from testing.service.accounts import token_of
 
 
 def api_on(repository: Repository, directory: Path) -> FastAPI:
-    """Return the API on a filled database; its recording store is empty."""
+    """Return the API on a filled database, with a token for all of it; its recording store is empty."""
     settings = Settings(data_directory=directory)
-    return create_app(ApiContext(settings, repository, RecordingStore(directory / "recordings")))
+    app = create_app(ApiContext(settings, repository, RecordingStore(directory / "recordings")))
+    app.state.token = token_of(repository)
+    return app
 
 
 def main() -> None:
-    """Print the port, then answer until the process is ended."""
+    """Print the port and a token, then answer until the process is ended."""
     with tempfile.TemporaryDirectory() as name:
         settings = Settings(data_directory=Path(name), port=0)
         app = api_on(Repository(connect(sys.argv[1])), settings.data_directory)
         spare_what_stays()
         with listening(settings) as listener:
-            print(listener.getsockname()[1], flush=True)
+            print(listener.getsockname()[1], app.state.token, flush=True)
             ApiServer(app, connection_limits(settings)).run(sockets=[listener])
 
 

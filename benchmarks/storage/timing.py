@@ -15,6 +15,7 @@ import httpx
 
 from benchmarks.storage.requests import Ask
 from benchmarks.storage.rows import Amounts
+from service.client.credentials import bearer
 
 LONGEST_S = 30.0
 """A request that has taken so long in all is not asked again: its goal is missed anyway."""
@@ -72,8 +73,9 @@ def serving(url: str) -> Iterator[Api]:
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         try:
             assert process.stdout is not None
-            port = int(process.stdout.readline())
-            with httpx.Client(base_url=f"http://127.0.0.1:{port}", trust_env=False, timeout=600.0) as client:
+            port, token = process.stdout.readline().split()
+            url = f"http://127.0.0.1:{port}"
+            with httpx.Client(base_url=url, headers=bearer(token), trust_env=False, timeout=600.0) as client:
                 api = Api(client, process.pid)
                 api.get("/healthz")
                 yield api

@@ -1,4 +1,4 @@
-"""What each role may do."""
+"""What each role may do. docs/reference/roles.md has it with every route; a test compares the two."""
 
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
@@ -11,30 +11,38 @@ class Permission(StrEnum):
     """What a route may need. A token's scope names these."""
 
     VIEW = "view"
-    """See plant, conditions, recordings, alarms and figures."""
     METRICS = "metrics"
-    """Read GET /metrics."""
     TRIGGER = "trigger"
-    """Have relays make recordings."""
     ACKNOWLEDGE = "acknowledge"
-    """Acknowledge and shelve alarms."""
     NOTE = "note"
-    """Write into the logbook of a motor."""
     RELEASE = "release"
-    """Have a relay visited again that was set aside."""
     RECORDINGS = "recordings"
-    """Upload recordings, diagnose them again, delete them."""
     CONFIGURE = "configure"
-    """Choose baselines, restart references, tell what changes a condition, take alarms out of service."""
     NOTIFY = "notify"
-    """See notifications and have a test sent."""
     ACCOUNT = "account"
-    """See the own account and the description of the API, change the own password, make own tokens."""
     USERS = "users"
-    """Make, change and delete users, and end their sessions."""
     AUDIT = "audit"
-    """Read the audit trail."""
 
+
+MEANINGS: Final[Mapping[Permission, str]] = {
+    Permission.VIEW: "See plant, conditions, recordings, alarms and figures.",
+    Permission.METRICS: "Read GET /metrics.",
+    Permission.TRIGGER: "Have relays make recordings.",
+    Permission.ACKNOWLEDGE: "Acknowledge and shelve alarms.",
+    Permission.NOTE: "Write into the logbook of a motor.",
+    Permission.RELEASE: "Have a relay visited again that was set aside.",
+    Permission.RECORDINGS: "Upload recordings, diagnose them again, delete them.",
+    Permission.CONFIGURE: (
+        "Choose baselines, restart references, tell what changes a condition, take alarms out of service."
+    ),
+    Permission.NOTIFY: "See notifications and have a test sent.",
+    Permission.ACCOUNT: (
+        "See the own account and the description of the API, change the own password, make own tokens."
+    ),
+    Permission.USERS: "Make, change and delete users, and end their sessions.",
+    Permission.AUDIT: "Read the audit trail.",
+}
+"""What each allows, for the reference page."""
 
 _VIEWER: Final = frozenset({Permission.VIEW, Permission.METRICS, Permission.ACCOUNT})
 _OPERATOR: Final = _VIEWER | {

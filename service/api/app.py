@@ -7,6 +7,7 @@ from importlib.metadata import version
 
 from fastapi import APIRouter, Depends, FastAPI, Response
 from fastapi.openapi.utils import get_openapi
+from fastapi.routing import APIRoute, iter_route_contexts
 
 from service.access.permissions import Permission
 from service.api import (
@@ -22,7 +23,9 @@ from service.api import (
     recordings,
     relays,
 )
-from service.api.access.requirements import require
+from service.api.access import sessions, tokens, users
+from service.api.access.gate import Gate
+from service.api.access.requirements import require, requirement_of
 from service.api.alarms import lists as alarm_lists
 from service.api.alarms import people as alarm_people
 from service.api.audit import trail as audit_trail
@@ -71,6 +74,9 @@ def create_app(context: ApiContext) -> FastAPI:
         notifications,
         audit_trail,
         backups,
+        sessions,
+        tokens,
+        users,
     ):
         api.include_router(part.router)
     app.include_router(api)
@@ -84,10 +90,21 @@ def create_app(context: ApiContext) -> FastAPI:
     app.add_middleware(
         BodyLimits, upload_routes=uploads, max_upload_bytes=max_upload_bytes, arrivals=arrivals
     )
+    app.add_middleware(Gate, context=context, needs=_needs(app))
     hosts = [str(settings.bind_address), *settings.allowed_hosts]
     app.add_middleware(HostGuard, hosts=hosts)
     _complete_document(app, dict.fromkeys(uploads, max_upload_bytes))
     return app
+
+
+def _needs(app: FastAPI) -> Mapping[Route, Permission | None]:
+    """Return what each route with a fixed path needs of its caller; None where it answers anybody."""
+    return {
+        (method, route.path): requirement_of(route.dependencies)
+        for route in iter_route_contexts(app.routes)
+        if isinstance(route.original_route, APIRoute) and route.path is not None and "{" not in route.path
+        for method in route.methods or ()
+    }
 
 
 def _complete_document(app: FastAPI, limits: Mapping[Route, int]) -> None:

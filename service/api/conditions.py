@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from core.condition.events import Event, EventKind
 from core.units import NANOSECONDS_PER_DAY
 from service.access.permissions import Permission
-from service.api.access.callers import By
+from service.api.access.callers import Asking, By
 from service.api.access.requirements import require
 from service.api.condition_documents import condition_document
 from service.api.condition_schemas import (
@@ -90,9 +90,15 @@ def list_notes(
     dependencies=[require(Permission.NOTE)],
 )
 def add_note(
-    context: Context, request: Request, response: Response, name: Name, wanted: NoteRequest, caller: By
+    context: Context, request: Request, response: Response, name: Name, wanted: NoteRequest, asking: Asking
 ) -> Note:
-    """Keep what a person tells of a motor; its condition follows within seconds."""
+    """Keep what a person tells of a motor; its condition follows within seconds.
+
+    All kinds but `note` change what the condition follows from, and need the permission `configure`.
+    """
+    if wanted.kind is not EventKind.NOTE:
+        asking.demand(Permission.CONFIGURE, f"tell of {wanted.kind.value}")
+    caller = asking.actor
     note = _add(context, name, wanted.kind, wanted.text, caller, wanted.by, wanted.time)
     response.headers["Location"] = path_to(request, "get_note", name=name, note_id=note.id)
     return note

@@ -24,7 +24,7 @@ def _nothing() -> None:
 class ApiContext:
     """readiness: a check for each part besides the database. on_new_job: tells the runner not to wait.
 
-    uploads: those stored at a time, after they have arrived.
+    uploads: those stored at a time, after they have arrived. passwords: looked at, each in 64 MiB.
     waveforms_read: one at a time, because each may have much to read. waveforms_sent: to slow clients, too.
     exports: files of lists, which are made while they are sent.
     """
@@ -35,6 +35,7 @@ class ApiContext:
     readiness: Mapping[str, Problem] = field(default_factory=dict)
     on_new_job: Callable[[], None] = _nothing
     uploads: Admission = field(default_factory=lambda: Admission("uploads", 3, wait_s=10.0))
+    passwords: Admission = field(default_factory=lambda: Admission("passwords", 2, wait_s=10.0))
     waveforms_read: Admission = field(default_factory=lambda: Admission("waveforms", 1, wait_s=10.0))
     waveforms_sent: Admission = field(default_factory=lambda: Admission("waveforms", 16, wait_s=10.0))
     exports: Admission = field(default_factory=lambda: Admission("exports", 4, wait_s=10.0))

@@ -1,8 +1,9 @@
 """Keeps out what comes by way of somebody's web browser.
 
-The API has no passwords: it trusts those who can reach its address, by default programs on this computer. A
-web page in a browser there could reach it too. A browser tells on it: a page of another site sends its
-Origin, and a site that pretends to be at our address (DNS rebinding) sends its own name as Host.
+A browser sends the cookie of a session with what any web page there asks of us, and while there are no users
+this computer is trusted. A browser tells on such a page: one of another site sends its Origin, and that it is
+of another site (Sec-Fetch-Site); a site that pretends to be at our address (DNS rebinding) sends its own name
+as Host.
 """
 
 from collections.abc import Collection
@@ -13,6 +14,10 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from service.api.problems import problem_response
+
+READING = ("GET", "HEAD")
+OF_OUR_PAGES = ("same-origin", "none")
+"""A browser says so of a request of our own page, and of one that a person made by hand."""
 
 
 class HostGuard:
@@ -26,14 +31,14 @@ class HostGuard:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        refusal = self._refusal(Headers(scope=scope))
+        refusal = self._refusal(scope["method"], Headers(scope=scope))
         if refusal is None:
             await self._app(scope, receive, send)
             return
         status, detail = refusal
         await problem_response(scope["path"], status, detail)(scope, receive, send)
 
-    def _refusal(self, headers: Headers) -> tuple[HTTPStatus, str] | None:
+    def _refusal(self, method: str, headers: Headers) -> tuple[HTTPStatus, str] | None:
         host = headers.get("host", "")
         if not self._is_ours(host):
             return (
@@ -44,6 +49,8 @@ class HostGuard:
         origin = headers.get("origin")
         if origin is not None and _network_location(origin) != host.lower():
             return HTTPStatus.FORBIDDEN, f"requests from web pages of {origin[:100]!r} are refused"
+        if method not in READING and headers.get("sec-fetch-site", "none") not in OF_OUR_PAGES:
+            return HTTPStatus.FORBIDDEN, "requests from web pages of other sites are refused"
         return None
 
     def _is_ours(self, host: str) -> bool:

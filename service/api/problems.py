@@ -9,11 +9,17 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, Field
-from sqlalchemy.exc import DataError, OperationalError, TimeoutError  # noqa: A004 - that of the database
+from sqlalchemy.exc import (
+    DataError,
+    OperationalError,
+    SQLAlchemyError,
+    TimeoutError,  # noqa: A004 - that of the database
+)
 from starlette.exceptions import HTTPException
 from starlette.routing import Match
 from structlog.typing import FilteringBoundLogger
 
+from service.access.logins import LoginLockedError
 from service.process.disk_space import is_disk_full
 from service.recording_store.store import RecordingStoreError
 from service.storage.errors import (
@@ -21,14 +27,17 @@ from service.storage.errors import (
     AlarmCannotGrowError,
     DoubtfulBaselineError,
     FolderGoneError,
+    LastAdministratorError,
     NotFoundError,
     OutOfServiceError,
     RecordingInUseError,
     StateConflictError,
     TooManyNotesError,
     TooManyTestsError,
+    TooManyTokensError,
     TooManyWaitingError,
     UnusableBaselineError,
+    UserExistsError,
 )
 from service.timing.database_silence import does_not_answer
 
@@ -45,6 +54,9 @@ STATUS_OF: dict[type[Exception], HTTPStatus] = {
     RecordingInUseError: HTTPStatus.CONFLICT,
     AlarmActionError: HTTPStatus.CONFLICT,
     AlarmCannotGrowError: HTTPStatus.CONFLICT,
+    UserExistsError: HTTPStatus.CONFLICT,
+    LastAdministratorError: HTTPStatus.CONFLICT,
+    TooManyTokensError: HTTPStatus.CONFLICT,
 }
 """The HTTP status that answers each refusal of the storage."""
 
@@ -56,7 +68,12 @@ RETRY_WHEN_FULL_S = 60
 
 METHODS = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
 
-OF_ALL = (HTTPStatus.UNPROCESSABLE_ENTITY, HTTPStatus.SERVICE_UNAVAILABLE)
+OF_ALL = (
+    HTTPStatus.UNAUTHORIZED,
+    HTTPStatus.FORBIDDEN,
+    HTTPStatus.UNPROCESSABLE_ENTITY,
+    HTTPStatus.SERVICE_UNAVAILABLE,
+)
 
 
 MAX_ERRORS = 100
@@ -153,6 +170,26 @@ def busy_response(path: str, reason: str) -> JSONResponse:
     )
 
 
+def database_response(path: str, error: SQLAlchemyError) -> JSONResponse:
+    """Return the answer where the database does not answer, or refuses what it is asked."""
+    if not does_not_answer(error):
+        return _failed(path, error)
+    reason = str(error.orig) if isinstance(error, OperationalError) else str(error)
+    log.error("database does not answer", path=path, error=reason)
+    return problem_response(
+        path,
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        f"the database does not answer ({reason}); nothing was changed, try again",
+        headers={"Retry-After": str(RETRY_AFTER_S)},
+    )
+
+
+def _failed(path: str, error: Exception) -> JSONResponse:
+    log.error("request failed", path=path, exc_info=error)
+    detail = "the service failed to answer; its log says why"
+    return problem_response(path, HTTPStatus.INTERNAL_SERVER_ERROR, detail)
+
+
 def _too_many(request: Request, error: Exception) -> JSONResponse:
     return problem_response(
         request.url.path,
@@ -160,6 +197,14 @@ def _too_many(request: Request, error: Exception) -> JSONResponse:
         str(error),
         headers={"Retry-After": str(RETRY_WHEN_FULL_S)},
     )
+
+
+def _locked(request: Request, error: Exception) -> JSONResponse:
+    """Return the answer to a login after too many that failed. Raises any other error again."""
+    if not isinstance(error, LoginLockedError):
+        raise error
+    headers = {"Retry-After": str(error.retry_after_s)}
+    return problem_response(request.url.path, HTTPStatus.TOO_MANY_REQUESTS, str(error), headers=headers)
 
 
 def _with_status(status: HTTPStatus) -> Callable[[Request, Exception], JSONResponse]:
@@ -255,6 +300,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(TooManyWaitingError, _too_many)
     app.add_exception_handler(TooManyTestsError, _too_many)
     app.add_exception_handler(BusyError, _busy)
+    app.add_exception_handler(LoginLockedError, _locked)
     app.add_exception_handler(DoubtfulBaselineError, _doubtful)
     app.add_exception_handler(FolderGoneError, _busy)
     app.add_exception_handler(OSError, _full)
@@ -267,17 +313,7 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(TimeoutError)
     @app.exception_handler(OperationalError)
     def _database(request: Request, error: OperationalError | TimeoutError) -> JSONResponse:
-        if not does_not_answer(error):
-            return _unexpected(request, error)
-        reason = str(error.orig) if isinstance(error, OperationalError) else str(error)
-        log.error("database does not answer", path=request.url.path, error=reason)
-        detail = f"the database does not answer ({reason}); nothing was changed, try again"
-        return problem_response(
-            request.url.path,
-            HTTPStatus.SERVICE_UNAVAILABLE,
-            detail,
-            headers={"Retry-After": str(RETRY_AFTER_S)},
-        )
+        return database_response(request.url.path, error)
 
     # On the event loop: what describes the faults would pile up in memory while it waits for a thread.
     @app.exception_handler(RequestValidationError)
@@ -293,6 +329,4 @@ def install(app: FastAPI) -> None:
 
     @app.exception_handler(Exception)
     def _unexpected(request: Request, error: Exception) -> JSONResponse:
-        log.error("request failed", path=request.url.path, exc_info=error)
-        detail = "the service failed to answer; its log says why"
-        return problem_response(request.url.path, HTTPStatus.INTERNAL_SERVER_ERROR, detail)
+        return _failed(request.url.path, error)

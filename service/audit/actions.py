@@ -24,6 +24,18 @@ class AuditAction(StrEnum):
     ALARM_PUT_BACK_IN_SERVICE = "alarm-put-back-in-service"
     CHANNEL_TESTED = "channel-tested"
     NOTIFICATION_RETRIED = "notification-retried"
+    LOGGED_IN = "logged-in"
+    LOGIN_FAILED = "login-failed"
+    LOGIN_LOCKED = "login-locked"
+    LOGGED_OUT = "logged-out"
+    SESSIONS_ENDED = "sessions-ended"
+    USER_ADDED = "user-added"
+    USER_CHANGED = "user-changed"
+    USER_UNLOCKED = "user-unlocked"
+    USER_DELETED = "user-deleted"
+    PASSWORD_SET = "password-set"  # noqa: S105 - the name of an action
+    TOKEN_ADDED = "token-added"  # noqa: S105 - the name of an action
+    TOKEN_REVOKED = "token-revoked"  # noqa: S105 - the name of an action
     PLANT_CHANGED = "plant-changed"
     PARAMETERS_CHANGED = "parameters-changed"
     RETENTION_APPLIED = "retention-applied"
@@ -47,6 +59,18 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.ALARM_PUT_BACK_IN_SERVICE: "Somebody put an alarm back in service.",
     AuditAction.CHANNEL_TESTED: "Somebody had a test message sent through a channel.",
     AuditAction.NOTIFICATION_RETRIED: "Somebody had a message tried again that was given up.",
+    AuditAction.LOGGED_IN: "Somebody logged in; `after` says how.",
+    AuditAction.LOGIN_FAILED: "Somebody tried to log in under this name and was refused; `after` says why.",
+    AuditAction.LOGIN_LOCKED: "So many logins failed that none is tried for a while; `after` has from where.",
+    AuditAction.LOGGED_OUT: "Somebody ended their session.",
+    AuditAction.SESSIONS_ENDED: "Somebody ended all sessions of a user.",
+    AuditAction.USER_ADDED: "Somebody made a user.",
+    AuditAction.USER_CHANGED: "Somebody changed a user's roles or name, or disabled or enabled them.",
+    AuditAction.USER_UNLOCKED: "Somebody had a user's failed logins forgotten.",
+    AuditAction.USER_DELETED: "Somebody deleted a user; `before` is who it was.",
+    AuditAction.PASSWORD_SET: "Somebody gave a user another password, which is not kept here.",
+    AuditAction.TOKEN_ADDED: "Somebody made a token for programs, which is not kept here.",
+    AuditAction.TOKEN_REVOKED: "Somebody ended a token.",
     AuditAction.PLANT_CHANGED: (
         "The service started with other plant files: a site, relay or motor came (no `before`), left (no "
         "`after`) or is told otherwise."

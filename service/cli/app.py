@@ -9,6 +9,7 @@ import typer
 
 from core.error_words import one_line
 from service.cli.commands import (
+    access,
     alarms,
     audit,
     backups,
@@ -54,6 +55,7 @@ def options(
 
 _PARTS = (
     programs,
+    access,
     record_files,
     data_sheets,
     service,

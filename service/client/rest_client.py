@@ -1,15 +1,20 @@
 """A client of the service's REST API, for the command line and the demo."""
 
+import os
 import re
+import ssl
 from collections.abc import Iterator, Mapping, Sequence
 from http import HTTPStatus
 from types import TracebackType
 from typing import BinaryIO, Self
-from urllib.parse import quote
+from urllib.parse import quote, urlsplit
 
 import httpx
 
+from service.client.credentials import COOKIES, CredentialsError, bearer, headers_for
+
 API = "/api/v1"
+CA_VARIABLE = "MCC_CA"
 TIMEOUT_S = 30.0
 FILE_TIMEOUT_S = 600.0
 """An Excel file begins to come when its last row is written."""
@@ -31,9 +36,13 @@ class ServiceError(RuntimeError):
 
 
 class ServiceClient:
-    """A client of one service. It returns documents as JSON objects; every failure is a ServiceError."""
+    """A client of one service. It returns documents as JSON objects; every failure is a ServiceError.
 
-    def __init__(self, url: str) -> None:
+    anonymous: does not say who asks. token: says it; by default what the environment or `mcc login` has for
+    the service. MCC_CA names a file with certificates of authorities that TLS trusts, besides the system's.
+    """
+
+    def __init__(self, url: str, *, token: str | None = None, anonymous: bool = False) -> None:
         self._url = without_credentials(url)
         wrong = f"{self._url}: expected a URL such as http://127.0.0.1:8710"
         try:
@@ -42,7 +51,14 @@ class ServiceClient:
             raise ServiceError(wrong) from None
         if parsed.scheme not in ("http", "https") or not parsed.host or "@" in parsed.host:
             raise ServiceError(wrong)
-        self._http = httpx.Client(base_url=parsed, timeout=TIMEOUT_S, trust_env=False)
+        try:
+            headers = {} if anonymous else headers_for(url) if token is None else bearer(token)
+        except CredentialsError as error:
+            raise ServiceError(str(error)) from error
+        verify = trust() if parsed.scheme == "https" else False
+        self._http = httpx.Client(
+            base_url=parsed, timeout=TIMEOUT_S, trust_env=False, headers=headers, verify=verify
+        )
 
     def __enter__(self) -> Self:
         return self
@@ -70,6 +86,23 @@ class ServiceClient:
     def get(self, path: str, **query: str) -> Document:
         """Get a document below /api/v1. Raises ServiceError."""
         return _document(self._request("GET", f"{API}{path}", query))
+
+    def send(self, method: str, path: str, document: Document | None = None) -> Document:
+        """Send a document, or none, to a path below /api/v1; return the answer, empty where it has no body.
+
+        Raises ServiceError.
+        """
+        response = self._request(method, f"{API}{path}", {}, document=document)
+        return _document(response) if response.content else {}
+
+    def log_in(self, name: str, password: str) -> tuple[Document, str]:
+        """Begin a session, and return the account and the session's secret. Raises ServiceError."""
+        wanted = {"name": name, "password": password}
+        response = self._request("POST", f"{API}/login", {}, document=wanted)
+        secret = response.cookies.get(COOKIES[self._http.base_url.scheme])
+        if secret is None:
+            raise ServiceError(f"{self._url}: expected the cookie of a session, found none")
+        return _document(response), secret
 
     def items(self, path: str, **query: str) -> Iterator[Document]:
         """Yield every item of a list, page after page. Raises ServiceError."""
@@ -240,6 +273,27 @@ class ServiceClient:
     def _nobody(self, error: Exception) -> str:
         """Return in words that nothing answers."""
         return f"no service answers at {self._url} ({error}); start it with mcc serve"
+
+
+def is_in_clear(url: str) -> bool:
+    """Tell whether others on the network can read what is sent there."""
+    parsed = urlsplit(url)
+    return parsed.scheme == "http" and (parsed.hostname or "") not in ("localhost", "127.0.0.1", "::1")
+
+
+def trust() -> ssl.SSLContext:
+    """Return whom TLS trusts: the system's authorities (or SSL_CERT_FILE), and those of MCC_CA.
+
+    Raises ServiceError.
+    """
+    context = ssl.create_default_context()
+    named = os.environ.get(CA_VARIABLE, "")
+    if named:
+        try:
+            context.load_verify_locations(named)
+        except OSError as error:  # ssl.SSLError is one
+            raise ServiceError(f"{CA_VARIABLE}: {named}: expected certificates (PEM): {error}") from error
+    return context
 
 
 def without_credentials(url: str) -> str:

@@ -10,11 +10,12 @@ from ipaddress import IPv4Address, IPv6Address
 from pathlib import Path
 from typing import Literal, Self
 
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, ValidationInfo, field_validator
 from pydantic_settings import BaseSettings, EnvSettingsSource, PydanticBaseSettingsSource, SettingsConfigDict
 from pydantic_settings import SettingsError as UnreadableEnvironment
 
 from core.units import SECONDS_PER_DAY
+from service.configuration.access import AccessSettings
 from service.configuration.alarms import AlarmSettings
 from service.configuration.audit import AuditSettings
 from service.configuration.backup import BackupSettings
@@ -27,8 +28,9 @@ from service.configuration.settings_problems import Sources, problems_of, unknow
 from service.configuration.toml_lines import TomlLines
 
 MIB, GIB = 1024**2, 1024**3
-PATHS = ("data_directory", "recordings_directory", "scd", "motors")
+PATHS = ("data_directory", "recordings_directory", "scd", "motors", "tls_certificate", "tls_key")
 RELAY_PATHS = ("certificate", "key", "ca", "pinned", "password_file")
+ACCESS_PATHS = ("ca", "client_secret_file")
 
 
 class SettingsError(ConfigurationError):
@@ -59,6 +61,9 @@ class Settings(BaseSettings):
     bind_address: IPv4Address | IPv6Address = IPv4Address("127.0.0.1")
     port: int = Field(default=8710, ge=0, le=65535)
     allowed_hosts: tuple[str, ...] = ("localhost", "127.0.0.1", "::1")
+    tls_certificate: AbsolutePath | None = None
+    tls_key: AbsolutePath | None = Field(default=None, validate_default=True)
+    access: AccessSettings = Field(default_factory=AccessSettings)
     max_upload_bytes: int = Field(default=64 * MIB, ge=1, le=GIB)
     min_upload_rate: int = Field(default=32_768, ge=1, le=GIB)
     max_waveform_values: int = Field(default=250_000, ge=40_000, le=10_000_000)
@@ -102,6 +107,13 @@ class Settings(BaseSettings):
     metering_quarter_hour_days: float = Field(default=3650.0, ge=0.01, le=MOST_DAYS)
     max_file_bytes: int = Field(default=64 * MIB, ge=1, le=GIB)
     max_relay_bytes_per_day: int = Field(default=GIB, ge=1, le=1024 * GIB)
+
+    @field_validator("tls_key")
+    @classmethod
+    def _both_for_tls(cls, key: Path | None, info: ValidationInfo) -> Path | None:
+        if "tls_certificate" in info.data and (key is None) != (info.data["tls_certificate"] is None):
+            raise ValueError("tls_certificate and tls_key together, or neither")
+        return key
 
     @classmethod
     def settings_customise_sources(
@@ -185,6 +197,8 @@ def _table(text: str, config: Path) -> dict[str, object]:
     backup = table.get("backup")
     if isinstance(backup, dict) and isinstance(backup.get("directory"), str):
         table["backup"] = {**backup, "directory": config.absolute().parent / backup["directory"]}
+    if isinstance(table.get("access"), dict):
+        table["access"] = _anchored(table["access"], ACCESS_PATHS, config.absolute().parent)
     _anchor_each(table, "relays", RELAY_PATHS, config.absolute().parent)
     _anchor_each(table.get("notifications"), "channels", CHANNEL_PATHS, config.absolute().parent)
     _anchor_each(table, "audit", CHANNEL_PATHS, config.absolute().parent)

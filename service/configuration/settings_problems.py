@@ -16,8 +16,8 @@ from service.configuration.toml_lines import TomlLines
 
 PREFIX: Final = "MCC_"
 
-FURTHER_VARIABLES: Final = ("MCC_URL", "MCC_HOST_PORT")
-"""These are no settings: the address that commands ask, and the port that docker-compose.yml publishes."""
+FURTHER_VARIABLES: Final = ("MCC_URL", "MCC_HOST_PORT", "MCC_TOKEN", "MCC_TOKEN_FILE", "MCC_CA")
+"""These are no settings: what commands need to ask a service, and the port of docker-compose.yml."""
 
 PAGE: Final = "docs/reference/settings.md"
 

@@ -4,13 +4,16 @@ import os
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import scl
+from service.client.credentials import CredentialsError, forget, remember
 from service.client.rest_client import ServiceClient
+from service.configuration.settings import sqlite_url
 from service.demo import SCENARIO
+from service.demo.account import demo_token
 from service.demo.addresses import LOOPBACK, addressed_scd, free_port
 from service.demo.month import Month, month_of
 from service.demo.plays import STEADY, Play
@@ -40,6 +43,7 @@ class DemoPlant:
     pause: waits some seconds; raises ProgramError when a program of the plant has ended.
     answer_limit_s: how long nothing may listen at the address [s].
     month: the month that the plant lives through; None where its time is the real one.
+    token: lets its client do what the demo shows; None where the environment has what it needs.
     """
 
     scd: Path
@@ -48,6 +52,7 @@ class DemoPlant:
     pause: Callable[[float], None]
     answer_limit_s: float = START_LIMIT_S
     month: Month | None = None
+    token: str | None = None
 
 
 @contextmanager
@@ -71,6 +76,11 @@ def running_plant(
     data.mkdir(parents=True, exist_ok=True)
     with ExitStack() as programs:
         plant = _start(data, play, pause, choose_port, programs)
+        programs.callback(_forget, plant.url)
+        try:
+            remember(plant.url, token=plant.token)
+        except CredentialsError as error:
+            report(f"commands in other terminals may only look: {error}")
         for line in _other_addresses(plant):
             report(line)
         yield plant
@@ -97,6 +107,7 @@ def _start_once(
     data: Path, play: Play, pause: Callable[[float], None], port: int, programs: ExitStack
 ) -> DemoPlant:
     scd = addressed_scd(scl.DEMO_PLANT_SCD, data)
+    token = demo_token(sqlite_url(data))
     with ExitStack() as starting:
         command = _simulator(scd, play.scenario, data)
         simulator = starting.enter_context(Program("ied-sim", command, data / "ied-sim.log"))
@@ -117,7 +128,15 @@ def _start_once(
                 raise NotReadyError(f"not listening after {START_LIMIT_S:g} s; logs: {data}")
         month = month_of(play.scenario, simulator.logged())
         programs.push(starting.pop_all())
-    return DemoPlant(scd, play.scenario, f"http://{LOOPBACK}:{port}", pause_and_check, month=month)
+    return DemoPlant(
+        scd, play.scenario, f"http://{LOOPBACK}:{port}", pause_and_check, month=month, token=token
+    )
+
+
+def _forget(url: str) -> None:
+    """Keep no token of a service that has ended, as far as the file can be written."""
+    with suppress(CredentialsError):
+        forget(url)
 
 
 def _other_addresses(plant: DemoPlant) -> Iterator[str]:

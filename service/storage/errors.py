@@ -64,6 +64,30 @@ class TooManyNotesError(StorageError):
         )
 
 
+class UserExistsError(StorageError):
+    """There is a user of this name already."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(f"there is a user {name!r} already; choose another name")
+
+
+class LastAdministratorError(StorageError):
+    """Without this user nobody could manage users."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__(
+            f"user {name!r} is the last one with the role SECADM, who manages users: give it to another user "
+            "first; nothing was changed"
+        )
+
+
+class TooManyTokensError(StorageError):
+    """A user has as many tokens as one may have."""
+
+    def __init__(self, name: str, most: int) -> None:
+        super().__init__(f"user {name!r} has {most} tokens, the most one may have: revoke those not needed")
+
+
 class UnusableBaselineError(StorageError):
     """A recording that cannot stand for a motor's healthy condition."""
 

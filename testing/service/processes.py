@@ -14,6 +14,7 @@ from scl import Address
 from service.client.rest_client import ServiceClient, ServiceError
 from service.demo import MOTORS, SCENARIO
 from service.demo.addresses import free_ports
+from testing.service.accounts import log_in_before_start
 from testing.waiting import eventually
 
 RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")
@@ -100,6 +101,7 @@ class Service:
         environment = service_environment(
             self.data, {"MCC_SCD": str(self.scd), "MCC_PORT": str(port), **self.settings}
         )
+        log_in_before_start(environment, self.url)
         with self.log.open("ab") as log:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", "service.cli", "serve"], env=environment, stdout=log, stderr=log

@@ -12,6 +12,7 @@ from threading import Event, Thread
 from typing import IO
 
 from service.client.rest_client import ServiceClient
+from testing.service.accounts import log_in_before_start
 from testing.service.processes import descendants, is_alive, service_environment
 from testing.waiting import eventually
 from tests.chaos.history import History
@@ -46,6 +47,7 @@ class ServedService:
 
     def start(self) -> None:
         """Start, and wait until it is ready. Raises RuntimeError with its last words."""
+        log_in_before_start(self._environment, self.url)
         self._thread.start()
         if not self.wait_until_ready(START_LIMIT_S):
             raise RuntimeError(f"the service does not get ready: {self.last_words()}")

@@ -10,6 +10,7 @@ from threading import Event, Lock, Timer
 import httpx
 
 from mms import Client, MmsError
+from service.client.credentials import headers_for
 from service.client.rest_client import API
 from tests.chaos.history import History
 from tests.chaos.plant import ChaosPlant
@@ -39,6 +40,7 @@ class Triggers:
         self._plant = plant
         self._http = httpx.Client(
             base_url=url,
+            headers=headers_for(url),
             timeout=ANSWER_LIMIT_S,
             trust_env=False,
             limits=httpx.Limits(max_keepalive_connections=ASKED_AT_ONCE),

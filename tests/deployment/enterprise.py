@@ -100,6 +100,8 @@ def every_container_starts_without_rights(enterprise: Enterprise) -> None:
     assert not enterprise.compose.containers()
     enterprise.compose("up", "-d")
     assert len(enterprise.compose.containers()) == len(SERVICES)
+    enterprise.wait("the service is ready", lambda: enterprise.service.is_ready(), START_LIMIT_S)
+    enterprise.log_in()
     question = "grep -E '^(Uid|Cap|NoNewPrivs)' /proc/1/status; touch /here 2>&1; df -m /tmp"
     for service in SERVICES:
         answer = enterprise.compose.inside(service, "sh", "-c", question)
@@ -276,6 +278,8 @@ def an_older_database_is_brought_up_to_date(enterprise: Enterprise) -> None:
     enterprise.compose.once("mcc", "python", "-c", OLDER_DATABASE)
     assert _revision(enterprise.compose.once("mcc", "python", "-c", REVISION)) == "0001" < newest
     enterprise.compose("start", "mcc")
+    enterprise.wait("the service is ready", lambda: enterprise.service.is_ready(), START_LIMIT_S)
+    enterprise.log_in()  # the first version knew no users
     enterprise.wait_for_links()
     assert _revision(enterprise.compose.inside("mcc", "python", "-c", REVISION)) == newest
     enterprise.require_continuation(before)

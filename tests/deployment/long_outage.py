@@ -9,6 +9,7 @@ from collections.abc import Mapping
 import httpx
 
 from ied_sim.scenario.scenario import read_scenario
+from service.client.credentials import bearer
 from service.demo import SCENARIO
 from tests.deployment.observed import START_LIMIT_S, Enterprise
 
@@ -106,7 +107,12 @@ def _number(name: str) -> int:
 
 
 def _download(enterprise: Enterprise, recording: str) -> dict[str, bytes]:
-    answer = httpx.get(f"{_recordings(enterprise)}/{recording}/file", timeout=LIMIT_S, trust_env=False)
+    answer = httpx.get(
+        f"{_recordings(enterprise)}/{recording}/file",
+        timeout=LIMIT_S,
+        trust_env=False,
+        headers=bearer(enterprise.token),
+    )
     with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
         return {name: archive.read(name) for name in archive.namelist()}
 
@@ -118,6 +124,7 @@ def _upload(enterprise: Enterprise, files: Mapping[str, bytes]) -> tuple[int, Ma
         files=[("files", (name, content)) for name, content in files.items()],
         timeout=LIMIT_S,
         trust_env=False,
+        headers=bearer(enterprise.token),
     )
     document = answer.json()
     assert isinstance(document, dict)

@@ -21,7 +21,14 @@ class Enterprise:
     def __init__(self, compose: Compose, service: ServiceClient) -> None:
         self.compose = compose
         self.service = service
+        self.token = ""
         self._earlier: list[Transfer] = []
+
+    def log_in(self) -> None:
+        """Show the token that the first start has made, or the one after a database was put back."""
+        printed = self.compose.inside("mcc", "cat", "/token/demo")
+        (self.token,) = (line for line in printed.splitlines() if line.startswith("mcc_"))
+        self.service = ServiceClient(f"http://127.0.0.1:{self.compose.port}", token=self.token)
 
     def wait(self, what: str, condition: Callable[[], bool], limit_s: float) -> None:
         """Until it is so; AssertionError when that takes too long."""

@@ -14,6 +14,7 @@ import pytest
 from core.recordings import Quantity, comtrade, read
 from mms import Client
 from service.cli import main
+from service.client.credentials import headers_for
 from service.client.rest_client import ServiceClient
 from testing.service.processes import (
     Service,
@@ -65,7 +66,10 @@ class Bench:
         row = self.recording(name)
         assert row is not None
         answer = httpx.get(
-            f"{self.service.url}/api/v1/recordings/{row['id']}/file", trust_env=False, timeout=30
+            f"{self.service.url}/api/v1/recordings/{row['id']}/file",
+            headers=headers_for(self.service.url),
+            trust_env=False,
+            timeout=30,
         )
         answer.raise_for_status()
         with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:

@@ -11,6 +11,7 @@ from pathlib import Path
 import httpx
 import pytest
 
+from service.client.credentials import headers_for
 from service.client.rest_client import ServiceClient
 from service.configuration.relay_access import PASSWORD_VARIABLE
 from testing.relays.pki import Pki
@@ -67,7 +68,9 @@ def relays_setting(pki: Pki, password: Path) -> str:
 
 def answers(service: Service) -> list[str]:
     """Everything the API tells at paths without an argument, and at those of A1_SEL710."""
-    with httpx.Client(base_url=service.url, trust_env=False, timeout=30) as http:
+    with httpx.Client(
+        base_url=service.url, headers=headers_for(service.url), trust_env=False, timeout=30
+    ) as http:
         paths = http.get("/api/v1/openapi.json").raise_for_status().json()["paths"]
         asked = [path for path, methods in paths.items() if "get" in methods]
         named = [re.sub(r"\{\w+\}", "A1_SEL710", path) for path in asked]

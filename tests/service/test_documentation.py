@@ -8,6 +8,7 @@ from typing import get_args
 from pydantic import BaseModel
 
 from service.api import ApiContext, create_app
+from service.configuration.access import AccessSettings, OidcSettings, ProxySettings
 from service.configuration.alarms import AlarmSettings
 from service.configuration.audit import AuditSettings, AuditSyslog
 from service.configuration.backup import BackupSettings
@@ -47,6 +48,16 @@ def test_every_setting_of_the_audit_trail_is_documented() -> None:
     assert [name for name, _ in rows] == list(AuditSettings.model_fields)
     keys = set(re.findall(r"`(\w+)`", dict(rows)["syslog"])) - {"syslog", "audit"}
     assert keys == set(AuditSyslog.model_fields) - {"kind"}
+
+
+def test_every_setting_of_access_is_documented() -> None:
+    page = (DOCS / "reference" / "settings.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| `access\.([\w.]+)`", page, re.MULTILINE)
+    inner: dict[str, type[BaseModel]] = {"proxy": ProxySettings, "oidc": OidcSettings}
+    assert rows == [
+        *AccessSettings.model_fields,
+        *(f"{table}.{name}" for table, model in inner.items() for name in model.model_fields),
+    ]
 
 
 def test_every_setting_of_the_back_up_is_documented() -> None:

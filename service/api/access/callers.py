@@ -1,27 +1,62 @@
 """Who asks: the caller of a request."""
 
 from dataclasses import dataclass
+from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import Depends, Request
 
-from service.access.permissions import Permission, permissions_of
-from service.storage.records import Actor, Role
+from service.access.identities import Way
+from service.access.permissions import Permission, roles_with
+from service.api.problems import ProblemError
+from service.storage.records import Actor
+
+SCOPE_KEY = "statorwatch.caller"
+
+FIRST_USER = (
+    "nobody may change anything before there is a user: run `mcc user add NAME --role SECADM --role ENGINEER"
+    " --config FILE` on the service's machine, then `mcc login`"
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """Who asks, and what they may do: no more than their roles, and less with a token of a narrow scope."""
+    """Who asks, and what they may do: no more than their roles, and less with a token of a narrow scope.
+
+    session: the digest of the session's secret; None for those who use none.
+    """
 
     actor: Actor
     permissions: frozenset[Permission]
+    way: Way
+    session: str | None = None
+
+    def demand(self, permission: Permission, what: str = "do this") -> None:
+        """Raise ProblemError (403) where the caller may not."""
+        if permission not in self.permissions:
+            raise forbidden(self, permission, what)
+
+
+def forbidden(caller: Caller, permission: Permission, what: str = "do this") -> ProblemError:
+    """Return the answer to a caller who may not do something."""
+    roles = ", ".join(roles_with(permission))
+    return ProblemError(
+        HTTPStatus.FORBIDDEN,
+        f"{caller.actor.name} may not {what}: it needs the permission {permission.value!r}, which the roles "
+        f"{roles} have, and a token only where its scope has it",
+    )
 
 
 def caller_of(request: Request) -> Caller:
-    """Return who asks. Nobody has to say so yet: everybody has all roles."""
-    roles = frozenset(Role)
-    address = request.client.host if request.client else ""
-    return Caller(Actor("anonymous", address, roles), permissions_of(roles))
+    """Return who asks. Raises ProblemError (401) on a route that is open to all, where nobody says so."""
+    caller = request.scope.get(SCOPE_KEY)
+    if not isinstance(caller, Caller):
+        raise ProblemError(HTTPStatus.UNAUTHORIZED, "say who you are")
+    return caller
+
+
+async def _caller_of(request: Request) -> Caller:
+    return caller_of(request)
 
 
 async def _actor_of(request: Request) -> Actor:
@@ -29,4 +64,7 @@ async def _actor_of(request: Request) -> Actor:
 
 
 By = Annotated[Actor, Depends(_actor_of)]
-"""A route that changes something takes `by: By`, and hands it to the repository."""
+"""A route that changes something takes `caller: By`, and hands it to the repository as `by`."""
+
+Asking = Annotated[Caller, Depends(_caller_of)]
+"""A route whose answer depends on what the caller may do takes `asking: Asking`."""

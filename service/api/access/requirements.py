@@ -1,14 +1,12 @@
 """What a route needs of its caller. Every route declares it; a test fails for one that does not."""
 
 from collections.abc import Sequence
-from http import HTTPStatus
 from typing import Any
 
 from fastapi import Depends, Request, params
 
-from service.access.permissions import Permission, roles_with
+from service.access.permissions import Permission
 from service.api.access.callers import caller_of
-from service.api.problems import ProblemError
 
 
 class Requirement:
@@ -19,14 +17,7 @@ class Requirement:
 
     async def __call__(self, request: Request) -> None:
         """Raise ProblemError (403) where the caller may not."""
-        caller = caller_of(request)
-        if self.permission not in caller.permissions:
-            roles = ", ".join(roles_with(self.permission))
-            raise ProblemError(
-                HTTPStatus.FORBIDDEN,
-                f"{caller.actor.name} may not do this: it needs the permission {self.permission!r}, which "
-                f"the roles {roles} have",
-            )
+        caller_of(request).demand(self.permission)
 
 
 def require(permission: Permission) -> Any:

@@ -49,7 +49,10 @@ def demonstrate(*, once: bool, json_file: Path | None, data: Path | None, url: s
             if json_file is not None:
                 json_file.write_bytes(b"")  # fail now, not in a minute, where it cannot be written
             started_s = time.monotonic()
-            with _plant(interruption, data, url, once=once) as plant, ServiceClient(plant.url) as service:
+            with (
+                _plant(interruption, data, url, once=once) as plant,
+                ServiceClient(plant.url, token=plant.token) as service,
+            ):
                 _run(plant, service, started_s, once=once, json_file=json_file)
     except KeyboardInterrupt as interrupt:
         failure = CommandError("interrupted", details={"type": "Interrupted"})

@@ -3,6 +3,7 @@
 The code says relay; the tables, their columns and the REST API say IED, as IEC 61850 does.
 """
 
+from service.storage.models.access import ApiTokenRow, FailedLoginRow, UserRow, UserSessionRow
 from service.storage.models.alarms import AlarmChangeRow, AlarmRow
 from service.storage.models.audit import AuditEntryRow, AuditForwardingRow, AuditHeadRow
 from service.storage.models.backups import BackupRow
@@ -43,6 +44,7 @@ from service.storage.models.relays import (
 __all__ = [
     "AlarmChangeRow",
     "AlarmRow",
+    "ApiTokenRow",
     "AuditEntryRow",
     "AuditForwardingRow",
     "AuditHeadRow",
@@ -58,6 +60,7 @@ __all__ = [
     "DeletionRow",
     "DiagnosisRow",
     "DiscardedFolderRow",
+    "FailedLoginRow",
     "FoldMarkRow",
     "GatewayRow",
     "IedRow",
@@ -82,4 +85,6 @@ __all__ = [
     "StandingAlarmCountRow",
     "StateCountRow",
     "UnobservedRecordingRow",
+    "UserRow",
+    "UserSessionRow",
 ]

@@ -1,5 +1,6 @@
 """What the repository hands out: plain values, free of the database session they were read in."""
 
+from service.storage.records.access import ApiToken, LoginLimits, User, UserSession
 from service.storage.records.actors import SERVICE, Actor, Role
 from service.storage.records.alarms import (
     Alarm,
@@ -74,6 +75,7 @@ __all__ = [
     "AlarmPlace",
     "AlarmSpec",
     "Amount",
+    "ApiToken",
     "AppliedRule",
     "Backlog",
     "BackupEntry",
@@ -108,6 +110,7 @@ __all__ = [
     "LinkFigures",
     "LinkNote",
     "LinkTraffic",
+    "LoginLimits",
     "Measurement",
     "MotorEntry",
     "MotorHealth",
@@ -132,5 +135,7 @@ __all__ = [
     "SiteEntry",
     "ToObserve",
     "TrendPoint",
+    "User",
+    "UserSession",
     "interval_of",
 ]

@@ -1,4 +1,4 @@
-"""Who does something: a person, a program with a token of theirs, or a part of the service."""
+"""Who does something, and what they may: people, programs with a token of theirs, parts of the service."""
 
 from dataclasses import dataclass
 from enum import StrEnum

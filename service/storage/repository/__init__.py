@@ -1,5 +1,9 @@
 """The only code that touches the tables, one module a subject."""
 
+from service.storage.repository.access.failed_logins import FailedLoginRows
+from service.storage.repository.access.tokens import TokenRows
+from service.storage.repository.access.user_sessions import UserSessionRows
+from service.storage.repository.access.users import UserRows
 from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.audit.trail import AuditRows
 from service.storage.repository.backups import BackupRows
@@ -55,6 +59,10 @@ class Repository(
     BackupRows,
     AuditRows,
     NotificationRows,
+    UserRows,
+    UserSessionRows,
+    TokenRows,
+    FailedLoginRows,
 ):
     """All there is to ask of and tell the database; every method is one transaction.
 

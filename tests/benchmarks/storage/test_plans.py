@@ -19,6 +19,10 @@ AMOUNTS = Amounts.of(4_000, motors=12)
 
 DO_NOT_GROW = frozenset(
     {
+        "api_tokens",
+        "failed_logins",
+        "user_sessions",
+        "users",
         "sites",
         "ieds",
         "motors",

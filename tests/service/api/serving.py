@@ -12,19 +12,25 @@ from starlette.types import ASGIApp
 
 from service.api.limits.connections import ConnectionLimits
 from service.api.server import ApiServer, connection_limits
+from service.client.credentials import bearer
+from testing.service.accounts import log_in
 
 LONGEST_S = 30.0
 """Time for an answer or a start on a machine that does much else; no test of speed."""
 
 
 @contextmanager
-def serving(app: FastAPI) -> Iterator[httpx.Client]:
-    """A client of the API, with the limits of its settings."""
-    with (
-        listening(app, connection_limits(app.state.context.settings)) as port,
-        httpx.Client(base_url=f"http://127.0.0.1:{port}", trust_env=False, timeout=LONGEST_S) as client,
-    ):
-        yield client
+def serving(app: FastAPI, *, as_somebody: bool = True) -> Iterator[httpx.Client]:
+    """A client of the API, with the limits of its settings, that may do everything; so may `mcc` there.
+
+    as_somebody: False for a client that does not say who it is.
+    """
+    context = app.state.context
+    with listening(app, connection_limits(context.settings)) as port:
+        url = f"http://127.0.0.1:{port}"
+        headers = bearer(log_in(context.repository, url)) if as_somebody else {}
+        with httpx.Client(base_url=url, headers=headers, trust_env=False, timeout=LONGEST_S) as client:
+            yield client
 
 
 @contextmanager

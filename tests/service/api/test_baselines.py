@@ -21,6 +21,7 @@ from service.storage.models import UnobservedRecordingRow
 from service.storage.records import ConditionPoint, FoldResult
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import Fault, recording, running
+from testing.service.accounts import TESTER
 from testing.service.job_runner import RUNNER
 from testing.service.observations import observation
 from testing.service.plants import NOW_NS, SECOND_NS, healthy, undiagnosable, watch
@@ -113,7 +114,7 @@ def test_who_deletes_a_baseline_and_why_is_kept(client: httpx.Client, plant: Pla
     told, silent = client.get(NOTES).json()["items"]
     assert told["text"] == "baseline of 3 recordings deleted: one of them showed a fault"
     assert (told["kind"], told["by"]) == ("note", "A. Miller")
-    assert (silent["text"], silent["by"]) == ("baseline of 3 recordings deleted", "anonymous")
+    assert (silent["text"], silent["by"]) == ("baseline of 3 recordings deleted", TESTER)
     assert silent["time"] == silent["made_time"] < told["time"]
     client.put(BASELINE, json={"recording_ids": ids})
     for wrong in ({"reason": " "}, {"by": "A.\nMiller"}):

@@ -28,7 +28,7 @@ def test_what_is_not_ready_is_named(context: ApiContext) -> None:
     unreachable = Repository(create_engine("sqlite:////nowhere/at/all.sqlite"))
     readiness = {"collector": lambda: "ended with exit code 1", "jobs": lambda: None}
     app = create_app(replace(context, repository=unreachable, readiness=readiness))
-    with serving(app) as client:
+    with serving(app, as_somebody=False) as client:
         assert client.get("/healthz").status_code == 200
         response = client.get("/readyz")
     assert response.status_code == 503

@@ -19,6 +19,7 @@ from service.storage import Repository, connect
 from service.storage.records import Alarm
 from service.storage.states import AlarmKind
 from service.timing.backoff import Backoff
+from testing.service.accounts import TESTER
 from testing.service.database import make_database
 from testing.service.diagnosed import add_diagnosed
 from testing.service.job_runner import register_runner
@@ -28,8 +29,8 @@ from tests.service.api.serving import serving
 API = "/api/v1"
 MOTOR = f"{API}/motors/PUMP-A1"
 CHANGING = {"post", "put", "patch", "delete"}
-ME = "anonymous"
-"""Who asks, where nobody has to say who they are."""
+ME = TESTER
+PASSWORD = "correct horse battery"  # noqa: S105 - of nobody
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,30 @@ class Prepared:
     def chosen_baseline(self) -> str:
         assert self.client.put(f"{MOTOR}/baseline", json=self.baseline()).status_code == 200
         return f"{MOTOR}/baseline"
+
+    def user(self) -> str:
+        name = f"user-{next(self.numbers)}"
+        wanted = {"name": name, "roles": ["VIEWER"]}
+        assert self.client.post(f"{API}/users", json=wanted).status_code == 201
+        return f"{API}/users/{name}"
+
+    def token(self) -> str:
+        return str(self.client.post(f"{API}/account/tokens", json={"label": "a test"}).json()["id"])
+
+    def login(self) -> httpx.Response:
+        answer = self.client.put(f"{API}/users/{ME}/password", json={"password": PASSWORD})
+        assert answer.status_code == 204
+        wanted = {"name": ME, "password": PASSWORD}
+        return httpx.post(f"{self.client.base_url}{API}/login", json=wanted, trust_env=False, timeout=30)
+
+    def logout(self) -> httpx.Response:
+        url = f"{self.client.base_url}{API}/logout"
+        return httpx.post(url, cookies=self.login().cookies, trust_env=False, timeout=30)
+
+    def other_password(self) -> httpx.Response:
+        assert self.login().status_code == 200
+        wanted = {"old": PASSWORD, "new": f"{PASSWORD} staple"}
+        return self.client.put(f"{API}/account/password", json=wanted)
 
     def note(self) -> str:
         return str(self.client.post(f"{MOTOR}/notes", json={"text": "a note"}).json()["id"])
@@ -153,6 +178,43 @@ REQUESTS: Mapping[str, tuple[Send, str]] = {
     "POST /api/v1/recordings/{recording_id}/diagnoses": (
         lambda it: it.client.post(f"{API}/recordings/{it.recording()}/diagnoses"),
         "diagnosis-requested",
+    ),
+    "POST /api/v1/login": (lambda it: it.login(), "logged-in"),
+    "POST /api/v1/logout": (lambda it: it.logout(), "logged-out"),
+    "PUT /api/v1/account/password": (lambda it: it.other_password(), "password-set"),
+    "POST /api/v1/account/tokens": (
+        lambda it: it.client.post(f"{API}/account/tokens", json={"label": "a test"}),
+        "token-added",
+    ),
+    "DELETE /api/v1/account/tokens/{token_id}": (
+        lambda it: it.client.delete(f"{API}/account/tokens/{it.token()}"),
+        "token-revoked",
+    ),
+    "DELETE /api/v1/tokens/{token_id}": (
+        lambda it: it.client.delete(f"{API}/tokens/{it.token()}"),
+        "token-revoked",
+    ),
+    "POST /api/v1/users": (
+        lambda it: it.client.post(f"{API}/users", json={"name": "new", "roles": ["VIEWER"]}),
+        "user-added",
+    ),
+    "PATCH /api/v1/users/{name}": (
+        lambda it: it.client.patch(it.user(), json={"roles": ["OPERATOR"]}),
+        "user-changed",
+    ),
+    "PUT /api/v1/users/{name}/password": (
+        lambda it: it.client.put(f"{it.user()}/password", json={"password": PASSWORD}),
+        "password-set",
+    ),
+    "DELETE /api/v1/users/{name}/sessions": (
+        lambda it: it.client.delete(f"{it.user()}/sessions"),
+        "sessions-ended",
+    ),
+    "DELETE /api/v1/users/{name}/lock": (lambda it: it.client.delete(f"{it.user()}/lock"), "user-unlocked"),
+    "DELETE /api/v1/users/{name}": (lambda it: it.client.delete(it.user()), "user-deleted"),
+    "POST /api/v1/users/{name}/tokens": (
+        lambda it: it.client.post(f"{it.user()}/tokens", json={"label": "a test"}),
+        "token-added",
     ),
 }
 """A request of each changing route that is carried out, and the action of the entry that it leaves."""

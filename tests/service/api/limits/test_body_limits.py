@@ -19,7 +19,7 @@ from testing.service.small_record import CFG, DAT
 NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
 BASELINE = "/api/v1/motors/PUMP-A1/baseline"
 DIAGNOSES = f"/api/v1/recordings/{NO_SUCH_ID}/diagnoses"
-IDS = ("recording_id", "diagnosis_id", "report_id", "note_id")
+IDS = ("recording_id", "diagnosis_id", "report_id", "note_id", "token_id")
 BEGINNING = b'--b\r\nContent-Disposition: form-data; name="files"; filename="E.CFF"\r\n\r\n'
 METHODS = ("get", "put", "post", "patch", "delete")
 
@@ -143,7 +143,8 @@ def test_a_long_body_does_not_break_an_answer_that_is_streamed(
 def test_a_body_that_says_it_is_too_large_is_refused_before_it_comes(client: httpx.Client) -> None:
     address = urlsplit(str(client.base_url))
     with socket.create_connection((address.hostname or "", address.port or 0), timeout=10) as connection:
-        request = f"PUT {BASELINE} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 66000000\r\n\r\n"
+        request = f"PUT {BASELINE} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 66000000\r\n"
+        request += f"Authorization: {client.headers['authorization']}\r\n\r\n"
         connection.sendall(request.encode())
         answer = b""
         while piece := connection.recv(4096):

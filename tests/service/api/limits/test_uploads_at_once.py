@@ -37,7 +37,8 @@ def begun(client: httpx.Client) -> Iterator[socket.socket]:
     address = urlsplit(str(client.base_url))
     with socket.create_connection((address.hostname or "", address.port or 0), timeout=10) as connection:
         header = f"POST {UPLOAD} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 100000\r\n"
-        header += f"Content-Type: {HEADERS['Content-Type']}\r\n\r\n"
+        header += f"Content-Type: {HEADERS['Content-Type']}\r\n"
+        header += f"Authorization: {client.headers['authorization']}\r\n\r\n"
         connection.sendall(header.encode() + BEGINNING)
         yield connection
 

@@ -1,0 +1,111 @@
+"""Who a secret belongs to, and what its owner may do with it now."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import partial
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+from structlog.typing import FilteringBoundLogger
+
+from core.units import NANOSECONDS_PER_SECOND
+from service.access.bearer_secrets import LONGEST, digest_of
+from service.access.permissions import Permission, permissions_of
+from service.configuration.access import AccessSettings
+from service.storage import Repository
+from service.storage.records import Role, User
+from service.timing.database_silence import database_trouble, does_not_answer
+
+log: FilteringBoundLogger = structlog.get_logger(__name__)
+
+SECONDS_PER_MINUTE = 60
+SECONDS_PER_HOUR = 3600
+
+NOTED_AGAIN_NS = 60 * NANOSECONDS_PER_SECOND
+"""That a session or a token is used is written down once in so long, not at each request."""
+
+
+class Way(StrEnum):
+    """How somebody showed who they are."""
+
+    SESSION = "session"
+    TOKEN = "token"  # noqa: S105 - the word for one
+    PROXY = "proxy"
+    NONE = "none"
+    """There are no users yet, and the request comes from this machine."""
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """Somebody who showed who they are. session: the digest of a session's secret."""
+
+    name: str
+    roles: frozenset[Role]
+    permissions: frozenset[Permission]
+    way: Way
+    session: str | None = None
+
+
+def identity_of_session(
+    repository: Repository, limits: AccessSettings, secret: str, *, now_ns: int
+) -> Identity | None:
+    """Return whose session it is; None where it is nobody's, or over."""
+    if len(secret) > LONGEST:
+        return None
+    digest = digest_of(secret)
+    session = repository.session_of(digest)
+    if session is None or session.user.disabled:
+        return None
+    if session.created_ns < oldest_session_ns(limits, now_ns) or session.used_ns < idle_since_ns(
+        limits, now_ns
+    ):
+        return None
+    if now_ns - session.used_ns > NOTED_AGAIN_NS:
+        _note(partial(repository.note_session_used, digest, now_ns=now_ns))
+    return _identity(session.user, None, Way.SESSION, digest)
+
+
+def identity_of_token(repository: Repository, secret: str, *, now_ns: int) -> Identity | None:
+    """Return whose token it is; None where it is nobody's, or has expired."""
+    if len(secret) > LONGEST:
+        return None
+    found = repository.token_with(digest_of(secret))
+    if found is None:
+        return None
+    token, user = found
+    if user.disabled or (token.expires_ns is not None and token.expires_ns <= now_ns):
+        return None
+    if token.used_ns is None or now_ns - token.used_ns > NOTED_AGAIN_NS:
+        _note(partial(repository.note_token_used, token.id, now_ns=now_ns))
+    return _identity(user, token.scope, Way.TOKEN, None)
+
+
+def _note(used: Callable[[], None]) -> None:
+    """Write down that somebody is here; who only looks is answered also where nothing can be written."""
+    try:
+        used()
+    except SQLAlchemyError as error:
+        if not does_not_answer(error):
+            raise
+        log.warning("the use of a session or token is not noted", error=database_trouble(error))
+
+
+def oldest_session_ns(limits: AccessSettings, now_ns: int) -> int:
+    """Return when the oldest session began that still counts."""
+    return now_ns - round(limits.session_hours * SECONDS_PER_HOUR * NANOSECONDS_PER_SECOND)
+
+
+def idle_since_ns(limits: AccessSettings, now_ns: int) -> int:
+    """Return since when a session may have been idle that still counts."""
+    return now_ns - round(limits.session_idle_minutes * SECONDS_PER_MINUTE * NANOSECONDS_PER_SECOND)
+
+
+def _identity(user: User, scope: frozenset[str] | None, way: Way, session: str | None) -> Identity:
+    may = permissions_of(user.roles)
+    return Identity(user.name, user.roles, may if scope is None else may & scope_of(scope), way, session)
+
+
+def scope_of(words: frozenset[str]) -> frozenset[Permission]:
+    """Return the permissions of a scope; words of other versions count for nothing."""
+    return frozenset(permission for permission in Permission if permission.value in words)

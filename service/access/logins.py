@@ -1,0 +1,75 @@
+"""Logging in with a password, in three steps: count the attempt, look at the password, begin a session.
+
+The first and the last are short. The second takes memory: whoever calls it bounds how many do at once.
+"""
+
+from core.units import NANOSECONDS_PER_SECOND
+from service.access.bearer_secrets import digest_of, new_session
+from service.access.identities import idle_since_ns, oldest_session_ns
+from service.access.passwords import hashed, is_correct, needs_renewal
+from service.configuration.access import AccessSettings
+from service.storage import Repository
+from service.storage.records import Actor, LoginLimits
+
+LONGEST_NAME = 100
+
+
+class LoginRefusedError(Exception):
+    """The name or the password is wrong; which one is not told."""
+
+    def __init__(self) -> None:
+        super().__init__("the name or the password is wrong")
+
+
+class LoginLockedError(Exception):
+    """Too many logins failed in a row. retry_after_s: none is tried before."""
+
+    def __init__(self, retry_after_s: int) -> None:
+        self.retry_after_s = retry_after_s
+        super().__init__(
+            f"too many logins failed; none is tried for {retry_after_s} s "
+            "(mcc user unlock NAME --config FILE ends the wait)"
+        )
+
+
+def attempt(
+    repository: Repository, settings: AccessSettings, account: str, address: str, *, now_ns: int
+) -> None:
+    """Count an attempt to log in. Raises LoginLockedError."""
+    limits = LoginLimits(of_account_and_address=settings.failed_logins, most_s=settings.lockout_minutes * 60)
+    until_ns = repository.attempt_login(account, address, limits, now_ns=now_ns)
+    if until_ns is not None:
+        raise LoginLockedError(1 + (until_ns - now_ns) // NANOSECONDS_PER_SECOND)
+
+
+def check_password(repository: Repository, account: str, password: str, address: str, *, now_ns: int) -> None:
+    """Look at a password, which takes some tenths of a second and 64 MiB. Raises LoginRefusedError."""
+    kept = repository.password_of(account)
+    if not is_correct(password, kept) or kept is None:
+        repository.note_login_failed(account, address, "wrong name or password", now_ns=now_ns)
+        raise LoginRefusedError
+    repository.forget_attempt(account, address)
+    if needs_renewal(kept):
+        repository.renew_hash(account, kept, hashed(password))
+
+
+def begin_session(
+    repository: Repository, settings: AccessSettings, by: Actor, way: str, *, now_ns: int
+) -> str:
+    """Return the secret of a new session. Raises NotFoundError (the user was deleted meanwhile)."""
+    secret = new_session()
+    repository.begin_session(
+        digest_of(secret),
+        by.name,
+        way,
+        oldest_ns=oldest_session_ns(settings, now_ns),
+        idle_since_ns=idle_since_ns(settings, now_ns),
+        by=by,
+        now_ns=now_ns,
+    )
+    return secret
+
+
+def account_of(name: str) -> str:
+    """Return the account that somebody means."""
+    return name.strip().lower()[:LONGEST_NAME]

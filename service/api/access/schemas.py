@@ -1,0 +1,127 @@
+"""Users, sessions and tokens in the API. No answer has a password or a hash; one has a new token."""
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field, StringConstraints
+
+from service.access.permissions import Permission
+from service.access.user_names import NAME_RULE, name_of
+from service.api.document import Document, Listed, Person, RequestDocument
+from service.api.times import Time, TimeParameter
+from service.storage.records import Role
+
+
+def _name(value: object) -> object:
+    if not isinstance(value, str):
+        return value
+    name = name_of(value)
+    if name is None:
+        raise ValueError(f"expected {NAME_RULE}")
+    return name
+
+
+NewName = Annotated[
+    str, StringConstraints(max_length=100), BeforeValidator(_name), Field(description=f"{NAME_RULE}.")
+]
+UserName = Annotated[str, StringConstraints(min_length=1, max_length=100, pattern=r"^[^\x00/]+$")]
+Password = Annotated[str, StringConstraints(min_length=1, max_length=1024)]
+Roles = Annotated[set[Role], Field(max_length=len(Role))]
+
+
+class LoginRequest(RequestDocument):
+    """Who logs in."""
+
+    name: Annotated[str, StringConstraints(min_length=1, max_length=200)]
+    password: Password
+
+
+class LoginWays(Document):
+    """How one logs in here. oidc: where a browser begins to log in at the plant's identity provider."""
+
+    password: bool
+    oidc: str | None
+
+
+class Account(Document):
+    """Who asks, and what they may do. way: how they showed who they are."""
+
+    name: str
+    full_name: str | None
+    roles: Listed[Role]
+    permissions: Listed[Permission]
+    way: Literal["session", "token", "proxy", "none"]
+
+
+class PasswordChange(RequestDocument):
+    """The own password, old and new."""
+
+    old: Password
+    new: Password
+
+
+class NewPassword(RequestDocument):
+    """Another password for a user."""
+
+    password: Password
+
+
+class User(Document):
+    """Somebody who may log in. has_password: whether with a password; subject: with an identity provider.
+
+    locked_until_time: none of their logins is tried before from some address, because too many failed.
+    """
+
+    name: str
+    full_name: str | None
+    roles: Listed[Role]
+    disabled: bool
+    has_password: bool
+    subject: str | None
+    created_time: Time = Field(validation_alias="created_ns")
+    password_set_time: Time | None = Field(validation_alias="password_set_ns")
+    last_login_time: Time | None = Field(validation_alias="last_login_ns")
+    last_login_origin: str | None
+    locked_until_time: Time | None = None
+
+
+class UserRequest(RequestDocument):
+    """A new user. Without a password nobody can log in as them, but they may have tokens."""
+
+    name: NewName
+    full_name: Person | None = None
+    roles: Roles
+    password: Password | None = None
+
+
+class UserChange(RequestDocument):
+    """What is to be changed of a user; what is left out stays."""
+
+    full_name: Person | None = None
+    roles: Roles | None = None
+    disabled: bool | None = None
+
+
+class Token(Document):
+    """A secret of a user for a program, without the secret. scope: null for all that the user may."""
+
+    id: str
+    user: str
+    label: str
+    scope: Listed[str] | None
+    created_time: Time = Field(validation_alias="created_ns")
+    expires_time: Time | None = Field(validation_alias="expires_ns")
+    used_time: Time | None = Field(validation_alias="used_ns")
+
+
+class NewToken(Token):
+    """A token with its secret, which is shown this once and not kept."""
+
+    token: str
+
+
+class TokenRequest(RequestDocument):
+    """What a new token is for. scope: the permissions it has, by default all of its user."""
+
+    label: Person
+    scope: Annotated[set[Permission], Field(min_length=1, max_length=len(Permission))] | None = None
+    expires_time: TimeParameter | None = None

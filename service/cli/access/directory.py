@@ -1,0 +1,235 @@
+"""Users and tokens, reached by way of a running service or in its database.
+
+The database is for who owns its files: they manage users without being one, which makes the first user.
+"""
+
+import getpass
+import time
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Protocol
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from core.time_stamps import nanoseconds
+from service.access.bearer_secrets import digest_of, new_token
+from service.access.passwords import PASSWORD_RULE, hashed, is_usable
+from service.access.user_names import NAME_RULE, name_of
+from service.api.access.schemas import Token, User
+from service.cli.output import CommandError, failing_clearly
+from service.client.rest_client import Document, ServiceClient, ServiceError, segment
+from service.configuration.settings import Settings, SettingsError
+from service.storage import Repository, StorageError, connect, migrate
+from service.storage.records import Actor, Role
+from service.storage.records import User as StoredUser
+
+AT_ONCE = 1000
+
+
+class Directory(Protocol):
+    """What can be done with users and tokens. Documents are those of the REST API."""
+
+    def users(self) -> list[Document]:
+        """Return all users."""
+        ...
+
+    def add_user(
+        self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
+    ) -> Document:
+        """Add a user."""
+        ...
+
+    def change_user(self, name: str, change: Mapping[str, object]) -> Document:
+        """Change what is given: full_name, roles, disabled."""
+        ...
+
+    def set_password(self, name: str, password: str) -> None:
+        """Give a user another password."""
+        ...
+
+    def unlock(self, name: str) -> None:
+        """Forget the failed logins of a user."""
+        ...
+
+    def end_sessions(self, name: str) -> None:
+        """End all sessions of a user."""
+        ...
+
+    def delete_user(self, name: str) -> None:
+        """Delete a user."""
+        ...
+
+    def tokens(self) -> list[Document]:
+        """Return the tokens: of all users, or the own ones of who may not see others'."""
+        ...
+
+    def add_token(
+        self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
+    ) -> Document:
+        """Make a token, of who asks or of another user; the answer has its secret."""
+        ...
+
+    def revoke_token(self, token_id: str) -> None:
+        """End a token."""
+        ...
+
+
+@contextmanager
+def directory(url: str, config: Path | None, *, local: bool) -> Iterator[Directory]:
+    """Reach the users of a service: its database with --config or --local, else the service itself.
+
+    Raises CommandError.
+    """
+    if config is None and not local:
+        with failing_clearly(ServiceError), ServiceClient(url) as service:
+            yield _AtService(service)
+        return
+    with failing_clearly(SettingsError, StorageError, SQLAlchemyError, OSError):
+        settings = Settings.load(config)
+        settings.data_directory.mkdir(parents=True, exist_ok=True)
+        migrate(settings.database_url)
+        engine = connect(settings.database_url)
+        try:
+            yield _InDatabase(Repository(engine))
+        finally:
+            engine.dispose()
+
+
+class _AtService:
+    def __init__(self, service: ServiceClient) -> None:
+        self._service = service
+
+    def users(self) -> list[Document]:
+        return list(self._service.items("/users"))
+
+    def add_user(
+        self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
+    ) -> Document:
+        wanted = {"name": name, "roles": sorted(roles), "full_name": full_name, "password": password}
+        return self._service.send("POST", "/users", wanted)
+
+    def change_user(self, name: str, change: Mapping[str, object]) -> Document:
+        return self._service.send("PATCH", f"/users/{segment(name)}", change)
+
+    def set_password(self, name: str, password: str) -> None:
+        self._service.send("PUT", f"/users/{segment(name)}/password", {"password": password})
+
+    def unlock(self, name: str) -> None:
+        self._service.send("DELETE", f"/users/{segment(name)}/lock")
+
+    def end_sessions(self, name: str) -> None:
+        self._service.send("DELETE", f"/users/{segment(name)}/sessions")
+
+    def delete_user(self, name: str) -> None:
+        self._service.send("DELETE", f"/users/{segment(name)}")
+
+    def tokens(self) -> list[Document]:
+        return list(self._service.items("/tokens" if self._manages() else "/account/tokens"))
+
+    def add_token(
+        self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
+    ) -> Document:
+        path = "/account/tokens" if user is None else f"/users/{segment(user)}/tokens"
+        wanted = {
+            "label": label,
+            "scope": None if scope is None else sorted(scope),
+            "expires_time": expires_time,
+        }
+        return self._service.send("POST", path, wanted)
+
+    def revoke_token(self, token_id: str) -> None:
+        path = "/tokens" if self._manages() else "/account/tokens"
+        self._service.send("DELETE", f"{path}/{segment(token_id)}")
+
+    def _manages(self) -> bool:
+        permissions = self._service.get("/account").get("permissions")
+        return isinstance(permissions, list) and "users" in permissions
+
+
+class _InDatabase:
+    def __init__(self, repository: Repository) -> None:
+        self._repository = repository
+        self._by = Actor(getpass.getuser(), "command line", frozenset({Role.SECADM}))
+
+    def users(self) -> list[Document]:
+        found = self._repository.users(limit=AT_ONCE)
+        users = list(found.items)
+        while found.next is not None:
+            found = self._repository.users(limit=AT_ONCE, after=found.next)
+            users.extend(found.items)
+        return [_user(user) for user in users]
+
+    def add_user(
+        self, name: str, roles: Collection[Role], full_name: str | None, password: str | None
+    ) -> Document:
+        proper = name_of(name)
+        if proper is None:
+            raise CommandError(f"NAME: expected {NAME_RULE}, found {name!r}")
+        kept = None if password is None else _hashed(password, proper)
+        user = self._repository.add_user(
+            proper, roles, password=kept, full_name=full_name, by=self._by, now_ns=time.time_ns()
+        )
+        return _user(user)
+
+    def change_user(self, name: str, change: Mapping[str, object]) -> Document:
+        roles, disabled, full_name = (change.get(key) for key in ("roles", "disabled", "full_name"))
+        user = self._repository.change_user(
+            name,
+            roles=[Role(role) for role in roles] if isinstance(roles, list) else None,
+            disabled=disabled if isinstance(disabled, bool) else None,
+            full_name=full_name if isinstance(full_name, str) else None,
+            by=self._by,
+            now_ns=time.time_ns(),
+        )
+        return _user(user)
+
+    def set_password(self, name: str, password: str) -> None:
+        self._repository.set_password(name, _hashed(password, name), by=self._by, now_ns=time.time_ns())
+
+    def unlock(self, name: str) -> None:
+        self._repository.unlock_user(name, by=self._by, now_ns=time.time_ns())
+
+    def end_sessions(self, name: str) -> None:
+        self._repository.end_sessions_of(name, by=self._by, now_ns=time.time_ns())
+
+    def delete_user(self, name: str) -> None:
+        self._repository.delete_user(name, by=self._by, now_ns=time.time_ns())
+
+    def tokens(self) -> list[Document]:
+        found = self._repository.tokens(user=None, limit=AT_ONCE)
+        tokens = list(found.items)
+        while found.next is not None:
+            found = self._repository.tokens(user=None, limit=AT_ONCE, after=found.next)
+            tokens.extend(found.items)
+        return [Token.model_validate(token).model_dump(mode="json") for token in tokens]
+
+    def add_token(
+        self, user: str | None, label: str, scope: Collection[str] | None, expires_time: str | None
+    ) -> Document:
+        if user is None:
+            raise CommandError("--user: expected whose token it is, which --config and --local do not tell")
+        secret = new_token()
+        token = self._repository.add_token(
+            user,
+            label,
+            digest_of(secret),
+            scope=scope,
+            expires_ns=None if expires_time is None else nanoseconds(expires_time),
+            by=self._by,
+            now_ns=time.time_ns(),
+        )
+        return {**Token.model_validate(token).model_dump(mode="json"), "token": secret}
+
+    def revoke_token(self, token_id: str) -> None:
+        self._repository.revoke_token(token_id, user=None, by=self._by, now_ns=time.time_ns())
+
+
+def _hashed(password: str, name: str) -> str:
+    if not is_usable(password, name):
+        raise CommandError(f"expected {PASSWORD_RULE}; nothing was changed")
+    return hashed(password)
+
+
+def _user(user: StoredUser) -> Document:
+    return User.model_validate(user).model_dump(mode="json")

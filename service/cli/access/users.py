@@ -1,0 +1,136 @@
+"""`mcc user`: users and their roles."""
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from pathlib import Path
+
+from rich.text import Text
+
+from core.error_words import one_line
+from service.cli.access.directory import directory
+from service.cli.access.passwords import given_password
+from service.cli.output import CommandError, print_document, results
+from service.cli.rows import print_rows
+from service.client.rest_client import Document
+from service.client.verdicts import to_the_second
+from service.storage.records import Role
+
+FIELDS = ("name", "full_name", "roles", "disabled", "has_password", "last_login_time", "last_login_origin")
+
+
+def _words(key: str) -> Callable[[Document], str]:
+    return lambda user: "-" if user[key] is None else one_line(str(user[key]))
+
+
+def _roles(user: Document) -> str:
+    roles = user["roles"]
+    return " ".join(map(str, roles)) if isinstance(roles, list) and roles else "-"
+
+
+def _state(user: Document) -> str:
+    if user["disabled"]:
+        return "disabled"
+    if user.get("locked_until_time"):
+        return f"locked until {to_the_second(user['locked_until_time'])}"
+    return "password" if user["has_password"] else "tokens only" if user["subject"] is None else "sign-on"
+
+
+COLUMNS: Mapping[str, Callable[[Document], str | Text]] = {
+    "name": _words("name"),
+    "full name": _words("full_name"),
+    "roles": _roles,
+    "logs in": _state,
+    "last login": lambda user: (
+        "-" if user["last_login_time"] is None else to_the_second(user["last_login_time"])
+    ),
+    "from": _words("last_login_origin"),
+}
+
+
+def list_users(url: str, config: Path | None, *, local: bool, as_csv: bool, as_json: bool) -> None:
+    """Print the users. Raises CommandError."""
+    with directory(url, config, local=local) as users:
+        found = users.users()
+    print_rows("users", found, FIELDS, COLUMNS, as_csv=as_csv, as_json=as_json, whole=("name",))
+
+
+def add_user(
+    url: str,
+    config: Path | None,
+    name: str,
+    roles: Collection[Role],
+    *,
+    full_name: str | None,
+    password_file: str | None,
+    no_password: bool,
+    local: bool,
+    as_json: bool,
+) -> None:
+    """Make a user. Raises CommandError."""
+    if no_password and password_file is not None:
+        raise CommandError("--no-password: expected it or --password-file, found both")
+    password = None if no_password else given_password(password_file, f"password of {name}", again=True)
+    with directory(url, config, local=local) as users:
+        user = users.add_user(name, roles, full_name, password)
+    told = "has no password, and may have tokens" if no_password else "may log in (mcc login)"
+    _say(f"user {user['name']}: {_roles(user)}; {told}", user, as_json=as_json)
+
+
+def change_user(
+    url: str,
+    config: Path | None,
+    name: str,
+    *,
+    roles: Sequence[Role] | None,
+    no_roles: bool,
+    full_name: str | None,
+    disabled: bool | None,
+    local: bool,
+    as_json: bool,
+) -> None:
+    """Change what is given of a user. Raises CommandError."""
+    wanted = sorted(roles) if roles else [] if no_roles else None
+    change = {"roles": wanted, "full_name": full_name, "disabled": disabled}
+    given = {key: value for key, value in change.items() if value is not None}
+    if not given:
+        raise CommandError("expected --role, --no-roles, --full-name, --disable or --enable, found none")
+    with directory(url, config, local=local) as users:
+        user = users.change_user(name, given)
+    _say(f"user {user['name']}: {_roles(user)}; {_state(user)}", user, as_json=as_json)
+
+
+def set_password(
+    url: str, config: Path | None, name: str, *, password_file: str | None, local: bool, as_json: bool
+) -> None:
+    """Give a user another password. Raises CommandError."""
+    password = given_password(password_file, f"new password of {name}", again=True)
+    with directory(url, config, local=local) as users:
+        users.set_password(name, password)
+    _say(f"user {name}: has another password; all their sessions have ended", {}, as_json=as_json)
+
+
+def unlock_user(url: str, config: Path | None, name: str, *, local: bool, as_json: bool) -> None:
+    """Forget the failed logins of a user. Raises CommandError."""
+    with directory(url, config, local=local) as users:
+        users.unlock(name)
+    _say(f"user {name}: failed logins are forgotten", {}, as_json=as_json)
+
+
+def end_sessions(url: str, config: Path | None, name: str, *, local: bool, as_json: bool) -> None:
+    """End all sessions of a user. Raises CommandError."""
+    with directory(url, config, local=local) as users:
+        users.end_sessions(name)
+    _say(f"user {name}: all sessions have ended; tokens stay (mcc token list)", {}, as_json=as_json)
+
+
+def delete_user(url: str, config: Path | None, name: str, *, local: bool, as_json: bool) -> None:
+    """Delete a user. Raises CommandError."""
+    with directory(url, config, local=local) as users:
+        users.delete_user(name)
+    _say(f"user {name}: deleted, with sessions and tokens", {}, as_json=as_json)
+
+
+def _say(text: str, document: Document, *, as_json: bool) -> None:
+    if as_json:
+        print_document(document)
+    else:
+        results().print(Text(one_line(text)), soft_wrap=True)

@@ -1,0 +1,56 @@
+"""Who may use the API, and for how long a login lasts: the table [access] of the settings."""
+
+from ipaddress import IPv4Network, IPv6Network
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, HttpUrl, StringConstraints
+
+from service.configuration.relay_access import AbsolutePath
+
+RoleName = Literal["VIEWER", "OPERATOR", "ENGINEER", "SECADM", "SECAUD"]
+HeaderName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9-]{0,99}$")]
+
+
+class ProxySettings(BaseModel):
+    """A reverse proxy that knows who asks: [access.proxy].
+
+    addresses: of the proxy, no headers of others count. user_header: has the name of who is logged in there.
+    roles_header: has what `roles` translates, with commas between; without it users and their roles are ours.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    addresses: tuple[IPv4Network | IPv6Network, ...] = Field(min_length=1)
+    user_header: HeaderName | None = None
+    roles_header: HeaderName | None = None
+    roles: dict[RoleName, tuple[str, ...]] = Field(default_factory=dict)
+
+
+class OidcSettings(BaseModel):
+    """An OpenID provider: [access.oidc]. roles: the values of roles_claim that give each role."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    issuer: HttpUrl
+    client_id: Annotated[str, StringConstraints(min_length=1, max_length=500)]
+    client_secret_file: AbsolutePath | None = None
+    redirect_url: HttpUrl
+    scopes: tuple[str, ...] = ("openid", "profile")
+    name_claim: str = "preferred_username"
+    roles_claim: str = "roles"
+    roles: dict[RoleName, tuple[str, ...]] = Field(default_factory=dict)
+    ca: AbsolutePath | None = None
+    timeout_s: float = Field(default=5.0, ge=0.1, le=60)
+
+
+class AccessSettings(BaseModel):
+    """How long logins last, and how many may fail in a row."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    session_idle_minutes: float = Field(default=60.0, ge=1, le=10_080)
+    session_hours: float = Field(default=12.0, ge=0.1, le=744)
+    failed_logins: int = Field(default=5, ge=1, le=1000)
+    lockout_minutes: float = Field(default=15.0, ge=1, le=1440)
+    proxy: ProxySettings | None = None
+    oidc: OidcSettings | None = None

@@ -1,0 +1,61 @@
+"""The demo's own user, so that the demo and commands in other terminals may do what they show.
+
+`python -m service.demo.account FILE` writes a token of that user into a file that containers share, by the
+settings of the environment. A token in that file that is still good stays.
+"""
+
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+from service.access.bearer_secrets import digest_of, new_token
+from service.client.credentials import write_secret
+from service.configuration.settings import Settings
+from service.storage import Repository, connect, migrate
+from service.storage.errors import UserExistsError
+from service.storage.records import Actor, Role
+
+NAME = "demo"
+ROLES = (Role.VIEWER, Role.OPERATOR, Role.ENGINEER, Role.SECADM, Role.SECAUD)
+MOST_TOKENS = 100
+BY = Actor("mcc demo", "command line")
+
+
+def demo_token(database_url: str, kept: str | None = None) -> str:
+    """Return a token of the demo's user, made where there is none: `kept` if it is one, else a new one.
+
+    Older tokens of that user end.
+    """
+    migrate(database_url)
+    engine = connect(database_url)
+    try:
+        return _token(Repository(engine), kept)
+    finally:
+        engine.dispose()
+
+
+def _token(repository: Repository, kept: str | None) -> str:
+    if kept is not None and repository.token_with(digest_of(kept)) is not None:
+        return kept
+    now_ns = time.time_ns()
+    with suppress(UserExistsError):
+        repository.add_user(NAME, ROLES, password=None, by=BY, now_ns=now_ns)
+    for token in repository.tokens(user=NAME, limit=MOST_TOKENS).items:
+        repository.revoke_token(token.id, user=NAME, by=BY, now_ns=now_ns)
+    secret = new_token()
+    digest = digest_of(secret)
+    repository.add_token(NAME, "mcc demo", digest, scope=None, expires_ns=None, by=BY, now_ns=now_ns)
+    return secret
+
+
+def main(file: Path) -> None:
+    """Have a file with a token of the demo's user."""
+    settings = Settings.load()
+    settings.data_directory.mkdir(parents=True, exist_ok=True)
+    kept = file.read_text(encoding="utf-8").strip() if file.exists() else None
+    write_secret(file, demo_token(settings.database_url, kept))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,80 @@
+"""Logins of users, until they end."""
+
+from sqlalchemy import delete, select, update
+
+from service.audit.actions import AuditAction
+from service.storage.errors import NotFoundError
+from service.storage.models import UserRow, UserSessionRow
+from service.storage.records import Actor, UserSession
+from service.storage.repository.access.users import end_sessions, user_of
+from service.storage.repository.audit.entries import note_change
+from service.storage.repository.sessions import Sessions, found
+
+MOST_SESSIONS = 100
+"""A user has at most so many; the ones that were used longest ago end."""
+
+
+class UserSessionRows(Sessions):
+    def begin_session(
+        self, digest: str, user: str, way: str, *, oldest_ns: int, idle_since_ns: int, by: Actor, now_ns: int
+    ) -> None:
+        """Note a login, and its way: "password", or an identity provider's address.
+
+        Sessions that began before oldest_ns, or were last used before idle_since_ns, go.
+
+        Raises NotFoundError (the user was deleted, or disabled, meanwhile).
+        """
+        with self._write() as session:
+            row = session.get(UserRow, user, with_for_update=True)
+            if row is None or row.disabled:
+                raise NotFoundError("user", user)
+            row.last_login_ns, row.last_login_origin = now_ns, by.origin
+            over = (UserSessionRow.created_ns < oldest_ns) | (UserSessionRow.used_ns < idle_since_ns)
+            session.execute(delete(UserSessionRow).where(over))
+            latest = (
+                select(UserSessionRow.digest)
+                .where(UserSessionRow.user == user)
+                .order_by(UserSessionRow.used_ns.desc(), UserSessionRow.digest)
+                .offset(MOST_SESSIONS - 1)
+            )
+            surplus = session.scalars(latest).all()
+            session.execute(delete(UserSessionRow).where(UserSessionRow.digest.in_(surplus)))
+            session.add(
+                UserSessionRow(digest=digest, user=user, origin=by.origin, created_ns=now_ns, used_ns=now_ns)
+            )
+            note_change(
+                session, by, AuditAction.LOGGED_IN, ("user", user), now_ns=now_ns, after={"by_way_of": way}
+            )
+
+    def session_of(self, digest: str) -> UserSession | None:
+        """Return the login with this secret, over or not; None where there is none."""
+        query = select(UserSessionRow, UserRow).join(UserRow, UserRow.name == UserSessionRow.user)
+        with self._read() as session:
+            row = session.execute(query.where(UserSessionRow.digest == digest)).one_or_none()
+            if row is None:
+                return None
+            login, user = row
+            return UserSession(user_of(user), login.origin, login.created_ns, login.used_ns)
+
+    def note_session_used(self, digest: str, *, now_ns: int) -> None:
+        """Note that a login is used."""
+        with self._write() as session:
+            session.execute(
+                update(UserSessionRow).where(UserSessionRow.digest == digest).values(used_ns=now_ns)
+            )
+
+    def end_session(self, digest: str, *, by: Actor, now_ns: int) -> None:
+        """End a login; harmless where it has ended."""
+        with self._write() as session:
+            row = session.get(UserSessionRow, digest, with_for_update=True)
+            if row is None:
+                return
+            note_change(session, by, AuditAction.LOGGED_OUT, ("user", row.user), now_ns=now_ns)
+            session.delete(row)
+
+    def end_sessions_of(self, user: str, *, by: Actor, now_ns: int) -> None:
+        """End all logins of a user. Raises NotFoundError."""
+        with self._write() as session:
+            found(session, UserRow, user, "user", lock=True)
+            end_sessions(session, user)
+            note_change(session, by, AuditAction.SESSIONS_ENDED, ("user", user), now_ns=now_ns)

@@ -1,0 +1,62 @@
+"""Writes the tables of docs/reference/roles.md from the code."""
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from fastapi.routing import iter_route_contexts
+
+from service.access.permissions import MEANINGS, PERMISSIONS_OF, Permission
+from service.api import ApiContext, create_app
+from service.api.access.requirements import requirement_of
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
+from service.storage import Repository, connect
+from service.storage.records import Role
+from tests.docs.pages import ROOT, between_markers
+
+PAGE = ROOT / "docs" / "reference" / "roles.md"
+HEAD = " | ".join(Role)
+LINE = "|---" * (1 + len(Role))
+
+
+def permission_rows() -> Iterator[str]:
+    """Yield the lines of the table of permissions."""
+    yield f"| Permission | {HEAD} | Allows |"
+    yield f"{LINE}|---|"
+    for permission in Permission:
+        yield f"| `{permission}` | {_marks(permission)} | {MEANINGS[permission]} |"
+
+
+def route_rows() -> Iterator[str]:
+    """Yield the lines of the table of routes."""
+    yield f"| Route | {HEAD} | Needs |"
+    yield f"{LINE}|---|"
+    for method, path, needed in sorted(_routes(), key=lambda route: (route[1], route[0])):
+        marks = " | ".join("*" for _ in Role) if needed is None else _marks(needed)
+        yield f"| `{method} {path}` | {marks} | {'-' if needed is None else f'`{needed}`'} |"
+
+
+def written(page: str) -> str:
+    """Return the page with its tables made anew."""
+    page = between_markers(page, "permissions", permission_rows())
+    return between_markers(page, "routes", route_rows())
+
+
+def main() -> None:
+    PAGE.write_text(written(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def _marks(permission: Permission) -> str:
+    return " | ".join("yes" if permission in PERMISSIONS_OF[role] else "" for role in Role)
+
+
+def _routes() -> Iterator[tuple[str, str, Permission | None]]:
+    with tempfile.TemporaryDirectory() as name:
+        directory = Path(name)
+        repository = Repository(connect(f"sqlite:///{directory / 'unused.sqlite'}"))
+        store = RecordingStore(directory / "recordings")
+        app = create_app(ApiContext(Settings(data_directory=directory), repository, store))
+        for route in iter_route_contexts(app.routes):
+            for method in route.methods or ():
+                yield method, str(route.path), requirement_of(route.dependencies)
