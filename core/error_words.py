@@ -63,4 +63,6 @@ def one_line(text: str) -> str:
     str
         The text on one line.
     """
+    if text.isprintable():
+        return text.strip()
     return "".join(character if character.isprintable() else " " for character in text).strip()

@@ -42,5 +42,6 @@ def _written(cell: Cell, column_type: ColumnType) -> str:
 
 def without_formula(text: str) -> str:
     """Return a text that no spreadsheet takes for a formula."""
-    text = _AFTER_SEMICOLON.sub(r"\1'", text)
+    if ";" in text:
+        text = _AFTER_SEMICOLON.sub(r"\1'", text)
     return f"'{text}" if begins_a_formula(text) else text

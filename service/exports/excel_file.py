@@ -1,9 +1,13 @@
 """Tables as Excel workbooks. The rows go to the disk while they come; the workbook is complete at the end."""
 
+import io
 from collections.abc import Iterable, Iterator, Sequence
-from tempfile import TemporaryFile
+from contextlib import contextmanager, suppress
+from tempfile import TemporaryDirectory, TemporaryFile
+from typing import IO
 
 from xlsxwriter import Workbook
+from xlsxwriter.exceptions import FileCreateError
 from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
 
@@ -38,8 +42,8 @@ def excel_pieces(
 
     Times are date-times of Excel in UTC, to the millisecond. The last sheet tells what the columns mean.
     """
-    with TemporaryFile() as file:
-        with Workbook(file, {"constant_memory": True}) as workbook:
+    with TemporaryDirectory(prefix="statorwatch-export-") as folder, TemporaryFile(dir=folder) as file:
+        with _written_to(file, folder) as workbook:
             workbook.set_properties({"title": table.name, "comments": "Times are UTC."})
             sheets = _Sheets(workbook, table.name, table.columns, most_rows)
             for batch in batches:
@@ -50,6 +54,48 @@ def excel_pieces(
         file.seek(0)
         while piece := file.read(PIECE_BYTES):
             yield piece
+
+
+@contextmanager
+def _written_to(file: IO[bytes], folder: str) -> Iterator[Workbook]:
+    """Complete a workbook at the end of the block, and abandon it where that fails. Raises OSError.
+
+    XlsxWriter's own `with` would complete it also where its rows could not be read to the end.
+    """
+    target = _Target(file)
+    workbook = Workbook(target, {"constant_memory": True, "tmpdir": folder})
+    try:
+        yield workbook
+        workbook.close()
+    except FileCreateError as error:
+        found = error.args[0] if error.args else None
+        raise found if isinstance(found, OSError) else OSError(str(error)) from error
+    finally:
+        target.is_abandoned = True
+        for sheet in workbook.worksheets():
+            with suppress(OSError):  # what is still to be written has no room either
+                sheet.row_data_fh.close()
+
+
+class _Target:
+    """The file of a workbook. An archive that was abandoned still writes its end, which goes nowhere then."""
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._file = file
+        self.is_abandoned = False
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        return 0 if self.is_abandoned else self._file.seek(offset, whence)
+
+    def tell(self) -> int:
+        return 0 if self.is_abandoned else self._file.tell()
+
+    def write(self, content: bytes) -> int:
+        return len(content) if self.is_abandoned else self._file.write(content)
+
+    def flush(self) -> None:
+        if not self.is_abandoned:
+            self._file.flush()
 
 
 class _Sheets:

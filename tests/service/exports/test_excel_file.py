@@ -1,7 +1,10 @@
 import io
+import tempfile
+from collections.abc import Iterator
 from datetime import datetime
 from itertools import repeat
 from math import inf, nan
+from pathlib import Path
 from zipfile import ZipFile
 
 import pytest
@@ -10,6 +13,7 @@ from openpyxl.utils.escape import unescape
 
 from core.error_words import one_line
 from service.exports.excel_file import CUT, MOST_CHARACTERS, excel_pieces
+from testing.no_room import no_room
 from tests.service.exports.rows import EMPTY, HOSTILE, TABLE, Row
 
 
@@ -72,6 +76,30 @@ def test_hostile_texts_stay_texts(text: str) -> None:
     assert unescape(cell.value) == expected, "as Excel reads it"
     if expected.startswith(tuple("=+-@＝")):
         assert cell.quotePrefix, "it stays a text where somebody edits it"
+
+
+@pytest.mark.parametrize("rows", [0, 50_000])
+def test_a_full_disk_is_told_as_such_and_nothing_is_left_behind(
+    rows: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with no_room(), pytest.raises(OSError, match="File too large"):
+        b"".join(excel_pieces(TABLE, [[Row()] * rows]))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_rows_that_cannot_be_read_leave_nothing_behind(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    def batches() -> Iterator[list[Row]]:
+        yield [Row()] * 10
+        raise RuntimeError("the database does not answer")
+
+    with pytest.raises(RuntimeError, match="does not answer"):
+        list(excel_pieces(TABLE, batches()))
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.campaign

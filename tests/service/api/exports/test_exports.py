@@ -20,6 +20,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import Sample
 from service.storage.states import AlarmKind
+from testing.no_room import no_room
 from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
 from testing.service.observations import observation
@@ -220,6 +221,15 @@ def test_parquet_without_its_library_is_refused_in_words(
     assert answer.status_code == 406
     assert "statorwatch[parquet]" in answer.json()["detail"]
     assert client.get(TREND, params={"format": "csv"}).status_code == 200
+
+
+def test_a_full_disk_is_503_with_words(client: httpx.Client, trend: Sequence[str]) -> None:
+    client.get(TREND, params={"format": "xlsx"}).raise_for_status()  # all is imported and cached
+    with no_room():
+        answer = client.get(TREND, params={"format": "xlsx"})
+    assert answer.status_code == 503
+    assert "no room on the disk" in answer.json()["detail"]
+    assert client.get(TREND, params={"format": "xlsx"}).status_code == 200
 
 
 def test_few_files_are_made_at_a_time(context: ApiContext) -> None:
