@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from sqlalchemy import Connection, Engine, inspect, text
 
-from benchmarks.storage import condition_rows, rows
+from benchmarks.storage import condition_rows, rows, upkeep_rows
 from benchmarks.storage.plant import plant_of
 from benchmarks.storage.rows import Amounts, Table
 from service.storage import Repository, connect, migrate
@@ -26,12 +26,14 @@ def fill(url: str, amounts: Amounts, progress: Progress = lambda _line: None) ->
     with engine.begin() as connection:
         _count(connection)
         condition_rows.judge(connection)
+        upkeep_rows.end_trail(connection, amounts)
     engine.dispose()
 
 
 def _tables(amounts: Amounts) -> Iterator[Table]:
     yield from rows.tables(amounts)
     yield from condition_rows.tables(amounts)
+    yield from upkeep_rows.tables(amounts)
 
 
 def _load_sqlite(engine: Engine, amounts: Amounts, progress: Progress) -> None:

@@ -25,6 +25,8 @@ GROWING = frozenset(
         "measurements",
         "alarms",
         "alarm_changes",
+        "audit_entries",
+        "backups",
         "link_changes",
         "deletions",
         "deleted_remote_records",

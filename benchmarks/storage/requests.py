@@ -21,6 +21,15 @@ GOALS_S = {"/api/v1/motors/{name}/trend": 0.030, "/metrics": 0.100, "/api/v1/ala
 UNTIMED = {
     "/api/v1/recordings/{recording_id}/waveform": "reads one record from the recording store",
     "/api/v1/recordings/{recording_id}/file": "reads one record from the recording store",
+    "/api/v1/audit/export": "reads the whole trail",
+    "/api/v1/audit/verification": "reads the whole trail",
+    "/api/v1/exports/alarms": "writes all that is chosen into a file",
+    "/api/v1/exports/measurements": "writes all that is chosen into a file",
+    "/api/v1/exports/recordings": "writes all that is chosen into a file",
+    "/api/v1/exports/trend": "writes all that is chosen into a file",
+    "/api/v1/notifications": "reads messages, which are deleted after a time",
+    "/api/v1/notifications/{notification_id}": "reads messages, which are deleted after a time",
+    "/api/v1/notification-channels": "reads messages, which are deleted after a time",
     "/healthz": "asks the database nothing",
     "/api/v1/login": "asks the database nothing",
     "/api/v1/account": "reads one row of users, who are few",
@@ -87,6 +96,7 @@ TIMED: Mapping[str, tuple[str, ...]] = {
         "?motor={some}",
         "?motor={some}&standing=true",
         "?motor={busy}&standing=false&cursor={deep}",
+        "?part_of={alarm}",
     ),
     "/api/v1/alarms/open": (
         "",
@@ -137,6 +147,17 @@ TIMED: Mapping[str, tuple[str, ...]] = {
         "?motor={busy}&cursor={deep}",
     ),
     "/api/v1/deletions/{recording_id}": ("{deletion}",),
+    "/api/v1/audit/entries": (
+        "",
+        "?limit=1000",
+        "?cursor={change}",
+        "?actor=person 1",
+        "?action=recording-requested",
+        "?subject={some_name}",
+        "?from={from}&to={to}",
+    ),
+    "/api/v1/audit/head": ("",),
+    "/api/v1/backups": ("", "?limit=1000", "?cursor={deep}"),
     "/readyz": ("",),
     "/metrics": ("",),
 }
@@ -184,7 +205,8 @@ def _ask(route: str, request: str) -> Ask:
 
 
 def _parameters(operation: Mapping[str, Any]) -> set[str]:
-    return {one["name"] for one in operation.get("parameters", ()) if one["in"] == "query"}
+    """Return the query parameters of a route, without the one that gives the same rows as a file."""
+    return {one["name"] for one in operation.get("parameters", ()) if one["in"] == "query"} - {"format"}
 
 
 def _query(request: str) -> list[tuple[str, str]]:
@@ -210,6 +232,7 @@ def _places(position: float, amounts: rows.Amounts) -> Mapping[str, str]:
         "deep_time": encode((time_ns,)),
         "open": encode((30, bad_ns, "8")),
         "site": "SITE_1",
+        "some_name": motor_name(some),
         "alarm": rows.id_of(rows.ALARM, int(position * (amounts.alarms - 1))),
         "change": encode((amounts.alarms,)),
         "bad": encode((bad_ns, "8")),

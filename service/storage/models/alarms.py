@@ -94,7 +94,7 @@ class AlarmRow(Base):
         _partial("ix_alarms_open_motor_urgency", OPEN, "motor", "urgency", "raised_ns", "id"),
         _partial("ix_alarms_open_state_urgency", OPEN, "state", "urgency", "raised_ns", "id"),
         _partial("ix_alarms_shelved_until_ns", SHELVED, "shelved_until_ns"),
-        _partial("ix_alarms_part_of", MEMBER, "part_of"),
+        _partial("ix_alarms_part_of", MEMBER, "part_of", "raised_ns", "id"),
         _partial("ix_alarms_standing_site_kind", STANDING, "site", "kind"),
     )
 

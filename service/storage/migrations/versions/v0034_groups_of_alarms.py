@@ -14,7 +14,7 @@ depends_on = None
 MEMBER = sa.text("part_of IS NOT NULL")
 STANDING = sa.text("cleared_ns IS NULL")
 INDEXES = (
-    ("ix_alarms_part_of", ["part_of"], MEMBER),
+    ("ix_alarms_part_of", ["part_of", "raised_ns", "id"], MEMBER),
     ("ix_alarms_standing_site_kind", ["site", "kind"], STANDING),
 )
 URGENT = """
