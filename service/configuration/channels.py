@@ -41,7 +41,10 @@ def _mail_address(text: str) -> str:
 
 def _url(text: str) -> str:
     if re.fullmatch(r"https?://[^\s/@?#\\]+(/[^\s#\\]*)?(\?[^\s#\\]*)?", text) is None or not text.isascii():
-        raise ValueError("an address such as https://chat.plant.example/hook, without a password")
+        # What was found may hold a password.
+        raise ValueError(
+            "an address such as https://chat.plant.example/hook, without a password, found another text"
+        )
     return text
 
 

@@ -89,7 +89,9 @@ def _problem(details: ErrorDetails, sources: Sources, model: type[BaseModel]) ->
     if details["type"] == "missing":
         return Problem(source, field, "this setting", "none", line=line)
     if details["type"] in ("union_tag_invalid", "union_tag_not_found"):
-        return _of_kind(details, source, field, line)
+        key = str(details.get("ctx", {})["discriminator"]).strip("'")
+        source, field, line = sources.of(setting, (*path, key))
+        return _of_kind(details, key, source, field, line)
     found = repr(details["input"])
     if setting in model.model_fields and not model.model_fields[setting].repr:
         found = f"a value of type {type(details['input']).__name__}"  # it may hold a password
@@ -100,12 +102,11 @@ def _problem(details: ErrorDetails, sources: Sources, model: type[BaseModel]) ->
     return Problem(source, field, expected, said or found, line=line)
 
 
-def _of_kind(details: ErrorDetails, source: str, field: str, line: int | None) -> Problem:
+def _of_kind(details: ErrorDetails, key: str, source: str, field: str, line: int | None) -> Problem:
     """Return what is wrong with the key that says of which kind a table is."""
     told = details.get("ctx", {})
-    key = str(told["discriminator"]).strip("'")
     kinds = str(told.get("expected_tags", "")).replace("'", "")
     expected = f"one of {kinds}" if kinds else f"the key {key}, which says of which kind the table is"
     tag = str(told.get("tag", ""))
     meant = nearest(tag, kinds.split(", ")) if tag else None
-    return Problem(source, f"{field}.{key}", expected, repr(tag) if tag else "none", meant, line)
+    return Problem(source, field, expected, repr(tag) if tag else "none", meant, line)

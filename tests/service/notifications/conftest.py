@@ -9,9 +9,9 @@ from service.application.parts import running
 from service.configuration.settings import Settings
 from service.notifications.work import NotificationWork
 from service.storage import Repository
-from tests.service.fixtures import database_url, engine, repository
+from tests.service.fixtures import database_url, engine, repository, store
 
-__all__ = ["database_url", "engine", "repository"]
+__all__ = ["database_url", "engine", "repository", "store"]
 
 Work = Callable[[dict[str, Any]], Any]
 

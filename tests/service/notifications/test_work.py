@@ -1,17 +1,21 @@
 """The work of notifications as a whole: real alarms, a real mail server, a real HTTP receiver."""
 
 import json
+from dataclasses import replace
 from email.message import EmailMessage
 from typing import Any
 
 import structlog
 
+from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec, Gathering, NewNotification
 from service.storage.records.actors import Actor, Role
 from service.storage.states import AlarmKind, NotificationKind, NotificationState
 from testing.service.conditions import FAULT, tell
-from testing.service.plants import NOW_NS
+from testing.service.diagnosed import add_diagnosed
+from testing.service.observations import OBSERVATION
+from testing.service.plants import NOW_NS, SECOND_NS, fault
 from testing.service.receivers import http_receiver, mail_server
 from testing.waiting import eventually, wait_until
 from tests.service.notifications.conftest import Work, mail_channel
@@ -37,12 +41,19 @@ def text_of(mail: EmailMessage) -> str:
     return str(part.get_content())
 
 
-def test_a_fault_comes_as_a_mail_with_its_trend_and_what_to_do(repository: Repository, at_work: Work) -> None:
+def test_a_fault_comes_as_a_mail_with_its_trend_and_what_to_do(
+    repository: Repository, store: RecordingStore, at_work: Work
+) -> None:
+    for hour in range(3):
+        told = replace(OBSERVATION, time_ns=NOW_NS + hour * 3600 * SECOND_NS)
+        add_diagnosed(repository, store, fault(), told.time_ns, name=f"E{hour}", observed=told)
+    tell(repository, FAULT)
     spec = AlarmSpec(
         AlarmKind.CONDITION_FAULT,
         "shorted turns in phase b: 1.20 %",
         "shorted turns in phase b",
         advice="Stop the motor.",
+        one_of_kind=True,
     )
     repository.raise_alarm_at(AlarmPlace(motor="PUMP-A1"), spec, now_ns=NOW_NS)
     with mail_server() as mailbox:
@@ -58,6 +69,12 @@ def test_a_fault_comes_as_a_mail_with_its_trend_and_what_to_do(repository: Repos
     assert "CEST" in text
     assert "motor: https://mcc.example/api/v1/motors/PUMP-A1/health" in text
     assert "Stop the motor." in html_of(mail)
+    (picture,) = [part for part in mail.walk() if part.get_content_type() == "image/png"]
+    shown = picture.get_payload(decode=True)
+    assert isinstance(shown, bytes)
+    assert shown.startswith(b"\x89PNG")
+    name = str(picture["Content-ID"]).strip("<>")
+    assert f'src="cid:{name}"' in html_of(mail)
 
 
 def test_hostile_names_are_text_in_every_form(repository: Repository, at_work: Work) -> None:
