@@ -80,7 +80,6 @@ def change(
         row.shelved_until_ns = row.shelved_above = None
     if after is not AlarmState.SUPPRESSED:
         row.suppressed_because = None
-    session.flush()
 
 
 def forget_changes(session: Session, alarm_id: str) -> None:

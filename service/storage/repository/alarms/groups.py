@@ -15,7 +15,12 @@ from service.storage.models.alarms import in_state
 from service.storage.records import AlarmPlace, AlarmSpec
 from service.storage.repository.alarms.causes import at_place, clear, forget_cleared, raised_at
 from service.storage.repository.alarms.changes import locked
-from service.storage.repository.alarms.suppression import CALLING, suppress, suppress_by_design, unsuppress
+from service.storage.repository.alarms.suppression import (
+    CALLING,
+    suppress,
+    suppress_all_by_design,
+    unsuppress,
+)
 from service.storage.repository.sessions import Sessions
 
 MINUTE_NS = 60 * NANOSECONDS_PER_SECOND
@@ -98,9 +103,10 @@ def _raised(session: Session, flood: Flood, now_ns: int) -> str:
 
 def _join(session: Session, group: str, ids: Sequence[str], now_ns: int) -> None:
     """Have some alarms told by another one, and suppress them."""
-    for row in locked(session, AlarmRow.id.in_(ids), AlarmRow.part_of.is_distinct_from(group)):
+    rows = locked(session, AlarmRow.id.in_(ids), AlarmRow.part_of.is_distinct_from(group))
+    for row in rows:
         row.part_of = group
-        suppress_by_design(session, row, now_ns=now_ns)
+    suppress_all_by_design(session, rows, now_ns=now_ns)
 
 
 def _ended(session: Session, group: AlarmRow, most: int, now_ns: int) -> bool:

@@ -1,5 +1,7 @@
 """What the plant's design suppresses: alarms of motors that left it, and of relays that are set aside."""
 
+from collections.abc import Sequence
+
 from sqlalchemy import ColumnElement, or_, select
 from sqlalchemy.orm import Session
 
@@ -12,6 +14,8 @@ from service.storage.states import AlarmEvent, AlarmKind, AlarmState
 
 AT_A_TIME = 100
 """So many alarms are changed in one transaction, so that nobody waits for long."""
+
+IDS_A_STATEMENT = 500
 
 CALLING = (AlarmState.UNACKNOWLEDGED, AlarmState.RETURNED_UNACKNOWLEDGED)
 
@@ -53,8 +57,8 @@ class AlarmSuppressionRows(Sessions):
     def end_suppressions(self, *, now_ns: int) -> int:
         """End the suppressions whose reason is gone; return how many, at most 100 at a time."""
         with self._read() as session:
-            suppressed = session.scalars(select(AlarmRow).where(in_state(AlarmState.SUPPRESSED)))
-            design = _Design(session, now_ns)
+            suppressed = session.scalars(select(AlarmRow).where(in_state(AlarmState.SUPPRESSED))).all()
+            design = _Design(session, now_ns, suppressed)
             over = [row.id for row in suppressed if design.why(row) is None]
         if not over:
             return 0
@@ -69,11 +73,20 @@ def suppress_by_design(session: Session, row: AlarmRow, *, now_ns: int) -> None:
         suppress(session, row, reason, now_ns=now_ns)
 
 
+def suppress_all_by_design(session: Session, rows: Sequence[AlarmRow], *, now_ns: int) -> None:
+    """Suppress those of some locked alarms that call for somebody, where the plant's design says so."""
+    calling = [row for row in rows if row.state in CALLING]
+    design = _Design(session, now_ns, calling)
+    for row in calling:
+        reason = design.why(row)
+        if reason is not None:
+            suppress(session, row, reason, now_ns=now_ns)
+
+
 def suppress(session: Session, row: AlarmRow, reason: str, *, now_ns: int) -> None:
     """Suppress an alarm for a reason."""
     change(session, row, AlarmEvent.SUPPRESSED, now_ns=now_ns, comment=reason)
     row.suppressed_because = reason
-    session.flush()
 
 
 def suppress_those_of_quarantine(session: Session, relay: str, *, now_ns: int) -> None:
@@ -96,11 +109,22 @@ def why_suppressed(session: Session, row: AlarmRow, *, now_ns: int) -> str | Non
 class _Design:
     """The plant's design as it is at a time, asked about many alarms of one transaction."""
 
-    def __init__(self, session: Session, now_ns: int) -> None:
+    def __init__(self, session: Session, now_ns: int, rows: Sequence[AlarmRow] = ()) -> None:
+        """rows: alarms that it will be asked about; what it needs of them is read at once."""
         self._session = session
         self._now_ns = now_ns
         self._quarantined: dict[str, bool] = {}
         self._lost: dict[str, bool] = {}
+        relays = sorted({row.ied for row in rows if row.ied is not None})
+        # The session finds what it has read before, as long as somebody holds it.
+        self._held: list[object] = []
+        for first in range(0, len(relays), IDS_A_STATEMENT):
+            some = relays[first : first + IDS_A_STATEMENT]
+            self._held += session.scalars(select(IedRow).where(IedRow.name.in_(some)))
+            self._held += session.scalars(select(MotorRow).where(MotorRow.ied.in_(some)))
+            quarantines = session.scalars(select(QuarantineRow).where(QuarantineRow.ied.in_(some)))
+            self._quarantined |= dict.fromkeys(some, False)
+            self._quarantined |= {one.ied: one.until_ns > now_ns for one in quarantines}
 
     def why(self, row: AlarmRow) -> str | None:
         """Return why an alarm is suppressed; None where it is not."""
@@ -139,10 +163,9 @@ class _Design:
 
 def unsuppress(session: Session, *which: ColumnElement[bool], now_ns: int) -> int:
     """Have those alarms call again, of these, that nothing suppresses any more; return how many."""
-    design = _Design(session, now_ns)
-    over = [
-        row for row in locked(session, in_state(AlarmState.SUPPRESSED), *which) if design.why(row) is None
-    ]
+    rows = locked(session, in_state(AlarmState.SUPPRESSED), *which)
+    design = _Design(session, now_ns, rows)
+    over = [row for row in rows if design.why(row) is None]
     for row in over:
         change(session, row, AlarmEvent.UNSUPPRESSED, now_ns=now_ns)
     return len(over)
