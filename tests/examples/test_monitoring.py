@@ -127,8 +127,12 @@ def test_a_real_prometheus_scrapes_a_service_and_its_alert_fires(
     waits = store.store({"E2.CFF": b"samples of a recording that waits for its diagnosis"})
     repository.add_recording(waits, motor="PUMP-A1", now_ns=NOW_NS)
     tell(repository, FAULT)
-    shown = client.headers.get("authorization", "Bearer none")
-    (folder / "statorwatch.token").write_text(f"{shown.removeprefix('Bearer ')}\n")
+    made = client.post("/api/v1/account/tokens", json={"label": "prometheus", "scope": ["metrics"]})
+    token = made.raise_for_status().json()["token"]
+    (folder / "statorwatch.token").write_text(f"{token}\n")
+    narrow = {"Authorization": f"Bearer {token}"}
+    assert client.get("/api/v1/motors", headers=narrow).status_code == 403, "it is for scrapes alone"
+    assert client.get("/metrics", headers={"Authorization": "Bearer another"}).status_code == 401
     config = folder / "prometheus.yml"
     text = config.read_text().replace("127.0.0.1:8710", f"{client.base_url.host}:{client.base_url.port}")
     for name, often in (("scrape", "2s"), ("evaluation", "250ms")):
