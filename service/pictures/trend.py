@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import UTC, tzinfo
+from datetime import UTC, datetime, tzinfo
 from math import isfinite
 
-from core.time_stamps import rfc3339
+from core.units import NANOSECONDS_PER_SECOND
 from service.pictures.svg import Drawing
 from service.pictures.ticks import figure_ticks, time_ticks
 
@@ -20,7 +20,7 @@ MOST_POINTS = 600
 
 LONGEST_TITLE = 40
 
-INK, GREY, GRID = "#1f2933", "#7b8794", "#e4e7eb"
+INK, GREY, GRID, BAND = "#1f2933", "#7b8794", "#e4e7eb", "#eef1f4"
 COLOURS = {"watch": "#b7791f", "fault": "#c53030"}
 """What is normal is grey."""
 
@@ -51,9 +51,11 @@ def trend_picture(
         drawing.text(WIDTH / 2, HEIGHT / 2, "no record yet", anchor="middle", fill=GREY)
         return drawing.svg()
     frame = _frame(known, limit)
+    _interval(drawing, frame, known)
     _axes(drawing, frame, zone)
     _limit(drawing, frame, limit)
     _curve(drawing, frame, known)
+    _latest(drawing, known[-1], zone)
     return drawing.svg()
 
 
@@ -101,20 +103,25 @@ def _limit(drawing: Drawing, frame: _Frame, limit: float | None) -> None:
     drawing.text(LEFT + 4, y - 4, f"limit {100 * limit:.3g} %", fill=COLOURS["fault"], font_size="11")
 
 
-def _curve(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint]) -> None:
+def _interval(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint]) -> None:
     sure = [point for point in points if point.low is not None and point.high is not None]
     upper = [(frame.x(point.time_ns), frame.y(point.high or 0.0)) for point in sure]
     lower = [(frame.x(point.time_ns), frame.y(point.low or 0.0)) for point in sure]
-    drawing.path([*upper, *reversed(lower)], closed=True, fill=GRID, fill_opacity="0.8", stroke="none")
+    drawing.path([*upper, *reversed(lower)], closed=True, fill=BAND, stroke="none")
+
+
+def _curve(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint]) -> None:
     places = [(frame.x(point.time_ns), frame.y(point.value)) for point in points]
     drawing.path(places, stroke=GREY, stroke_width="1.5", stroke_linejoin="round")
     for state, colour in COLOURS.items():
         told = [place for place, point in zip(places, points, strict=True) if point.state == state]
         drawing.circles(told, 2.5, fill=colour)
-    x, y = places[-1]
-    last = points[-1]
-    drawing.circles([(x, y)], 4.0, fill=COLOURS.get(last.state, INK))
-    words = f"{100 * last.value:.2f} % at {rfc3339(last.time_ns)[:16].replace('T', ' ')} UTC"
+    drawing.circles(places[-1:], 4.0, fill=COLOURS.get(points[-1].state, INK))
+
+
+def _latest(drawing: Drawing, point: TrendPoint, zone: tzinfo) -> None:
+    at = datetime.fromtimestamp(point.time_ns // NANOSECONDS_PER_SECOND, zone)
+    words = f"{100 * point.value:.2f} % at {at:%Y-%m-%d %H:%M} {at.tzname()}"
     drawing.text(WIDTH - RIGHT, 20, words, anchor="end", fill=INK)
 
 

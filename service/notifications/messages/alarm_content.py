@@ -20,7 +20,7 @@ MOST_TOLD = 20
 
 URGENT_FIRST: Sequence[Severity] = ("critical", "high", "medium", "low")
 
-HINT = "mcc alarms lists all alarms. StatorWatch has sent this message; nobody reads what is answered to it."
+HINT = "mcc alarms acknowledge ID says that you look after it. Nobody reads what is answered to this message."
 
 
 def alarm_content(
@@ -135,7 +135,8 @@ def _section(alarm: ToldAlarm, settings: NotificationSettings, has_picture: bool
 
 def _why(alarm: ToldAlarm, known: AlarmDescription | None) -> list[tuple[str, str]]:
     """Return what was found, what that means, and what to do."""
-    facts = [("subject", alarm.subject)] if alarm.subject else []
+    is_repeated = alarm.reason.startswith(alarm.subject)
+    facts = [("about", alarm.subject)] if alarm.subject and not is_repeated else []
     facts += [("found", alarm.reason)] if alarm.reason else []
     if not alarm.calls:
         return facts

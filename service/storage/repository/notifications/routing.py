@@ -7,7 +7,7 @@ missed and none is told twice, however many services look.
 import uuid
 from collections.abc import Callable, Sequence
 
-from sqlalchemy import func, select
+from sqlalchemy import func, insert, select
 from sqlalchemy.orm import Session
 
 from service.storage.engine import one_at_a_time
@@ -37,7 +37,7 @@ CALM = (AlarmState.SHELVED, AlarmState.SUPPRESSED, AlarmState.OUT_OF_SERVICE)
 
 class RoutingRows(Sessions):
     def route_alarm_changes(
-        self, decide: Decide, gathering: Gathering, *, now_ns: int, limit: int = 200
+        self, decide: Decide, gathering: Gathering, *, now_ns: int, limit: int = 100
     ) -> int:
         """Make the messages of what happened to alarms since the last look; return how many rows it saw."""
         unrouted = select(AlarmChangeRow.sequence).where(AlarmChangeRow.routed_ns.is_(None)).limit(1)
@@ -63,6 +63,7 @@ class RoutingRows(Sessions):
                 occurrence = Occurrence(event, alarm.site, alarm.priority, alarm.kind.value)
                 for target in decide(occurrence):
                     bundles.add(target, change, alarm, event)
+            bundles.write()
             return len(found)
 
 
@@ -74,6 +75,7 @@ class _Bundles:
         self._gathering = gathering
         self._now_ns = now_ns
         self._open: dict[str, NotificationRow] = {}
+        self._told: list[dict[str, object]] = []
 
     def add(
         self, target: NotificationTarget, change: AlarmChangeRow, alarm: AlarmRow, event: NotifiedEvent
@@ -84,10 +86,15 @@ class _Bundles:
         self._open[name] = row
         if row.priority is None or ORDER.index(alarm.priority) < ORDER.index(row.priority):
             row.priority = alarm.priority
-        told = NotificationAlarmRow(
-            notification=row.id, sequence=change.sequence, alarm=alarm.id, event=event
+        self._told.append(
+            {"notification": row.id, "sequence": change.sequence, "alarm": alarm.id, "event": event}
         )
-        self._session.add(told)
+
+    def write(self) -> None:
+        """Write which alarms are in which messages."""
+        self._session.flush()
+        if self._told:
+            self._session.execute(insert(NotificationAlarmRow), self._told)
 
     def _found(self, name: str) -> NotificationRow | None:
         return only(
