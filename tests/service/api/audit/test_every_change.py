@@ -13,10 +13,12 @@ import pytest
 from core.time_stamps import rfc3339
 from core.units import NANOSECONDS_PER_DAY
 from service.api import ApiContext, create_app
+from service.configuration.channels import Channel, CommandChannel
+from service.configuration.notifications import NotificationSettings
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
-from service.storage.records import Alarm
+from service.storage.records import SERVICE, Alarm
 from service.storage.states import AlarmKind
 from service.timing.backoff import Backoff
 from testing.service.accounts import TESTER
@@ -104,6 +106,11 @@ class Prepared:
         self.repository.set_aside("A2_SEL710", "crashed", backoff=Backoff(60.0, 60.0), now_ns=NOW_NS)
         return f"{API}/ieds/A2_SEL710/quarantine"
 
+    def given_up(self) -> str:
+        (queued,) = self.repository.request_test_notifications("gone", [""], by=SERVICE, now_ns=NOW_NS)
+        self.repository.give_up_unknown(["hook"], before_ns=NOW_NS + 1, now_ns=NOW_NS)
+        return f"{API}/notifications/{queued.id}"
+
     def files(self) -> list[tuple[str, tuple[str, bytes]]]:
         return [("files", (f"U{next(self.numbers)}.CFF", b"an upload %d" % next(self.numbers)))]
 
@@ -167,6 +174,14 @@ REQUESTS: Mapping[str, tuple[Send, str]] = {
         lambda it: it.client.delete(f"{it.out_of_service()}/out-of-service"),
         "alarm-put-back-in-service",
     ),
+    "POST /api/v1/notification-channels/{name}/tests": (
+        lambda it: it.client.post(f"{API}/notification-channels/hook/tests"),
+        "channel-tested",
+    ),
+    "POST /api/v1/notifications/{notification_id}/attempts": (
+        lambda it: it.client.post(f"{it.given_up()}/attempts"),
+        "notification-retried",
+    ),
     "POST /api/v1/recordings": (
         lambda it: it.client.post(f"{API}/recordings", data={"motor": "PUMP-A1"}, files=it.files()),
         "recording-uploaded",
@@ -228,7 +243,9 @@ def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Prepared]:
     repository.sync_plant(two_motor_plant())
     register_runner(repository)
     store = RecordingStore(data / "recordings")
-    with serving(create_app(ApiContext(Settings(data_directory=data), repository, store))) as client:
+    channels: dict[str, Channel] = {"hook": CommandChannel(kind="command", command=("/bin/true",))}
+    settings = Settings(data_directory=data, notifications=NotificationSettings(channels=channels))
+    with serving(create_app(ApiContext(settings, repository, store))) as client:
         yield Prepared(client, repository, store, count())
     engine.dispose()
 
