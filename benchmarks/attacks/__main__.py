@@ -15,7 +15,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from benchmarks.attacks import bodies, lists, recordings
+from benchmarks.attacks import bodies, crowds, lists, recordings
 from benchmarks.attacks.attack import Attack, Statuses
 from benchmarks.attacks.observation import Observer, Seen, cpu_s, memory_mb
 from benchmarks.attacks.victim import settle, victim
@@ -23,7 +23,7 @@ from benchmarks.reporting import table
 from testing.service.processes import is_alive
 
 LIMIT_MB = 300.0
-ATTACKS: Sequence[Attack] = (*bodies.ATTACKS, *recordings.ATTACKS, *lists.ATTACKS)
+ATTACKS: Sequence[Attack] = (*bodies.ATTACKS, *recordings.ATTACKS, *lists.ATTACKS, *crowds.ATTACKS)
 HEADER = ("attack", "CPU [s]", "memory above rest [MB]", "/healthz p95 [s]", "longest [s]", "answers")
 HERE = Path(__file__).parents[2]
 

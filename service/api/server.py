@@ -1,12 +1,11 @@
 """The HTTP server of the API: uvicorn, with limits on its connections."""
 
 import asyncio
-import errno
 import math
 import resource
 import socket
+import sys
 from types import FrameType
-from typing import Any
 
 import structlog
 import uvicorn
@@ -14,17 +13,12 @@ from starlette.types import ASGIApp
 from structlog.typing import FilteringBoundLogger
 
 from service.api.limits.connection_guard import ConnectionGuard
+from service.api.limits.connection_queue import ConnectionQueue
 from service.api.limits.connections import EXTRA, ConnectionLimits, LimitedConnection, OpenConnections
 from service.configuration.settings import Settings
 from service.process.termination import Termination
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
-
-ACCEPTED_AT_ONCE = 16
-"""Connections between two looks at anything else, each with a descriptor.
-
-So few that the requests of a burst are read and answered while it comes.
-"""
 
 QUEUE = 2048
 """Connections that the system holds until they are accepted. Those beyond try again after a second."""
@@ -40,11 +34,17 @@ OTHER_DESCRIPTORS = 300
 """What else the service may have open: the database, files under way, pipes to its processes."""
 
 FEWEST_CONNECTIONS = 16
+FEWEST_WAITING = 32
 
 LAST_REQUESTS_S = 3
 """Time for the requests under way when the service stops."""
 
-OUT_OF_RESOURCES = {errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM}
+SWITCH_INTERVAL_S = 0.0002
+"""So long a thread may keep the others from running [s].
+
+The event loop waits for its turn behind up to forty threads that ask the database. With Python's own 5 ms
+that would be 0.2 s for each look at the connections.
+"""
 
 
 class ApiServer(uvicorn.Server):
@@ -55,13 +55,13 @@ class ApiServer(uvicorn.Server):
     ) -> None:
         self._open = OpenConnections(limits)
         self._termination = termination or Termination()
+        self._queues: list[ConnectionQueue] = []
         super().__init__(
             uvicorn.Config(
                 ConnectionGuard(app, self._open),
                 http=LimitedConnection,
                 ws="none",
                 loop="asyncio",
-                backlog=ACCEPTED_AT_ONCE,
                 timeout_keep_alive=math.ceil(limits.idle_timeout_s),
                 log_config=None,
                 access_log=False,
@@ -72,13 +72,35 @@ class ApiServer(uvicorn.Server):
         self.server_state = self._open
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        asyncio.get_running_loop().set_exception_handler(self._handle_loop_error)
-        await super().startup(sockets)
+        await super().startup([])  # the sockets have queues of their own
+        sys.setswitchinterval(SWITCH_INTERVAL_S)
         for each in sockets or ():
             each.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, UNTAKEN_BYTES)  # its connections inherit it
             each.listen(QUEUE)
+            most = self._open.limits.waiting
+            self._queues.append(
+                ConnectionQueue(each, self._serve_connection, most=most, tally=self._open.tally)
+            )
         if self._termination.is_asked:  # before this server handled signals
             self.should_exit = True
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Accept no more, and end what is under way."""
+        for queue in self._queues:
+            queue.close()
+        await super().shutdown(sockets)
+
+    async def _serve_connection(self, connection: socket.socket) -> None:
+        """Make an accepted connection one of the server's; close it where that fails."""
+        loop = asyncio.get_running_loop()
+
+        def protocol() -> LimitedConnection:
+            return LimitedConnection(self.config, self._open, self.lifespan.state, loop)
+
+        try:
+            await loop.connect_accepted_socket(protocol, connection, ssl=self.config.ssl)
+        except (OSError, TimeoutError):  # the client has gone, or does not speak TLS
+            connection.close()
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
         """Handle a signal that asks for the end."""
@@ -92,19 +114,11 @@ class ApiServer(uvicorn.Server):
         self._open.tally.tell(now_s)
         return await super().on_tick(counter)
 
-    def _handle_loop_error(self, loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
-        """Count connections that could not be accepted; asyncio has a line, and a traceback, for each."""
-        error = context.get("exception")
-        if "socket" in context and isinstance(error, OSError) and error.errno in OUT_OF_RESOURCES:
-            self._open.tally.add("not_accepted")
-        else:
-            loop.default_exception_handler(context)
-
 
 def connection_limits(settings: Settings) -> ConnectionLimits:
     """Return the limits of the settings; fewer connections where this process may not open enough files."""
-    descriptors, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
-    possible = max(descriptors - OTHER_DESCRIPTORS - EXTRA - 2 * ACCEPTED_AT_ONCE, FEWEST_CONNECTIONS)
+    descriptors = _allowed_descriptors(settings.max_connections + QUEUE + EXTRA + OTHER_DESCRIPTORS)
+    possible = max(descriptors - OTHER_DESCRIPTORS - EXTRA - FEWEST_WAITING, FEWEST_CONNECTIONS)
     if settings.max_connections > possible:
         log.warning(
             "fewer connections than max_connections says: this process may not open enough files",
@@ -112,9 +126,21 @@ def connection_limits(settings: Settings) -> ConnectionLimits:
             possible=possible,
             open_files=descriptors,
         )
+    most = min(settings.max_connections, possible)
     return ConnectionLimits(
-        most=min(settings.max_connections, possible),
+        most=most,
+        waiting=min(QUEUE, max(possible - most + FEWEST_WAITING, FEWEST_WAITING)),
         header_timeout_s=settings.header_timeout_s,
         transfer_timeout_s=settings.transfer_timeout_s,
         idle_timeout_s=settings.idle_timeout_s,
     )
+
+
+def _allowed_descriptors(wanted: int) -> int:
+    """Ask the system for so many files that this process may open, and return how many it allows."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    most = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+    if soft != resource.RLIM_INFINITY and soft < most:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, hard))
+        return most
+    return wanted if soft == resource.RLIM_INFINITY else soft

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field
 from service.api.document import Document
 from service.api.times import Time
 from service.audit.verification import Fault
+from service.storage.records import Role
 
 
 def _document(text: object) -> object:
@@ -28,7 +29,7 @@ class AuditEntry(Document):
     time: Time = Field(validation_alias="time_ns")
     actor: str
     origin: str
-    roles: Annotated[list[str], BeforeValidator(lambda text: text.split())]
+    roles: Annotated[list[str], BeforeValidator(lambda text: text.split()), Field(max_length=len(Role))]
     action: str
     subject_kind: str
     subject: str

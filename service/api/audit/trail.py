@@ -99,7 +99,7 @@ async def verify_audit_trail(
     context: Context,
     number: Annotated[Number | None, Query(description="An entry that was kept elsewhere.")] = None,
     hash_: Annotated[
-        str | None, Query(alias="hash", pattern=r"^[0-9a-f]{64}$", description="And its hash.")
+        str | None, Query(alias="hash", max_length=64, pattern=r"^[0-9a-f]{64}$", description="And its hash.")
     ] = None,
 ) -> AuditVerification:
     """Read the whole trail, and return whether every entry is as it was written.

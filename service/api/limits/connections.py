@@ -51,12 +51,13 @@ OVERLOADED = "as many connections are open as there may be; try again"
 
 @dataclass(frozen=True, slots=True)
 class ConnectionLimits:
-    """most: connections at a time. The times are those of the settings."""
+    """most: connections at a time. waiting: accepted, and yet to be served. The times are the settings'."""
 
     most: int
     header_timeout_s: float
     transfer_timeout_s: float
     idle_timeout_s: float
+    waiting: int = 2048
 
 
 class Wait(Enum):

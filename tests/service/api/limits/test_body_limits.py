@@ -1,6 +1,7 @@
 """No request is larger than its route takes, and no list or text of a document is without a bound."""
 
 import json
+import re
 import socket
 from collections.abc import Iterator
 from typing import Any
@@ -19,7 +20,6 @@ from testing.service.small_record import CFG, DAT
 NO_SUCH_ID = "00000000-0000-0000-0000-000000000000"
 BASELINE = "/api/v1/motors/PUMP-A1/baseline"
 DIAGNOSES = f"/api/v1/recordings/{NO_SUCH_ID}/diagnoses"
-IDS = ("recording_id", "diagnosis_id", "report_id", "note_id", "token_id")
 BEGINNING = b'--b\r\nContent-Disposition: form-data; name="files"; filename="E.CFF"\r\n\r\n'
 METHODS = ("get", "put", "post", "patch", "delete")
 
@@ -98,7 +98,7 @@ def test_every_route_refuses_a_body_beyond_its_limit(
         if limit != MAX_JSON_BYTES:
             assert limit == context.settings.max_upload_bytes
             with_files.append((method, path))
-        url = path.format(name="PUMP-A1", **dict.fromkeys(IDS, NO_SUCH_ID))
+        url = re.sub(r"\{\w+\}", NO_SUCH_ID, path.replace("{name}", "PUMP-A1"))
         (kind,) = operation.get("requestBody", {}).get("content", {"application/json": None})
         in_chunks = iter([BEGINNING if "form" in kind else b"", b"x" * limit, b"x"])
         for body in (b"x" * (limit + 1), in_chunks):
