@@ -12,6 +12,6 @@ def test_others_are_answered_meanwhile(attack: Attack) -> None:
     """All but one of about a hundred: a busy machine may hold one up for longer than it waits."""
     figures = measure(attack, connections=1300, seconds=5.0)
     assert len(figures.failures) <= 1, figures
-    assert figures.descriptors < 700, figures
+    assert figures.descriptors < 1800, figures  # those that wait to be served have one each
     assert len(figures.log.splitlines()) < 10, figures
     assert figures.left_over < 20, figures
