@@ -252,6 +252,12 @@ def test_an_alarm_says_what_to_do_about_a_motor(client: httpx.Client, repository
         "part_of": None,
         "cause": CATALOGUE[AlarmKind.CONDITION_FAULT].cause,
         "consequence": CATALOGUE[AlarmKind.CONDITION_FAULT].consequence,
+        "links": {
+            "motor": "/api/v1/motors/PUMP-A1",
+            "ied": "/api/v1/ieds/A1_SEL710",
+            "recording": None,
+            "part_of": None,
+        },
     }
     assert client.get("/api/v1/ieds/A1_SEL710").json()["alarms"] == []
     assert client.get("/api/v1/alarms", params={"motor": "FAN-A2"}).json()["items"] == []

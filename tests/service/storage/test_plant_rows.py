@@ -9,7 +9,7 @@ from service.storage import NotFoundError, Repository
 from service.storage.models import AlarmRow, LinkChangeRow
 from service.storage.repository.alarms.causes import MOST_CLEARED
 from service.storage.repository.links import MOST_CHANGES
-from service.storage.states import AlarmKind, LinkState
+from service.storage.states import AlarmKind, AlarmPriority, AlarmState, LinkState
 from testing.service.plants import NOW_NS, two_motor_plant
 
 RELAY = "A1_SEL710"
@@ -62,9 +62,11 @@ def fill_history(engine: Engine) -> None:
             change = {"ied": RELAY, "changed_ns": then_ns, "state": LinkState.UP, "reason": f"old {age}"}
             session.add(LinkChangeRow(id=f"change {age}", **change))
         for age in range(1, MOST_CLEARED + 1):
-            times = {"raised_ns": NOW_NS - age, "cleared_ns": NOW_NS - age}
+            then_ns = NOW_NS - age
             alarm = {"ied": RELAY, "kind": AlarmKind.FILE_REFUSED, "subject": f"old {age}", "reason": "bad"}
-            session.add(AlarmRow(id=f"alarm {age}", **alarm, **times))
+            times = {"raised_ns": then_ns, "cleared_ns": then_ns, "changed_ns": then_ns, "changed_by": "ann"}
+            state = {"priority": AlarmPriority.LOW, "state": AlarmState.NORMAL, "urgency": 0, "raises": 1}
+            session.add(AlarmRow(id=f"alarm {age}", **alarm, **times, **state))
 
 
 def test_links_change_state_with_a_reason(repository: Repository) -> None:
