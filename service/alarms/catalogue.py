@@ -161,7 +161,7 @@ CATALOGUE: Final[Mapping[AlarmKind, AlarmDescription]] = {
         AlarmPriority.MEDIUM,
         "No back-up was made and verified for longer than `[backup]` allows (`overdue_days`).",
         "What came since the latest one is lost with the disk.",
-        "Look in `mcc backup list` why back-ups fail, and make one: `mcc backup`.",
+        "Look in `mcc backup --list` why back-ups fail, and make one: `mcc backup`.",
         "a back-up is verified",
     ),
 }

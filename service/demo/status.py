@@ -10,6 +10,7 @@ from service.client.conditions import condition_of
 from service.client.rest_client import Document, ServiceClient, segment
 from service.demo import MONTH, MOTORS, SCENARIO
 from service.demo.month import began, latest_s
+from service.demo.open_alarms import open_alarms_of
 from service.demo.truth import Truth, TruthError, ask_course, ask_simulator
 
 VERDICT = (
@@ -17,6 +18,8 @@ VERDICT = (
     "recorded_time",
 )  # fmt: skip
 LINK = ("link_state", "link_reason")
+
+ALARM = ("id", "kind", "priority", "state", "standing", "raised_time", "reason")
 
 MOST_NAMED = 3
 """So many motors of another plant are named."""
@@ -29,11 +32,12 @@ Truths = Mapping[str, Truth]
 class MotorStatus:
     """One motor: its health as the service reports it (GET motors/{name}/health), and the truth.
 
-    truth: at the time of the latest record.
+    truth: at the time of the latest record.  alarms: those of the motor that are not over.
     """
 
     health: Document
     truth: Truth
+    alarms: Sequence[Document] = ()
 
     @property
     def condition(self) -> Document:
@@ -66,6 +70,7 @@ class MotorStatus:
             **{name: self.health[name] for name in VERDICT + LINK},
             "truth": self.truth.as_dict(),
             "right": self.is_right,
+            "alarms": [{name: alarm[name] for name in ALARM} for alarm in self.alarms],
         }
 
 
@@ -111,8 +116,9 @@ def ask_status(
     Raises ServiceError, TruthError where the service watches another plant.
     """
     healths = [_health(service, str(motor["name"])) for motor in service.items("/motors")]
+    alarms = open_alarms_of(service)
     return [
-        MotorStatus(health, _truth_of(str(health["ied"]), truths))
+        MotorStatus(health, _truth_of(str(health["ied"]), truths), alarms.get(str(health["motor"]), ()))
         for health, truths in zip(healths, truths_at(healths), strict=True)
     ]
 

@@ -24,6 +24,9 @@ def backup(
     verify: Annotated[
         bool, typer.Option("--verify", help="Make none: read the latest one again, or the one named.")
     ] = False,
+    listed: Annotated[
+        bool, typer.Option("--list", help="Make none: show which were made, and why others failed.")
+    ] = False,
     as_json: Json = False,
 ) -> None:
     """Back up database, recordings and plant files while the service runs, and verify the back-up.
@@ -33,6 +36,13 @@ def backup(
     from service.cli.backup.make import back_up
     from service.cli.backup.make import verify as verify_backup
 
+    if listed:
+        from service.cli.backup.listing import list_backups
+
+        if verify or keep is not None or directory is not None:
+            raise typer.BadParameter("--list: expected it alone, with --config and --json at most")
+        list_backups(config, as_json=as_json)
+        return
     if not verify:
         back_up(config, directory, keep=keep, as_json=as_json)
         return

@@ -16,6 +16,7 @@ from service.cli.output import CommandError, as_json, failing_clearly, failure_d
 from service.client.rest_client import Document, ServiceClient, ServiceError
 from service.demo.interruption import Interruption, interruptible
 from service.demo.month import Month
+from service.demo.open_alarms import open_alarms_of
 from service.demo.plant import (
     DemoPlant,
     NotReadyError,
@@ -30,6 +31,8 @@ from service.demo.rounds import STATES, play_round
 from service.demo.truth import TruthError, ask_simulator
 
 ROUNDS = 2
+
+NEXT_STEP = "alarms: mcc alarms list shows what to do, mcc alarms acknowledge ALARM says that you know"
 REST_S = 60.0
 """A demo that runs until Ctrl-C pauses this long between two rounds."""
 
@@ -123,7 +126,10 @@ def _play_month(
     played = play_month(plant, month, service, motors, publish)
     while True:
         conditions = conditions_of(service)
-        results().print(conditions_table(played, conditions))
+        alarms = open_alarms_of(service)
+        results().print(conditions_table(played, conditions, alarms))
+        if alarms:
+            results().print(NEXT_STEP)
         publish(played, conditions)
         _rest(plant)
         for motor in played:

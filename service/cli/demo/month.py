@@ -14,6 +14,7 @@ from service.client.rest_client import Document, ServiceClient
 from service.client.tables import FittedTable
 from service.client.verdicts import level
 from service.demo.month import Month
+from service.demo.open_alarms import OpenAlarms, alarm_text
 from service.demo.plant import DemoPlant
 from service.demo.results import DemoMotor, condition_text
 from service.demo.rounds import play_round
@@ -92,12 +93,14 @@ def conditions_of(service: ServiceClient) -> dict[str, Document]:
     }
 
 
-def conditions_table(motors: Sequence[DemoMotor], conditions: Mapping[str, Document]) -> FittedTable:
-    """Return a table of every motor's condition beside its truth."""
+def conditions_table(
+    motors: Sequence[DemoMotor], conditions: Mapping[str, Document], alarms: OpenAlarms
+) -> FittedTable:
+    """Return a table of every motor's condition beside its truth, with its open alarms."""
     shown = FittedTable(
         title="Conditions and truth", title_justify="left", box=SIMPLE_HEAD, collapse_padding=True
     )
-    for heading in ("motor", "truth", "condition", "level", "since"):
+    for heading in ("motor", "truth", "condition", "level", "since", "alarm"):
         shown.add_column(heading, no_wrap=heading == "motor")
     for motor in motors:
         condition = conditions[motor.name]
@@ -108,6 +111,7 @@ def conditions_table(motors: Sequence[DemoMotor], conditions: Mapping[str, Docum
             state_text(condition),
             Text(level(condition["mu_f"], condition["mu_f_ci95"])),
             Text("-" if since is None else str(since)[:16].replace("T", " ")),
+            Text(alarm_text(alarms.get(motor.name, ()))),
         )
     return shown
 

@@ -9,6 +9,7 @@ from service.client.conditions import state_text
 from service.client.rest_client import ServiceClient, ServiceError
 from service.client.tables import FittedTable
 from service.client.verdicts import level, verdict_text
+from service.demo.open_alarms import alarm_text
 from service.demo.results import truth_text
 from service.demo.status import MotorStatus, ask_plant
 from service.demo.truth import TruthError
@@ -24,7 +25,7 @@ def show_demo(url: str, *, as_json: bool) -> None:
         print_document({"motors": [motor.as_dict() for motor in motors], "right": right, "judged": judged})
         return
     table = FittedTable(box=SIMPLE_HEAD, collapse_padding=True)
-    for heading in ("motor", "truth", "condition", "level", "latest verdict", "link"):
+    for heading in ("motor", "truth", "condition", "level", "latest verdict", "link", "alarm"):
         table.add_column(heading, no_wrap=heading == "motor")
     for motor in motors:
         table.add_row(*_row(motor))
@@ -46,4 +47,5 @@ def _row(motor: MotorStatus) -> tuple[Text, ...]:
         Text(level(motor.condition["mu_f"], motor.condition["mu_f_ci95"])),
         Text("-") if verdict is None else verdict_text(str(verdict), health["phase"]),
         Text(f"{health['link_state']}{reason}"),
+        Text(alarm_text(motor.alarms)),
     )

@@ -62,6 +62,27 @@ def test_in_words(config: Path, tmp_path: Path, capsys: pytest.CaptureFixture[st
     assert "R.CFF: expected SHA-256" in " ".join(capsys.readouterr().err.split())
 
 
+def test_the_list_says_why_one_failed(
+    config: Path, repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["backup", "--list", "--config", str(config)]) == 0
+    assert capsys.readouterr().out == "no back-ups\n"
+    made = run(capsys, "backup", "--config", config)
+    begun = repository.begin_backup("/backup", now_ns=2**62)
+    assert begun is not None
+    repository.fail_backup(begun.id, "the disk is full", now_ns=2**62)
+    listed = run(capsys, "backup", "--list", "--config", config)["backups"]
+    assert isinstance(listed, list)
+    assert [(one["state"], one["name"], one["problem"]) for one in listed] == [
+        ("failed", None, "the disk is full"),
+        ("verified", made["name"], None),
+    ]
+    assert main(["backup", "--list", "--config", str(config)]) == 0
+    assert "the disk is full" in " ".join(capsys.readouterr().out.split())
+    assert main(["backup", "--list", "--verify", "--config", str(config)]) == 2
+    assert tmp_path.is_dir()
+
+
 def test_what_is_missing_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     config = tmp_path / "mcc.toml"
     config.write_text('data_directory = "."\n')
