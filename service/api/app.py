@@ -38,6 +38,7 @@ from service.api.limits.body_limits import BodyLimits, Route, document
 from service.api.limits.long_lists import LongLists
 from service.api.notifications import routes as notifications
 from service.api.query_parameters import refuse_unknown_parameters
+from service.configuration.access import OidcSettings
 
 PREFIX = "/api/v1"
 DESCRIPTION = """Stator condition of every motor of the plant, from the protection relays it already has.
@@ -79,6 +80,8 @@ def create_app(context: ApiContext) -> FastAPI:
         users,
     ):
         api.include_router(part.router)
+    if context.settings.access.oidc is not None:
+        _add_sign_on(api, context.settings.access.oidc)
     app.include_router(api)
     app.include_router(probes.router)
     problems.install(app)
@@ -95,6 +98,14 @@ def create_app(context: ApiContext) -> FastAPI:
     app.add_middleware(HostGuard, hosts=hosts)
     _complete_document(app, dict.fromkeys(uploads, max_upload_bytes))
     return app
+
+
+def _add_sign_on(api: APIRouter, settings: OidcSettings) -> None:
+    """Add the routes of a login at an OpenID provider. Raises ImportError without the extra `oidc`."""
+    from service.access.oidc import OpenIdProvider
+    from service.api.access.sign_on import sign_on_router
+
+    api.include_router(sign_on_router(OpenIdProvider(settings)))
 
 
 def _needs(app: FastAPI) -> Mapping[Route, Permission | None]:

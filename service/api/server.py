@@ -12,6 +12,7 @@ import uvicorn
 from starlette.types import ASGIApp
 from structlog.typing import FilteringBoundLogger
 
+from service.api.access.certificate import ServerCertificate
 from service.api.limits.connection_guard import ConnectionGuard
 from service.api.limits.connection_queue import ConnectionQueue
 from service.api.limits.connections import EXTRA, ConnectionLimits, LimitedConnection, OpenConnections
@@ -36,6 +37,9 @@ OTHER_DESCRIPTORS = 300
 FEWEST_CONNECTIONS = 16
 FEWEST_WAITING = 32
 
+CERTIFICATE_PERIOD_S = 5.0
+"""The files of the certificate are looked at so often."""
+
 LAST_REQUESTS_S = 3
 """Time for the requests under way when the service stops."""
 
@@ -51,10 +55,16 @@ class ApiServer(uvicorn.Server):
     """Answers requests until a signal comes, which the termination is told too."""
 
     def __init__(
-        self, app: ASGIApp, limits: ConnectionLimits, termination: Termination | None = None
+        self,
+        app: ASGIApp,
+        limits: ConnectionLimits,
+        termination: Termination | None = None,
+        certificate: ServerCertificate | None = None,
     ) -> None:
         self._open = OpenConnections(limits)
         self._termination = termination or Termination()
+        self._certificate = certificate
+        self._certificate_seen_s = 0.0
         self._queues: list[ConnectionQueue] = []
         super().__init__(
             uvicorn.Config(
@@ -66,6 +76,8 @@ class ApiServer(uvicorn.Server):
                 log_config=None,
                 access_log=False,
                 server_header=False,
+                proxy_headers=False,  # those of the proxy that the settings name count, and no others
+                ssl_context_factory=None if certificate is None else lambda *_: certificate.context,
                 timeout_graceful_shutdown=LAST_REQUESTS_S,
             )
         )
@@ -98,7 +110,12 @@ class ApiServer(uvicorn.Server):
             return LimitedConnection(self.config, self._open, self.lifespan.state, loop)
 
         try:
-            await loop.connect_accepted_socket(protocol, connection, ssl=self.config.ssl)
+            await loop.connect_accepted_socket(
+                protocol,
+                connection,
+                ssl=self.config.ssl,
+                ssl_handshake_timeout=self._open.limits.header_timeout_s if self.config.ssl else None,
+            )
         except (OSError, TimeoutError):  # the client has gone, or does not speak TLS
             connection.close()
 
@@ -112,6 +129,9 @@ class ApiServer(uvicorn.Server):
         now_s = asyncio.get_running_loop().time()
         self._open.close_overdue(now_s)
         self._open.tally.tell(now_s)
+        if self._certificate is not None and now_s >= self._certificate_seen_s + CERTIFICATE_PERIOD_S:
+            self._certificate_seen_s = now_s
+            self._certificate.renew()
         return await super().on_tick(counter)
 
 

@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
+from importlib.util import find_spec
 from ipaddress import IPv6Address
 from pathlib import Path
 from tempfile import TemporaryFile, gettempdir
@@ -15,6 +16,7 @@ from threading import Event
 import structlog
 from sqlalchemy.exc import OperationalError
 
+from service.api.access.certificate import CertificateError, ServerCertificate
 from service.api.app import create_app
 from service.api.context import ApiContext
 from service.api.server import ApiServer, connection_limits
@@ -68,6 +70,8 @@ def serve(settings: Settings, settings_file: Path | None = None) -> None:
 def _serve(settings: Settings, settings_file: Path | None, termination: Termination) -> None:
     """Start step by step, and answer requests until a signal comes. Raises SystemExit during the start."""
     plant = _plant(settings)
+    _require_sign_on(settings)
+    certificate = _certificate(settings)
     _require_writable(settings.data_directory)
     termination.step()
     with exclusive(settings.data_directory / "service.lock", wait=False), listening(settings) as listener:
@@ -82,8 +86,32 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
         termination.step()
         with running(parts.values()):
             host, port = listener.getsockname()[:2]
-            log.info("serving", host=host, port=port, motors=len(plant.motors))
-            _answer(context, listener, termination)
+            log.info("serving", host=host, port=port, tls=certificate is not None, motors=len(plant.motors))
+            _answer(context, listener, termination, certificate)
+
+
+def _require_sign_on(settings: Settings) -> None:
+    """Raise ServeError where a provider is named and the library that speaks with it is not installed."""
+    if settings.access.oidc is not None and find_spec("authlib") is None:
+        raise ServeError(
+            'access.oidc: expected the library authlib, found none: pip install "statorwatch[oidc]"'
+        )
+
+
+def _certificate(settings: Settings) -> ServerCertificate | None:
+    """Read the API's certificate, or warn where passwords would go over a network. Raises ServeError."""
+    if settings.tls_certificate is not None and settings.tls_key is not None:
+        try:
+            return ServerCertificate(settings.tls_certificate, settings.tls_key)
+        except CertificateError as error:
+            raise ServeError(str(error)) from error
+    if not settings.bind_address.is_loopback and settings.access.proxy is None:
+        log.warning(
+            "passwords and tokens go over the network in clear: set tls_certificate and tls_key, or name the "
+            "proxy that ends TLS (access.proxy)",
+            bind_address=str(settings.bind_address),
+        )
+    return None
 
 
 def _prepared(settings: Settings, plant: Plant) -> Repository:
@@ -143,10 +171,16 @@ def _plant(settings: Settings) -> Plant:
     return plant
 
 
-def _answer(context: ApiContext, listener: socket.socket, termination: Termination) -> None:
+def _answer(
+    context: ApiContext,
+    listener: socket.socket,
+    termination: Termination,
+    certificate: ServerCertificate | None,
+) -> None:
     """Answer requests until a signal comes. Raises SystemExit where one came before the first request."""
     termination.step()
-    server = ApiServer(create_app(context), connection_limits(context.settings), termination)
+    settings = context.settings
+    server = ApiServer(create_app(context), connection_limits(settings), termination, certificate)
     spare_what_stays()
     termination.step()
     server.run(sockets=[listener])

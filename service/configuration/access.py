@@ -3,11 +3,12 @@
 from ipaddress import IPv4Network, IPv6Network
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, HttpUrl, StringConstraints
+from pydantic import BaseModel, ConfigDict, Field, HttpUrl, StringConstraints, field_validator
 
 from service.configuration.relay_access import AbsolutePath
 
 RoleName = Literal["VIEWER", "OPERATOR", "ENGINEER", "SECADM", "SECAUD"]
+LOOPBACK = ("localhost", "127.0.0.1", "[::1]")
 HeaderName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9-]{0,99}$")]
 
 
@@ -41,6 +42,13 @@ class OidcSettings(BaseModel):
     roles: dict[RoleName, tuple[str, ...]] = Field(default_factory=dict)
     ca: AbsolutePath | None = None
     timeout_s: float = Field(default=5.0, ge=0.1, le=60)
+
+    @field_validator("issuer", "redirect_url")
+    @classmethod
+    def _encrypted(cls, address: HttpUrl) -> HttpUrl:
+        if address.scheme != "https" and address.host not in LOOPBACK:
+            raise ValueError("an https address (http on this machine's own addresses alone)")
+        return address
 
 
 class AccessSettings(BaseModel):

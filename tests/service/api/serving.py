@@ -10,6 +10,7 @@ import httpx
 from fastapi import FastAPI
 from starlette.types import ASGIApp
 
+from service.api.access.certificate import ServerCertificate
 from service.api.limits.connections import ConnectionLimits
 from service.api.server import ApiServer, connection_limits
 from service.client.credentials import bearer
@@ -34,13 +35,15 @@ def serving(app: FastAPI, *, as_somebody: bool = True) -> Iterator[httpx.Client]
 
 
 @contextmanager
-def listening(app: ASGIApp, limits: ConnectionLimits) -> Iterator[int]:
-    """The port at which an application is served."""
+def listening(
+    app: ASGIApp, limits: ConnectionLimits, certificate: ServerCertificate | None = None
+) -> Iterator[int]:
+    """The port at which an application is served, with TLS where there is a certificate."""
     with socket.socket() as listener:
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)  # as the service's own
         listener.bind(("127.0.0.1", 0))
         port = listener.getsockname()[1]
-        server = ApiServer(app, limits)
+        server = ApiServer(app, limits, certificate=certificate)
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
         try:
