@@ -5,6 +5,7 @@ it should not get it again.
 """
 
 import asyncio
+import contextlib
 import socket
 import ssl
 from datetime import UTC, datetime
@@ -24,6 +25,7 @@ from service.senders.message import Message
 from service.senders.tls import client_context
 
 LONGEST_SUBJECT = 200
+QUITTING_S = 1.0
 PERMANENT = range(500, 600)
 AUTHENTICATION = (530, 534, 535, 538)
 """The server refuses the service, not the mail: that can be put right."""
@@ -37,16 +39,22 @@ async def send_mail(name: str, channel: MailChannel, recipient: str, message: Me
         hostname=channel.host,
         port=channel.server_port,
         use_tls=channel.security == "tls",
-        start_tls=channel.security == "starttls",
+        start_tls=False,
         tls_context=context,
         local_hostname=socket.gethostname(),
         timeout=channel.timeout_s,
     )
+    connection: asyncio.BaseTransport | None = None
     try:
-        async with client:
-            if channel.user is not None and secret is not None:
-                await client.login(channel.user, secret)
-            await client.sendmail(channel.sender, [recipient], mail_document(channel, recipient, message))
+        await client.connect()
+        connection = client.transport
+        if channel.security == "starttls":
+            await client.starttls(tls_context=context)
+        if channel.user is not None and secret is not None:
+            await client.login(channel.user, secret)
+        await client.sendmail(channel.sender, [recipient], mail_document(channel, recipient, message))
+        with contextlib.suppress(aiosmtplib.SMTPException, OSError):
+            await client.quit(timeout=QUITTING_S)  # the server has the mail, whatever it says now
     except aiosmtplib.SMTPRecipientsRefused as error:
         refused = error.recipients[0]
         raise _refused(channel, refused.code, refused.message) from error
@@ -55,7 +63,9 @@ async def send_mail(name: str, channel: MailChannel, recipient: str, message: Me
     except (aiosmtplib.SMTPException, OSError, ssl.SSLError) as error:
         raise SendError(f"mail server {channel.host}:{channel.server_port}: {error}") from error
     finally:
-        client.close()  # where the connection failed half-way
+        client.close()
+        if isinstance(connection, asyncio.WriteTransport):
+            connection.abort()  # where TLS was refused half-way
         await asyncio.sleep(0)
 
 
