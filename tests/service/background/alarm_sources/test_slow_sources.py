@@ -197,20 +197,15 @@ class OfMail(BaseModel):
 
 
 class OfService(BaseModel):
-    tls_certificate: Path
-    tls_key: Path
     channels: dict[str, OfMail]
 
 
 def test_every_certificate_that_settings_name_is_looked_at() -> None:
     mail = OfMail(ca=Path("/ca.pem"))
-    settings = OfService(
-        tls_certificate=Path("/own.pem"), tls_key=Path("/own.key"), channels={"ops": mail, "boss": mail}
-    )
-    assert certificate_files(settings) == {
-        Path("/own.pem"): ["the REST API"],
-        Path("/ca.pem"): ["[channels.ops]", "[channels.boss]"],
-    }
+    both = OfService(channels={"ops": mail, "boss": mail})
+    assert certificate_files(both) == {Path("/ca.pem"): ["[channels.ops]", "[channels.boss]"]}
+    own = Settings(tls_certificate=Path("/own.pem"), tls_key=Path("/own.key"))
+    assert certificate_files(own) == {Path("/own.pem"): ["the REST API"]}
 
 
 def test_a_back_up_is_overdue_only_where_one_is_expected(table: Table, tmp_path: Path) -> None:
