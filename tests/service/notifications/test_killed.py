@@ -21,7 +21,7 @@ from testing.service.receivers import http_receiver, mail_server
 from testing.waiting import wait_until
 from tests.service.notifications.conftest import mail_channel
 
-KILLS = 8
+KILLS = 5
 
 
 @contextmanager
