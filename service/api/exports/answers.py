@@ -12,6 +12,7 @@ import structlog
 from fastapi import Depends, Query, Request
 from fastapi.responses import StreamingResponse
 from sqlalchemy.exc import SQLAlchemyError
+from starlette.types import Receive, Scope, Send
 from structlog.typing import FilteringBoundLogger
 
 from core.time_stamps import SECONDS_END, rfc3339
@@ -53,6 +54,16 @@ class ExportInterruptedError(RuntimeError):
     """A file that was under way cannot be completed. The connection ends, so that its client notices."""
 
 
+class _FileResponse(StreamingResponse):
+    """A file on its way. Where it is interrupted the server closes the connection before the body's end."""
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        try:
+            await super().__call__(scope, receive, send)
+        except ExportInterruptedError as error:
+            log.warning("a file was broken off", path=scope["path"], reason=str(error))
+
+
 @dataclass(frozen=True, slots=True)
 class FileAnswer:
     """A file that a client gets, in the format that it wants."""
@@ -69,7 +80,7 @@ class FileAnswer:
         made = pieces(self.format, table, batches)
         name = _file_name(table.name, subject, self.format)
         first = next(made)
-        return StreamingResponse(
+        return _FileResponse(
             _sent(chain([first], made)),
             media_type=_content_type(self.format),
             headers={
