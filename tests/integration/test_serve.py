@@ -17,6 +17,7 @@ import scl
 from core.error_words import one_line
 from service.application.serve import serve
 from service.cli.run_service import TROUBLES
+from service.client.rest_client import ServiceClient
 from service.configuration.settings import Settings
 from service.demo import MOTORS
 from testing.service.processes import (
@@ -54,12 +55,11 @@ def test_every_part_is_documented_and_ready_and_sigterm_ends_every_process(tmp_p
 
 def lost_sites(url: str) -> list[str] | None:
     """The sites of which one alarm says that they are lost; None where anything else calls for somebody."""
-    calling = httpx.get(
-        f"{url}/api/v1/alarms/open", params={"state": "unacknowledged"}, trust_env=False, timeout=30
-    ).json()["items"]
+    with ServiceClient(url) as client:
+        calling = list(client.items("/alarms/open", state="unacknowledged"))
     if any((alarm["kind"], alarm["reason"]) != ("site-lost", LOST) for alarm in calling):
         return None
-    return sorted(alarm["site"] for alarm in calling)
+    return sorted(str(alarm["site"]) for alarm in calling)
 
 
 def test_ctrl_c_is_an_ordinary_end(tmp_path: Path) -> None:
