@@ -60,7 +60,9 @@ def settings_text(draft: Draft) -> str:
         'data_directory = "data"    # where the service keeps recordings and its database',
         "# database_url = ...       # another database than an SQLite file there, such as PostgreSQL",
         "",
-        "# The REST API has no passwords: leave it on this host, or put a proxy that asks for them in front.",
+        "# Until there is a user, only this host may look, and nobody may change anything:",
+        "# mcc user add NAME --role SECADM --role ENGINEER --config mcc.toml",
+        "# For other hosts: bind_address, tls_certificate and tls_key.",
         'bind_address = "127.0.0.1"',
         "port = 8710",
     ]

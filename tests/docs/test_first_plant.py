@@ -94,6 +94,7 @@ def test_the_page_ends_with_its_verdicts(tmp_path: Path) -> None:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("MCC_")} | {
         "PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}",
         "PYTHONPATH": str(ROOT),
+        "XDG_CONFIG_HOME": str(tmp_path / "config"),
         "COLUMNS": "120",
     }
     ended, told = followed(tmp_path / "fresh", environment)

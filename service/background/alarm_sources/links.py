@@ -35,9 +35,11 @@ LEFT = "the relay left the plant"
 class LinkSource:
     """Compares all links with the rules of the settings."""
 
-    def __init__(self, settings: Settings, repository: Repository) -> None:
+    def __init__(self, settings: Settings, repository: Repository, started_ns: int) -> None:
+        """started_ns: while the service was off no relay was asked, so time counts from then on."""
         rules = settings.alarms
         self._repository = repository
+        self._started_ns = started_ns
         self._delays = Delays(rules.link_down_s, 0.0)
         self._settle_ns = round(rules.link_up_s * NANOSECONDS_PER_SECOND)
         self._lost_for_ns = round(rules.site_lost_s * NANOSECONDS_PER_SECOND)
@@ -141,7 +143,8 @@ class LinkSource:
     ) -> AlarmFinding | None:
         since_ns = down_ns.get(link.relay)
         stands = standing.of(AlarmKind.LINK_DOWN, link.relay) is not None
-        for_s = 0.0 if since_ns is None else (now_ns - since_ns) / NANOSECONDS_PER_SECOND
+        seen_ns = None if since_ns is None else max(since_ns, self._started_ns)
+        for_s = 0.0 if seen_ns is None else (now_ns - seen_ns) / NANOSECONDS_PER_SECOND
         decision = self._delays.decide(for_s, is_bad=since_ns is not None, stands=stands)
         # A quarantine is an alarm of its own, and a link that is just up may stay so.
         is_quiet = hold or link.state in {LinkState.UP, LinkState.QUARANTINED}

@@ -45,7 +45,7 @@ class AlarmSources:
         """directories: those that the service writes to.  started_ns: when the service started."""
         self._repository = repository
         self._most = settings.alarms.flood_alarms
-        self._links = LinkSource(settings, repository)
+        self._links = LinkSource(settings, repository, started_ns)
         self._clocks = ClockSource(settings.alarms, repository)
         self._records = MissingDataSource(settings, repository, started_ns)
         self._disks = DiskSource(settings.alarms, repository, directories)

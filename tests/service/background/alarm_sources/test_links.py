@@ -37,7 +37,7 @@ class Site40:
         repository.sync_plant(
             Plant((*plant.sites, Site("WEST", "West")), (*plant.relays, *here), plant.motors)
         )
-        self.source = LinkSource(Settings(data_directory=directory), repository)
+        self.source = LinkSource(Settings(data_directory=directory), repository, started_ns=0)
         self.relays = [one.name for one in here]
         for name in (*self.relays, "A1_SEL710", "A2_SEL710"):
             self.set(name, LinkState.UP, -1000.0)
@@ -153,6 +153,19 @@ def test_a_site_that_is_lost_is_one_line_and_its_members_return_when_it_is_back(
     assert called == []
 
 
+def test_the_time_in_which_the_service_was_off_is_nobodys_outage(site: Site40, tmp_path: Path) -> None:
+    site.repository.reset_links(now_ns=site.ns(0.0))
+    site.source = LinkSource(Settings(data_directory=tmp_path), site.repository, started_ns=site.ns(5000.0))
+    site.look(5010.0)
+    assert site.standing() == []
+    for name in site.relays[1:]:
+        site.set(name, LinkState.UP, 5020.0)
+    site.look(5605.0)
+    told = {alarm.ied: alarm.reason for alarm in site.standing()}
+    assert set(told) == {"R00", "A1_SEL710", "A2_SEL710"}
+    assert told["R00"].startswith("down since 2025-10-09T08:53:20Z")
+
+
 def test_a_site_that_goes_down_relay_by_relay_is_told_relay_by_relay(site: Site40) -> None:
     for number, name in enumerate(site.relays):
         site.set(name, LinkState.DOWN, 200.0 * number)
@@ -161,7 +174,7 @@ def test_a_site_that_goes_down_relay_by_relay_is_told_relay_by_relay(site: Site4
 
 
 def test_two_services_on_one_database_raise_each_alarm_once(site: Site40, tmp_path: Path) -> None:
-    other = LinkSource(Settings(data_directory=tmp_path), site.repository)
+    other = LinkSource(Settings(data_directory=tmp_path), site.repository, started_ns=0)
     for name in site.relays[:5]:
         site.set(name, LinkState.DOWN, 0.0)
     for at_s in (600.0, 605.0):
