@@ -14,7 +14,7 @@ from service.access.bearer_secrets import LONGEST, digest_of
 from service.access.permissions import Permission, permissions_of
 from service.configuration.access import AccessSettings
 from service.storage import Repository
-from service.storage.records import Role, User
+from service.storage.records import ApiToken, Role
 from service.timing.database_silence import database_trouble, does_not_answer
 
 log: FilteringBoundLogger = structlog.get_logger(__name__)
@@ -38,13 +38,14 @@ class Way(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """Somebody who showed who they are. session: the digest of a session's secret."""
+    """Somebody who showed who they are. session: the digest of a session's secret; token: what they showed."""
 
     name: str
     roles: frozenset[Role]
     permissions: frozenset[Permission]
     way: Way
     session: str | None = None
+    token: ApiToken | None = None
 
 
 def identity_of_session(
@@ -63,7 +64,8 @@ def identity_of_session(
         return None
     if now_ns - session.used_ns > NOTED_AGAIN_NS:
         _note(partial(repository.note_session_used, digest, now_ns=now_ns))
-    return _identity(session.user, None, Way.SESSION, digest)
+    user = session.user
+    return Identity(user.name, user.roles, permissions_of(user.roles), Way.SESSION, session=digest)
 
 
 def identity_of_token(repository: Repository, secret: str, *, now_ns: int) -> Identity | None:
@@ -78,7 +80,10 @@ def identity_of_token(repository: Repository, secret: str, *, now_ns: int) -> Id
         return None
     if token.used_ns is None or now_ns - token.used_ns > NOTED_AGAIN_NS:
         _note(partial(repository.note_token_used, token.id, now_ns=now_ns))
-    return _identity(user, token.scope, Way.TOKEN, None)
+    may = permissions_of(user.roles)
+    if token.scope is not None:
+        may &= scope_of(token.scope)
+    return Identity(user.name, user.roles, may, Way.TOKEN, token=token)
 
 
 def _note(used: Callable[[], None]) -> None:
@@ -99,11 +104,6 @@ def oldest_session_ns(limits: AccessSettings, now_ns: int) -> int:
 def idle_since_ns(limits: AccessSettings, now_ns: int) -> int:
     """Return since when a session may have been idle that still counts."""
     return now_ns - round(limits.session_idle_minutes * SECONDS_PER_MINUTE * NANOSECONDS_PER_SECOND)
-
-
-def _identity(user: User, scope: frozenset[str] | None, way: Way, session: str | None) -> Identity:
-    may = permissions_of(user.roles)
-    return Identity(user.name, user.roles, may if scope is None else may & scope_of(scope), way, session)
 
 
 def scope_of(words: frozenset[str]) -> frozenset[Permission]:

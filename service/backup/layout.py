@@ -136,7 +136,13 @@ def require_mark(directory: Path) -> None:
 
 def prepare(directory: Path) -> None:
     """Make a directory of back-ups of an empty or missing one. Raises BackupError, OSError."""
-    directory.mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
+    try:
+        directory.mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
+    except OSError as error:
+        raise BackupError(
+            f"{directory}: the directory of the back-up cannot be made: {error.strerror}: expected one that is "
+            "there, or that this user may make: look whether its disk is mounted, or name another directory"
+        ) from error
     if not (directory / MARK).is_file():
         present = sorted(path.name for path in directory.iterdir() if path.name != "lost+found")
         if present:

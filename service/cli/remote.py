@@ -49,14 +49,16 @@ def trigger_motor(url: str, motor: str, *, key: str | None, wait_s: float, as_js
             if request["state"] != state:
                 state = request["state"]
                 progress().print(f"{motor}: {state}")
+        not_ready = service.what_is_not_ready() if wait_s and state not in ENDED else None
         if state == "diagnosed":
             recording = service.get(f"/recordings/{segment(str(request['recording_id']))}")
             request = {**request, "diagnosis": recording["diagnosis"]}
     if state == "failed":
         raise CommandError(f"{motor}: {request['reason']}", details={"event_report": dict(request)})
     if wait_s and state != "diagnosed":
+        because = "" if not_ready is None else one_line(f"; the service is not ready: {not_ready}")
         raise CommandError(
-            f"{motor}: no verdict within {wait_s:g} s: {SO_FAR.get(str(state), state)}; "
+            f"{motor}: no verdict within {wait_s:g} s: {SO_FAR.get(str(state), state)}{because}; "
             f"mcc recordings list {motor} shows what comes of it",
             details={"event_report": dict(request)},
         )

@@ -75,6 +75,18 @@ class ServiceClient:
         except httpx.TransportError:
             return False
 
+    def what_is_not_ready(self) -> str | None:
+        """Return which parts of the service do not work yet and why; None where all do, or nothing answers."""
+        try:
+            response = self._http.get("/readyz")
+            if response.status_code != HTTPStatus.SERVICE_UNAVAILABLE:
+                return None
+            document = response.json()
+        except (httpx.HTTPError, ValueError):
+            return None
+        told = document.get("detail") if isinstance(document, dict) else None
+        return told if isinstance(told, str) else None
+
     def answers(self) -> bool:
         """Tell whether anything answers at the address, ready or not."""
         try:

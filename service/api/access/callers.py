@@ -7,9 +7,9 @@ from typing import Annotated
 from fastapi import Depends, Request
 
 from service.access.identities import Way
-from service.access.permissions import Permission, roles_with
+from service.access.permissions import Permission, permissions_of, roles_with
 from service.api.problems import ProblemError
-from service.storage.records import Actor
+from service.storage.records import Actor, ApiToken
 
 SCOPE_KEY = "statorwatch.caller"
 
@@ -23,13 +23,14 @@ FIRST_USER = (
 class Caller:
     """Who asks, and what they may do: no more than their roles, and less with a token of a narrow scope.
 
-    session: the digest of the session's secret; None for those who use none.
+    session: the digest of the session's secret; None for those who use none. token: the one that they use.
     """
 
     actor: Actor
     permissions: frozenset[Permission]
     way: Way
     session: str | None = None
+    token: ApiToken | None = None
 
     def demand(self, permission: Permission, what: str = "do this") -> None:
         """Raise ProblemError (403) where the caller may not."""
@@ -39,11 +40,19 @@ class Caller:
 
 def forbidden(caller: Caller, permission: Permission, what: str = "do this") -> ProblemError:
     """Return the answer to a caller who may not do something."""
+    name = caller.actor.name
+    if caller.token is not None and permission in permissions_of(caller.actor.roles):
+        scope = ", ".join(sorted(caller.token.scope or ()))
+        return ProblemError(
+            HTTPStatus.FORBIDDEN,
+            f"the token {caller.token.label!r} of {name} may not {what}: it needs the permission "
+            f"{permission.value!r}, and the scope of the token is {scope}: use a token with "
+            f"{permission.value!r} in its scope (mcc token add LABEL --scope {permission.value}), or log in",
+        )
     roles = ", ".join(roles_with(permission))
     return ProblemError(
         HTTPStatus.FORBIDDEN,
-        f"{caller.actor.name} may not {what}: it needs the permission {permission.value!r}, which the roles "
-        f"{roles} have, and a token only where its scope has it",
+        f"{name} may not {what}: it needs the permission {permission.value!r}, which the roles {roles} have",
     )
 
 

@@ -80,7 +80,7 @@ class Gate:
         if identity is None:
             identity = self._nobody(scope["method"], origin)
         actor = Actor(identity.name, origin.address, identity.roles)
-        caller = Caller(actor, identity.permissions, identity.way, identity.session)
+        caller = Caller(actor, identity.permissions, identity.way, identity.session, identity.token)
         needed = self._needs.get((scope["method"], scope["path"]))
         if needed is not None:
             caller.demand(needed)

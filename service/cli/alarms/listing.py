@@ -12,7 +12,7 @@ from service.cli.alarms.choosing import whole_id
 from service.cli.output import WRONG_USE, CommandError, failing_clearly, print_document, results
 from service.cli.rows import print_rows, require_one_format
 from service.client.rest_client import Document, ServiceClient, ServiceError, segment
-from service.client.verdicts import to_the_second
+from service.client.verdicts import percent, to_the_second
 
 FIELDS = (
     "priority", "state", "standing", "raised_time", "cleared_time", "site", "ied", "motor", "kind", "subject",
@@ -143,5 +143,5 @@ def _ends(alarm: Document) -> Sequence[str]:
     if alarm["shelved_until"] is not None:
         ends.append(to_the_second(alarm["shelved_until"]))
     if alarm["shelved_above"] is not None:
-        ends.append(f"its value is above {alarm['shelved_above']:.4g}")
+        ends.append(f"its level is above {percent(alarm['shelved_above'])} %")
     return ends

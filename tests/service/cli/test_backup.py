@@ -92,3 +92,11 @@ def test_what_is_missing_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "start the service once" in " ".join(capsys.readouterr().err.split())
     assert main(["backup", "--verify", "--keep", "2"]) == 2
     assert list(tmp_path.iterdir()) == [config]
+
+
+def test_a_directory_that_cannot_be_made_is_named(config: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["backup", "/proc/nodisk/backup", "--config", str(config)]) == 1
+    told = " ".join(capsys.readouterr().err.split())
+    assert "/proc/nodisk/backup: the directory of the back-up cannot be made: No such file" in told
+    assert "look whether its disk is mounted" in told
+    assert "Errno" not in told

@@ -172,3 +172,15 @@ def test_a_trigger_that_is_not_waited_for_names_what_is_next(
         assert main([*words, "--wait", "0.01"]) == 1
     told = capsys.readouterr().err
     assert "PUMP-A1: no verdict within 0.01 s: its relay is not asked yet; mcc recordings list" in told
+
+
+def test_a_trigger_without_a_verdict_says_what_is_not_ready(
+    repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    store = RecordingStore(tmp_path / "recordings")
+    context = ApiContext(Settings(data_directory=tmp_path), repository, store)
+    context.readiness["jobs"] = lambda: "2 of 2 workers are loading"
+    with serving(create_app(context)) as client:
+        assert main(["trigger", "PUMP-A1", "--wait", "0.01", "--url", str(client.base_url)]) == 1
+    told = " ".join(capsys.readouterr().err.split())
+    assert "the service is not ready: jobs: 2 of 2 workers are loading; mcc recordings list" in told

@@ -50,8 +50,11 @@ def change(
     now_ns: int,
     by: str = SERVICE.name,
     comment: str | None = None,
+    until: str | None = None,
 ) -> None:
     """Let an event happen to a locked alarm, whose `cleared_ns` tells the cause as it is afterwards.
+
+    until: the end of a shelving in words, which the journal has before the comment: the alarm forgets it.
 
     Raises AlarmActionError where it is not possible in the alarm's state.
     """
@@ -69,7 +72,7 @@ def change(
             before=before,
             after=after,
             by=storable(by),
-            comment=comment,
+            comment="; ".join(words for words in (until, comment) if words) or None,
         )
     )
     row.state, row.urgency = after, urgency(after, row.priority)

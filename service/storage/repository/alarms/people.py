@@ -2,9 +2,11 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from datetime import UTC, datetime
 
 from sqlalchemy.orm import Session
 
+from core.units import NANOSECONDS_PER_SECOND
 from service.audit.actions import AuditAction
 from service.storage.errors import AlarmActionError, AlarmCannotGrowError, NotFoundError
 from service.storage.models import AlarmRow
@@ -41,6 +43,7 @@ class _Deed:
     by: Actor
     now_ns: int
     comment: str | None
+    until: str | None = None
 
 
 class AlarmPeopleRows(Sessions):
@@ -88,11 +91,12 @@ class AlarmPeopleRows(Sessions):
             row = found(session, AlarmRow, alarm_id, "alarm", lock=True)
             if growth is not None and row.value is None:
                 raise AlarmCannotGrowError(alarm_id, row.kind)
+            above = None if growth is None or row.value is None else row.value + growth
+            deed = _Deed(AlarmEvent.SHELVED, by, now_ns, comment, _end(until_ns, above))
             before = _audited(row)
-            _change(session, row, _Deed(AlarmEvent.SHELVED, by, now_ns, comment))
-            row.shelved_until_ns = until_ns
-            row.shelved_above = None if growth is None or row.value is None else row.value + growth
-            _audit(session, row, before, _Deed(AlarmEvent.SHELVED, by, now_ns, comment))
+            _change(session, row, deed)
+            row.shelved_until_ns, row.shelved_above = until_ns, above
+            _audit(session, row, before, deed)
             return record_of(Alarm, row)
 
     def unshelve_alarm(self, alarm_id: str, *, by: Actor, now_ns: int, comment: str | None = None) -> Alarm:
@@ -128,10 +132,23 @@ def _do(session: Session, row: AlarmRow, deed: _Deed) -> None:
 
 
 def _change(session: Session, row: AlarmRow, deed: _Deed) -> None:
-    change(session, row, deed.event, now_ns=deed.now_ns, by=deed.by.name, comment=deed.comment)
+    name = deed.by.name
+    change(session, row, deed.event, now_ns=deed.now_ns, by=name, comment=deed.comment, until=deed.until)
     if deed.event in SEEN:
         row.seen_value = row.value
     suppress_by_design(session, row, now_ns=deed.now_ns)
+
+
+def _end(until_ns: int | None, above: float | None) -> str:
+    """Return the end of a shelving in words."""
+    ends = []
+    if until_ns is not None:
+        ends.append(
+            f"{datetime.fromtimestamp(until_ns // NANOSECONDS_PER_SECOND, UTC):%Y-%m-%d %H:%M:%S UTC}"
+        )
+    if above is not None:
+        ends.append(f"its level is above {above:.2%}".replace("%", " %"))
+    return f"until {' or '.join(ends)}"
 
 
 def _audited(row: AlarmRow) -> dict[str, object]:

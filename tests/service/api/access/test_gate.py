@@ -192,6 +192,19 @@ def test_a_token_ends_when_it_expires_is_revoked_or_its_user_goes(
     assert status(kept) == 401
 
 
+def test_whom_the_scope_of_a_token_stops_is_told_of_the_token(as_: As) -> None:
+    engineer = as_(Role.ENGINEER)
+    wanted = {"label": "prometheus", "scope": ["metrics", "view"]}
+    narrow = bearer(engineer.post("/api/v1/account/tokens", json=wanted).json()["token"])
+    told = engineer.get("/api/v1/account", headers=narrow).json()["detail"]
+    assert "the token 'prometheus' of engineer may not do this" in told
+    assert "the scope of the token is metrics, view" in told
+    assert "mcc token add LABEL --scope account" in told
+    assert "VIEWER" not in told, "the user has a role that may"
+    told = engineer.get("/api/v1/users", headers=narrow).json()["detail"]
+    assert told == "engineer may not do this: it needs the permission 'users', which the roles SECADM have"
+
+
 def test_a_token_may_do_no_more_than_its_scope(as_: As) -> None:
     engineer = as_(Role.ENGINEER)
     made = engineer.post("/api/v1/account/tokens", json={"label": "prometheus", "scope": ["metrics"]}).json()

@@ -160,8 +160,11 @@ def test_shelve_until_a_time_and_unshelve(mcc: Mcc, repository: Repository, alar
 
 def test_shelve_until_it_grows(mcc: Mcc, repository: Repository, growing: Alarm) -> None:
     shown = mcc("shelve", growing.id, "--growth", "0.5%")
-    assert "shelved until its value is above 0.015 by " in " ".join(shown.split())
+    assert "shelved until its level is above 1.50 % by " in " ".join(shown.split())
     assert repository.alarm(growing.id).shelved_above == pytest.approx(0.015)
+    assert " until its level is above 1.50 % " in " ".join(
+        mcc("show", growing.id).split("until", 1)[1].split()
+    )
 
 
 @pytest.mark.parametrize(
