@@ -38,7 +38,7 @@ class Way(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """Somebody who showed who they are. session: the digest of a session's secret; token: what they showed."""
+    """Somebody who showed who they are. session: the digest of its secret; token: the one they showed."""
 
     name: str
     roles: frozenset[Role]

@@ -39,6 +39,8 @@ class AuditAction(StrEnum):
     PLANT_CHANGED = "plant-changed"
     PARAMETERS_CHANGED = "parameters-changed"
     RETENTION_APPLIED = "retention-applied"
+    BACKUP_MADE = "backup-made"
+    BACKUP_RESTORED = "backup-restored"
 
 
 MEANINGS: Mapping[AuditAction, str] = {
@@ -77,5 +79,9 @@ MEANINGS: Mapping[AuditAction, str] = {
     ),
     AuditAction.PARAMETERS_CHANGED: "The service started with other figures of a motor in its motors file.",
     AuditAction.RETENTION_APPLIED: "Rules of `[retention]` deleted what they say; how much of what.",
+    AuditAction.BACKUP_MADE: "Somebody made a back-up (`mcc backup`); not those of `[backup]`.",
+    AuditAction.BACKUP_RESTORED: (
+        "Somebody put this database in place from a back-up (`mcc restore`); `after` says which one."
+    ),
 }
 """What each action means, for the reference page."""

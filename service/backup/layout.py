@@ -140,8 +140,9 @@ def prepare(directory: Path) -> None:
         directory.mkdir(mode=PRIVATE_FOLDER, parents=True, exist_ok=True)
     except OSError as error:
         raise BackupError(
-            f"{directory}: the directory of the back-up cannot be made: {error.strerror}: expected one that is "
-            "there, or that this user may make: look whether its disk is mounted, or name another directory"
+            f"{directory}: the directory of the back-up cannot be made: {error.strerror}: expected one "
+            "that is there, or that this user may make: look whether its disk is mounted, "
+            "or name another directory"
         ) from error
     if not (directory / MARK).is_file():
         present = sorted(path.name for path in directory.iterdir() if path.name != "lost+found")

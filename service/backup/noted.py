@@ -9,6 +9,7 @@ from sqlalchemy.exc import SQLAlchemyError
 from service.backup.errors import BackupError
 from service.backup.making import MadeBackup, Progress, Source, backup_directory, make_backup
 from service.storage import Repository, StorageError
+from service.storage.records import Actor
 
 
 def make_noted_backup(
@@ -18,11 +19,13 @@ def make_noted_backup(
     *,
     keep: int | None = None,
     due_ns: int | None = None,
+    by: Actor | None = None,
     stopping: Event | None = None,
     progress: Progress = lambda _told: None,
 ) -> MadeBackup | None:
     """Make a back-up and note how it ends. Return None where the one that is due is made already.
 
+    by: who wants it, for the audit trail; None for one that the settings want.
     Raises BackupError, StorageError, SQLAlchemyError, OSError.
     """
     with backup_directory(directory, source):
@@ -41,5 +44,6 @@ def make_noted_backup(
             files=made.manifest.files,
             size_bytes=made.manifest.size_bytes,
             now_ns=time.time_ns(),
+            by=by,
         )
     return made

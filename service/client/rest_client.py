@@ -76,7 +76,7 @@ class ServiceClient:
             return False
 
     def what_is_not_ready(self) -> str | None:
-        """Return which parts of the service do not work yet and why; None where all do, or nothing answers."""
+        """Return which parts of the service do not work, and why; None where all do or nothing answers."""
         try:
             response = self._http.get("/readyz")
             if response.status_code != HTTPStatus.SERVICE_UNAVAILABLE:

@@ -16,7 +16,7 @@ from service.storage.records import MotorHealth, NewNotification
 from service.storage.states import LinkState, NotificationKind
 
 LATEST = timedelta(hours=12)
-"""A digest that no service could make in time is made up for within this time."""
+"""A digest that no service could make in time is made up for within this time, if there was one then."""
 
 MOST_NAMED = 20
 """So many motors and relays are named; the others are counted."""
@@ -27,12 +27,18 @@ WORST_FIRST = (*BAD_FIRST, *(state for state in State if state not in BAD_FIRST)
 
 
 def due_digests(settings: Settings, repository: Repository, now_ns: int) -> Iterator[NewNotification]:
-    """Yield the messages of the digests that are due and not made yet."""
+    """Yield the messages of the digests that are due and not made yet.
+
+    None of a time before the service first started, which the audit trail begins with: nothing can be said of
+    it.
+    """
     wanted = settings.notifications
     at = local(now_ns, wanted.time_zone)
-    for digest in wanted.digests:
-        due = latest_due(digest, at)
-        if at - due > LATEST:
+    latest = [(digest, latest_due(digest, at)) for digest in wanted.digests]
+    began_ns = repository.first_audit_entry_ns() if latest else None
+    for digest, due in latest:
+        is_before_the_service = began_ns is not None and due.timestamp() * NANOSECONDS_PER_SECOND < began_ns
+        if at - due > LATEST or is_before_the_service:
             continue
         missing = [
             (channel, recipient, key)

@@ -11,6 +11,7 @@ from service.backup.making import MadeBackup
 from service.backup.noted import make_noted_backup
 from service.backup.source import source_of
 from service.backup.verification import Verified, verify_backup
+from service.cli.audit.actor import command_line_actor
 from service.cli.output import CommandError, failing_clearly, print_document, progress, results
 from service.configuration.settings import Settings, SettingsError
 from service.storage import Repository, StorageError, connect
@@ -33,6 +34,7 @@ def back_up(config: Path | None, directory: Path | None, *, keep: int | None, as
                 source_of(settings, config),
                 target,
                 keep=keep,
+                by=command_line_actor(),
                 progress=lambda told: progress().print(Text(told), soft_wrap=True),
             )
         finally:

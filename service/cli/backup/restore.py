@@ -6,13 +6,16 @@ from pathlib import Path
 from rich.text import Text
 from sqlalchemy.exc import SQLAlchemyError
 
+from service.audit.actions import AuditAction
 from service.backup.errors import BackupError
 from service.backup.restoring import Restored, restore_backup
 from service.backup.source import place_of
-from service.cli.output import failing_clearly, print_document, progress, results
+from service.cli.audit.actor import command_line_actor
+from service.cli.output import failing_clearly, print_document, print_warning, progress, results
 from service.configuration.settings import Settings, SettingsError
 from service.process.single_instance import AlreadyRunningError
-from service.storage import StorageError
+from service.storage import Repository, StorageError, connect
+from service.storage.migrations import require_current_tables
 
 REMINDER = (
     "Users, sessions and tokens are again as they were when the back-up was made: end again what was ended "
@@ -34,6 +37,7 @@ def restore(config: Path | None, backup: Path, *, into: Path | None, overwrite: 
             overwrite=overwrite,
             progress=lambda told: progress().print(Text(told), soft_wrap=True),
         )
+    _note(restored, settings, backup)
     took_s = round(time.monotonic() - began_s, 1)
     if as_json:
         print_document(_document(restored, settings, took_s))
@@ -49,6 +53,29 @@ def restore(config: Path | None, backup: Path, *, into: Path | None, overwrite: 
     if restored.former is not None:
         results().print(Text(f"the database that was there: {restored.former}"), soft_wrap=True)
     results().print(Text(REMINDER), soft_wrap=True)
+
+
+def _note(restored: Restored, settings: Settings, backup: Path) -> None:
+    """Add the restore to the trail that was restored; a warning says why that is not possible."""
+    manifest = restored.manifest
+    after = {
+        "from": str(backup.absolute()),
+        "made": manifest.made,
+        "recordings": manifest.recordings,
+        "former_database": None if restored.former is None else str(restored.former),
+    }
+    subject = ("back-up", manifest.name)
+    try:
+        require_current_tables(settings.database_url)
+        engine = connect(settings.database_url)
+        try:
+            Repository(engine).note_by(
+                command_line_actor(), AuditAction.BACKUP_RESTORED, subject, now_ns=time.time_ns(), after=after
+            )
+        finally:
+            engine.dispose()
+    except (StorageError, SQLAlchemyError) as error:
+        print_warning(f"restored, but the audit trail does not say so: {error}")
 
 
 def _all_in(settings: Settings, into: Path) -> Settings:

@@ -23,6 +23,7 @@ Directly = Annotated[
 @audit.command("list")
 def list_entries(
     url: Url = DEFAULT_URL,
+    config: Directly = None,
     actor: Annotated[str | None, typer.Option(metavar="NAME", help="Only what this person did.")] = None,
     action: Annotated[
         str | None, typer.Option(metavar="ACTION", help="Only this, as recording-deleted.")
@@ -47,7 +48,7 @@ def list_entries(
     from service.cli.audit.entries import show_entries
 
     chosen = {"actor": actor, "action": action, "subject": subject, "from": from_, "to": to}
-    show_entries(url, chosen, limit=limit, as_csv=as_csv, as_json=as_json)
+    show_entries(url, config, chosen, limit=limit, as_csv=as_csv, as_json=as_json)
 
 
 @audit.command()

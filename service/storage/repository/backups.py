@@ -6,8 +6,10 @@ from sqlalchemy import select, update
 from sqlalchemy.orm import Session
 
 from core.units import NANOSECONDS_PER_SECOND
+from service.audit.actions import AuditAction
 from service.storage.models import BackupRow
-from service.storage.records import BackupEntry, Cursor, Page
+from service.storage.records import Actor, BackupEntry, Cursor, Page
+from service.storage.repository.audit.entries import note_change
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, only, page_of, record_of
 from service.storage.states import BackupState
 
@@ -51,13 +53,28 @@ class BackupRows(Sessions):
             return row is None or _is_to_be_repeated(row, now_ns)
 
     def finish_backup(
-        self, backup_id: str, *, name: str, recordings: int, files: int, size_bytes: int, now_ns: int
+        self,
+        backup_id: str,
+        *,
+        name: str,
+        recordings: int,
+        files: int,
+        size_bytes: int,
+        now_ns: int,
+        by: Actor | None = None,
     ) -> BackupEntry:
-        """Note that a back-up is complete, and that every file of it was read again. Raises NotFoundError."""
+        """Note that a back-up is complete, and that every file of it was read again.
+
+        by: who had it made, for the audit trail; None for one that the settings wanted. Raises NotFoundError.
+        """
         with self._write() as session:
             row = found(session, BackupRow, backup_id, "back-up")
             row.state, row.ended_ns, row.problem = BackupState.VERIFIED, now_ns, None
             row.name, row.recordings, row.files, row.size_bytes = name, recordings, files, size_bytes
+            if by is not None:
+                after = {"directory": row.directory, "recordings": recordings, "size_bytes": size_bytes}
+                subject = ("back-up", name)
+                note_change(session, by, AuditAction.BACKUP_MADE, subject, now_ns=now_ns, after=after)
             return record_of(BackupEntry, row)
 
     def fail_backup(self, backup_id: str, problem: str, *, now_ns: int) -> None:

@@ -50,6 +50,29 @@ def test_from_a_back_up_to_a_service_elsewhere(
     ]
 
 
+def test_the_audit_trail_says_who_made_and_who_restored_a_back_up(
+    config: Path, repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first = run(capsys, "backup", "--config", config)
+    entry, *_ = repository.audit_entries(limit=9).items
+    assert (entry.action, entry.subject, entry.origin) == ("backup-made", first["name"], "command line")
+    assert json.loads(str(entry.after))["directory"] == str(tmp_path / "copies")
+    second = run(capsys, "backup", "--config", config)
+    elsewhere = tmp_path / "elsewhere"
+    run(capsys, "restore", tmp_path / "copies", "--into", elsewhere)
+    settings = tmp_path / "restored.toml"
+    settings.write_text('data_directory = "elsewhere"\n')
+    listed = run(capsys, "audit", "list", "--config", settings)["entries"]
+    assert isinstance(listed, list)
+    assert [(one["action"], one["subject"]) for one in listed[:2]] == [
+        ("backup-restored", second["name"]),
+        ("backup-made", first["name"]),
+    ]
+    assert listed[0]["after"]["from"] == str(tmp_path / "copies")
+    assert listed[0]["after"]["made"] == second["made"]
+    assert run(capsys, "audit", "verify", "--config", settings)["fault"] is None
+
+
 def test_in_words(config: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["backup", str(tmp_path / "usb"), "--config", str(config), "--keep", "1"]) == 0
     assert ": 1 recordings (1 new), 4 files, " in capsys.readouterr().out

@@ -178,8 +178,9 @@ def test_a_trigger_without_a_verdict_says_what_is_not_ready(
     repository: Repository, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     store = RecordingStore(tmp_path / "recordings")
-    context = ApiContext(Settings(data_directory=tmp_path), repository, store)
-    context.readiness["jobs"] = lambda: "2 of 2 workers are loading"
+    settings = Settings(data_directory=tmp_path)
+    readiness = {"jobs": lambda: "2 of 2 workers are loading"}
+    context = ApiContext(settings, repository, store, readiness=readiness)
     with serving(create_app(context)) as client:
         assert main(["trigger", "PUMP-A1", "--wait", "0.01", "--url", str(client.base_url)]) == 1
     told = " ".join(capsys.readouterr().err.split())

@@ -1,16 +1,22 @@
 """The work of notifications as a whole: real alarms, a real mail server, a real HTTP receiver."""
 
 import json
+import time
 from dataclasses import replace
 from email.message import EmailMessage
+from pathlib import Path
 from typing import Any
 
 import structlog
 
+from core.units import NANOSECONDS_PER_DAY
+from service.audit.actions import AuditAction
+from service.configuration.settings import Settings
+from service.notifications.digests import due_digests
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec, Gathering, NewNotification
-from service.storage.records.actors import Actor, Role
+from service.storage.records.actors import SERVICE, Actor, Role
 from service.storage.states import AlarmKind, NotificationKind, NotificationState
 from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
@@ -162,10 +168,21 @@ def test_a_digest_is_sent_once_though_several_services_run(repository: Repositor
     assert "PUMP-A1 (FACTORY_A): fault, shorted turns in phase b" in text_of(mail)
 
 
+def test_no_digest_is_sent_of_a_time_before_the_first_start(repository: Repository, tmp_path: Path) -> None:
+    table = {
+        "channels": {"office": mail_channel(25)},
+        "digests": [{"period": "daily", "at": at, "channels": ["office"]} for at in _times()],
+    }
+    settings = Settings.model_validate({"data_directory": tmp_path, "notifications": table})
+    now_ns = time.time_ns()
+    assert len(list(due_digests(settings, repository, now_ns))) == 1
+    repository.note_by(SERVICE, AuditAction.PLANT_CHANGED, ("motor", "PUMP-A1"), now_ns=now_ns)
+    assert list(due_digests(settings, repository, now_ns)) == []
+    assert len(list(due_digests(settings, repository, now_ns + NANOSECONDS_PER_DAY))) == 1
+
+
 def _times() -> list[str]:
     """Return a time of day that passed a few hours ago, in UTC."""
-    import time
-
     return [time.strftime("%H:00", time.gmtime(time.time() - 7200))]
 
 

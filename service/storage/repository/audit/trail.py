@@ -59,6 +59,11 @@ class AuditRows(Sessions):
         with self._read() as session:
             return tuple(AuditEntry(*row) for row in session.execute(query))
 
+    def first_audit_entry_ns(self) -> int | None:
+        """Return when the first entry was written: about when the service first started; None before that."""
+        with self._read() as session:
+            return session.scalar(select(AuditEntryRow.time_ns).order_by(AuditEntryRow.number).limit(1))
+
     def audit_entries(
         self,
         *,

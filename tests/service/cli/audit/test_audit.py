@@ -68,9 +68,9 @@ def tamper(engine: Engine, statement: str) -> None:
         connection.execute(text(statement))
 
 
-def test_entries_are_listed(repository: Repository, url: str, run: Run) -> None:
+def test_entries_are_listed(repository: Repository, where: list[str], run: Run) -> None:
     note(repository, 2)
-    code, shown, _ = run("list", "--url", url, "--subject", "PUMP-1")
+    code, shown, _ = run("list", *where, "--subject", "PUMP-1")
     assert code == 0
     assert "anna" in shown
     assert "10.0.0.7" in shown
@@ -78,13 +78,25 @@ def test_entries_are_listed(repository: Repository, url: str, run: Run) -> None:
     assert "motor PUMP-1" in shown
     assert "bearing 1" in shown
     assert "PUMP-0" not in shown
-    _, shown, _ = run("list", "--url", url, "--json")
+    _, shown, _ = run("list", *where, "--json", "--actor", "anna", "--action", "note-added")
     entries = json.loads(shown)["entries"]
     assert [entry["number"] for entry in entries] == [2, 1]
-    _, shown, _ = run("list", "--url", url, "--csv", "--limit", "1")
+    assert entries[0]["time"] == "2025-10-09T08:53:20.000000000Z"
+    assert (entries[0]["roles"], entries[0]["after"]["text"]) == ([], "=1+1 bearing 1")
+    assert run("list", *where, "--from", "2025-10-10")[1] == "no entries\n"
+    assert (
+        run("list", *where, "--from", "2025-10-09", "--to", "2025-10-10", "--limit", "1")[1].count("anna")
+        == 1
+    )
+    _, shown, _ = run("list", *where, "--csv", "--limit", "1")
     assert shown.splitlines()[0].startswith("number,time,actor,origin")
     assert len(shown.splitlines()) == 2
-    assert run("list", "--url", url, "--action", "note-addet")[0] == 1
+    assert run("list", *where, "--action", "note-addet")[0] == 1
+    assert run("list", *where, "--to", "soon")[0] == 1
+
+
+def test_whoever_lists_without_a_service_is_told_of_a_wrong_action(where: list[str], run: Run) -> None:
+    assert "note-added" in run("list", *where, "--action", "note-addet")[2]
 
 
 def test_an_intact_trail_is_verified(repository: Repository, where: list[str], run: Run) -> None:
