@@ -12,6 +12,15 @@ class LevelSeen:
     high: float | None
 
 
+def magnitude(seen: LevelSeen) -> LevelSeen:
+    """Return how large a quantity with a sign is, such as the error of a channel that reads too little."""
+    value, low, high = abs(seen.value), seen.low, seen.high
+    if low is None or high is None:
+        return LevelSeen(value, None, None)
+    nearest = 0.0 if low <= 0.0 <= high else min(abs(low), abs(high))
+    return LevelSeen(value, nearest, max(abs(low), abs(high)))
+
+
 def has_grown(told: float, seen: LevelSeen, least_ratio: float) -> bool:
     """Tell whether a level is surely above the one that people were told.
 

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.alarms.growth import LevelSeen, has_grown, is_another_kind
+from service.alarms.growth import LevelSeen, has_grown, is_another_kind, magnitude
 
 LEVELS = st.floats(1e-4, 0.5)
 
@@ -54,3 +54,10 @@ def test_only_another_kind_is_new() -> None:
     assert not is_another_kind(told, frozenset())
     assert is_another_kind(told, frozenset({"voltage-channel"}))
     assert is_another_kind(frozenset(), frozenset({"voltage-channel"}))
+
+
+@given(LEVELS, st.floats(0.0, 0.5))
+def test_a_channel_that_reads_too_little_grows_as_one_that_reads_too_much(size: float, half: float) -> None:
+    high, low = LevelSeen(size, size - half, size + half), LevelSeen(-size, -size - half, -size + half)
+    assert magnitude(low) == magnitude(high)
+    assert magnitude(high) == LevelSeen(size, max(0.0, size - half), size + half)

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 
 from core.condition.kinds import Kind
-from service.alarms.growth import LevelSeen
+from service.alarms.growth import LevelSeen, magnitude
 from service.storage.records import ConditionEntry
 
 UNNAMED = frozenset((Kind.NONE, Kind.UNCLEAR))
@@ -49,7 +49,7 @@ class ConditionWords:
         if not is_fault_level(causes):
             size = _number(self._document.get("size"))
             low, high = _interval(self._document.get("size_ci95"))
-            return None if size is None else LevelSeen(size, low, high)
+            return None if size is None else magnitude(LevelSeen(size, low, high))
         one = self._condition
         return None if one.mu_f is None else LevelSeen(one.mu_f, one.mu_f_ci95_low, one.mu_f_ci95_high)
 

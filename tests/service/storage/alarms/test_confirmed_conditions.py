@@ -233,6 +233,14 @@ def test_growth_that_has_stopped_takes_the_forecast_back_and_doubt_does_not(cour
     assert course.alarm().kind is AlarmKind.CONDITION_FAULT
 
 
+def test_what_reads_too_little_is_worse_the_less_it_reads(course: Course) -> None:
+    low = replace(CHANNEL, size=-0.010, size_ci95=(-0.011, -0.009))
+    course.record(low)
+    course.record(low)
+    (alarm,) = course.standing()
+    assert alarm.value == pytest.approx(0.010)
+
+
 def test_a_level_in_another_measure_is_no_growth(course: Course) -> None:
     course.record(DRIFTING)
     course.record(replace(DRIFTING, mu_f=0.004, mu_f_ci95=(0.003, 0.005)))
