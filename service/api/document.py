@@ -23,12 +23,14 @@ LONGEST_LIST = 1000
 
 
 def _begin(found: object) -> object:
+    if isinstance(found, set | frozenset):
+        found = sorted(found, key=str)  # a set has another order in each process
     return found[:LONGEST_LIST] if isinstance(found, list | tuple) else found
 
 
 Item = TypeVar("Item")
 Listed = Annotated[list[Item], BeforeValidator(_begin), Field(max_length=LONGEST_LIST)]
-"""This is a list in an answer."""
+"""This is a list in an answer; what is a set inside comes sorted."""
 
 
 class Document(BaseModel):
