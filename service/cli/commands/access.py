@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from service.cli.commands.options import DEFAULT_URL, Json, Url
+from service.cli.commands.options import DEFAULT_URL, Csv, Json, Url
 from service.storage.records.actors import Role
 
 commands = typer.Typer()
@@ -24,7 +24,6 @@ Config = Annotated[
 Local = Annotated[
     bool, typer.Option("--local", help="The same, with the settings of the environment (MCC_...).")
 ]
-Csv = Annotated[bool, typer.Option("--csv", help="Print rows of comma-separated values with a heading.")]
 
 
 @commands.command()

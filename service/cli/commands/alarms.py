@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from service.cli.commands.options import DEFAULT_URL, DefaultGroup, Json, Url
+from service.cli.commands.options import DEFAULT_URL, Csv, DefaultGroup, Json, Url
 
 alarms = typer.Typer(cls=DefaultGroup, help="Show what to act on first, and acknowledge or shelve it.")
 commands = typer.Typer()
@@ -40,9 +40,7 @@ def list_alarms(
     over: Annotated[
         bool, typer.Option("--all", help="Also those that are over; the latest at the top.")
     ] = False,
-    as_csv: Annotated[
-        bool, typer.Option("--csv", help="Print rows of comma-separated values with a heading.")
-    ] = False,
+    as_csv: Csv = False,
     as_json: Json = False,
 ) -> None:
     """Show the alarms that are not over: what to act on first at the top, with what to do."""

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from service.cli.commands.options import DEFAULT_URL, Json, Url
+from service.cli.commands.options import DEFAULT_URL, Csv, From, Json, To, Url
 
 commands = typer.Typer()
 audit = typer.Typer(
@@ -31,17 +31,13 @@ def list_entries(
     subject: Annotated[
         str | None, typer.Option(metavar="NAME", help="Only of this motor, relay, recording, user, ...")
     ] = None,
-    from_: Annotated[str | None, typer.Option("--from", metavar="TIME", help="First time or date.")] = None,
-    to: Annotated[
-        str | None, typer.Option("--to", metavar="TIME", help="First time or date not to be included.")
-    ] = None,
+    from_: From = None,
+    to: To = None,
     limit: Annotated[
         int, typer.Option("--limit", min=1, max=100_000, help="Show so many, the latest.")
     ] = 100,
     *,
-    as_csv: Annotated[
-        bool, typer.Option("--csv", help="Print rows of comma-separated values with a heading.")
-    ] = False,
+    as_csv: Csv = False,
     as_json: Json = False,
 ) -> None:
     """Show who changed what, from where, and the values before and after, latest first."""

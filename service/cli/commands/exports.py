@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from service.cli.commands.options import DEFAULT_URL, Json, Url
+from service.cli.commands.options import DEFAULT_URL, From, Json, To, Url
 
 commands = typer.Typer()
 
@@ -26,10 +26,6 @@ Output = Annotated[
     Path | None, typer.Option("--output", metavar="FILE", help="The file (default: standard output).")
 ]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace a file that is there.")]
-From = Annotated[str | None, typer.Option("--from", metavar="TIME", help="First time or date.")]
-To = Annotated[
-    str | None, typer.Option("--to", metavar="TIME", help="First time or date not to be included.")
-]
 
 
 @export.command()

@@ -28,6 +28,21 @@ def finite_seconds(wait: float) -> float:
     return wait
 
 
+VerdictWait = Annotated[
+    float,
+    typer.Option(
+        "--wait",
+        metavar="SECONDS",
+        min=0,
+        callback=finite_seconds,
+        help="Wait this long for the diagnosis, and print its verdict.",
+    ),
+]
+Csv = Annotated[bool, typer.Option("--csv", help="Print rows of comma-separated values with a heading.")]
+From = Annotated[str | None, typer.Option("--from", metavar="TIME", help="First time or date.")]
+To = Annotated[
+    str | None, typer.Option("--to", metavar="TIME", help="First time or date not to be included.")
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout, also on failure.")]
 Url = Annotated[
     str,

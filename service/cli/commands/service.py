@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from service.cli.commands.options import DEFAULT_URL, Json, Url, finite_seconds
+from service.cli.commands.options import DEFAULT_URL, Json, Url, VerdictWait
 
 commands = typer.Typer()
 
@@ -36,15 +36,7 @@ def release(
 def trigger(
     motor: MotorName,
     url: Url = DEFAULT_URL,
-    wait: Annotated[
-        float,
-        typer.Option(
-            metavar="SECONDS",
-            min=0,
-            callback=finite_seconds,
-            help="Wait this long for the diagnosis, and print its verdict.",
-        ),
-    ] = 0.0,
+    wait: VerdictWait = 0.0,
     *,
     key: Annotated[
         str | None,

@@ -7,7 +7,17 @@ import typer
 
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL, Method, Model
 from core.operation import Operation
-from service.cli.commands.options import DEFAULT_URL, DefaultGroup, Json, Url, finite_seconds
+from service.cli.commands.options import (
+    DEFAULT_URL,
+    Csv,
+    DefaultGroup,
+    From,
+    Json,
+    To,
+    Url,
+    VerdictWait,
+    finite_seconds,
+)
 
 commands = typer.Typer()
 
@@ -16,7 +26,6 @@ OneMotor = Annotated[str | None, typer.Argument(metavar="[MOTOR]", help="Only th
 RecordingIds = Annotated[
     list[str], typer.Argument(metavar="RECORDING...", help="Ids, as mcc recordings shows them.")
 ]
-Csv = Annotated[bool, typer.Option("--csv", help="Print rows of comma-separated values with a heading.")]
 Limit = Annotated[int, typer.Option("--limit", min=1, max=100_000, help="Show so many, the latest.")]
 Reason = Annotated[str | None, typer.Option(metavar="TEXT", help="Why; it is kept.")]
 By = Annotated[str | None, typer.Option(metavar="NAME", help="Who says so (default: who is logged in).")]
@@ -35,10 +44,8 @@ def trend(
             "change what the motor's condition says from it on."
         ),
     ] = "mu_f",
-    from_: Annotated[str | None, typer.Option("--from", metavar="TIME", help="First time or date.")] = None,
-    to: Annotated[
-        str | None, typer.Option("--to", metavar="TIME", help="First time or date not to be included.")
-    ] = None,
+    from_: From = None,
+    to: To = None,
     limit: Limit = 100,
     *,
     as_csv: Csv = False,
@@ -100,15 +107,7 @@ def upload(
         typer.Argument(metavar="FILE...", help="One recording: .CFG and .DAT, or .CFF, or .CEV."),
     ],
     url: Url = DEFAULT_URL,
-    wait: Annotated[
-        float,
-        typer.Option(
-            metavar="SECONDS",
-            min=0,
-            callback=finite_seconds,
-            help="Wait this long for the diagnosis, and print its verdict.",
-        ),
-    ] = 0.0,
+    wait: VerdictWait = 0.0,
     *,
     as_json: Json = False,
 ) -> None:
