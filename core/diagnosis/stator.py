@@ -17,21 +17,19 @@ from core.diagnosis.indicators import indicators
 from core.diagnosis.judgement import PARAMETERS_DO_NOT_FIT, identified, is_unusual, judge, with_load
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.propagation import Known, deviation, errors_of, of_the_likeliest_winding, widened
-from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, TIME_OFFSET, Fit
+from core.diagnosis.refinement import FAULT_LEVEL, LOAD_LEVEL, PATH_RATIO, TIME_OFFSET, Fit
+from core.diagnosis.residual import residual_rms_A
 from core.diagnosis.search import METHODS, search
 from core.diagnosis.tolerance import Systematic, systematic
-from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
-from core.machines.base import StatorModel
+from core.diagnosis.verdict import Diagnosis, FittedParameters, Verdict, not_finite
 from core.machines.parameters import Motor
 from core.machines.playback import Playback, electrical_to_rpm
-from core.machines.shorted_winding import ShortedWinding
 from core.machines.split_winding import SplitWinding
+from core.machines.stator_models import MODELS
 from core.quality.assumed_supply import SUPPLY_UNBALANCE
 from core.quality.finding import QualityFinding
 from core.quality.scale import current_scale_advice
 from core.recordings import Recording
-
-MODELS: dict[str, StatorModel] = {model.name: model for model in (SplitWinding(), ShortedWinding())}
 
 
 def diagnose(
@@ -178,7 +176,7 @@ def _diagnosed(
         theta_f=case.terminal_winding(explanation.winding) if named else None,
         load_level=running.value(LOAD_LEVEL),
         time_offset_s=running.value(TIME_OFFSET),
-        residual_rms_A=_residual_rms(case, playback, fit),
+        residual_rms_A=residual_rms_A(case, playback.trajectories(fit.candidate).current[0]),
         evaluations=starts.evaluations + explanation.evaluations,
         compute_seconds=perf_counter() - begun,
         quality=tuple(quality),
@@ -192,6 +190,7 @@ def _diagnosed(
         detection_limit=tolerance.detection_limit(fit, motor.limits.fault_level),
         indicators=indicators(case),
         currents_only=assumed,
+        fit=_parameters(case, fit),
     )
 
 
@@ -285,6 +284,16 @@ def _not_below_zero(interval: tuple[float, float]) -> tuple[float, float]:
     return max(0.0, low), max(0.0, high)
 
 
+def _parameters(case: Case, fit: Fit) -> FittedParameters:
+    return FittedParameters(
+        mu_f=fit.value(FAULT_LEVEL),
+        theta_f=case.terminal_winding(int(fit.candidate.winding[0])),
+        load_level=fit.value(LOAD_LEVEL),
+        time_offset_s=fit.value(TIME_OFFSET),
+        path_ratio=fit.value(PATH_RATIO),
+    )
+
+
 def _speed_rpm(case: Case, playback: Playback, fit: Fit) -> float:
     mean = playback.steady_state(fit.candidate).mean_speed
     return float(electrical_to_rpm(mean, case.motor.nameplate.pole_pairs)[0])
@@ -309,10 +318,3 @@ def _refused(
         method=str(method),
         currents_only=currents_only,
     )
-
-
-def _residual_rms(case: Case, playback: Playback, fit: Fit) -> float:
-    window = case.window
-    modelled = playback.trajectories(fit.candidate).current[0]
-    residual = case.space_vector(case.current_ab[:, window.first : window.last] - modelled)
-    return float(np.sqrt(np.mean(np.abs(residual) ** 2))) * case.line_per_winding_current

@@ -61,6 +61,44 @@ class Indicators:
 
 
 @dataclass(frozen=True, slots=True)
+class FittedParameters:
+    """The hypothesis that explains the currents best, with which `core.diagnosis.replay` draws them again.
+
+    It is not the verdict: its level may lie within chance, and load and time offset may be those of another
+    hypothesis than the diagnosis reports.
+
+    Parameters
+    ----------
+    mu_f : float
+        Equivalent fault level, a fraction of the phase turns; it may come out below zero.
+    theta_f : {0, 1, 2}
+        Winding on terminals a, b, c.
+    load_level : float
+        Load torque over rated torque.
+    time_offset_s : float
+        Delay of the currents against the voltages [s].
+    path_ratio : float
+        Resistance of the path that bridges the turns over that of the turns.
+    """
+
+    mu_f: float
+    theta_f: Literal[0, 1, 2]
+    load_level: float
+    time_offset_s: float
+    path_ratio: float
+
+    def as_dict(self) -> dict[str, float]:
+        """Return the parameters as JSON takes them.
+
+        Returns
+        -------
+        dict of str to float
+            The parameters by name.
+        """
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnosis:
     """The result for one recording; figures are None where the quality gate refused it.
 
@@ -108,6 +146,8 @@ class Diagnosis:
         Whether the voltages are assumed and none were used.
     operation : Operation or None, optional
         What the motor does in the recording; None where that cannot be told.
+    fit : FittedParameters or None, optional
+        The hypothesis behind `residual_rms_A`.
     """
 
     verdict: Verdict
@@ -131,6 +171,7 @@ class Diagnosis:
     indicators: Indicators | None = None
     currents_only: bool = False
     operation: Operation | None = None
+    fit: FittedParameters | None = None
 
     @property
     def phase(self) -> Literal["a", "b", "c"] | None:
@@ -169,6 +210,7 @@ class Diagnosis:
             "indicators": None if self.indicators is None else self.indicators.as_dict(),
             "currents_only": self.currents_only,
             "operation": None if self.operation is None else str(self.operation),
+            "fit": None if self.fit is None else self.fit.as_dict(),
         }
 
 

@@ -48,6 +48,8 @@ class Nameplate:
         Number of pole pairs.
     connection : Connection, default Connection.STAR
         Star or delta.
+    rotor_slots : int or None, optional
+        Number of slots, or bars, of the rotor; None where it is not known. Spectra are marked with it.
     """
 
     rated_power_W: float
@@ -55,6 +57,7 @@ class Nameplate:
     rated_frequency_Hz: float
     pole_pairs: int
     connection: Connection = Connection.STAR
+    rotor_slots: int | None = None
 
     @property
     def rated_angular_frequency(self) -> float:

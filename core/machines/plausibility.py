@@ -15,6 +15,7 @@ RATED_POWER_W = (10.0, 100e6)
 RATED_VOLTAGE_V = (10.0, 50e3)
 RATED_FREQUENCY_HZ = (10.0, 400.0)
 MOST_POLE_PAIRS = 100
+MOST_ROTOR_SLOTS = 1000
 RATED_CURRENT_A = (0.01, 10e3)
 """Rated power over sqrt(3) times rated voltage [A]."""
 

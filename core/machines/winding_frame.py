@@ -11,6 +11,7 @@ import numpy as np
 
 from core.machines.base import Array
 from core.machines.parameters import Connection
+from core.signals.clarke import inverse_clarke
 from core.signals.sequence import PhaseSequence
 
 Winding = Literal[0, 1, 2]
@@ -53,6 +54,30 @@ def to_winding_frame(
         ahead = _rotation(pi / 6.0)
         current_ab, voltage_ab = ahead @ current_ab / sqrt(3.0), ahead @ voltage_ab * sqrt(3.0)
     return current_ab, voltage_ab
+
+
+def line_currents(current_ab: Array, sequence: PhaseSequence, connection: Connection) -> Array:
+    """Turn currents of the windings back into those of the lines, the way back from `to_winding_frame`.
+
+    Parameters
+    ----------
+    current_ab : ndarray, shape (2, n)
+        Currents of the windings on power-invariant Clarke axes, in a positive-sequence supply [A].
+    sequence : PhaseSequence
+        Order in which the supply's phases reach their maxima.
+    connection : Connection
+        Star or delta.
+
+    Returns
+    -------
+    ndarray, shape (3, n)
+        Line currents of terminals a, b, c, which sum to zero [A].
+    """
+    if connection is Connection.DELTA:
+        current_ab = sqrt(3.0) * (_rotation(-pi / 6.0) @ current_ab)
+    if sequence is PhaseSequence.ACB:
+        current_ab = np.array([[1.0], [-1.0]]) * current_ab
+    return inverse_clarke(current_ab)
 
 
 def terminal_winding(winding: int, sequence: PhaseSequence, connection: Connection) -> Winding:

@@ -10,9 +10,9 @@ from core.condition.filter.state import START
 from core.condition.forecast.forecast import Forecast
 from core.condition.kinds import Kind
 from core.condition.severity import FEW, Interval, standing_stays_a_fault, stands_out, stays_a_fault
+from core.quantity_text import period
 from core.time_stamps import SECONDS_END, rfc3339
 
-HOURS_PER_DAY: Final = 24
 MOST_CERTAIN: Final = 99.0
 """Highest probability that is told as a figure [%]."""
 
@@ -128,7 +128,7 @@ def _of_forecast(forecast: Forecast) -> Iterator[str]:
     if forecast.days is None:
         yield f"whether the level grows is not certain: it may never reach {_percent(forecast.limit)}"
     else:
-        low, mid, high = (_days(days) for days in forecast.days)
+        low, mid, high = (period(days) for days in forecast.days)
         yield (
             f"the level grows by {100.0 * growth:.3f} % a day; it reaches {_percent(forecast.limit)} in "
             f"about {mid}, in eight of ten cases between {low} and {high}"
@@ -211,12 +211,6 @@ def _chance(probability: float) -> str:
         if 100.0 * probability > MOST_CERTAIN
         else f"{100.0 * probability:.0f} %"
     )
-
-
-def _days(days: float) -> str:
-    if days * HOURS_PER_DAY < 1.0:
-        return "an hour"
-    return f"{days * HOURS_PER_DAY:.0f} hours" if days < 2.0 else f"{days:.0f} days"
 
 
 def _seconds(time_ns: int) -> str:

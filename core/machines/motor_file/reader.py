@@ -294,6 +294,7 @@ def _nameplate(table: MotorTable) -> Nameplate:
         rated_frequency_Hz=table.number("rated_frequency_Hz", plausibility.RATED_FREQUENCY_HZ, unit="Hz"),
         pole_pairs=table.count("pole_pairs", plausibility.MOST_POLE_PAIRS),
         connection=table.connection("connection"),
+        rotor_slots=table.optional_count("rotor_slots", plausibility.MOST_ROTOR_SLOTS),
     )
 
 

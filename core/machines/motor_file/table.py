@@ -170,6 +170,23 @@ class MotorTable:
             return 1
         return value
 
+    def optional_count(self, key: str, most: int) -> int | None:
+        """Take a whole number from 1 on that may be missing.
+
+        Parameters
+        ----------
+        key : str
+            Key of the value.
+        most : int
+            Largest number.
+
+        Returns
+        -------
+        int or None
+            The number, None where there is none.
+        """
+        return None if self._take(key, None) is None else self.count(key, most)
+
     def connection(self, key: str) -> Connection:
         """Take the connection of the windings.
 

@@ -90,6 +90,7 @@ def motor_text(
         f"rated_frequency_Hz = {_number(plate.rated_frequency_Hz)}",
         f"pole_pairs = {plate.pole_pairs}",
         f"connection = {_text(plate.connection.value)}",
+        *([] if plate.rotor_slots is None else [f"rotor_slots = {plate.rotor_slots}"]),
         "",
         "[parameters]",
     ]

@@ -8,12 +8,13 @@ import pytest
 from core.diagnosis.errors import DiagnosisError
 from core.diagnosis.methods import Method, Model
 from core.diagnosis.search import METHODS
-from core.diagnosis.stator import MODELS, diagnose, learn_baseline
+from core.diagnosis.stator import diagnose, learn_baseline
 from core.diagnosis.verdict import Diagnosis, Verdict
 from core.machines.candidates import Candidates
 from core.machines.parameters import Connection, Motor
 from core.machines.playback import Playback, window_of_record
 from core.machines.shorted_winding import ShortedWinding
+from core.machines.stator_models import MODELS
 from core.machines.supply import supply
 from core.recordings import Channel, Quantity, Recording, RecordingError
 from core.signals.clarke import clarke, inverse_clarke
@@ -316,7 +317,7 @@ def test_the_document_has_the_keys_of_the_contract() -> None:
         "verdict", "mu_f", "mu_f_ci95", "mu_f_scatter95", "detection_limit", "theta_f", "phase", "load_level",
         "time_offset_s", "residual_rms_A", "evaluations", "compute_seconds", "quality", "reasons", "model",
         "method", "load_level_ci95", "load_level_scatter95", "speed_rpm", "indicators", "currents_only",
-        "operation",
+        "operation", "fit",
     ]  # fmt: skip
     assert document["method"] == "hybrid"
 

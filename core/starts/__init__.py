@@ -1,0 +1,1 @@
+"""Starts of a motor: how long it takes to run up, and what it draws meanwhile."""
