@@ -16,11 +16,12 @@ class Closure:
 class Contactor:
     """Connects the motor: closed since ever, or `open_at_first`. Times are seconds since the simulator began.
 
-    Closing a closed contactor and opening an open one change nothing. Several threads may use it.
+    With `opens_s` it opens then by itself, as if somebody stopped the motor. Closing a closed contactor and
+    opening an open one change nothing. Several threads may use it.
     """
 
-    def __init__(self, *, open_at_first: bool = False) -> None:
-        self._closures: tuple[Closure, ...] = () if open_at_first else (Closure(),)
+    def __init__(self, *, open_at_first: bool = False, opens_s: float = inf) -> None:
+        self._closures: tuple[Closure, ...] = () if open_at_first else (Closure(opened_s=opens_s),)
         self._lock = threading.Lock()
 
     def close(self, time_s: float) -> float | None:

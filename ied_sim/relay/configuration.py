@@ -67,14 +67,16 @@ class RelayConfiguration:
     def truth(self, time_s: float) -> dict[str, object]:
         """Return the motor's true condition at a time since the scenario's beginning.
 
-        It is mu_f (the equivalent level), theta_f, load_level, joint_ohm, and of the channels that have
-        changed by then how much their gain errors and delays have.
+        It is whether it runs, mu_f (the equivalent level), theta_f, load_level, joint_ohm, and of channels
+        that have changed by then how much their gain errors and delays have.
         """
         plant = self.plant
         parameters = plant.motor.parameters
         fault = None if plant.fault is None else plant.fault.at(time_s)
         level = 0.0 if fault is None else fault.equivalent_level(parameters.stator_resistance_ohm)
+        contactor = plant.contactor
         return {
+            "running": contactor is None or contactor.closure_at(time_s) is not None,
             "mu_f": level,
             "theta_f": fault.phase if fault is not None and level > 0 else None,
             "load_level": plant.load.level_at(time_s),

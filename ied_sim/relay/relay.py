@@ -3,6 +3,7 @@
 import logging
 import threading
 from collections.abc import Callable
+from math import inf
 from pathlib import Path
 
 from core.units import NANOSECONDS_PER_SECOND
@@ -270,6 +271,11 @@ class Relay:
         open_ns = now_ns + OPENING_NS
         if contactor is None or not contactor.open(self._seconds(open_ns)):
             return
+        self._note_stopped(open_ns)
+
+    def _note_stopped(self, open_ns: int) -> None:
+        if self._word["STOPPED"]:
+            return
         log.info("%s: the motor is stopped", self.name)
         self._word.set("STARTING", False, open_ns)  # noqa: FBT003
         self._word.set("RUNNING", False, open_ns)  # noqa: FBT003
@@ -294,7 +300,9 @@ class Relay:
         self._load_is_above = above
 
     def _follow_start(self, closure: Closure | None, time_s: float) -> None:
-        """Add a start to the journal once it has ended."""
+        """Note a stop that no control asked for, and add a start to the journal once it has ended."""
+        if closure is None and self._closure is not None and self._closure.opened_s < inf:
+            self._note_stopped(self._epoch_ns + round(self._closure.opened_s * NANOSECONDS_PER_SECOND))
         if closure != self._closure and closure is not None and closure.closed_s >= 0:
             self._start_noted = False
         self._closure = closure

@@ -4,6 +4,7 @@ It is one TOML file, explained in docs/reference/scenario.md.
 """
 
 from collections.abc import Mapping
+from math import inf
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -171,7 +172,9 @@ def _relay_scenario(
             seed=section.seed,
             warming=None if section.warming is None else section.warming.warming(),
             broken_bars=section.broken_bars,
-            contactor=Contactor(open_at_first=section.stopped),
+            contactor=Contactor(
+                open_at_first=section.stopped, opens_s=inf if section.stop is None else section.stop.time_s
+            ),
             joint=None if section.joint is None else section.joint.course(),
         ),
         profile=profile,

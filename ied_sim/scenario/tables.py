@@ -14,7 +14,7 @@ from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.relay.plant_clock import ClockSettings
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
 from ied_sim.scenario.access import AccessTable
-from ied_sim.scenario.moments import require_rising
+from ied_sim.scenario.moments import MomentTable, require_rising
 from ied_sim.scenario.motor_tables import FaultTable, JointTable, SensorsTable, WarmingTable
 from ied_sim.scenario.supply_tables import BusTable, SupplyTable
 from ied_sim.toml_tables import Table
@@ -176,6 +176,7 @@ class MotorTable(Table):
     profile: str | None = None
     seed: Annotated[int, Field(ge=0)] = 0
     stopped: bool = False
+    stop: MomentTable | None = None
     broken_bars: Annotated[float, Field(ge=0, le=0.3)] = 0.0
     bus: str | None = None
     nameplate: dict[str, object] | None = None
@@ -196,6 +197,12 @@ class MotorTable(Table):
     def _has_one_supply(self) -> Self:
         if self.bus is not None and self.supply.model_fields_set - {"sequence"}:
             raise ValueError("a motor on a bus has no supply of its own; supply.sequence alone may be given")
+        return self
+
+    @model_validator(mode="after")
+    def _can_be_stopped(self) -> Self:
+        if self.stopped and self.stop is not None:
+            raise ValueError("give either stopped or stop")
         return self
 
 

@@ -40,6 +40,7 @@ inertia_kgm2 = 0.0229
 """
 
 HEALTHY: dict[str, object] = {
+    "running": True,
     "mu_f": 0.0,
     "theta_f": None,
     "load_level": 0.5,
@@ -93,6 +94,8 @@ def test_the_documented_example_is_a_scenario(tmp_path: Path) -> None:
     assert relay.truth(0.0)["theta_f"] == 1
     late = relay.truth(30 * 86400.0)
     assert late["joint_ohm"] == 0.01
+    assert relay.truth(19.9 * 86400.0)["running"]
+    assert not late["running"], "it was stopped on day 20"
     assert late["channels"] == {
         "IB": {"gain": 0.005, "delay_us": pytest.approx(10.0)},
         "VC": {"gain": pytest.approx(-0.005), "delay_us": pytest.approx(5.0)},

@@ -35,6 +35,17 @@ def table(content: str) -> list[dict[str, str]]:
     return [dict(zip(labels, line.fields, strict=True)) for line in lines[3:]]
 
 
+def test_a_motor_that_the_scenario_stops_stands_from_then_on(tmp_path: Path) -> None:
+    scenario = scenario_of("sel-710-ed1")
+    plant = replace(scenario.plant, contactor=Contactor(opens_s=0.5))
+    with simulated(tmp_path / "relay", replace(scenario, plant=plant)) as served, served.client() as client:
+        wait_until(lambda: served.relay._word["STOPPED"], "the motor to stop")
+        changes = {(each["ELEMENT"], each["STATE"]) for each in table(text(client, "REPORTS/CSER.TXT"))}
+        assert {("RUNNING", "Deasserted"), ("STOPPED", "Asserted")} <= changes
+        operate(served, "CON/RBGGIO1.SPCSO03")
+        assert served.relay._word["STARTING"], "it can be started again"
+
+
 def test_a_start_is_recorded_from_rest_and_told_in_every_report(tmp_path: Path) -> None:
     scenario = stopped(scenario_of("sel-710-ed1"))
     scenario = replace(scenario, triggers=Triggers(motor_start=True))
