@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from sqlalchemy import Connection, update
+from sqlalchemy import Connection, text, update
 
 from benchmarks.storage.documents import condition_document
 from benchmarks.storage.plant import IDLE, motor_name
@@ -17,12 +17,18 @@ from benchmarks.storage.rows import (
     recording_state,
     time_of,
 )
+from service.storage.migrations.versions.v0040_condition_days import FILL
 from service.storage.models import Base
 
 CHANGED = 50
 """Every 50th observation changed a condition."""
 TOLD = 400
 """And after every 400th a person told something of the motor."""
+
+CURVE = '{"time_s":[0.0,1.0],"current_A":[90.0,15.0],"voltage_V":[361.0,398.0]}'
+
+STARTED = 300
+"""And every 300th recording is that of a start."""
 
 EVENT = 9
 """Kind of the ids of what people told, beside those of `rows`."""
@@ -41,16 +47,23 @@ _CHANGE_COLUMNS = (
 )  # fmt: skip
 _EVENT_COLUMNS = ("id", "motor", "time_ns", "kind", "reason", "by", "made_ns")
 
+_START_COLUMNS = (
+    "recording_id", "motor", "time_ns", "is_from_rest", "acceleration_s", "peak_current_A",
+    "crest_current_A", "running_current_A", "lowest_voltage_V", "i2t_A2s", "i2t_over_s", "rated_current_A",
+    "rated_voltage_V", "curve",
+)  # fmt: skip
+
 
 def tables(amounts: Amounts) -> Iterator[Table]:
     """Yield the tables about conditions that grow."""
     yield Table("observations", _OBSERVATION_COLUMNS, _observations(amounts))
     yield Table("condition_changes", _CHANGE_COLUMNS, _changes(amounts))
     yield Table("condition_events", _EVENT_COLUMNS, _events(amounts))
+    yield Table("starts", _START_COLUMNS, _starts(amounts))
 
 
 def judge(connection: Connection) -> None:
-    """Give each motor but the idle one a condition."""
+    """Give each motor but the idle one a condition, and all motors their days."""
     conditions = Base.metadata.tables["conditions"]
     figures = dict(zip(_CHANGE_COLUMNS[5:], _said(0.012), strict=True))
     connection.execute(
@@ -58,6 +71,7 @@ def judge(connection: Connection) -> None:
         .where(conditions.c.motor != motor_name(IDLE))
         .values(version=1, as_of_ns=END_NS, since_ns=END_NS, document=condition_document(), **figures)
     )
+    connection.execute(text(FILL))
 
 
 def _observed(amounts: Amounts) -> Iterator[tuple[int, str, int]]:
@@ -93,6 +107,16 @@ def _events(amounts: Amounts) -> Iterator[Row]:
         if number % TOLD == 0:
             event = id_of(EVENT, number)
             yield event, motor, time_ns + 1, "maintenance", "bearings greased", "ann", time_ns + 1
+
+
+def _starts(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        if number % STARTED == 0:
+            recording = id_of(RECORDING, number)
+            yield (
+                recording, motor, time_ns, True, 1.2, 92.0, 131.0, 14.5, 361.0, 9500.0, 1.4, 15.0, 400.0,
+                CURVE,
+            )  # fmt: skip
 
 
 def _said(mu_f: float) -> Row:

@@ -1,7 +1,7 @@
 """Fills a migrated database as fast as it takes rows: indexes are made last, nothing waits for the disk."""
 
 import sqlite3
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 
 from sqlalchemy import Connection, Engine, inspect, text
@@ -21,13 +21,18 @@ def fill(url: str, amounts: Amounts, progress: Progress = lambda _line: None) ->
     migrate(url)
     engine = connect(url)
     Repository(engine).sync_plant(plant_of(amounts.motors))
-    load = _load_postgresql if engine.dialect.name == "postgresql" else _load_sqlite
-    load(engine, amounts, progress)
+    load(engine, _tables(amounts), progress)
     with engine.begin() as connection:
         _count(connection)
         condition_rows.judge(connection)
         upkeep_rows.end_trail(connection, amounts)
     engine.dispose()
+
+
+def load(engine: Engine, tables: Iterable[Table], progress: Progress) -> None:
+    """Put the rows of tables into an empty database."""
+    put = _load_postgresql if engine.dialect.name == "postgresql" else _load_sqlite
+    put(engine, tables, progress)
 
 
 def _tables(amounts: Amounts) -> Iterator[Table]:
@@ -36,7 +41,7 @@ def _tables(amounts: Amounts) -> Iterator[Table]:
     yield from upkeep_rows.tables(amounts)
 
 
-def _load_sqlite(engine: Engine, amounts: Amounts, progress: Progress) -> None:
+def _load_sqlite(engine: Engine, tables: Iterable[Table], progress: Progress) -> None:
     file = engine.url.database
     assert file is not None
     engine.dispose()  # the mode of the journal changes only while nobody else has the file open
@@ -47,7 +52,7 @@ def _load_sqlite(engine: Engine, amounts: Amounts, progress: Progress) -> None:
     indexes = connection.execute(kept).fetchall()
     for name, _statement in indexes:
         connection.execute(f"DROP INDEX {name}")
-    for table in _tables(amounts):
+    for table in tables:
         places = ", ".join("?" * len(table.columns))
         columns = ", ".join(f'"{column}"' for column in table.columns)
         insert = f"INSERT INTO {table.name} ({columns}) VALUES ({places})"  # noqa: S608 - our names
@@ -62,11 +67,11 @@ def _load_sqlite(engine: Engine, amounts: Amounts, progress: Progress) -> None:
     connection.close()
 
 
-def _load_postgresql(engine: Engine, amounts: Amounts, progress: Progress) -> None:
+def _load_postgresql(engine: Engine, tables: Iterable[Table], progress: Progress) -> None:
     with engine.begin() as connection, _without_indexes(connection, progress):
         connection.execute(text("SET LOCAL session_replication_role = replica"))  # foreign keys hold anyway
         connection.execute(text("SET LOCAL maintenance_work_mem = '1GB'"))
-        for table in _tables(amounts):
+        for table in tables:
             progress(f"{table.name}: {_copy(connection, table):,} rows")
     with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
         connection.execute(text("VACUUM ANALYZE"))

@@ -32,7 +32,9 @@ GROWING = frozenset(
         "deleted_remote_records",
         "observations",
         "condition_changes",
+        "condition_days",
         "condition_events",
+        "starts",
     }
 )
 """Tables that have more rows every day."""
@@ -79,7 +81,7 @@ class Statement:
 
 def statements_of(app: FastAPI, engine: Engine, path: str) -> Sequence[Statement]:
     """Return the SELECT statements that the API sends to its database to answer a GET request."""
-    with _noted(engine) as statements:
+    with noted(engine) as statements:
         asyncio.run(_get(app, path))
     return statements
 
@@ -94,16 +96,17 @@ def whole_scans(statement: Statement, plan: Sequence[str]) -> Sequence[str]:
 
 
 @contextmanager
-def _noted(engine: Engine) -> Iterator[list[Statement]]:
-    noted: list[Statement] = []
+def noted(engine: Engine) -> Iterator[list[Statement]]:
+    """Note the SELECT statements that are sent to the database while the block runs."""
+    statements: list[Statement] = []
 
     def note(_connection: Connection, _cursor: object, text: str, parameters: object, *_: object) -> None:
         if text.startswith("SELECT"):
-            noted.append(Statement(text, parameters))
+            statements.append(Statement(text, parameters))
 
     event.listen(engine, "before_cursor_execute", note)
     try:
-        yield noted
+        yield statements
     finally:
         event.remove(engine, "before_cursor_execute", note)
 

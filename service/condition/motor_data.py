@@ -6,19 +6,21 @@ from typing import Any
 
 from core.machines.parameters import (
     Connection,
+    Limits,
     MachineParameters,
     Motor,
     Nameplate,
     ParametersSource,
     ParameterTolerances,
 )
+from core.machines.sensors import SensorClass
 from service.storage.records import MotorVersion
 
 
 def document_of(motor: Motor) -> dict[str, Any]:
     """Return all that a motor's condition depends on."""
     return {
-        "nameplate": asdict(motor.nameplate),
+        "nameplate": {k: v for k, v in asdict(motor.nameplate).items() if k != "rotor_slots"},
         "parameters": asdict(motor.parameters),
         "tolerances": {"source": str(motor.parameters_source), **asdict(motor.tolerances)},
         "limits": asdict(motor.limits),
@@ -34,13 +36,31 @@ def motor_of(motor: Motor, document: Mapping[str, Any]) -> Motor:
     nameplate = document["nameplate"]
     tolerances = dict(document.get("tolerances", {}))
     source = ParametersSource(tolerances.pop("source", ParametersSource.GIVEN))
+    connection = Connection(nameplate["connection"])
+    slots = motor.nameplate.rotor_slots  # no condition depends on them: they are as the file says now
     return replace(
         motor,
-        nameplate=Nameplate(**{**nameplate, "connection": Connection(nameplate["connection"])}),
+        nameplate=Nameplate(**{**nameplate, "connection": connection, "rotor_slots": slots}),
         parameters=MachineParameters(**document["parameters"]),
         parameters_source=source,
         tolerances=ParameterTolerances(**tolerances),
     )
+
+
+def motor_known(name: str, document: Mapping[str, Any]) -> Motor:
+    """Return a motor as a document describes it, where the motors file is not at hand.
+
+    Channels and ratios of transformers are not in it. Documents of earlier versions lack some tables.
+    """
+    plate = document["nameplate"]
+    bare = Motor(
+        name,
+        Nameplate(**{**plate, "connection": Connection(plate["connection"])}),
+        MachineParameters(**document["parameters"]),
+        limits=Limits(**document.get("limits", {})),
+        sensors=SensorClass(**document.get("sensors", {})),
+    )
+    return motor_of(bare, document)
 
 
 @dataclass(frozen=True, slots=True)

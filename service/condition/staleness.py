@@ -1,5 +1,6 @@
 """When a motor's condition is stale: its latest valid record is older than the next ones were due."""
 
+from enum import StrEnum
 from functools import lru_cache
 
 from core.condition.assessment import STALE_AFTER_NS
@@ -14,6 +15,30 @@ LOOKED_AT_NS = 8 * NANOSECONDS_PER_DAY
 
 LOOKED_AT = 13
 """And among so many due times, such as those of a year in which each month has one."""
+
+
+class Missing(StrEnum):
+    """Why there is no recent record of a motor."""
+
+    STALE = "stale"
+    """What the last one told, if there is any, is too old to rely on."""
+    NOT_RUNNING = "not-running"
+    """It was seen to stand after its latest record, so that there can be none."""
+
+
+def missing(as_of_ns: int | None, stood_ns: int | None, now_ns: int, oldest_ns: int) -> Missing | None:
+    """Return why there is no recent record; None where there is one, or the motor was never seen.
+
+    as_of_ns: latest record that counts.  stood_ns: when it was seen to stand last.  oldest_ns: age beyond
+    which either is too old.
+    """
+    seen_ns = [time_ns for time_ns in (as_of_ns, stood_ns) if time_ns is not None]
+    if not seen_ns:
+        return None
+    if now_ns - max(seen_ns) > oldest_ns:
+        return Missing.STALE
+    stands = stood_ns is not None and (as_of_ns is None or stood_ns > as_of_ns)
+    return Missing.NOT_RUNNING if stands else None
 
 
 def stale_after_ns(schedule: str | None, stale_after_days: float | None = None) -> int:

@@ -17,6 +17,7 @@ from structlog.typing import FilteringBoundLogger
 from core.machines.parameters import Motor
 from service.condition.record_times import ImpossibleTimeError, require_possible_time
 from service.condition.work import ConditionTask, ConditionWork
+from service.jobs.answers import Answers
 from service.jobs.relay_time import TriggeredRecord, note_relay_time
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected, Task
 from service.jobs.worker_pool import NoWorkersError, WorkerPool
@@ -101,6 +102,8 @@ class JobRunner:
         self._condition_results: deque[tuple[ConditionTask, Future[int]]] = deque()
         self._loading = limits.workers
         self._worker = PeriodicWorker("the job runner", self._step, period_s=poll_period_s, at_once=True)
+        self._answers = Answers(self._worker.wake)
+        self.compute = self._answers.ask
 
     def start(self) -> None:
         """Queue this installation's interrupted jobs again and start the thread, which starts the workers."""
@@ -139,8 +142,11 @@ class JobRunner:
             self._pool.renew()
         self._pool_problem = self._pool.problem
         if self._pool_problem is not None:
+            self._answers.refuse(self._pool_problem)
             return
         self._loading = self._pool.loading()
+        while self._has_free_worker() and self._answers.begin(self._pool):
+            pass
         while self._has_free_worker() and self._claim():
             pass
         while self._has_free_worker() and self._begin_condition_task():
@@ -148,7 +154,7 @@ class JobRunner:
 
     def _has_free_worker(self) -> bool:
         others = 0 if self._conditions is None else self._conditions.tasks_under_way
-        return len(self._in_flight) + others < self._limits.workers
+        return len(self._in_flight) + others + self._answers.under_way < self._limits.workers
 
     def _begin_condition_task(self) -> bool:
         """Give a worker something to do for a condition. Returns False where there is nothing to do."""
@@ -289,12 +295,12 @@ class JobRunner:
             case Rejected(reason):
                 self._repository.reject_recording(job.id, reason, now_ns=time.time_ns(), runner=self._id)
                 log.warning("recording rejected", recording=job.recording_id, reason=storable(reason))
-            case Diagnosed(diagnosis, recorded_ns, observation, remark, has_time_code):
+            case Diagnosed(diagnosis, recorded_ns, observation, remark, has_time_code, start):
                 now_ns, left_out = time.time_ns(), None
                 try:
                     require_possible_time(recorded_ns, now_ns)
                 except ImpossibleTimeError as error:
-                    observation, left_out = None, str(error)
+                    observation, start, left_out = None, None, str(error)
                     log.warning(
                         "record left out of the condition", recording=job.recording_id, reason=left_out
                     )
@@ -308,6 +314,7 @@ class JobRunner:
                         observation=observation,
                         left_out=left_out,
                         operation_remark=remark,
+                        start=start,
                     )
                 except UnstorableDiagnosisError as error:
                     self._retry(claimed, f"the diagnosis cannot be stored: {error}")
@@ -348,6 +355,7 @@ class JobRunner:
 
     def _shut_down(self) -> None:
         """Stop the workers, write the results that are there, and put the other jobs back."""
+        self._answers.refuse("the service ends")
         self._pool.stop()
         try:
             while self._results:

@@ -7,6 +7,7 @@ from pathlib import Path
 from core.condition.observation import Observation
 from core.diagnosis.verdict import Diagnosis
 from core.machines.parameters import Motor
+from core.starts.figures import MotorStart
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,7 @@ class Diagnosed:
     operation_remark: why the motor's parameters cannot be estimated from this start; None where they can, and
     for other records.
     has_time_code: whether the record tells how far its times are ahead of UTC.
+    start: what a start shows; None of other records, and where nothing can be measured.
     """
 
     diagnosis: Diagnosis
@@ -42,6 +44,7 @@ class Diagnosed:
     observation: Observation | None = None
     operation_remark: str | None = None
     has_time_code: bool = False
+    start: MotorStart | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,6 @@ The service's own process imports this module to name what its workers do. The n
 behind them, are imported where the work is done: without them the service starts sooner and stays smaller.
 """
 
-from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 from zoneinfo import ZoneInfo
 
@@ -15,17 +13,12 @@ from core.machines.parameters import Motor
 from core.operation import Operation
 from core.recordings import Recording, RecordingError, read
 from core.recordings.local_time import in_utc
+from service.condition.healthy_records import MOST_VALUES, learnt
 from service.jobs.task import Diagnosed, DiagnosisTask, Outcome, Rejected
 from service.jobs.worker_process import follow_service
 
 if TYPE_CHECKING:
-    from core.diagnosis.baseline import Baseline
-
-
-MOST_VALUES = 8_000_000
-"""A longer recording is rejected: it would take more memory than a worker may have.
-
-Twenty channels at 10 kHz have half a minute."""
+    from core.starts.figures import MotorStart
 
 
 def prepare_worker() -> None:
@@ -49,19 +42,21 @@ def diagnose_recording(task: DiagnosisTask) -> Outcome:
             task.motor,
             method=task.method,
             model=task.model,
-            baseline=_learnt(task.baseline, task.motor) if task.baseline else None,
+            baseline=learnt(task.baseline, task.motor) if task.baseline else None,
         )
     except (RecordingError, DiagnosisError) as error:
         return Rejected(str(error))
-    remark = None
+    remark, start = None, None
     if examined.diagnosis.operation is Operation.START:
         remark = _why_not_commissioned_from(recording, task.motor)
+        start = _measured(recording, task.motor)
     return Diagnosed(
         examined.diagnosis,
         recording.trigger_time_ns,
         examined.observation,
         remark,
         recording.has_time_code,
+        start,
     )
 
 
@@ -76,15 +71,11 @@ def _why_not_commissioned_from(recording: Recording, motor: Motor) -> str | None
     return None
 
 
-@lru_cache(maxsize=64)
-def _learnt(healthy: tuple[Path, ...], motor: Motor) -> "Baseline":
-    """Return the baseline learnt from healthy recordings. Raises DiagnosisError.
-
-    Stored files never change, so what was learnt from them once holds as long as this worker lives.
-    """
-    from core.diagnosis.stator import learn_baseline
+def _measured(recording: Recording, motor: Motor) -> "MotorStart | None":
+    """Return what a start shows; None where nothing can be measured."""
+    from core.starts.measuring import measure_start
 
     try:
-        return learn_baseline((read(one, most_values=MOST_VALUES) for one in healthy), motor)
-    except (RecordingError, DiagnosisError) as error:
-        raise DiagnosisError(f"the motor's baseline cannot be learnt: {error}") from error
+        return measure_start(recording, motor)
+    except RecordingError:
+        return None

@@ -151,6 +151,7 @@ class NotificationKind(StrEnum):
     ALARMS = "alarms"
     ESCALATION = "escalation"
     DIGEST = "digest"
+    REPORT = "report"
     TEST = "test"
 
 

@@ -1,18 +1,16 @@
 """Certificates that are about to end: `certificate-end`. The service's own, and those of the relays."""
 
 import socket
-from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from datetime import UTC
 from pathlib import Path
-
-from pydantic import BaseModel
 
 from core.units import NANOSECONDS_PER_SECOND, SECONDS_PER_DAY
 from mms import CredentialFileError, read_certificates
 from service.alarms.confirmation import DeadBand, Decision
 from service.alarms.kinds import AlarmKind, AlarmPriority
 from service.background.alarm_sources.standing import StandingAlarms
+from service.configuration.certificate_files import certificate_files
 from service.configuration.settings import Settings
 from service.storage import Repository
 from service.storage.records import AlarmPlace, AlarmSpec
@@ -23,9 +21,6 @@ URGENT_DAYS = 7.0
 
 MOST_USERS = 3
 """So many relays, or others, are named that use a file."""
-
-CERTIFICATES = frozenset(("certificate", "tls_certificate", "ca", "pinned"))
-"""Settings of these names, wherever they stand, are files with certificates."""
 
 
 class CertificateSource:
@@ -81,38 +76,6 @@ class CertificateSource:
         reason = f"{verb} {ends.astimezone(UTC):%Y-%m-%d %H:%M} UTC ({used})"
         spec = _spec(subject, reason, AlarmPriority.HIGH if left_days <= URGENT_DAYS else None)
         return standing.finding(subject, AlarmPlace(), spec, decision, f"it {reason}")
-
-
-def certificate_files(settings: BaseModel) -> Mapping[Path, Sequence[str]]:
-    """Return the files with certificates that the settings name, each with what uses it."""
-    files: dict[Path, list[str]] = defaultdict(list)
-    for keys, path in _named(settings, ()):
-        user = _user(keys)
-        if user not in files[path]:
-            files[path].append(user)
-    return files
-
-
-def _named(value: object, keys: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], Path]]:
-    """Yield each file with certificates in a part of the settings, with the keys that lead to it."""
-    if isinstance(value, BaseModel):
-        for name in type(value).model_fields:
-            yield from _named(getattr(value, name), (*keys, name))
-    elif isinstance(value, Mapping):
-        for name, part in value.items():
-            yield from _named(part, (*keys, str(name)))
-    elif isinstance(value, tuple | list):
-        for part in value:
-            yield from _named(part, keys)
-    elif isinstance(value, Path) and keys[-1] in CERTIFICATES:
-        yield keys, value
-
-
-def _user(keys: tuple[str, ...]) -> str:
-    """Return in words what uses a file."""
-    if keys[0] == "relays":
-        return f"relay {keys[1]}"
-    return "the REST API" if len(keys) == 1 else f"[{'.'.join(keys[:-1])}]"
 
 
 def _spec(subject: str, reason: str, priority: AlarmPriority | None) -> AlarmSpec:

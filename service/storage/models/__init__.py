@@ -3,7 +3,13 @@
 The code says relay; the tables, their columns and the REST API say IED, as IEC 61850 does.
 """
 
-from service.storage.models.access import ApiTokenRow, FailedLoginRow, UserRow, UserSessionRow
+from service.storage.models.access import (
+    ApiTokenRow,
+    FailedLoginRow,
+    LoginLinkRow,
+    UserRow,
+    UserSessionRow,
+)
 from service.storage.models.alarms import AlarmChangeRow, AlarmRow
 from service.storage.models.audit import AuditEntryRow, AuditForwardingRow, AuditHeadRow
 from service.storage.models.backups import BackupRow
@@ -11,6 +17,7 @@ from service.storage.models.base import Base
 from service.storage.models.conditions import (
     ConditionChangeRow,
     ConditionCheckpointRow,
+    ConditionDayRow,
     ConditionEventRow,
     ConditionRow,
     FoldMarkRow,
@@ -40,6 +47,7 @@ from service.storage.models.relays import (
     QuarantineRow,
     RelayFindingsRow,
 )
+from service.storage.models.starts import StartRow
 
 __all__ = [
     "AlarmChangeRow",
@@ -54,6 +62,7 @@ __all__ = [
     "BaselineRow",
     "ConditionChangeRow",
     "ConditionCheckpointRow",
+    "ConditionDayRow",
     "ConditionEventRow",
     "ConditionRow",
     "DeletedRemoteRecordRow",
@@ -69,6 +78,7 @@ __all__ = [
     "LeaseRow",
     "LinkChangeRow",
     "LinkFiguresRow",
+    "LoginLinkRow",
     "MeasurementRow",
     "MotorRow",
     "MotorVersionRow",
@@ -83,6 +93,7 @@ __all__ = [
     "RemoteRecordRow",
     "SiteRow",
     "StandingAlarmCountRow",
+    "StartRow",
     "StateCountRow",
     "UnobservedRecordingRow",
     "UserRow",

@@ -1,4 +1,7 @@
-"""Tables of users, their sessions and tokens, and of failed logins. Of passwords and secrets: hashes only."""
+"""Tables of users, their sessions, login links and tokens, and of failed logins.
+
+Of passwords and secrets they have hashes only.
+"""
 
 from sqlalchemy import ForeignKey, Index, String
 from sqlalchemy.orm import Mapped, mapped_column
@@ -37,6 +40,16 @@ class UserSessionRow(Base):
     origin: Mapped[str]
     created_ns: Mapped[int]
     used_ns: Mapped[int] = mapped_column(index=True)
+
+
+class LoginLinkRow(Base):
+    """A link that begins one session of a user, until it is followed. digest: SHA-256 of its secret."""
+
+    __tablename__ = "login_links"
+
+    digest: Mapped[str] = mapped_column(String(64), primary_key=True)
+    user: Mapped[str] = mapped_column(ForeignKey("users.name"), index=True)
+    expires_ns: Mapped[int]
 
 
 class ApiTokenRow(Base):

@@ -96,6 +96,23 @@ class ConditionRow(Figures, Base):
     stood_ns: Mapped[int | None]
 
 
+class ConditionDayRow(Base):
+    """What was said of a motor on a day of UTC, which begins at day_ns: of all its records that were folded.
+
+    mu_f_...: of those that have a level; null where none has.  A page shows months of hundreds of motors from
+    these rows, and reads none of their records.
+    """
+
+    __tablename__ = "condition_days"
+
+    motor: Mapped[str] = mapped_column(ForeignKey("motors.name"), primary_key=True)
+    day_ns: Mapped[int] = mapped_column(primary_key=True)
+    records: Mapped[int]
+    mu_f_least: Mapped[float | None] = mapped_column(Double)
+    mu_f_mean: Mapped[float | None] = mapped_column(Double)
+    mu_f_largest: Mapped[float | None] = mapped_column(Double)
+
+
 class ConditionChangeRow(Figures, Base):
     """A time at which a motor's state, kind, phase or candidates changed, or an event happened.
 

@@ -4,6 +4,7 @@ from service.storage.records.access import ApiToken, LoginLimits, User, UserSess
 from service.storage.records.actors import SERVICE, Actor, Role
 from service.storage.records.alarms import (
     Alarm,
+    AlarmCall,
     AlarmCause,
     AlarmChange,
     AlarmFigures,
@@ -18,6 +19,7 @@ from service.storage.records.conditions import (
     BusMotor,
     Checkpoint,
     ConditionChange,
+    ConditionDay,
     ConditionEntry,
     ConditionEvent,
     ConditionFigures,
@@ -42,6 +44,7 @@ from service.storage.records.diagnoses import (
     TrendPoint,
     interval_of,
 )
+from service.storage.records.fleet import CallingAlarms, FleetMotor
 from service.storage.records.health import MotorHealth, RecordedStarts
 from service.storage.records.measurements import Measurement, Sample
 from service.storage.records.notifications import (
@@ -64,11 +67,13 @@ from service.storage.records.relays import (
     Quarantine,
     RelayFindings,
 )
+from service.storage.records.starts import StartEntry
 
 __all__ = [
     "SERVICE",
     "Actor",
     "Alarm",
+    "AlarmCall",
     "AlarmCause",
     "AlarmChange",
     "AlarmFigures",
@@ -82,11 +87,13 @@ __all__ = [
     "BaselineDoubt",
     "BaselineEntry",
     "BusMotor",
+    "CallingAlarms",
     "CallsOfDay",
     "Checkpoint",
     "ClaimedJob",
     "ClockReading",
     "ConditionChange",
+    "ConditionDay",
     "ConditionEntry",
     "ConditionEvent",
     "ConditionFigures",
@@ -97,6 +104,7 @@ __all__ = [
     "Deletion",
     "DiagnosisEntry",
     "DiagnosisPoint",
+    "FleetMotor",
     "FoldInput",
     "FoldResult",
     "GatewayEntry",
@@ -133,6 +141,7 @@ __all__ = [
     "Role",
     "Sample",
     "SiteEntry",
+    "StartEntry",
     "ToObserve",
     "TrendPoint",
     "User",

@@ -110,6 +110,23 @@ class AlarmChange:
 
 
 @dataclass(frozen=True, slots=True)
+class AlarmCall:
+    """A time at which an alarm called for somebody, and what became of it until the end of a time.
+
+    acknowledged_ns, gone_ns: None where nobody acknowledged it, or its cause stood on, until then or until it
+    called again. state: the alarm's at that end.
+    """
+
+    alarm: Alarm
+    called_ns: int
+    acknowledged_ns: int | None
+    acknowledged_by: str | None
+    comment: str | None
+    gone_ns: int | None
+    state: AlarmState
+
+
+@dataclass(frozen=True, slots=True)
 class AlarmCause:
     """A cause of alarms, and how often it called for somebody."""
 

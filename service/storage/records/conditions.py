@@ -68,6 +68,20 @@ class ConditionPoint(ConditionFigures):
     time_ns: int
 
 
+@dataclass(frozen=True, slots=True)
+class ConditionDay:
+    """What was said of a motor on a day of UTC, which begins at `day_ns`, by so many of its records.
+
+    mu_f_...: of the records that have a level; None where none has.
+    """
+
+    day_ns: int
+    records: int
+    mu_f_least: float | None
+    mu_f_mean: float | None
+    mu_f_largest: float | None
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConditionChange(ConditionFigures):
     """A time at which a motor's state, kind, phase or candidates changed, or an event happened.

@@ -162,6 +162,7 @@ class LatestFigures:
     recorded_ns: int
     detection_limit: float | None
     load_level: float | None
+    verdict: Verdict
 
 
 @dataclass(frozen=True, slots=True)

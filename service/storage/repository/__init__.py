@@ -1,6 +1,7 @@
 """The only code that touches the tables, one module a subject."""
 
 from service.storage.repository.access.failed_logins import FailedLoginRows
+from service.storage.repository.access.login_links import LoginLinkRows
 from service.storage.repository.access.tokens import TokenRows
 from service.storage.repository.access.user_sessions import UserSessionRows
 from service.storage.repository.access.users import UserRows
@@ -8,12 +9,20 @@ from service.storage.repository.alarms import AlarmRows
 from service.storage.repository.audit.trail import AuditRows
 from service.storage.repository.backups import BackupRows
 from service.storage.repository.baselines import BaselineRows
+from service.storage.repository.change_stamps import ChangeStampRows
+from service.storage.repository.condition_days import ConditionDayRows
 from service.storage.repository.condition_events import ConditionEventRows
 from service.storage.repository.conditions import ConditionRows
 from service.storage.repository.deletions import DeletionRows
 from service.storage.repository.findings import FindingsRows
+from service.storage.repository.fleet import FleetRows
 from service.storage.repository.folders import FolderRows
 from service.storage.repository.folding import FoldingRows
+from service.storage.repository.history.conditions import PastConditionRows
+from service.storage.repository.history.neighbours import NeighbourRows
+from service.storage.repository.history.seen_records import SeenRecordRows
+from service.storage.repository.history.starts import StartRows
+from service.storage.repository.history.thinned_trend import ThinnedTrendRows
 from service.storage.repository.job_runners import JobRunnerRows
 from service.storage.repository.jobs import JobRows
 from service.storage.repository.leases import LeaseRows
@@ -23,6 +32,7 @@ from service.storage.repository.motor_health import MotorHealthRows
 from service.storage.repository.motor_versions import MotorVersionRows
 from service.storage.repository.notifications import NotificationRows
 from service.storage.repository.observations import ObservationRows
+from service.storage.repository.overviews import OverviewRows
 from service.storage.repository.plant import PlantRows
 from service.storage.repository.quarantines import QuarantineRows
 from service.storage.repository.recording_requests import RecordingRequestRows
@@ -45,12 +55,20 @@ class Repository(
     JobRows,
     JobRunnerRows,
     MotorHealthRows,
+    FleetRows,
     MotorVersionRows,
+    SeenRecordRows,
+    StartRows,
+    ThinnedTrendRows,
+    NeighbourRows,
+    PastConditionRows,
     ObservationRows,
+    ConditionDayRows,
     ConditionEventRows,
     ConditionRows,
     FoldingRows,
     StateCounts,
+    ChangeStampRows,
     MeasurementRows,
     BaselineRows,
     DeletionRows,
@@ -61,8 +79,10 @@ class Repository(
     NotificationRows,
     UserRows,
     UserSessionRows,
+    LoginLinkRows,
     TokenRows,
     FailedLoginRows,
+    OverviewRows,
 ):
     """All there is to ask of and tell the database; every method is one transaction.
 

@@ -37,6 +37,7 @@ from service.storage.records import (
     RecordObservation,
 )
 from service.storage.repository.alarms.conditions import settle_alarm
+from service.storage.repository.condition_days import keep_days
 from service.storage.repository.fold_marks import EARLIEST_NS, mark, others_of_bus, resume
 from service.storage.repository.observations import OBSERVED, record_observation, take_in_again
 from service.storage.repository.sessions import Sessions, found, only, record_of
@@ -183,6 +184,8 @@ class FoldingRows(Sessions):
             if fold.next_ns is not None:
                 mark(session, fold.motor, fold.next_ns)
             _write_points(session, result)
+            after_ns = None if fold.checkpoint is None else done_ns
+            keep_days(session, fold.motor, after_ns=after_ns, before_ns=fold.next_ns)
             _write_changes(session, fold, result.changes, done_ns)
             _write_checkpoints(session, fold.motor, result)
             if result.condition is not None:

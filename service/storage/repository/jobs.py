@@ -11,6 +11,7 @@ from core.condition.observation import Observation
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
 from core.operation import AT_REST, EXPECTED
+from core.starts.figures import MotorStart
 from core.units import NANOSECONDS_PER_SECOND
 from service.audit.actions import AuditAction
 from service.storage.errors import (
@@ -26,6 +27,7 @@ from service.storage.repository.audit.entries import note_change
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
 from service.storage.repository.conditions import note_standstill
+from service.storage.repository.history.starts import keep_start
 from service.storage.repository.observations import keep_observation
 from service.storage.repository.recording_requests import diagnose_rows, fail_rows
 from service.storage.repository.recordings import new_job, require_room
@@ -145,12 +147,14 @@ class JobRows(Sessions):
         observation: Observation | None = None,
         left_out: str | None = None,
         operation_remark: str | None = None,
+        start: MotorStart | None = None,
     ) -> bool:
         """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
 
         Again changes nothing. recorded_ns: trigger time written in the record.  observation: what the record
         tells of its motor's condition; None where it tells nothing.  left_out: why it does not count there,
         for people.  operation_remark: why the motor's parameters cannot be estimated from this start.
+        start: what a start shows; None of other records.
         Returns False, and keeps nothing, where the job is not the runner's any more.
         Raises NotFoundError, UnstorableDiagnosisError.
         """
@@ -175,6 +179,7 @@ class JobRows(Sessions):
             session.flush()
             diagnose_rows(session, recording.id, now_ns)
             keep_observation(session, recording.id, recording.motor, observation)
+            keep_start(session, recording.id, recording.motor, recorded_ns, start)
             if diagnosis.operation in AT_REST:
                 note_standstill(session, recording.motor, min(recorded_ns, now_ns))
             return True

@@ -30,6 +30,7 @@ from service.storage.records import (
     interval_of,
 )
 from service.storage.repository.conditions import conditions_of
+from service.storage.repository.fleet import latest_figures_of
 from service.storage.repository.sessions import Order, Sessions, columns_of, found, page_of, record_of
 from service.storage.states import RecordingState
 
@@ -83,25 +84,8 @@ class MotorHealthRows(Sessions):
 
     def latest_figures(self) -> tuple[LatestFigures, ...]:
         """Return the figures of the latest recording of each motor in service that has any, by name."""
-        diagnosis = aliased(DiagnosisRow)
-        # The index of the trend has all of these columns: no document is read.
-        latest = (
-            select(diagnosis.id)
-            .where(diagnosis.motor == MotorRow.name, diagnosis.current, diagnosis.says_nothing.is_(False))
-            .where(diagnosis.mu_f.is_not(None))
-            .order_by(diagnosis.recorded_ns.desc(), diagnosis.id.desc())
-            .limit(1)
-            .scalar_subquery()
-        )
-        query = (
-            select(*columns_of(LatestFigures, DiagnosisRow))
-            .select_from(MotorRow)
-            .join(DiagnosisRow, DiagnosisRow.id == latest)
-            .where(MotorRow.in_service)
-            .order_by(MotorRow.name)
-        )
         with self._read() as session:
-            return tuple(LatestFigures(*row) for row in session.execute(query))
+            return latest_figures_of(session)
 
     def trend(
         self,

@@ -97,7 +97,7 @@ class ObservationRows(Sessions):
         order: Order = [ObservationRow.time_ns, ObservationRow.recording_id]
         with self._read() as session:
             found(session, MotorRow, motor, "motor")
-            return page_of(session, query, order, _point, limit=limit, after=after)
+            return page_of(session, query, order, point, limit=limit, after=after)
 
     def latest_condition_points(self, motor: str, *, limit: int) -> tuple[ConditionPoint, ...]:
         """Return what was said from each of a motor's latest records on, oldest first."""
@@ -108,7 +108,7 @@ class ObservationRows(Sessions):
             .limit(limit)
         )
         with self._read() as session:
-            return tuple(_point(*row) for row in reversed(session.execute(query).all()))
+            return tuple(point(*row) for row in reversed(session.execute(query).all()))
 
     def motors_to_observe(self) -> tuple[str, ...]:
         """Return the motors that have recordings from before there were observations."""
@@ -264,7 +264,8 @@ def _of_row(row: ObservationRow) -> RecordObservation:
     return record_observation([getattr(row, column.name) for column in OBSERVED])
 
 
-def _point(*values: Any) -> ConditionPoint:
+def point(*values: Any) -> ConditionPoint:
+    """Return what was said from a record on. values: of the columns of a ConditionPoint."""
     return ConditionPoint(**dict(zip(_POINT_FIELDS, values, strict=True)))
 
 

@@ -7,12 +7,14 @@ from fastapi import APIRouter, FastAPI
 from sqlalchemy import Connection, Engine, text
 
 from benchmarks.storage.filling import fill
-from benchmarks.storage.plans import GROWING, Statement, statements_of, whole_scans
+from benchmarks.storage.plans import GROWING, Statement, noted, statements_of, whole_scans
 from benchmarks.storage.requests import asks
-from benchmarks.storage.rows import Amounts
+from benchmarks.storage.rows import END_NS, Amounts
 from benchmarks.storage.server import api_on
+from core.units import NANOSECONDS_PER_DAY
 from service.storage import Repository, connect
 from service.storage.models import Base
+from service.storage.repository.change_stamps import Subject
 from testing.service.database import make_database
 
 AMOUNTS = Amounts.of(4_000, motors=12)
@@ -21,6 +23,7 @@ DO_NOT_GROW = frozenset(
     {
         "api_tokens",
         "failed_logins",
+        "login_links",
         "user_sessions",
         "users",
         "sites",
@@ -79,6 +82,24 @@ def test_no_list_and_no_figure_reads_through_a_table_that_grows(
         f"{ask.label}: {step}: {statement.text}"
         for ask in asks(app)
         for statement in statements_of(app, engine, ask.at(0.5, AMOUNTS))
+        for step in whole_scans(statement, statement.plan(connection))
+    ]
+    assert not found, "\n".join(found)
+
+
+def test_neither_the_fleet_nor_what_open_pages_are_told_reads_through_a_table_that_grows(
+    engine: Engine, connection: Connection
+) -> None:
+    repository = Repository(engine)
+    motors = [motor.name for motor in repository.motors(limit=100).items]
+    with noted(engine) as statements:
+        assert repository.fleet()
+        assert repository.condition_days(motors, from_ns=END_NS - 365 * NANOSECONDS_PER_DAY)
+        repository.change_stamps(list(Subject))
+        repository.motor_stamps(motors)
+    found = [
+        f"{step}: {statement.text}"
+        for statement in statements
         for step in whole_scans(statement, statement.plan(connection))
     ]
     assert not found, "\n".join(found)

@@ -11,6 +11,7 @@ import pytest
 from core.diagnosis.verdict import Verdict
 from core.recordings import Channel, Quantity, Recording
 from core.recordings.comtrade.writer import write
+from core.starts.measuring import measure_start
 from core.time_stamps import nanoseconds
 from service.jobs import Diagnosed, DiagnosisTask, JobRunner, Rejected
 from service.jobs.runner import JobLimits
@@ -21,6 +22,7 @@ from service.timing.backoff import Backoff
 from testing.machines.motors import REFERENCE
 from testing.machines.phase_circuits import recording as waveforms
 from testing.machines.phase_circuits import running
+from testing.machines.starts import StartRecord
 from testing.service.plants import NOW_NS, motor
 from testing.waiting import wait_until
 
@@ -54,6 +56,23 @@ def test_a_record_is_diagnosed_as_of_its_trigger(tmp_path: Path) -> None:
     assert isinstance(outcome, Diagnosed)
     assert outcome.recorded_ns == NOW_NS + TRIGGER_INDEX * 250_000
     assert (outcome.diagnosis.method, outcome.diagnosis.model) == ("hcpa", "split-winding")
+
+
+def test_a_start_is_measured(tmp_path: Path) -> None:
+    start = StartRecord(load_level=0.5).of(REFERENCE)
+    asked = task(write(tmp_path / "START", start))
+    outcome = diagnose_recording(replace(asked, motor=REFERENCE))
+    assert isinstance(outcome, Diagnosed)
+    assert outcome.start is not None
+    measured = measure_start(start, REFERENCE)
+    assert outcome.start.acceleration_s == pytest.approx(measured.acceleration_s, rel=0.01)
+    assert outcome.start.i2t_A2s == pytest.approx(measured.i2t_A2s, rel=0.01)
+
+
+def test_a_record_that_is_no_start_has_nothing_measured_of_one(tmp_path: Path) -> None:
+    outcome = diagnose_recording(task(write(tmp_path / "EVENT", recording())))
+    assert isinstance(outcome, Diagnosed)
+    assert outcome.start is None
 
 
 def test_a_record_in_local_time_is_diagnosed_as_of_utc(tmp_path: Path) -> None:

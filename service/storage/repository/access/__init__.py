@@ -1,1 +1,1 @@
-"""Users, their sessions and tokens, and failed logins."""
+"""Users, their sessions, login links and tokens, and failed logins."""

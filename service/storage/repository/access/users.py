@@ -7,7 +7,7 @@ from sqlalchemy.orm import Session
 
 from service.audit.actions import AuditAction
 from service.storage.errors import LastAdministratorError, NotFoundError, UserExistsError
-from service.storage.models import ApiTokenRow, FailedLoginRow, UserRow, UserSessionRow
+from service.storage.models import ApiTokenRow, FailedLoginRow, LoginLinkRow, UserRow, UserSessionRow
 from service.storage.records import Actor, Cursor, Page, Role, User
 from service.storage.repository.access.failed_logins import account_key
 from service.storage.repository.audit.entries import note_change
@@ -217,8 +217,9 @@ def _document(user: User) -> dict[str, object]:
 
 
 def end_sessions(session: Session, name: str) -> None:
-    """End all sessions of a user."""
+    """End all sessions of a user, and the links that would begin another."""
     session.execute(delete(UserSessionRow).where(UserSessionRow.user == name))
+    session.execute(delete(LoginLinkRow).where(LoginLinkRow.user == name))
 
 
 def _words(roles: Iterable[Role]) -> str:

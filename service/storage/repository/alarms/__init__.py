@@ -1,5 +1,6 @@
 """Alarms: raised and cleared by their causes, looked after by people, listed, and forgotten at last."""
 
+from service.storage.repository.alarms.calls import AlarmCallRows
 from service.storage.repository.alarms.causes import AlarmCauseRows
 from service.storage.repository.alarms.conditions import ConditionAlarmRows
 from service.storage.repository.alarms.figures import AlarmFigureRows
@@ -17,6 +18,7 @@ class AlarmRows(
     AlarmSuppressionRows,
     ConditionAlarmRows,
     AlarmFigureRows,
+    AlarmCallRows,
     AlarmSourceRows,
     AlarmGroupRows,
 ):

@@ -3,6 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 
 from core.condition.kinds import Kind
+from core.quantity_text import period
 from service.alarms.growth import LevelSeen, magnitude
 from service.storage.records import ConditionEntry
 
@@ -78,8 +79,8 @@ class ConditionWords:
             return ""
         low, mid, high = days
         return (
-            f"the fault level will likely reach {self.limit:.2%} in {mid:.0f} days "
-            f"({low:.0f} to {high:.0f}), counted from the latest record"
+            f"the fault level will likely reach {100 * self.limit:.2f} % in {period(mid)} "
+            f"({period(low)} to {period(high)}), counted from the latest record"
         )
 
     @property

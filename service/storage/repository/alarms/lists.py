@@ -1,8 +1,9 @@
 """Lists of alarms, and the history of one."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
-from sqlalchemy import Select, select
+from sqlalchemy import Select, or_, select
 
 from service.storage.models import AlarmChangeRow, AlarmRow
 from service.storage.models.alarms import is_open
@@ -20,14 +21,16 @@ from service.storage.states import AlarmState
 
 @dataclass(frozen=True, slots=True)
 class AlarmFilter:
-    """Which alarms a list has; None for all."""
+    """Which alarms a list has; None for all. text: in the name of the motor, or of the relay."""
 
     site: str | None = None
     relay: str | None = None
     motor: str | None = None
     standing: bool | None = None
     state: AlarmState | None = None
+    states: Collection[AlarmState] | None = None
     part_of: str | None = None
+    text: str | None = None
 
 
 class AlarmLists(Sessions):
@@ -55,13 +58,17 @@ class AlarmLists(Sessions):
         motor: str | None = None,
         standing: bool | None = None,
         part_of: str | None = None,
+        site: str | None = None,
+        text: str | None = None,
     ) -> Page[Alarm]:
         """Return a page of alarms, latest first.
 
-        relay, motor: None for all. standing: True for alarms whose cause stands, False for cleared ones, None
-        for both. part_of: only those that this alarm tells in one line.
+        relay, motor, site: None for all. standing: True for alarms whose cause stands, False for cleared
+        ones, None for both. part_of: only those that this alarm tells in one line. text: only those whose
+        motor or relay has it in its name.
         """
-        query = _chosen(AlarmFilter(relay=relay, motor=motor, standing=standing, part_of=part_of))
+        chosen = AlarmFilter(site, relay, motor, standing=standing, part_of=part_of, text=text)
+        query = _chosen(chosen)
         order: Order = [AlarmRow.raised_ns, AlarmRow.id]
         with self._read() as session:
             return page_of(session, query, order, Alarm, limit=limit, after=after, descending=True)
@@ -75,12 +82,16 @@ class AlarmLists(Sessions):
         relay: str | None = None,
         motor: str | None = None,
         state: AlarmState | None = None,
+        states: Collection[AlarmState] | None = None,
+        text: str | None = None,
     ) -> Page[Alarm]:
         """Return a page of the alarms that are not over, what to act on first at the top.
 
-        site, relay, motor, state: None for all.
+        site, relay, motor, state, states: None for all. text: only those whose motor or relay has it in its
+        name.
         """
-        query = _chosen(AlarmFilter(site, relay, motor, state=state)).where(is_open())
+        chosen = AlarmFilter(site, relay, motor, state=state, states=states, text=text)
+        query = _chosen(chosen).where(is_open())
         order: Order = [AlarmRow.urgency, AlarmRow.raised_ns, AlarmRow.id]
         with self._read() as session:
             return page_of(session, query, order, Alarm, limit=limit, after=after, descending=True)
@@ -106,6 +117,11 @@ def _chosen(chosen: AlarmFilter) -> Select[*tuple[object, ...]]:
         query = query.where(AlarmRow.part_of == chosen.part_of)
     if chosen.state is not None:
         query = query.where(AlarmRow.state == chosen.state)
+    if chosen.states is not None:
+        query = query.where(AlarmRow.state.in_(chosen.states))
+    if chosen.text is not None:
+        named = (column.icontains(chosen.text, autoescape=True) for column in (AlarmRow.motor, AlarmRow.ied))
+        query = query.where(or_(*named))
     if chosen.standing is not None:
         cleared = AlarmRow.cleared_ns
         query = query.where(cleared.is_(None) if chosen.standing else cleared.is_not(None))

@@ -15,12 +15,13 @@ from sqlalchemy import Engine, update
 from core.units import NANOSECONDS_PER_DAY
 from service.alarms.kinds import AlarmKind, AlarmPriority
 from service.background.alarm_sources.backups import BackupSource
-from service.background.alarm_sources.certificates import CertificateSource, certificate_files
+from service.background.alarm_sources.certificates import CertificateSource
 from service.background.alarm_sources.clocks import ClockSource
 from service.background.alarm_sources.disks import DiskSource, Room, days_to_full
 from service.background.alarm_sources.missing_data import MissingDataSource
 from service.configuration.alarms import AlarmSettings
 from service.configuration.backup import BackupSettings
+from service.configuration.certificate_files import certificate_files
 from service.configuration.relay_access import RelayAccess, RelayTls
 from service.configuration.settings import Settings
 from service.plant import Schedule

@@ -207,7 +207,7 @@ def test_a_limit_within_the_horizon_is_told_with_a_dead_band(course: Course) -> 
     course.record(forecast(29.0))
     told = course.forecast()
     assert (told.subject, told.priority) == ("limit of 2.00%", AlarmPriority.HIGH)
-    assert told.reason.startswith("the fault level will likely reach 2.00% in 29 days (14 to 58)")
+    assert told.reason.startswith("the fault level will likely reach 2.00 % in 29 days (14 days to 58 days)")
     course.record(forecast(44.0))
     assert len(course.standing()) == 2
     course.record(forecast(46.0))

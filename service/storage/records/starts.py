@@ -1,0 +1,15 @@
+"""Recorded starts as the repository hands them out."""
+
+from dataclasses import dataclass
+
+from core.starts.figures import MotorStart
+
+
+@dataclass(frozen=True, slots=True)
+class StartEntry:
+    """A recorded start of a motor, and what it shows."""
+
+    recording_id: str
+    motor: str
+    time_ns: int
+    start: MotorStart

@@ -1,0 +1,73 @@
+"""What a motor's records showed, with what was said of the motor then; and when it started and stopped."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import fields
+from typing import Any
+
+from sqlalchemy import func, select
+
+from core.operation import Operation
+from service.plant import AveragingStep, MeteredQuantity
+from service.storage.models import MeasurementRow, ObservationRow, RecordingRow
+from service.storage.records import ConditionFigures, RecordingEntry
+from service.storage.records.history import SeenRecord
+from service.storage.repository.observations import OBSERVED, record_observation
+from service.storage.repository.sessions import Sessions, columns_of
+
+_FIGURES = [field.name for field in fields(ConditionFigures)]
+
+
+class SeenRecordRows(Sessions):
+    def latest_records(
+        self, motor: str, *, limit: int, before_ns: int | None = None
+    ) -> tuple[SeenRecord, ...]:
+        """Return what a motor's latest records showed, oldest first. before_ns: those from before a time."""
+        figures = columns_of(ConditionFigures, ObservationRow)
+        query = select(*OBSERVED, *figures).where(ObservationRow.motor == motor)
+        if before_ns is not None:
+            query = query.where(ObservationRow.time_ns < before_ns)
+        order = (ObservationRow.time_ns.desc(), ObservationRow.recording_id.desc())
+        width = len(OBSERVED)
+        with self._read() as session:
+            rows = session.execute(query.order_by(*order).limit(limit)).all()
+        return tuple(_seen(row[:width], row[width:]) for row in reversed(rows))
+
+    def operations(
+        self, motor: str, kinds: Collection[Operation], *, limit: int, from_ns: int, to_ns: int
+    ) -> tuple[RecordingEntry, ...]:
+        """Return the latest recordings in which a motor does one of these, from_ns <= time < to_ns."""
+        time_ns = func.coalesce(RecordingRow.recorded_ns, RecordingRow.announced_ns)
+        query = (
+            select(*columns_of(RecordingEntry, RecordingRow))
+            .where(RecordingRow.motor == motor, RecordingRow.operation.in_(kinds))
+            .where(time_ns >= from_ns, time_ns < to_ns)
+            .order_by(RecordingRow.announced_ns.desc(), RecordingRow.id.desc())
+            .limit(limit)
+        )
+        with self._read() as session:
+            return tuple(RecordingEntry(*row) for row in session.execute(query))
+
+    def power_profile(self, motor: str, *, step_W: float, from_ns: int) -> tuple[tuple[float, int], ...]:
+        """Return for how many quarters of an hour a motor took how much power, by steps of power.
+
+        Each is told by the power in the middle of its step [W]. Quarters without a value are not among them.
+        """
+        power_W = MeasurementRow.__table__.c[MeteredQuantity.POWER.value]
+        # SQLite is often built without floor(); to round what is half a step less is the same.
+        step = func.round(func.abs(power_W) / step_W - 0.4999999).label("step")
+        query = (
+            select(step, func.count())
+            .where(MeasurementRow.motor == motor, MeasurementRow.step_s == AveragingStep.QUARTER_HOUR.value)
+            .where(MeasurementRow.time_ns >= from_ns, power_W.is_not(None))
+            .group_by(step)
+            .order_by(step)
+        )
+        with self._read() as session:
+            rows = session.execute(query).all()
+        return tuple(((float(number) + 0.5) * step_W, quarters) for number, quarters in rows)
+
+
+def _seen(observed: Sequence[Any], said: Sequence[Any]) -> SeenRecord:
+    record = record_observation(observed)
+    figures = None if said[0] is None else ConditionFigures(**dict(zip(_FIGURES, said, strict=True)))
+    return SeenRecord(record.recording_id, record.observation, figures)
