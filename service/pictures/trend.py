@@ -6,11 +6,16 @@ from datetime import UTC, datetime, tzinfo
 from math import isfinite
 
 from core.units import NANOSECONDS_PER_SECOND
+from service.pictures.looks import PRINT, Look
+from service.pictures.marks import mark_states
 from service.pictures.svg import Drawing
 from service.pictures.ticks import figure_ticks, time_ticks
 
 WIDTH, HEIGHT = 640.0, 260.0
 LEFT, RIGHT, TOP, BOTTOM = 52.0, 14.0, 34.0, 26.0
+
+FAR = 2.5
+"""A line of a level so many times above all others would press them flat."""
 
 LEAST_TOP = 0.01
 """The axis goes to 1 % at least, so that noise does not look like a fault."""
@@ -20,9 +25,10 @@ MOST_POINTS = 600
 
 LONGEST_TITLE = 40
 
-INK, GREY, GRID, BAND = "#1f2933", "#7b8794", "#e4e7eb", "#eef1f4"
-COLOURS = {"watch": "#b7791f", "fault": "#c53030"}
-"""What is normal is grey."""
+MOST_MARKS = 40
+"""Events beyond these are not readable; the latest are shown."""
+
+CALLS = ("watch", "fault")
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,27 +42,61 @@ class TrendPoint:
     state: str = "healthy"
 
 
+@dataclass(frozen=True, slots=True)
+class TrendMark:
+    """Something that happened at a time [ns], in a word or two."""
+
+    time_ns: int
+    words: str
+
+
 def trend_picture(
-    title: str, points: Sequence[TrendPoint], *, limit: float | None = None, zone: tzinfo = UTC
+    title: str,
+    points: Sequence[TrendPoint],
+    *,
+    limit: float | None = None,
+    ahead: float | None = None,
+    detectable: float | None = None,
+    until_ns: int | None = None,
+    marks: Sequence[TrendMark] = (),
+    zone: tzinfo = UTC,
+    look: Look = PRINT,
 ) -> str:
     """Return the picture as SVG.
 
     points: oldest first, shares of the phase turns. limit: the level from which on the motor has a fault.
+    ahead: the level that the forecast is about.  detectable: the least step that would be seen; either is
+    drawn unless it is far above all else.  until_ns: where the time shown ends.  marks: what happened
+    meanwhile, numbered from the left.
     """
-    drawing = Drawing(WIDTH, HEIGHT, title=f"{title}: fault level over time")
-    drawing.rectangle(0, 0, WIDTH, HEIGHT, fill="#ffffff")
-    drawing.text(LEFT, 20, title[:LONGEST_TITLE], fill=INK, font_weight="bold")
     known = thinned([point for point in points if isfinite(point.value)])
+    drawing = Drawing(
+        WIDTH, HEIGHT, title=f"{title}: fault level over time", description=_told(known, limit, zone)
+    )
+    drawing.rectangle(0, 0, WIDTH, HEIGHT, fill=look.surface)
+    drawing.text(LEFT, 20, title[:LONGEST_TITLE], fill=look.ink, font_weight="bold")
     if not known:
-        drawing.text(WIDTH / 2, HEIGHT / 2, "no record yet", anchor="middle", fill=GREY)
+        drawing.text(WIDTH / 2, HEIGHT / 2, "no record yet", anchor="middle", fill=look.muted)
         return drawing.svg()
-    frame = _frame(known, limit)
-    _interval(drawing, frame, known)
-    _axes(drawing, frame, zone)
-    _limit(drawing, frame, limit)
-    _curve(drawing, frame, known)
-    _latest(drawing, known[-1], zone)
+    frame = _frame(known, limit, [level for level in (ahead, detectable) if level is not None], until_ns)
+    _interval(drawing, frame, known, look)
+    _axes(drawing, frame, zone, look)
+    _level(drawing, frame, limit, "motor's limit", look.fault, "5 4")
+    _level(drawing, frame, None if ahead == limit else ahead, "next level", look.watch, "5 4")
+    _level(drawing, frame, detectable, "seen from", look.muted, "2 3")
+    _marks(drawing, frame, marks, look)
+    _curve(drawing, frame, known, look)
+    _latest(drawing, known[-1], zone, look)
     return drawing.svg()
+
+
+def _told(points: Sequence[TrendPoint], limit: float | None, zone: tzinfo) -> str:
+    if not points:
+        return "No record yet"
+    latest = points[-1]
+    told = f"Last {100 * latest.value:.2f} % on {_time(latest, zone)}, {latest.state}"
+    told += f"; highest {100 * max(point.value for point in points):.2f} %"
+    return told if limit is None else f"{told}; limit {100 * limit:.3g} %"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,54 +115,70 @@ class _Frame:
         return HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * share
 
 
-def _frame(points: Sequence[TrendPoint], limit: float | None) -> _Frame:
+def _frame(
+    points: Sequence[TrendPoint], limit: float | None, others: Sequence[float], until_ns: int | None
+) -> _Frame:
     largest = max(point.value for point in points)
     highest = max((point.high for point in points if point.high is not None), default=0.0)
-    top = 1.08 * max(largest, min(highest, 2.0 * largest), 1.1 * (limit or 0.0), LEAST_TOP)
-    first_ns, last_ns = points[0].time_ns, points[-1].time_ns
+    top = max(largest, min(highest, 2.0 * largest), 1.1 * (limit or 0.0), LEAST_TOP)
+    top = 1.08 * max(top, *(level for level in others if level <= FAR * top), top)
+    first_ns, last_ns = points[0].time_ns, max(points[-1].time_ns, until_ns or 0)
     return _Frame(first_ns, max(last_ns, first_ns + 60_000_000_000), top)
 
 
-def _axes(drawing: Drawing, frame: _Frame, zone: tzinfo) -> None:
+def _axes(drawing: Drawing, frame: _Frame, zone: tzinfo, look: Look) -> None:
     for level in figure_ticks(0.0, frame.top, 5):
         y = frame.y(level)
-        drawing.line(LEFT, y, WIDTH - RIGHT, y, stroke=GRID)
-        drawing.text(LEFT - 6, y + 4, f"{100 * level:.4g} %", anchor="end", fill=GREY)
+        drawing.line(LEFT, y, WIDTH - RIGHT, y, stroke=look.line)
+        drawing.text(LEFT - 6, y + 4, f"{100 * level:.4g} %", anchor="end", fill=look.muted)
     for time_ns, words in time_ticks(frame.first_ns, frame.last_ns, 7, zone):
         x = frame.x(time_ns)
-        drawing.line(x, HEIGHT - BOTTOM, x, HEIGHT - BOTTOM + 4, stroke=GREY)
+        drawing.line(x, HEIGHT - BOTTOM, x, HEIGHT - BOTTOM + 4, stroke=look.muted)
         if LEFT + 10 <= x <= WIDTH - RIGHT - 14:
-            drawing.text(x, HEIGHT - BOTTOM + 16, words, anchor="middle", fill=GREY)
+            drawing.text(x, HEIGHT - BOTTOM + 16, words, anchor="middle", fill=look.muted)
 
 
-def _limit(drawing: Drawing, frame: _Frame, limit: float | None) -> None:
-    if limit is None:
+def _level(
+    drawing: Drawing, frame: _Frame, level: float | None, words: str, colour: str, dashes: str
+) -> None:
+    if level is None or level > frame.top:
         return
-    y = frame.y(limit)
-    drawing.line(LEFT, y, WIDTH - RIGHT, y, stroke=COLOURS["fault"], stroke_dasharray="5 4")
-    drawing.text(LEFT + 4, y - 4, f"limit {100 * limit:.3g} %", fill=COLOURS["fault"], font_size="11")
+    y = frame.y(level)
+    drawing.line(LEFT, y, WIDTH - RIGHT, y, stroke=colour, stroke_dasharray=dashes)
+    drawing.text(LEFT + 4, y - 4, f"{words} {100 * level:.3g} %", fill=colour, font_size="11")
 
 
-def _interval(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint]) -> None:
+def _marks(drawing: Drawing, frame: _Frame, marks: Sequence[TrendMark], look: Look) -> None:
+    shown = [mark for mark in marks if frame.first_ns <= mark.time_ns <= frame.last_ns][-MOST_MARKS:]
+    for number, mark in enumerate(shown, start=1):
+        x = frame.x(mark.time_ns)
+        drawing.line(x, TOP, x, HEIGHT - BOTTOM, stroke=look.accent, stroke_dasharray="1 3")
+        drawing.text(x, TOP - 2, str(number), anchor="middle", fill=look.accent, font_size="10")
+
+
+def _interval(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint], look: Look) -> None:
     sure = [point for point in points if point.low is not None and point.high is not None]
     upper = [(frame.x(point.time_ns), frame.y(point.high or 0.0)) for point in sure]
     lower = [(frame.x(point.time_ns), frame.y(point.low or 0.0)) for point in sure]
-    drawing.path([*upper, *reversed(lower)], closed=True, fill=BAND, stroke="none")
+    drawing.path([*upper, *reversed(lower)], closed=True, fill=look.band, stroke="none")
 
 
-def _curve(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint]) -> None:
+def _curve(drawing: Drawing, frame: _Frame, points: Sequence[TrendPoint], look: Look) -> None:
     places = [(frame.x(point.time_ns), frame.y(point.value)) for point in points]
-    drawing.path(places, stroke=GREY, stroke_width="1.5", stroke_linejoin="round")
-    for state, colour in COLOURS.items():
-        told = [place for place, point in zip(places, points, strict=True) if point.state == state]
-        drawing.circles(told, 2.5, fill=colour)
-    drawing.circles(places[-1:], 4.0, fill=COLOURS.get(points[-1].state, INK))
+    drawing.path(places, stroke=look.muted, stroke_width="1.5", stroke_linejoin="round")
+    marked = [(place, point.state) for place, point in zip(places, points, strict=True)]
+    mark_states(drawing, look, [one for one in marked if one[1] in CALLS], 2.5)
+    mark_states(drawing, look, marked[-1:], 4.0)
 
 
-def _latest(drawing: Drawing, point: TrendPoint, zone: tzinfo) -> None:
+def _latest(drawing: Drawing, point: TrendPoint, zone: tzinfo, look: Look) -> None:
+    words = f"{100 * point.value:.2f} % at {_time(point, zone)}"
+    drawing.text(WIDTH - RIGHT, 20, words, anchor="end", fill=look.ink)
+
+
+def _time(point: TrendPoint, zone: tzinfo) -> str:
     at = datetime.fromtimestamp(point.time_ns // NANOSECONDS_PER_SECOND, zone)
-    words = f"{100 * point.value:.2f} % at {at:%Y-%m-%d %H:%M} {at.tzname()}"
-    drawing.text(WIDTH - RIGHT, 20, words, anchor="end", fill=INK)
+    return f"{at:%Y-%m-%d %H:%M} {at.tzname()}"
 
 
 def thinned(points: Sequence[TrendPoint], most: int = MOST_POINTS) -> Sequence[TrendPoint]:

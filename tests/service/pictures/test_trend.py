@@ -8,10 +8,11 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from core.units import NANOSECONDS_PER_DAY
+from service.pictures.looks import PRINT
 from service.pictures.png import PictureError, png
 from service.pictures.svg import NAMESPACE
 from service.pictures.ticks import figure_ticks, time_ticks
-from service.pictures.trend import MOST_POINTS, TrendPoint, thinned, trend_picture
+from service.pictures.trend import MOST_POINTS, TrendMark, TrendPoint, thinned, trend_picture
 from testing.service.plants import NOW_NS
 
 DAY = NANOSECONDS_PER_DAY
@@ -31,12 +32,31 @@ def test_a_motor_over_three_weeks() -> None:
     )
     words = [str(text.text) for text in elements(svg, "text")]
     assert words[0] == "PUMP-A1"
-    assert "limit 1 %" in words
+    assert "motor's limit 1 %" in words
     assert any(word.startswith("1.20 % at 2025-10-29") for word in words)
-    assert elements(svg, "circle")[-1].get("fill") == "#c53030", "the last one is a fault"
+    assert elements(svg, "rect")[-1].get("fill") == PRINT.fault, "the last one is a fault"
     assert {circle.get("fill") for circle in elements(trend_picture("P", points(5)), "circle")} == {
-        "#1f2933"
+        PRINT.ink
     }, "what is normal has no colour"
+
+
+def test_what_would_be_seen_and_what_happened_meanwhile() -> None:
+    marks = [TrendMark(NOW_NS + day * DAY, "start") for day in (-1, 3, 4)]
+    svg = trend_picture("PUMP-A1", points(10), detectable=0.004, marks=marks)
+    words = [str(text.text) for text in elements(svg, "text")]
+    assert "seen from 0.4 %" in words
+    assert words.count("1") == words.count("2") == 1, "what happened before the first record is not shown"
+    assert "3" not in words
+    assert "Last 0.40 % on" in str(elements(svg, "title")[0].text)
+
+
+def test_time_without_records_is_shown_and_a_level_far_above_is_not() -> None:
+    svg = trend_picture("P", points(3), limit=0.005, ahead=0.02, detectable=0.1687, until_ns=NOW_NS + 9 * DAY)
+    words = [str(text.text) for text in elements(svg, "text")]
+    assert "motor's limit 0.5 %" in words
+    assert "next level 2 %" in words
+    assert not any("seen from" in word for word in words)
+    assert max(float(one.get("cx", "0")) for one in elements(svg, "circle")) < 320
 
 
 def test_a_motor_without_records() -> None:

@@ -1,0 +1,80 @@
+"""Phasors as arrows: voltages and currents in one picture, each scaled to the largest of its own unit."""
+
+from cmath import exp as cexp
+from cmath import isfinite
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import atan2, degrees, pi
+
+from service.pictures.looks import PRINT, Look
+from service.pictures.svg import Drawing
+
+SIZE = 280.0
+LEGEND = 150.0
+MIDDLE = SIZE / 2
+RADIUS = 104.0
+MOST = 12
+"""More arrows than these are not readable."""
+
+LEAST_SHOWN = 1e-3
+"""An arrow below this share of the longest is left out; its figures are in the list."""
+
+
+@dataclass(frozen=True, slots=True)
+class Phasor:
+    """A phasor with its name and unit. A positive angle leads: it turns against the clock."""
+
+    name: str
+    value: complex
+    unit: str
+
+
+def phasor_picture(title: str, phasors: Sequence[Phasor], *, look: Look = PRINT) -> str:
+    """Return the picture as SVG. Phasors of the second unit have dashed arrows, and are drawn shorter."""
+    known = [one for one in phasors if isfinite(one.value)][:MOST]
+    drawing = Drawing(SIZE + LEGEND, SIZE, title=title, description="; ".join(map(_words, known)))
+    drawing.rectangle(0, 0, SIZE + LEGEND, SIZE, fill=look.surface)
+    drawing.circles([(MIDDLE, MIDDLE)], RADIUS, fill="none", stroke=look.line)
+    drawing.line(MIDDLE - RADIUS, MIDDLE, MIDDLE + RADIUS, MIDDLE, stroke=look.line)
+    drawing.line(MIDDLE, MIDDLE - RADIUS, MIDDLE, MIDDLE + RADIUS, stroke=look.line)
+    units = list(dict.fromkeys(one.unit for one in known))
+    for number, one in enumerate(known):
+        at = units.index(one.unit)
+        largest = max(abs(other.value) for other in known if other.unit == one.unit)
+        colour = look.ink if at == 0 else look.accent
+        length = 0.0 if largest == 0.0 else abs(one.value) / largest
+        if length >= LEAST_SHOWN:
+            reach = RADIUS * (1.0 if at == 0 else 0.72) * length
+            _arrow(drawing, one, reach, colour, dashed=at > 0)
+        y = 30 + 19 * number
+        dash = {"stroke_dasharray": "5 3"} if at > 0 else {}
+        drawing.line(SIZE - 6, y - 4, SIZE + 14, y - 4, stroke=colour, stroke_width="2", **dash)
+        drawing.text(SIZE + 20, y, _words(one), fill=look.ink, font_size="11")
+    if not known:
+        drawing.text(MIDDLE, MIDDLE, "nothing was measured", anchor="middle", fill=look.muted)
+    return drawing.svg()
+
+
+def _arrow(drawing: Drawing, phasor: Phasor, reach: float, colour: str, *, dashed: bool) -> None:
+    direction = phasor.value / abs(phasor.value)
+    end = reach * direction
+    dash = {"stroke_dasharray": "5 3"} if dashed else {}
+    drawing.line(
+        MIDDLE, MIDDLE, MIDDLE + end.real, MIDDLE - end.imag, stroke=colour, stroke_width="2", **dash
+    )
+    head = [end, *(end - 9.0 * direction * cexp(1j * side * pi / 9) for side in (1, -1))]
+    drawing.path([(MIDDLE + one.real, MIDDLE - one.imag) for one in head], closed=True, fill=colour)
+    label = (reach + 14.0) * direction
+    drawing.text(
+        MIDDLE + label.real,
+        MIDDLE - label.imag + 4,
+        phasor.name,
+        anchor="middle",
+        fill=colour,
+        font_size="11",
+    )
+
+
+def _words(phasor: Phasor) -> str:
+    angle = degrees(atan2(phasor.value.imag, phasor.value.real)) if phasor.value else 0.0
+    return f"{phasor.name} {abs(phasor.value):.4g} {phasor.unit} at {angle:z.1f}°"

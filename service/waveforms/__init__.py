@@ -1,0 +1,1 @@
+"""What stored recordings hold, for the eye: windows of samples, phasors, spectra, the model's currents."""

@@ -1,0 +1,69 @@
+"""Draw the currents of a diagnosis again, in a worker process."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.diagnosis.verdict import FittedParameters
+from core.machines.parameters import Motor
+from core.recordings import RecordingError, read
+from service.condition.healthy_records import learnt
+from service.waveforms.opened import MOST_VALUES
+
+
+@dataclass(frozen=True, slots=True)
+class ReplayTask:
+    """Name a diagnosis to draw again: its file, motor, model and fit, and the files of its baseline."""
+
+    entry: Path
+    motor: Motor
+    model: str
+    fit: FittedParameters
+    baseline: tuple[Path, ...] = ()
+    currents_only: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Replayed:
+    """Hold measured and modelled line currents, single precision, shape (3, n) [A], from `first_s` on."""
+
+    first_s: float
+    sample_rate_hz: float
+    measured_abc: NDArray[np.float32]
+    modelled_abc: NDArray[np.float32]
+    residual_rms_A: float
+
+
+@dataclass(frozen=True, slots=True)
+class NotReplayed:
+    """Say why the currents cannot be drawn."""
+
+    reason: str
+
+
+def replay_recording(task: ReplayTask) -> Replayed | NotReplayed:
+    """Read one recording and draw the model's currents."""
+    from core.diagnosis.errors import DiagnosisError
+    from core.diagnosis.replay import replay
+
+    try:
+        recording = read(task.entry, most_values=MOST_VALUES)
+        drawn = replay(
+            recording,
+            task.motor,
+            task.fit,
+            model=task.model,
+            baseline=learnt(task.baseline, task.motor) if task.baseline else None,
+            currents_only=task.currents_only,
+        )
+    except (RecordingError, DiagnosisError, OSError) as error:
+        return NotReplayed(str(error))
+    return Replayed(
+        first_s=drawn.first_s,
+        sample_rate_hz=drawn.sample_rate_hz,
+        measured_abc=drawn.measured_abc.astype(np.float32),
+        modelled_abc=drawn.modelled_abc.astype(np.float32),
+        residual_rms_A=drawn.residual_rms_A,
+    )
