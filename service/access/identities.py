@@ -49,12 +49,22 @@ class Identity:
 
 
 def identity_of_session(
-    repository: Repository, limits: AccessSettings, secret: str, *, now_ns: int
+    repository: Repository, limits: AccessSettings, secret: str, *, now_ns: int, is_use: bool = True
 ) -> Identity | None:
-    """Return whose session it is; None where it is nobody's, or over."""
+    """Return whose session it is; None where it is nobody's, or over.
+
+    is_use: whether somebody uses it now; False where a page asks by itself, so that it does not go on for
+    ever at a desk that everybody has left.
+    """
     if len(secret) > LONGEST:
         return None
-    digest = digest_of(secret)
+    return identity_of_login(repository, limits, digest_of(secret), now_ns=now_ns, is_use=is_use)
+
+
+def identity_of_login(
+    repository: Repository, limits: AccessSettings, digest: str, *, now_ns: int, is_use: bool
+) -> Identity | None:
+    """Return whose session has the secret of this digest; None where it is nobody's, or over."""
     session = repository.session_of(digest)
     if session is None or session.user.disabled:
         return None
@@ -62,7 +72,7 @@ def identity_of_session(
         limits, now_ns
     ):
         return None
-    if now_ns - session.used_ns > NOTED_AGAIN_NS:
+    if is_use and now_ns - session.used_ns > NOTED_AGAIN_NS:
         _note(partial(repository.note_session_used, digest, now_ns=now_ns))
     user = session.user
     return Identity(user.name, user.roles, permissions_of(user.roles), Way.SESSION, session=digest)

@@ -1,7 +1,7 @@
 """Puts the API together."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from importlib.metadata import version
 
@@ -38,6 +38,8 @@ from service.api.limits.body_limits import BodyLimits, Route, document
 from service.api.limits.long_lists import LongLists
 from service.api.notifications import routes as notifications
 from service.api.query_parameters import refuse_unknown_parameters
+from service.api.reports import routes as reports
+from service.api.samples import routes as samples
 from service.configuration.access import OidcSettings
 
 PREFIX = "/api/v1"
@@ -47,8 +49,13 @@ Times are RFC 3339 in UTC. Lists come in pages: pass `next_cursor` as `cursor` f
 Every error is a problem document (RFC 9457)."""
 
 
-def create_app(context: ApiContext) -> FastAPI:
-    """Return the ASGI application for a plant that is in the database already."""
+def create_app(
+    context: ApiContext, *, pages: Sequence[APIRouter] = (), page_uploads: Collection[Route] = ()
+) -> FastAPI:
+    """Return the ASGI application for a plant that is in the database already.
+
+    pages: routes for people beside those of the API.  page_uploads: those of them that take files.
+    """
     app = FastAPI(
         title="StatorWatch",
         version=version("statorwatch"),
@@ -69,9 +76,11 @@ def create_app(context: ApiContext) -> FastAPI:
         alarm_people,
         event_reports,
         recordings,
+        samples,
         diagnoses,
         deletions,
         exports,
+        reports,
         notifications,
         audit_trail,
         backups,
@@ -84,6 +93,8 @@ def create_app(context: ApiContext) -> FastAPI:
         _add_sign_on(api, context.settings.access.oidc)
     app.include_router(api)
     app.include_router(probes.router)
+    for page in pages:
+        app.include_router(page, include_in_schema=False)
     problems.install(app)
     settings = context.settings
     max_upload_bytes = settings.max_upload_bytes
@@ -91,7 +102,10 @@ def create_app(context: ApiContext) -> FastAPI:
     uploads = frozenset((method, PREFIX + path) for method, path in recordings.UPLOAD_ROUTES)
     app.add_middleware(LongLists)
     app.add_middleware(
-        BodyLimits, upload_routes=uploads, max_upload_bytes=max_upload_bytes, arrivals=arrivals
+        BodyLimits,
+        upload_routes=uploads | set(page_uploads),
+        max_upload_bytes=max_upload_bytes,
+        arrivals=arrivals,
     )
     app.add_middleware(Gate, context=context, needs=_needs(app))
     hosts = [str(settings.bind_address), *settings.allowed_hosts]

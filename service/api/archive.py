@@ -15,14 +15,14 @@ _UNSAFE = re.compile(r"[^A-Za-z0-9-]+")
 """Some system or header gives these a meaning of their own."""
 
 
-def archive_name(recording: RecordingEntry) -> str:
-    """Return MOTOR_TIME.zip, such as "PUMP-A1_2026-01-31T12-00-00Z.zip", which every system takes as a name.
+def file_stem(recording: RecordingEntry) -> str:
+    """Return MOTOR_TIME, such as "PUMP-A1_2026-01-31T12-00-00Z", which every system takes as a name.
 
     The time is that of the recording, or of its announcement where nobody has read it yet.
     """
     time_ns = recording.announced_ns if recording.recorded_ns is None else recording.recorded_ns
     time = rfc3339(time_ns)[:SECONDS_END].replace(":", "-")
-    return f"{_UNSAFE.sub('_', recording.motor)}_{time}Z.zip"
+    return f"{_UNSAFE.sub('_', recording.motor)}_{time}Z"
 
 
 def zipped(stored: StoredRecording) -> Iterator[bytes]:

@@ -99,7 +99,7 @@ def add_note(
     if wanted.kind is not EventKind.NOTE:
         asking.demand(Permission.CONFIGURE, f"tell of {wanted.kind.value}")
     caller = asking.actor
-    note = _add(context, name, wanted.kind, wanted.text, caller, wanted.by, wanted.time)
+    note = keep_note(context, name, wanted.kind, wanted.text, caller, wanted.by, wanted.time)
     response.headers["Location"] = path_to(request, "get_note", name=name, note_id=note.id)
     return note
 
@@ -135,12 +135,12 @@ def restart_reference(
 ) -> Note:
     """Take the motor for healthy as it is: its standing asymmetry is learnt anew. The answer is a note."""
     kind = EventKind.REFERENCE_RESTARTED
-    note = _add(context, name, kind, wanted.reason, caller, wanted.by, wanted.time)
+    note = keep_note(context, name, kind, wanted.reason, caller, wanted.by, wanted.time)
     response.headers["Location"] = path_to(request, "get_note", name=name, note_id=note.id)
     return note
 
 
-def _add(
+def keep_note(
     context: ApiContext,
     motor: str,
     kind: EventKind,
@@ -149,6 +149,11 @@ def _add(
     told_by: str | None,
     time_ns: int | None,
 ) -> Note:
+    """Keep what somebody tells of a motor, and have its condition follow.
+
+    time_ns: when it happened; None for now. Raises NotFoundError, OutOfServiceError, ProblemError,
+    TooManyNotesError.
+    """
     if kind is EventKind.PARAMETERS_EDITED:
         raise _refused(
             "body.kind",
@@ -158,6 +163,8 @@ def _add(
     now_ns = time.time_ns()
     if time_ns is None:
         time_ns = now_ns
+    if time_ns < 0:
+        raise _refused("body.time", "expected a time after 1970, found an earlier one")
     if time_ns > now_ns + FURTHEST_AHEAD_NS:
         raise _refused("body.time", f"expected a time at most a day ahead of now, found {rfc3339(time_ns)}")
     # However much was noted of a motor before: who tested it can say that it is healthy.

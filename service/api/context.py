@@ -7,10 +7,13 @@ from urllib.parse import quote
 
 from fastapi import Depends, Request
 
+from core.machines.parameters import Motor
 from service.api.limits.admission import Admission
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage.repository import Repository
+from service.waveforms.computing import Compute, compute_here
+from service.waveforms.recorded import Recorded
 
 Problem = Callable[[], str | None]
 """A check that returns what keeps a part of the service from working; None when it works."""
@@ -25,8 +28,9 @@ class ApiContext:
     """readiness: a check for each part besides the database. on_new_job: tells the runner not to wait.
 
     uploads: those stored at a time, after they have arrived. passwords: looked at, each in 64 MiB.
+    motors: of the plant's files, by name. compute: has somebody do what needs the numbers.
     waveforms_read: one at a time, because each may have much to read. waveforms_sent: to slow clients, too.
-    exports: files of lists, which are made while they are sent.
+    exports: files of lists, which are made while they are sent. reports: each in a process of its own.
     """
 
     settings: Settings
@@ -34,16 +38,24 @@ class ApiContext:
     store: RecordingStore
     readiness: Mapping[str, Problem] = field(default_factory=dict)
     on_new_job: Callable[[], None] = _nothing
+    motors: Mapping[str, Motor] = field(default_factory=dict)
+    compute: Compute = compute_here
     uploads: Admission = field(default_factory=lambda: Admission("uploads", 3, wait_s=10.0))
     passwords: Admission = field(default_factory=lambda: Admission("passwords", 2, wait_s=10.0))
     waveforms_read: Admission = field(default_factory=lambda: Admission("waveforms", 1, wait_s=10.0))
     waveforms_sent: Admission = field(default_factory=lambda: Admission("waveforms", 16, wait_s=10.0))
     exports: Admission = field(default_factory=lambda: Admission("exports", 4, wait_s=10.0))
 
+    reports: Admission = field(default_factory=lambda: Admission("reports", 1, wait_s=20.0))
     audit_trails: Admission = field(default_factory=lambda: Admission("audit trails", 4, wait_s=10.0))
     audit_verifications: Admission = field(
         default_factory=lambda: Admission("verifications of the audit trail", 1, wait_s=10.0)
     )
+
+    @property
+    def recorded(self) -> Recorded:
+        """Return the stored recordings, to be looked at."""
+        return Recorded(self.repository, self.store, self.motors, self.compute)
 
     def require_motor(self, name: str | None) -> None:
         """Raise NotFoundError where a list is asked for of a motor that there is not; None asks for all."""

@@ -10,11 +10,11 @@ from fastapi import APIRouter, Query, Request, Response
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
-from service.api.context import Context, path_to
+from service.api.context import ApiContext, Context, path_to
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
 from service.api.problems import problems
 from service.api.schemas import Diagnosis, DiagnosisRequest, DiagnosisRun
-from service.storage.records import JobResult
+from service.storage.records import Actor, Job, JobResult
 
 MOST_DIAGNOSES = 100
 """Most items of a page: each may have a result of some kilobytes."""
@@ -38,19 +38,24 @@ def request_diagnosis(
     wanted: DiagnosisRequest | None = None,
 ) -> DiagnosisRun:
     """Queue another diagnosis of a stored recording; when done, it takes the place of the earlier one."""
-    wanted = wanted or DiagnosisRequest()
+    job = queue_diagnosis(context, caller, str(recording_id), wanted or DiagnosisRequest())
+    path = path_to(request, "get_diagnosis", recording_id=recording_id, diagnosis_id=job.id)
+    response.headers["Location"] = path
+    return DiagnosisRun.model_validate(job)
+
+
+def queue_diagnosis(context: ApiContext, by: Actor, recording_id: str, wanted: DiagnosisRequest) -> Job:
+    """Queue another diagnosis and wake the runner. Raises NotFoundError, TooManyWaitingError."""
     job = context.repository.request_diagnosis(
-        str(recording_id),
-        by=caller,
+        recording_id,
+        by=by,
         method=wanted.method,
         model=wanted.model,
         now_ns=time.time_ns(),
         most_queued=context.settings.max_queued_diagnoses,
     )
     context.on_new_job()
-    path = path_to(request, "get_diagnosis", recording_id=recording_id, diagnosis_id=job.id)
-    response.headers["Location"] = path
-    return DiagnosisRun.model_validate(job)
+    return job
 
 
 @router.get("", responses=problems(404), dependencies=[require(Permission.VIEW)])

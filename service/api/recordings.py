@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator
 from dataclasses import replace
 from http import HTTPStatus
 from pathlib import PurePosixPath
-from typing import Annotated
+from typing import Annotated, Final, TypedDict
 from uuid import UUID
 
 from fastapi import APIRouter, Depends, File, Form, Query, Request, Response, UploadFile
@@ -18,7 +18,7 @@ from core.recordings import Envelope, RecordingError, read_envelope
 from service.access.permissions import Permission
 from service.api.access.callers import By
 from service.api.access.requirements import require
-from service.api.archive import archive_name, zipped
+from service.api.archive import file_stem, zipped
 from service.api.context import ApiContext, Context, path_to
 from service.api.exports.answers import FILES, ListAnswer
 from service.api.listed_recordings import listed
@@ -38,6 +38,18 @@ router = APIRouter(tags=["recordings"])
 
 UPLOAD_SUFFIXES = {*WAVEFORM_SUFFIXES, ".HDR", ".INF"}
 MAX_UPLOAD_FILES = 4
+
+
+class FormLimits(TypedDict, total=False):
+    """Limits of a form with files, as the parser takes them."""
+
+    max_files: int
+    max_fields: int
+    max_part_size: int
+
+
+FORM_LIMITS: Final[FormLimits] = {"max_files": 2 * MAX_UPLOAD_FILES, "max_fields": 4, "max_part_size": 4096}
+"""Beyond these the parser gives up; up to them the route says which field is wrong."""
 UPLOAD_ROUTES = frozenset({("POST", "/recordings")})
 """Routes that take files; bodies of others are small."""
 
@@ -79,8 +91,7 @@ def list_recordings(
 @router.post(
     "/recordings",
     status_code=HTTPStatus.CREATED,
-    # Beyond these the parser gives up; up to them the route says which field is wrong.
-    form_limits={"max_files": 2 * MAX_UPLOAD_FILES, "max_fields": 4, "max_part_size": 4096},
+    form_limits=FORM_LIMITS,
     responses=problems(400, 404, 408, 413, 415, 429)
     | {
         200: {
@@ -107,7 +118,7 @@ async def upload_recording(
 ) -> RecordingDetails:
     """Store the files of one recording and queue its diagnosis; one the motor has stays as it is."""
     async with context.uploads.admitted():
-        added, details = await run_in_threadpool(_upload, context, caller, motor, files)
+        added, details = await run_in_threadpool(store_upload, context, caller, motor, files)
     if not added.created:
         response.status_code = HTTPStatus.OK
     response.headers["Location"] = path_to(request, "get_recording", recording_id=added.recording.id)
@@ -163,7 +174,7 @@ def download_recording(context: Context, recording_id: UUID) -> StreamingRespons
     return StreamingResponse(
         zipped(stored),
         media_type="application/zip",
-        headers={"Content-Disposition": f'attachment; filename="{archive_name(entry)}"'},
+        headers={"Content-Disposition": f'attachment; filename="{file_stem(entry)}.zip"'},
     )
 
 
@@ -183,9 +194,13 @@ def _envelope(context: ApiContext, recording_id: str, points: int) -> Envelope:
     )
 
 
-def _upload(
+def store_upload(
     context: ApiContext, by: Actor, motor: str, files: list[UploadFile]
 ) -> tuple[AddedRecording, RecordingDetails]:
+    """Store the files of one recording and queue its diagnosis, in a thread that may wait for the disk.
+
+    Raises ProblemError, NotFoundError, TooManyWaitingError, OSError.
+    """
     context.repository.motor(motor)
     try:
         added = _add(context, by, motor, files)

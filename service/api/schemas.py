@@ -89,6 +89,19 @@ class Indicators(Document):
     park_axis_angle_deg: float
 
 
+class FittedParameters(Document):
+    """The hypothesis that explains the currents best; `recordings/{recording_id}/model` draws it.
+
+    It is not the verdict: mu_f may lie within chance, or below zero.
+    """
+
+    mu_f: float
+    theta_f: Literal[0, 1, 2]
+    load_level: float
+    time_offset_s: float
+    path_ratio: float
+
+
 class Diagnosis(Document):
     """The result for one recording, as `mcc diagnose --json` prints it.
 
@@ -122,6 +135,7 @@ class Diagnosis(Document):
     indicators: Indicators | None = None
     currents_only: bool = False
     operation: Operation | None = None
+    fit: FittedParameters | None = None
 
 
 class EventReport(Document):

@@ -5,6 +5,7 @@ import math
 import resource
 import socket
 import sys
+from collections.abc import Callable
 from types import FrameType
 
 import structlog
@@ -60,7 +61,10 @@ class ApiServer(uvicorn.Server):
         limits: ConnectionLimits,
         termination: Termination | None = None,
         certificate: ServerCertificate | None = None,
+        on_shutdown: Callable[[], None] | None = None,
     ) -> None:
+        """on_shutdown: ends answers that would else go on; called in the event loop."""
+        self._on_shutdown = on_shutdown
         self._open = OpenConnections(limits)
         self._termination = termination or Termination()
         self._certificate = certificate
@@ -100,6 +104,8 @@ class ApiServer(uvicorn.Server):
         """Accept no more, and end what is under way."""
         for queue in self._queues:
             queue.close()
+        if self._on_shutdown is not None:
+            self._on_shutdown()
         await super().shutdown(sockets)
 
     async def _serve_connection(self, connection: socket.socket) -> None:

@@ -17,7 +17,6 @@ import structlog
 from sqlalchemy.exc import OperationalError
 
 from service.api.access.certificate import CertificateError, ServerCertificate
-from service.api.app import create_app
 from service.api.context import ApiContext
 from service.api.server import ApiServer, connection_limits
 from service.application.parts import Part, running
@@ -32,7 +31,7 @@ from service.configuration.settings import Settings, SettingsError
 from service.jobs import JobRunner
 from service.jobs.runner import JobLimits
 from service.jobs.worker import diagnose_recording, prepare_worker
-from service.notifications.checking import channel_problems, route_problems, warnings
+from service.notifications.checking import channel_problems, report_problems, route_problems, warnings
 from service.notifications.work import NotificationWork
 from service.plant import Plant, read_plant
 from service.process.disk_space import disk_problem
@@ -44,6 +43,7 @@ from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect, migrate
 from service.storage.database_url import readable_url
 from service.timing.backoff import Backoff
+from service.web.app import create_site, end_streams
 
 log = structlog.get_logger(__name__)
 
@@ -82,7 +82,15 @@ def _serve(settings: Settings, settings_file: Path | None, termination: Terminat
         jobs, parts = _parts(settings, settings_file, plant, repository, store, termination)
         room = {"disk": partial(disk_problem, _written(settings))}
         readiness = room | {name: part.problem for name, part in parts.items()}
-        context = ApiContext(settings, repository, store, readiness=readiness, on_new_job=jobs.wake)
+        context = ApiContext(
+            settings,
+            repository,
+            store,
+            readiness=readiness,
+            on_new_job=jobs.wake,
+            motors={motor.name: motor.motor for motor in plant.motors},
+            compute=jobs.compute,
+        )
         termination.step()
         with running(parts.values()):
             host, port = listener.getsockname()[:2]
@@ -159,7 +167,9 @@ def _plant(settings: Settings) -> Plant:
     for warning in problems.warnings:
         log.warning("the plant's files", warning=warning)
     sites = [site.name for site in plant.sites]
+    motors = [motor.name for motor in plant.motors]
     wrong = route_problems(settings.notifications, sites, "settings")
+    wrong += report_problems(settings.reports, sites, motors, "settings")
     if wrong:
         raise SettingsError(wrong)
     for problem in channel_problems(settings.notifications, "settings"):
@@ -180,7 +190,10 @@ def _answer(
     """Answer requests until a signal comes. Raises SystemExit where one came before the first request."""
     termination.step()
     settings = context.settings
-    server = ApiServer(create_app(context), connection_limits(settings), termination, certificate)
+    site = create_site(context)
+    server = ApiServer(
+        site, connection_limits(settings), termination, certificate, on_shutdown=partial(end_streams, site)
+    )
     spare_what_stays()
     termination.step()
     server.run(sockets=[listener])

@@ -27,6 +27,7 @@ class AuditAction(StrEnum):
     LOGGED_IN = "logged-in"
     LOGIN_FAILED = "login-failed"
     LOGIN_LOCKED = "login-locked"
+    LOGIN_LINK_MADE = "login-link-made"
     LOGGED_OUT = "logged-out"
     SESSIONS_ENDED = "sessions-ended"
     USER_ADDED = "user-added"
@@ -64,6 +65,7 @@ MEANINGS: Mapping[AuditAction, str] = {
     AuditAction.LOGGED_IN: "Somebody logged in; `after` says how.",
     AuditAction.LOGIN_FAILED: "Somebody tried to log in under this name and was refused; `after` says why.",
     AuditAction.LOGIN_LOCKED: "So many logins failed that none is tried for a while; `after` has from where.",
+    AuditAction.LOGIN_LINK_MADE: "A link was made that logs a user in once; `after` says until when.",
     AuditAction.LOGGED_OUT: "Somebody ended their session.",
     AuditAction.SESSIONS_ENDED: "Somebody ended all sessions of a user.",
     AuditAction.USER_ADDED: "Somebody made a user.",

@@ -19,6 +19,7 @@ from service.cli.commands import (
     plant_files,
     programs,
     record_files,
+    reports,
     service,
     stored,
 )
@@ -63,6 +64,7 @@ _PARTS = (
     alarms,
     notifications,
     exports,
+    reports,
     plant_files,
     backups,
     audit,

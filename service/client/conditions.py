@@ -82,7 +82,7 @@ def condition_lines(condition: Document) -> list[tuple[str, Text]]:
 
 def _since(condition: Document) -> str:
     since = to_the_second(condition["since"])
-    return f"before the first record, of {since}" if stands(condition) else since
+    return f"unknown: there since the first record, of {since}" if stands(condition) else since
 
 
 def _growth(condition: Document) -> str:

@@ -19,10 +19,11 @@ from service.configuration.access import AccessSettings
 from service.configuration.alarms import AlarmSettings
 from service.configuration.audit import AuditSettings
 from service.configuration.backup import BackupSettings
-from service.configuration.channels import CHANNEL_PATHS
+from service.configuration.channels import CHANNEL_PATHS, MailChannel
 from service.configuration.notifications import NotificationSettings
 from service.configuration.problems import ENVIRONMENT, ConfigurationError, Problem, Problems
 from service.configuration.relay_access import AbsolutePath, RelayAccess
+from service.configuration.reports import ReportSettings
 from service.configuration.retention import MOST_DAYS, RetentionSettings
 from service.configuration.settings_problems import Sources, problems_of, unknown_variables
 from service.configuration.toml_lines import TomlLines
@@ -90,6 +91,7 @@ class Settings(BaseSettings):
     backup: BackupSettings = Field(default_factory=BackupSettings)
     alarms: AlarmSettings = Field(default_factory=AlarmSettings)
     notifications: NotificationSettings = Field(default_factory=NotificationSettings)
+    reports: ReportSettings = Field(default_factory=ReportSettings, validate_default=True)
     audit: AuditSettings = Field(default_factory=AuditSettings)
 
     relays: dict[str, RelayAccess] = Field(default_factory=dict)
@@ -114,6 +116,21 @@ class Settings(BaseSettings):
         if "tls_certificate" in info.data and (key is None) != (info.data["tls_certificate"] is None):
             raise ValueError("tls_certificate and tls_key together, or neither")
         return key
+
+    @field_validator("reports")
+    @classmethod
+    def _mailed_through_mail(cls, reports: ReportSettings, info: ValidationInfo) -> ReportSettings:
+        notifications = info.data.get("notifications")
+        channels = notifications.channels if isinstance(notifications, NotificationSettings) else {}
+        for number, mail in enumerate(reports.mails):
+            for name in mail.channels:
+                if not isinstance(channels.get(name), MailChannel) and notifications is not None:
+                    known = [one for one, channel in channels.items() if isinstance(channel, MailChannel)]
+                    raise ValueError(
+                        f"channels of kind mail in mails.{number}, found {name}; there are"
+                        f" {', '.join(known) or 'none'}"
+                    )
+        return reports
 
     @classmethod
     def settings_customise_sources(

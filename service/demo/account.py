@@ -1,4 +1,4 @@
-"""The demo's own user, so that the demo and commands in other terminals may do what they show.
+"""The demo's own user, so that the demo, its page and commands in other terminals may do what they show.
 
 `python -m service.demo.account FILE` writes a token of that user into a file that containers share, by the
 settings of the environment. A token in that file that is still good stays.
@@ -10,6 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from service.access.bearer_secrets import digest_of, new_token
+from service.access.login_links import address_of, is_good, new_login_link
 from service.client.credentials import write_secret
 from service.configuration.settings import Settings
 from service.storage import Repository, connect, migrate
@@ -33,6 +34,26 @@ def demo_token(database_url: str, kept: str | None = None) -> str:
         return _token(Repository(engine), kept)
     finally:
         engine.dispose()
+
+
+class LoginLinks:
+    """Links to the page of the demo's service, each of which logs the demo's user in once."""
+
+    def __init__(self, database_url: str, url: str) -> None:
+        self._database_url = database_url
+        self._url = url
+        self._secret: str | None = None
+
+    def address(self) -> str:
+        """Return a link that can be followed, the same one as before while nobody has."""
+        engine = connect(self._database_url)
+        try:
+            repository, now_ns = Repository(engine), time.time_ns()
+            if self._secret is None or not is_good(repository, self._secret, now_ns=now_ns):
+                self._secret = new_login_link(repository, NAME, by=BY, now_ns=now_ns)
+            return address_of(self._url, self._secret)
+        finally:
+            engine.dispose()
 
 
 def _token(repository: Repository, kept: str | None) -> str:

@@ -13,7 +13,7 @@ from service.client.credentials import CredentialsError, forget, remember
 from service.client.rest_client import ServiceClient
 from service.configuration.settings import sqlite_url
 from service.demo import SCENARIO
-from service.demo.account import demo_token
+from service.demo.account import LoginLinks, demo_token
 from service.demo.addresses import LOOPBACK, addressed_scd, free_port
 from service.demo.month import Month, month_of
 from service.demo.plays import STEADY, Play
@@ -45,6 +45,7 @@ class DemoPlant:
     answer_limit_s: how long nothing may listen at the address [s].
     month: the month that the plant lives through; None where its time is the real one.
     token: lets its client do what the demo shows; None where the environment has what it needs.
+    page: returns a link to its page that logs in without a password; None where somebody else runs the plant.
     """
 
     scd: Path
@@ -54,6 +55,7 @@ class DemoPlant:
     answer_limit_s: float = START_LIMIT_S
     month: Month | None = None
     token: str | None = None
+    page: Callable[[], str] | None = None
 
 
 @contextmanager
@@ -129,9 +131,9 @@ def _start_once(
                 raise NotReadyError(f"not listening after {START_LIMIT_S:g} s; logs: {data}")
         month = month_of(play.scenario, simulator.logged())
         programs.push(starting.pop_all())
-    return DemoPlant(
-        scd, play.scenario, f"http://{LOOPBACK}:{port}", pause_and_check, month=month, token=token
-    )
+    url = f"http://{LOOPBACK}:{port}"
+    page = LoginLinks(sqlite_url(data), url).address
+    return DemoPlant(scd, play.scenario, url, pause_and_check, month=month, token=token, page=page)
 
 
 def _forget(url: str) -> None:

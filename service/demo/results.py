@@ -99,8 +99,9 @@ def truth_text(truth: Truth) -> str:
 
 
 def condition_text(truth: Truth) -> str:
-    """Return what is wrong with the motor and its channels in words: "5 % b", "healthy, VB -0.4 %"."""
+    """Return what is to be known of the motor and its channels: "5 % b", "healthy, VB -0.4 %"."""
     words = ["healthy" if truth.phase is None else f"{plain(100 * truth.mu_f)} % {truth.phase}"]
+    words += [] if truth.running else ["stands still"]
     words += [f"{name} {100 * channel.gain:+.2g} %" for name, channel in truth.channels.items()]
     return ", ".join(words)
 

@@ -29,11 +29,13 @@ class ChannelError(BaseModel):
 class Truth(BaseModel):
     """Condition of one simulated motor: equivalent fault level, faulted winding, load over rated torque.
 
+    running: False where it stands still.
     channels: those that have changed since the scenario's beginning.
     """
 
     model_config = ConfigDict(extra="ignore", frozen=True)
 
+    running: bool = True
     mu_f: float
     theta_f: int | None
     load_level: float

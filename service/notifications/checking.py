@@ -1,7 +1,7 @@
-"""What is wrong with the notifications of a plant that the settings alone do not show."""
+"""What is wrong with the notifications and reports of a plant that the settings alone do not show."""
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime, time, timedelta
 from importlib.util import find_spec
 from itertools import product
@@ -13,6 +13,7 @@ from service.configuration.channel_secrets import ChannelSecretError, require_se
 from service.configuration.channels import AppriseChannel, CommandChannel, MailChannel, WebhookChannel
 from service.configuration.notifications import DAYS, NotificationSettings, Priority, Route
 from service.configuration.problems import ENVIRONMENT, Problem
+from service.configuration.reports import ReportSettings
 from service.notifications.hours import is_within
 
 URGENT: tuple[Priority, ...] = ("critical", "high")
@@ -30,10 +31,17 @@ def route_problems(settings: NotificationSettings, sites: Iterable[str], source:
         *((f"routes.{number}.kinds", one.kinds, known_kinds) for number, one in enumerate(settings.routes)),
         *((f"digests.{number}.sites", one.sites, known_sites) for number, one in enumerate(settings.digests)),
     ]
+    return _unknown("notifications", named, source)
+
+
+def _unknown(
+    table: str, named: Sequence[tuple[str, Sequence[str] | None, Sequence[str]]], source: str
+) -> list[Problem]:
+    """Return a problem for each name that is not known. named: fields with their names and those known."""
     return [
         Problem(
             source,
-            f"notifications.{field}",
+            f"{table}.{field}",
             f"one of {', '.join(known) or 'none'}",
             shown(name),
             nearest(name, known),
@@ -42,6 +50,18 @@ def route_problems(settings: NotificationSettings, sites: Iterable[str], source:
         for name in names or ()
         if name not in known
     ]
+
+
+def report_problems(
+    settings: ReportSettings, sites: Iterable[str], motors: Iterable[str], source: str
+) -> list[Problem]:
+    """Return the sites and motors of reports by mail that are named and not there."""
+    known_sites, known_motors = tuple(sites), tuple(motors)
+    named = [
+        *((f"mails.{number}.sites", one.sites, known_sites) for number, one in enumerate(settings.mails)),
+        *((f"mails.{number}.motors", one.motors, known_motors) for number, one in enumerate(settings.mails)),
+    ]
+    return _unknown("reports", named, source)
 
 
 def channel_problems(settings: NotificationSettings, source: str) -> Iterator[Problem]:

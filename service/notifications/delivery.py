@@ -35,6 +35,7 @@ class Delivery:
         *,
         installation: str,
         stopping: Event,
+        stale_after_days: float | None = None,
     ) -> None:
         """installation: begins the claims of this service, by which it knows them after it was killed."""
         self._name = name
@@ -43,6 +44,7 @@ class Delivery:
         self._repository = repository
         self._installation = installation
         self._stopping = stopping
+        self._stale_after_days = stale_after_days
         self._backoff = Backoff(settings.retry_delay_s, LONGEST_PAUSE_S)
 
     def deliver(self) -> None:
@@ -61,6 +63,7 @@ class Delivery:
                 notification,
                 self._settings,
                 self._repository,
+                stale_after_days=self._stale_after_days,
                 with_pictures=isinstance(self._channel, MailChannel),
             )
             send(self._name, self._channel, notification.recipient, message)

@@ -15,6 +15,7 @@ from core.units import NANOSECONDS_PER_DAY, NANOSECONDS_PER_SECOND
 from service.configuration.settings import Settings
 from service.notifications.delivery import Delivery
 from service.notifications.digests import due_digests
+from service.notifications.reports import due_reports
 from service.notifications.routes import targets
 from service.notifications.silent_claims import SilentClaims
 from service.storage import Repository
@@ -63,6 +64,7 @@ class NotificationWork:
                     repository,
                     installation=installation,
                     stopping=self._stopping,
+                    stale_after_days=settings.stale_after_days,
                 ).deliver,
                 period_s=period_s,
                 stopping=self._stopping,
@@ -109,8 +111,9 @@ class NotificationWork:
             decide, gathering, now_ns=now_ns
         ):
             pass
-        for message in due_digests(self._settings, repository, now_ns):
-            repository.add_notifications([message], now_ns=now_ns)
+        for due in (due_digests, due_reports):
+            for message in due(self._settings, repository, now_ns):
+                repository.add_notifications([message], now_ns=now_ns)
         self._release(self._silent.among(repository.claims(), time.monotonic_ns()))
         self._forget(now_ns)
 

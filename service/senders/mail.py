@@ -1,4 +1,4 @@
-"""Mail by SMTP: plain text and HTML with its pictures, to one address at a time.
+"""Mail by SMTP: plain text and HTML with its pictures and files, to one address at a time.
 
 One address a mail: a server may take a mail for some addresses and refuse it for others, and whoever has got
 it should not get it again.
@@ -94,6 +94,9 @@ def mail_document(channel: MailChannel, recipient: str, message: Message) -> byt
             html.add_related(
                 picture, "image", "png", cid=f"<{key}>", filename=f"{key}.png", disposition="inline"
             )
+    for file in message.attachments:
+        main, _, sub = file.media_type.partition("/")
+        mail.add_attachment(file.content, maintype=main, subtype=sub, filename=file.name)
     return mail.as_bytes()
 
 

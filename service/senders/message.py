@@ -18,11 +18,21 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
+class Attachment:
+    """A file that is sent along. name: in characters that every system takes."""
+
+    name: str
+    media_type: str
+    content: bytes
+
+
+@dataclass(frozen=True, slots=True)
 class Message:
     """What is sent. It is the same at every attempt, so that receivers can recognise a second one.
 
     text: for people, plain.  html: the same with pictures, which it names as cid:NAME.  pictures: PNG by
     name.  lines: for a log.  document: for programs, JSON.  thread: what mails about the same thing share.
+    attachments: files, which mails alone have.
     """
 
     id: str
@@ -35,3 +45,4 @@ class Message:
     html: str | None = None
     pictures: Mapping[str, bytes] = field(default_factory=dict)
     thread: str | None = None
+    attachments: tuple[Attachment, ...] = ()

@@ -11,7 +11,7 @@ from mms import CredentialFileError
 from service.configuration.problems import Problem, Problems
 from service.configuration.relay_access import AccessError, clear_passwords, credentials
 from service.configuration.settings import Settings
-from service.notifications.checking import channel_problems, route_problems, warnings
+from service.notifications.checking import channel_problems, report_problems, route_problems, warnings
 from service.plant import Plant
 from service.plant.files import examine_plant
 from service.storage import StorageError, connect
@@ -45,7 +45,9 @@ def check(config: Path | None) -> CheckedPlant:
     problems.extend(channel_problems(settings.notifications, source))
     if plant is not None:
         sites = [site.name for site in plant.sites]
+        motors = [motor.name for motor in plant.motors]
         problems.extend(route_problems(settings.notifications, sites, source))
+        problems.extend(report_problems(settings.reports, sites, motors, source))
         problems.warnings.extend(warnings(settings.notifications, sites))
         names = [relay.name for relay in plant.relays]
         for name in names:

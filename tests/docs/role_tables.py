@@ -7,17 +7,26 @@ from pathlib import Path
 from fastapi.routing import iter_route_contexts
 
 from service.access.permissions import MEANINGS, PERMISSIONS_OF, Permission
-from service.api import ApiContext, create_app
+from service.api import ApiContext
 from service.api.access.requirements import requirement_of
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository, connect
 from service.storage.records import Role
+from service.web.app import create_site
 from tests.docs.pages import ROOT, between_markers
 
 PAGE = ROOT / "docs" / "reference" / "roles.md"
 HEAD = " | ".join(Role)
 LINE = "|---" * (1 + len(Role))
+
+
+PROBES = ("/healthz", "/readyz", "/metrics")
+
+
+def is_page(path: str) -> bool:
+    """Tell whether a route is one for people, not for programs."""
+    return not path.startswith("/api/") and path not in PROBES
 
 
 def permission_rows() -> Iterator[str]:
@@ -28,11 +37,11 @@ def permission_rows() -> Iterator[str]:
         yield f"| `{permission}` | {_marks(permission)} | {MEANINGS[permission]} |"
 
 
-def route_rows() -> Iterator[str]:
-    """Yield the lines of the table of routes."""
-    yield f"| Route | {HEAD} | Needs |"
+def route_rows(*, of_pages: bool) -> Iterator[str]:
+    """Yield the lines of the table of the API's routes, or of those of the pages."""
+    yield f"| {'Page' if of_pages else 'Route'} | {HEAD} | Needs |"
     yield f"{LINE}|---|"
-    for method, path, needed in sorted(_routes(), key=lambda route: (route[1], route[0])):
+    for method, path, needed in sorted(_routes(of_pages=of_pages), key=lambda route: (route[1], route[0])):
         marks = " | ".join("*" for _ in Role) if needed is None else _marks(needed)
         yield f"| `{method} {path}` | {marks} | {'-' if needed is None else f'`{needed}`'} |"
 
@@ -40,7 +49,8 @@ def route_rows() -> Iterator[str]:
 def written(page: str) -> str:
     """Return the page with its tables made anew."""
     page = between_markers(page, "permissions", permission_rows())
-    return between_markers(page, "routes", route_rows())
+    page = between_markers(page, "routes", route_rows(of_pages=False))
+    return between_markers(page, "pages", route_rows(of_pages=True))
 
 
 def main() -> None:
@@ -51,12 +61,14 @@ def _marks(permission: Permission) -> str:
     return " | ".join("yes" if permission in PERMISSIONS_OF[role] else "" for role in Role)
 
 
-def _routes() -> Iterator[tuple[str, str, Permission | None]]:
+def _routes(*, of_pages: bool) -> Iterator[tuple[str, str, Permission | None]]:
     with tempfile.TemporaryDirectory() as name:
         directory = Path(name)
         repository = Repository(connect(f"sqlite:///{directory / 'unused.sqlite'}"))
         store = RecordingStore(directory / "recordings")
-        app = create_app(ApiContext(Settings(data_directory=directory), repository, store))
-        for route in iter_route_contexts(app.routes):
+        site = create_site(ApiContext(Settings(data_directory=directory), repository, store))
+        for route in iter_route_contexts(site.routes):
+            if is_page(str(route.path)) is not of_pages:
+                continue
             for method in route.methods or ():
                 yield method, str(route.path), requirement_of(route.dependencies)

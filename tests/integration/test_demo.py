@@ -105,6 +105,7 @@ def test_in_a_month_a_fault_is_found_and_a_neighbours_voltage_channel_is_not_tak
     said: dict[str, list[str]] = {motor: [] for motor in MOTOR_NAMES}
     with start_demo(tmp_path) as demo:
         assert demo.stdout is not None
+        assert demo.stdout.readline().startswith("page: http://127.0.0.1:")
         for line in demo.stdout:
             if line.startswith("Conditions and truth"):
                 break
@@ -112,11 +113,14 @@ def test_in_a_month_a_fault_is_found_and_a_neighbours_voltage_channel_is_not_tak
             said[motor].append(text)
         demo.send_signal(signal.SIGINT)
     fan, mill = said.pop("FAN-A2"), said.pop("MILL-A3")
+    compressor, pump = said.pop("COMPRESSOR-B2"), said.pop("PUMP-B3")
     states = [text.partition(":")[0].split()[0] for text in fan]
     assert list(dict.fromkeys(states)) == ["healthy", "watch", "fault"]
     assert fan[-1].startswith("fault: shorted turns b")
     assert [text for text in mill if text.startswith("fault")] == []
     assert mill[-1].startswith("watch: voltage channel b")
+    assert compressor[-1].startswith("fault: shorted turns a")
+    assert {text.split()[0] for text in pump} <= {"unknown", "healthy"}, "it stands still from day 4 on"
     assert {text for texts in said.values() for text in texts if not text.startswith("healthy")} == set()
 
 

@@ -58,6 +58,8 @@ def week(directory: Path) -> Path:
         (r"timeline = \[.*\]", f"timeline = [{', '.join(_step(*step) for step in FAULT)}]"),
         (r"swing_period_s = 230000", "swing_period_s = 53000"),
         (r"changes = \[.*\]\n", ""),
+        (r'\[motor\.fault\]\nphase = "a"\nlevel = 0.04\n', ""),
+        (r"stop = \{.*\}\n", ""),
     ):
         text, number = re.subn(pattern, new, text)
         assert number, pattern

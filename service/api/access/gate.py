@@ -31,6 +31,9 @@ log: FilteringBoundLogger = structlog.get_logger(__name__)
 READING = ("GET", "HEAD")
 BEARER = "bearer"
 
+BY_ITSELF = "x-refresh"
+"""A page sends this header where it asks by itself: nobody has to be there for that."""
+
 NOT_LOCAL = (
     "there are no users yet, so that only this service's own machine may look: run `mcc user add NAME "
     "--role SECADM --role ENGINEER --config FILE` there"
@@ -105,7 +108,9 @@ class Gate:
                 return proxied
         secret = session_secret(headers) or ""
         if secret:
-            return _known(identity_of_session(repository, settings, secret, now_ns=now_ns), ENDED)
+            is_use = headers.get(BY_ITSELF) is None
+            found = identity_of_session(repository, settings, secret, now_ns=now_ns, is_use=is_use)
+            return _known(found, ENDED)
         return None
 
     def _nobody(self, method: str, origin: ClientAddress) -> Identity:

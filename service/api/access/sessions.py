@@ -34,11 +34,28 @@ def get_login_ways(context: Context) -> LoginWays:
 @router.post("/login", responses=problems(400, 413, 429), dependencies=[open_to_all()])
 async def log_in(context: Context, request: Request, response: Response, wanted: LoginRequest) -> Account:
     """Begin a session, with a name and a password; the answer's cookie is its secret."""
+    user = await begin_session(context, request, response, wanted.name, wanted.password)
+    return Account(
+        name=user.name,
+        full_name=user.full_name,
+        roles=sorted(user.roles),
+        permissions=sorted(permissions_of(user.roles)),
+        way="session",
+    )
+
+
+async def begin_session(
+    context: ApiContext, request: Request, response: Response, name: str, password: str
+) -> User:
+    """Begin a session of who knows a user's password: the response gets its cookie.
+
+    Raises ProblemError (401, 403), LoginLockedError, BusyError.
+    """
     origin = client_address(request.scope, context.settings.access.proxy)
     if not await run_in_threadpool(context.repository.has_users):
         raise ProblemError(HTTPStatus.FORBIDDEN, FIRST_USER)
-    account = logins.account_of(wanted.name)
-    await _check(context, account, wanted.password, origin)
+    account = logins.account_of(name)
+    await _check(context, account, password, origin)
     user = await run_in_threadpool(_user, context, account)
     by = Actor(user.name, origin.address, user.roles)
     secret = await run_in_threadpool(
@@ -54,13 +71,7 @@ async def log_in(context: Context, request: Request, response: Response, wanted:
     seconds = context.settings.access.session_hours * 3600
     set_session(response, secret, seconds=seconds, encrypted=origin.is_encrypted)
     response.headers["Cache-Control"] = "no-store"
-    return Account(
-        name=user.name,
-        full_name=user.full_name,
-        roles=sorted(user.roles),
-        permissions=sorted(permissions_of(user.roles)),
-        way="session",
-    )
+    return user
 
 
 @router.post(

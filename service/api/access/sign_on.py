@@ -23,7 +23,7 @@ from service.storage.records import Actor, User
 PATH = "/login/oidc"
 COOKIE = "statorwatch_sign_on"
 ATTEMPT_S = 600
-AFTERWARDS = "/api/v1/account"
+AFTERWARDS = "/"
 
 DONE = f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>StatorWatch</title>
 <meta http-equiv="refresh" content="0;url={AFTERWARDS}">

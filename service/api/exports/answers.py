@@ -91,6 +91,13 @@ class FileAnswer:
         )
 
 
+def sent_file(made: Iterator[bytes], content_type: str, name: str) -> StreamingResponse:
+    """Return the answer with a file that is no table of a list. Raises what making its first piece raises."""
+    first = next(made)
+    headers = {"Content-Disposition": f'attachment; filename="{name}"', "Cache-Control": "no-store"}
+    return _FileResponse(_sent(chain([first], made)), media_type=content_type, headers=headers)
+
+
 async def list_answer(
     request: Request, context: Context, wanted: ListFormat = None
 ) -> AsyncIterator[FileAnswer | None]:

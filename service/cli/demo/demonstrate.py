@@ -3,7 +3,7 @@
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from itertools import count
 from pathlib import Path
 
@@ -74,14 +74,22 @@ def _plant(
     if url is not None:
         yield plant_elsewhere(url, interruption.pause)
         return
-    with _data_directory(data) as directory:
-        progress().print(f"starting two factories, six relays and the service (data and logs: {directory})")
+    with _data_directory(data) as directory, ExitStack() as running:
+        notes = [f"two factories, six relays and the service run (data and logs: {directory})"]
         if not once and any(directory.glob("*.sqlite")):
-            _report("the folder has records of an earlier demo: those of this month come to lie among them")
-        with running_plant(
-            directory, interruption.pause, _report, play=STEADY if once else MONTH_OF_CHANGES
-        ) as plant:
-            yield plant
+            notes.append(
+                "the folder has records of an earlier demo: those of this month come to lie among them"
+            )
+        play = STEADY if once else MONTH_OF_CHANGES
+        with progress().status("starting two factories, six relays and the service"):
+            plant = running.enter_context(
+                running_plant(directory, interruption.pause, notes.append, play=play)
+            )
+        if not once:
+            _show_page(plant)  # the first line: it is what a newcomer looks for
+        for line in notes:
+            _report(line)
+        yield plant
 
 
 def _run(
@@ -94,7 +102,7 @@ def _run(
         _require_diagnoses(motors)
         return
     console = progress()
-    console.print(f"API: {plant.url}/api/v1/motors   end: Ctrl-C")
+    console.print(f"API: {plant.url}/api/v1/motors   end: Ctrl-C", soft_wrap=True)
     try:
         if plant.month is None:
             _play_rounds(plant, service, motors, started_s, json_file)
@@ -130,6 +138,7 @@ def _play_month(
         results().print(conditions_table(played, conditions, alarms))
         if alarms:
             results().print(NEXT_STEP)
+        _show_page(plant)
         publish(played, conditions)
         _rest(plant)
         for motor in played:
@@ -189,6 +198,12 @@ def _publish(motors: Sequence[DemoMotor], seconds: float, json_file: Path | None
     console.print(Text(f"{spent}{words}"))
     if json_file is not None:
         json_file.write_text(as_json(document(motors, seconds)) + "\n", encoding="utf-8")
+
+
+def _show_page(plant: DemoPlant) -> None:
+    """Print a link to the page, which logs in once: another one where the last one was followed."""
+    if plant.page is not None:
+        results().print(Text(f"page: {plant.page()}"), soft_wrap=True)
 
 
 def _report(line: str) -> None:

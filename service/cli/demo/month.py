@@ -8,6 +8,7 @@ from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, Progress, TextColumn
 from rich.text import Text
 
+from mms import MmsError
 from service.cli.output import progress, results
 from service.client.conditions import condition_of, state_text
 from service.client.rest_client import Document, ServiceClient
@@ -15,6 +16,7 @@ from service.client.tables import FittedTable
 from service.client.verdicts import level
 from service.demo.month import Month
 from service.demo.open_alarms import OpenAlarms, alarm_text
+from service.demo.operator import restart
 from service.demo.plant import DemoPlant
 from service.demo.results import DemoMotor, condition_text
 from service.demo.rounds import play_round
@@ -22,6 +24,9 @@ from service.demo.truth import Truth, ask_course
 
 AFTER_LEAP_S = 0.3
 """A round begins so long after a leap of the plant's clock, which other processes show a little later."""
+
+RESTARTS = (2, 8, 14)
+"""After these rounds a motor is started anew: the page of its starts has one within the first minute."""
 
 Truths = Mapping[str, Truth]
 
@@ -68,9 +73,13 @@ def play_month(
         task = bar.add_task("month", total=month.days)
         leap = month.leap_at(datetime.now(UTC)) + 1
         _pause_until(month, leap, plant.pause)
+        rounds = 0
         while True:
             played = [DemoMotor(one.name, one.site, truths[leap][one.ied], one.ied) for one in motors]
             play_round(service, played, lambda _: None, plant.pause)
+            rounds += 1
+            if rounds in RESTARTS:
+                _restart(plant)
             following = max(leap, month.leap_at(datetime.now(UTC))) + 1
             # Until the next leap the service has time to judge the motors by these records.
             _pause_until(month, following, plant.pause)
@@ -82,6 +91,13 @@ def play_month(
             if leap >= month.leaps:
                 return played
             leap = min(following, month.leaps)
+
+
+def _restart(plant: DemoPlant) -> None:
+    try:
+        restart(plant.scd, plant.pause)
+    except MmsError as error:
+        progress().print(Text(f"a motor was not started anew: {error}"), soft_wrap=True)
 
 
 def conditions_of(service: ServiceClient) -> dict[str, Document]:

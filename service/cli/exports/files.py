@@ -40,7 +40,7 @@ def export_table(
     with (
         failing_clearly(ServiceError, OSError),
         ServiceClient(url) as service,
-        _sink(output, overwrite=overwrite) as file,
+        written_file(output, overwrite=overwrite) as file,
     ):
         size_bytes = service.save(f"/exports/{table}", words, file)
     if output is None:
@@ -68,7 +68,7 @@ def _require_readable(chosen: str, *, as_json: bool) -> None:
 
 
 @contextmanager
-def _sink(output: Path | None, *, overwrite: bool) -> Iterator[BinaryIO]:
+def written_file(output: Path | None, *, overwrite: bool) -> Iterator[BinaryIO]:
     """Open the file that is to be written. It has its name once it is complete. Raises OSError."""
     if output is None:
         yield sys.stdout.buffer

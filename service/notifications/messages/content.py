@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from service.senders.message import Line, Severity
+from service.senders.message import Attachment, Line, Severity
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,3 +37,4 @@ class Content:
     hint: str | None = None
     pictures: Mapping[str, bytes] = field(default_factory=dict)
     thread: str | None = None
+    attachments: tuple[Attachment, ...] = ()

@@ -9,9 +9,11 @@ from service.notifications.messages.content import Content
 from service.notifications.messages.digest_content import digest_content, picture_key
 from service.notifications.messages.html import html
 from service.notifications.messages.plain_text import plain_text
+from service.notifications.messages.report_content import report_content
 from service.notifications.messages.told_alarm import told_alarms
 from service.notifications.messages.trial_content import trial_content
 from service.notifications.trends import trend_of
+from service.reports.source import ReportSource
 from service.senders.message import Message
 from service.storage import Repository
 from service.storage.records import Notification
@@ -29,10 +31,16 @@ def message_of(
     settings: NotificationSettings,
     repository: Repository,
     *,
+    stale_after_days: float | None = None,
     with_pictures: bool,
 ) -> Message:
-    """Return what is sent. Raises sqlalchemy.exc.SQLAlchemyError."""
-    content = _content(notification, settings, repository, with_pictures=with_pictures)
+    """Return what is sent. stale_after_days: as of reports. Raises ReportError, SQLAlchemyError."""
+    if notification.kind is NotificationKind.REPORT:
+        content = report_content(
+            notification, settings, ReportSource(repository, settings.time_zone, stale_after_days)
+        )
+    else:
+        content = _content(notification, settings, repository, with_pictures=with_pictures)
     return Message(
         id=notification.id,
         created_ns=notification.created_ns,
@@ -44,6 +52,7 @@ def message_of(
         lines=tuple(content.lines),
         document=content.document,
         thread=content.thread,
+        attachments=content.attachments,
     )
 
 
@@ -61,7 +70,7 @@ def _content(
             names = _motors_of_digest(notification)[:MOST_PICTURES] if with_pictures else []
             wanted = {picture_key(number): name for number, name in enumerate(names)}
             return digest_content(notification, settings, _pictures(wanted, settings, repository))
-        case NotificationKind.ALARMS | NotificationKind.ESCALATION:
+        case _:
             wanted = _motors_of_alarms(notification) if with_pictures else {}
             return alarm_content(notification, settings, _pictures(wanted, settings, repository))
 

@@ -7,7 +7,7 @@ import httpx
 import pytest
 
 from core.diagnosis.search import METHODS
-from core.diagnosis.stator import MODELS
+from core.machines.stator_models import MODELS
 from core.time_stamps import nanoseconds
 from service.api import ApiContext, create_app
 from service.storage import Repository

@@ -44,6 +44,19 @@ def test_names_that_nobody_has_are_refused_with_the_nearest(
         serve(Settings.load(config))
 
 
+def test_a_report_by_mail_of_what_there_is_not_is_refused(
+    config: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mail = '[[reports.mails]]\nperiod = "daily"\nat = "06:00"\nchannels = ["ops"]\n'
+    fleet, motor = 'report = "fleet"\nsites = ["PLNT"]\n', 'report = "motor"\nmotors = ["NOBODY"]\n'
+    said = checked(config, CHANNELS + mail + fleet + mail + motor, capsys)
+    wrong = "reports.mails.0.sites: expected one of PLANT, found 'PLNT' (did you mean PLANT?)"
+    assert any(line.endswith(wrong) for line in said)
+    assert any("reports.mails.1.motors: expected one of" in line for line in said)
+    with pytest.raises(SettingsError, match=r"reports\.mails\.1\.motors"):
+        serve(Settings.load(config))
+
+
 def test_what_a_channel_needs_and_has_not_is_told_without_the_secret(
     config: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

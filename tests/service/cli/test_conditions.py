@@ -152,7 +152,7 @@ def test_what_stands_from_the_first_record_on_has_neither_a_beginning_nor_a_chan
     first_ns = FAULT.reference.since_ns
     tell(repository, replace(FAULT, since_ns=first_ns, change=0.0, change_ci95=None))
     shown = unframed(mcc("condition", "PUMP-A1"))
-    assert "since before the first record, of 2025-08-06 08:53:20 UTC" in shown
+    assert "since unknown: there since the first record, of 2025-08-06 08:53:20 UTC" in shown
     assert "size of the change" not in shown
     (row,) = [line for line in mcc("motors").splitlines() if "PUMP-A1" in line]
     assert "2025-08-06" not in row

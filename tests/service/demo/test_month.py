@@ -43,10 +43,15 @@ def test_the_month_has_the_demo_plants_motors_on_their_buses() -> None:
 
 def test_the_month_is_what_it_says() -> None:
     first, last = ask_course(scl.DEMO_PLANT_SCD, MONTH, [0.0, 30 * DAY_S])
-    assert {truth.verdict for truth in first.values()} == {"healthy"}
+    assert {relay: truth.phase for relay, truth in first.items() if truth.phase} == {"B2_SEL710": "a"}
+    assert all(truth.running for truth in first.values())
+    assert [relay for relay, truth in last.items() if not truth.running] == ["B3_SEL710"]
     assert not any(truth.channels for truth in first.values())
     faults = {relay: (truth.mu_f, truth.phase) for relay, truth in last.items() if truth.phase}
-    assert {relay: phase for relay, (_, phase) in faults.items()} == {"A2_SEL710": "b"}
+    assert {relay: phase for relay, (_, phase) in faults.items()} == {
+        "A2_SEL710": "b",
+        "B2_SEL710": "a",
+    }
     assert faults["A2_SEL710"][0] == pytest.approx(0.03)
     assert {relay: set(truth.channels) for relay, truth in last.items() if truth.channels} == {
         "A3_SEL710": {"VB"}

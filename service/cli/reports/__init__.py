@@ -1,0 +1,1 @@
+"""Reports that the service makes, written to files."""

@@ -1,0 +1,59 @@
+"""Puts the pages on top of the API."""
+
+from fastapi import FastAPI
+
+from service.api.app import create_app
+from service.api.context import ApiContext
+from service.web.alarms import routes as alarms
+from service.web.audit import routes as audit
+from service.web.fleet import routes as fleet
+from service.web.html_problems import HtmlProblems
+from service.web.live import routes as live
+from service.web.motor import routes as motor
+from service.web.notifications import routes as notifications
+from service.web.people import account
+from service.web.people import routes as people
+from service.web.plant import routes as plant
+from service.web.recording import routes as recording
+from service.web.relays import routes as relays
+from service.web.reports import routes as reports
+from service.web.security_headers import SecurityHeaders
+from service.web.sign_in import login_link
+from service.web.sign_in import routes as sign_in
+from service.web.starts import routes as starts
+from service.web.static_files import StaticFiles, static_tree
+
+ROOMS = (
+    sign_in,
+    login_link,
+    alarms,
+    relays,
+    reports,
+    live,
+    fleet,
+    recording,
+    people,
+    account,
+    audit,
+    plant,
+    notifications,
+    motor,
+    starts,
+)
+"""Each has the routes of some pages in its `router`."""
+
+
+def create_site(context: ApiContext) -> FastAPI:
+    """Return the API and the pages as one ASGI application, for a plant that is in the database already."""
+    app = create_app(context, pages=[room.router for room in ROOMS], page_uploads=recording.UPLOADS)
+    live.install_live(app, context)
+    fleet.install_fleet(app, context)
+    app.add_middleware(HtmlProblems)
+    app.add_middleware(StaticFiles, tree=static_tree())
+    app.add_middleware(SecurityHeaders)
+    return app
+
+
+def end_streams(app: FastAPI) -> None:
+    """End the streams of open pages, which would else last until the service is forced to stop."""
+    live.live_of(app).bus.close()

@@ -1,0 +1,5 @@
+"""Charts of the pages as data; static/js/charts draws them, templates/charts/figure.html has their frame."""
+
+from service.web.charts.chart import AxisKind, Chart, Kind, Limit, Mark, Series, Table, Tone
+
+__all__ = ["AxisKind", "Chart", "Kind", "Limit", "Mark", "Series", "Table", "Tone"]

@@ -1,0 +1,51 @@
+"""Which motors the fleet shows: the filters of its address."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from service.web.addresses import address
+from service.web.fleet.rows import FleetRow
+from service.web.fleet.states import FleetState
+from service.web.words import STATE_WORDS
+
+LONGEST = 200
+
+
+@dataclass(frozen=True, slots=True)
+class FleetFilter:
+    """What a motor must be to be shown; all of it where something is given.
+
+    text: words that are all in the motor's name, description, site, relay, state or kind of change.
+    """
+
+    site: str | None = None
+    state: FleetState | None = None
+    text: str = ""
+
+    @property
+    def is_empty(self) -> bool:
+        """Tell whether all motors are shown."""
+        return self == FleetFilter()
+
+    def chosen(self, rows: Iterable[FleetRow]) -> list[FleetRow]:
+        """Return the motors that are shown, in their order."""
+        words = self.text.casefold().split()
+        return [row for row in rows if self._shows(row) and all(word in _searched(row) for word in words)]
+
+    def address(self) -> str:
+        """Return where this is shown."""
+        return address("/", site=self.site, state=self.state, text=self.text)
+
+    def with_state(self, state: FleetState | None) -> "FleetFilter":
+        """Return the same with another state."""
+        return FleetFilter(self.site, state, self.text)
+
+    def _shows(self, row: FleetRow) -> bool:
+        return (self.site is None or row.site == self.site) and (
+            self.state is None or self.state in row.states
+        )
+
+
+def _searched(row: FleetRow) -> str:
+    states = (STATE_WORDS[state] for state in row.states)
+    return "\n".join((row.name, row.description, row.site, row.ied, row.kind, *states)).casefold()

@@ -1,0 +1,1 @@
+"""Tells open pages that what they show has changed: one look at the database for all of them."""

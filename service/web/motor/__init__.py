@@ -1,0 +1,1 @@
+"""The page of a motor: what is wrong with it, how that is known, and what can be done."""

@@ -1,0 +1,88 @@
+"""The pictures of a motor's page: its asymmetry by phase, level against load, supply, and load profile."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from markupsafe import Markup
+
+from core.machines.parameters import Motor
+from core.units import NANOSECONDS_PER_DAY
+from service.api.condition_schemas import Condition
+from service.condition.shown_records import asymmetry_of_records, load_points, supply_points
+from service.pictures.asymmetry import asymmetry_picture
+from service.pictures.load import load_picture
+from service.pictures.load_profile import LoadShare, load_profile_picture
+from service.pictures.looks import PAGE, Look
+from service.pictures.supply import supply_picture
+from service.storage import Repository
+from service.storage.records.history import SeenRecord
+from service.web.pictures import markup
+
+MOST_RECORDS: Final = 240
+"""The latest records that the pictures show."""
+PROFILE_DAYS: Final = 90
+
+
+@dataclass(frozen=True, slots=True)
+class MotorDrawings:
+    """Pictures as SVG. records: how many they show.  profile_of: what the load profile is made of."""
+
+    asymmetry: Markup
+    load: Markup
+    supply: Markup
+    profile: Markup
+    records: int
+    profile_of: str
+
+
+def motor_drawings(
+    repository: Repository,
+    motor: Motor,
+    condition: Condition,
+    since_ns: int | None,
+    now_ns: int,
+    *,
+    look: Look = PAGE,
+) -> MotorDrawings:
+    """Draw what a motor's latest records show. since_ns: first record of a change; None without one."""
+    seen = repository.latest_records(motor.name, limit=MOST_RECORDS)
+    earlier: Sequence[SeenRecord] = ()
+    if since_ns is not None and seen and seen[0].observation.time_ns >= since_ns:
+        earlier = repository.latest_records(motor.name, limit=MOST_RECORDS // 2, before_ns=since_ns)
+    shares, profile_of = load_shares(repository, motor, seen, now_ns)
+    limit = motor.limits.fault_level
+    found = asymmetry_of_records(
+        [*earlier, *seen],
+        motor,
+        since_ns=since_ns,
+        path_ratio=condition.reference.standing_path_ratio or 0.0,
+        detectable=condition.reference.detectable,
+        state=condition.state.value,
+    )
+    supply = supply_points(seen)
+    return MotorDrawings(
+        asymmetry=markup(asymmetry_picture(motor.name, found, look=look)),
+        load=markup(load_picture(motor.name, load_points(seen), limit=limit, look=look)),
+        supply=markup(supply_picture(motor.name, supply, look=look)),
+        profile=markup(load_profile_picture(motor.name, shares, of_what=profile_of, look=look)),
+        records=len(seen),
+        profile_of=profile_of,
+    )
+
+
+def load_shares(
+    repository: Repository, motor: Motor, seen: Sequence[SeenRecord], now_ns: int
+) -> tuple[list[LoadShare], str]:
+    """Return how loaded the motor is, by the power that its relay measures, or else by its records.
+
+    The power is that taken from the supply, over the rated one of the shaft.
+    """
+    rated_W = motor.nameplate.rated_power_W
+    from_ns = now_ns - PROFILE_DAYS * NANOSECONDS_PER_DAY
+    measured = repository.power_profile(motor.name, step_W=0.05 * rated_W, from_ns=from_ns)
+    if measured:
+        shares = [LoadShare(abs(power_W) / rated_W, quarters) for power_W, quarters in measured]
+        return shares, f"of the time in {PROFILE_DAYS} days"
+    loads = [one.observation.load_level for one in seen]
+    return [LoadShare(load) for load in loads if load is not None], "of the records"

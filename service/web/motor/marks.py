@@ -1,0 +1,37 @@
+"""What happened to a motor in a time, for its trend: starts, trips, its baseline, what people told."""
+
+from collections.abc import Mapping
+from typing import Final
+
+from core.condition.events import EventKind
+from core.operation import Operation
+from service.storage import Repository
+from service.web.motor.trend import TrendMark
+from service.web.words import phrase
+
+MOST_OF_EACH: Final = 40
+"""The latest of each kind are marked; more would hide one another and the trend."""
+OPERATIONS: Final[Mapping[Operation, str]] = {Operation.START: "start", Operation.TRIP: "trip"}
+
+
+def trend_marks(repository: Repository, motor: str, from_ns: int, to_ns: int) -> list[TrendMark]:
+    """Return what happened in the time, in its order."""
+    marks = []
+    for operation, label in OPERATIONS.items():
+        found = repository.operations(motor, [operation], limit=MOST_OF_EACH, from_ns=from_ns, to_ns=to_ns)
+        marks += [
+            TrendMark(one.announced_ns if one.recorded_ns is None else one.recorded_ns, label)
+            for one in found
+        ]
+    baseline = repository.baseline(motor)
+    if baseline.chosen_ns is not None:
+        marks.append(TrendMark(baseline.chosen_ns, "baseline"))
+    notes = repository.events(motor, limit=MOST_OF_EACH).items
+    marks += [
+        TrendMark(one.time_ns, "note" if one.kind is EventKind.NOTE else phrase(one.kind))
+        for one in notes
+        if one.withdrawn_ns is None
+    ]
+    return sorted(
+        (one for one in marks if from_ns <= one.time_ns < to_ns), key=lambda mark: (mark.time_ns, mark.label)
+    )

@@ -1,0 +1,163 @@
+"""The page of a motor, the figures behind its trend, and the forms on it, which do what the API does."""
+
+from http import HTTPStatus
+from typing import Annotated, Final
+from uuid import UUID
+
+from fastapi import APIRouter, Form, Query
+from fastapi.responses import JSONResponse
+from starlette.responses import Response
+
+from core.condition.events import EventKind
+from core.units import NANOSECONDS_PER_SECOND
+from service.access.permissions import Permission
+from service.api.access.requirements import require
+from service.api.condition_schemas import NoteRequest, RestartRequest, Withdrawal
+from service.api.conditions import keep_note
+from service.api.document import Name
+from service.api.problems import ProblemError
+from service.web.addresses import address
+from service.web.forms import document_of_form
+from service.web.live.routes import live_address
+from service.web.motor.page import motor_page, span_of
+from service.web.motor.trend import SPANS, USUAL, trend_chart
+from service.web.view import Looking, View
+from service.web.words import phrase
+
+router = APIRouter()
+
+LATEST_S: Final = 9.2e9
+"""Times are integers of 64 bits in the database."""
+
+Seconds = Annotated[float, Query(ge=0.0, le=LATEST_S, allow_inf_nan=False)]
+Text = Annotated[str, Form(max_length=2000)]
+
+
+@router.get("/motors/{name}", dependencies=[require(Permission.VIEW)])
+def show_motor(view: Looking, name: Name, days: Annotated[str, Query(max_length=10)] = USUAL) -> Response:
+    """Show a motor: what is wrong with it, how that is known, and what can be done."""
+    try:
+        span = span_of(days)
+    except LookupError as error:
+        known = ", ".join(one.key for one in SPANS)
+        raise ProblemError(
+            HTTPStatus.UNPROCESSABLE_ENTITY, f"query.days: expected one of {known}, found {days!r}"
+        ) from error
+    live = live_address(view.request, f"motor:{name}", "alarms")
+    page = motor_page(view.context, name, span, view.now_ns)
+    return view.page(
+        "motor/page.html",
+        title=name,
+        page=page,
+        spans=SPANS,
+        live=live,
+        here=address("/motors", name),
+        kinds=_kinds(view),
+    )
+
+
+@router.get("/motors/{name}/trend", dependencies=[require(Permission.VIEW)])
+def get_trend_piece(view: Looking, name: Name, from_s: Seconds, to_s: Seconds) -> Response:
+    """Return the trend of a piece of time, which a chart shows when somebody looks closer."""
+    if from_s > to_s:
+        raise ProblemError(
+            HTTPStatus.UNPROCESSABLE_ENTITY,
+            f"query.to_s: expected a time after from_s, {from_s:g}, found {to_s:g}",
+        )
+    trend = view.context.repository.thinned_trend(
+        name, from_ns=round(from_s * NANOSECONDS_PER_SECOND), to_ns=round(to_s * NANOSECONDS_PER_SECOND)
+    )
+    chart = trend_chart(name, trend)
+    document = chart.document()
+    return JSONResponse(
+        {"x": document["x"], "series": document["series"], "summary": chart.summary},
+        headers={"Cache-Control": "private, no-cache"},
+    )
+
+
+@router.post("/motors/{name}/recording-requests", dependencies=[require(Permission.TRIGGER)])
+def record_motor(view: Looking, name: Name) -> Response:
+    """Have the motor's relay make a recording."""
+    context = view.context
+    context.repository.request_recording(
+        name, by=view.asking.actor, now_ns=view.now_ns, most_open=context.settings.max_open_requests
+    )
+    return _done(view, name, "recording-requested")
+
+
+@router.post("/motors/{name}/diagnoses", dependencies=[require(Permission.RECORDINGS)])
+def diagnose_again(view: Looking, name: Name, recording: Annotated[UUID, Form()]) -> Response:
+    """Diagnose a recording again; its motor's condition follows."""
+    context = view.context
+    context.repository.request_diagnosis(
+        str(recording),
+        by=view.asking.actor,
+        now_ns=view.now_ns,
+        most_queued=context.settings.max_queued_diagnoses,
+    )
+    context.on_new_job()
+    return _done(view, name, "diagnosis-requested")
+
+
+@router.post("/motors/{name}/reference", dependencies=[require(Permission.CONFIGURE)])
+def accept_as_reference(view: Looking, name: Name, reason: Text = "") -> Response:
+    """Take the motor for healthy as it is."""
+    wanted = document_of_form(RestartRequest, {"reason": reason})
+    kind = EventKind.REFERENCE_RESTARTED
+    keep_note(view.context, name, kind, wanted.reason, view.asking.actor, None, view.now_ns)
+    return _done(view, name, "reference-restarted")
+
+
+@router.post("/motors/{name}/notes", dependencies=[require(Permission.NOTE)])
+def write_note(
+    view: Looking,
+    name: Name,
+    text: Text = "",
+    kind: Annotated[str, Form(max_length=50)] = EventKind.NOTE.value,
+    time: Annotated[str, Form(max_length=40)] = "",
+    anew: Annotated[bool, Form()] = False,
+) -> Response:
+    """Write into the motor's logbook. All kinds but a plain note change what its condition follows from."""
+    wanted = document_of_form(NoteRequest, {"text": text, "kind": kind, "time": _utc(time)})
+    if wanted.kind is not EventKind.NOTE:
+        view.asking.demand(Permission.CONFIGURE, f"tell of {wanted.kind.value}")
+        if not anew:
+            raise ProblemError(
+                HTTPStatus.UNPROCESSABLE_ENTITY,
+                f"{phrase(wanted.kind)} has the motor judged anew: what stands of it, its alarms too, may go "
+                "until new records show it again. Tick 'Judge the motor anew', or write a note",
+            )
+    keep_note(view.context, name, wanted.kind, wanted.text, view.asking.actor, None, wanted.time)
+    return _done(view, name, "note-kept")
+
+
+@router.post("/motors/{name}/notes/{note_id}/withdrawal", dependencies=[require(Permission.CONFIGURE)])
+def withdraw_note(view: Looking, name: Name, note_id: UUID, reason: Text = "") -> Response:
+    """Let a note that was wrong count no more."""
+    wanted = document_of_form(Withdrawal, {"reason": reason})
+    view.context.repository.withdraw_event(
+        name, str(note_id), by=view.asking.actor, reason=wanted.reason, now_ns=view.now_ns
+    )
+    view.context.on_new_job()
+    return _done(view, name, "note-withdrawn")
+
+
+def _utc(text: str) -> str:
+    """Return the time of a form's field, which is in UTC and has no offset, as the API takes it."""
+    return text if not text or text.endswith("Z") or "T" not in text else f"{text}{':00' * _is_short(text)}Z"
+
+
+def _is_short(text: str) -> bool:
+    return text.count(":") == 1
+
+
+def _kinds(view: View) -> list[EventKind]:
+    """Return what somebody may write into the logbook; what the file tells, the service notes by itself."""
+    if not view.may(Permission.CONFIGURE):
+        return [EventKind.NOTE]
+    left_out = (EventKind.PARAMETERS_EDITED, EventKind.REFERENCE_RESTARTED)
+    return [EventKind.NOTE, *(kind for kind in EventKind if kind not in (*left_out, EventKind.NOTE))]
+
+
+def _done(view: View, name: str, what: str) -> Response:
+    return view.done(address("/motors", name), what)

@@ -1,0 +1,1 @@
+"""Pages of people: the own account, and for who manages them, users and tokens."""

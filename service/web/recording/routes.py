@@ -1,0 +1,198 @@
+"""The pages of recordings, and the forms on them. The forms call what the API's routes call."""
+
+from dataclasses import dataclass
+from http import HTTPStatus
+from typing import Annotated, Final
+from uuid import UUID
+
+from fastapi import APIRouter, File, Form, Query, UploadFile
+from fastapi.concurrency import run_in_threadpool
+from starlette.responses import Response
+
+from core.operation import Operation
+from service.access.permissions import Permission
+from service.api.access.requirements import require
+from service.api.diagnoses import queue_diagnosis
+from service.api.pages import decode, encode
+from service.api.problems import ProblemError
+from service.api.recordings import FORM_LIMITS, store_upload
+from service.api.samples.opening import in_turn
+from service.api.schemas import DiagnosisRequest
+from service.storage.states import RecordingState
+from service.web.addresses import address
+from service.web.recording.comparison import comparison
+from service.web.recording.drawn_model import drawn_model
+from service.web.recording.page_data import MOST_CHOICES, cursor_at, recording_page
+from service.web.recording.verdicts import look_of, sentence, words_of
+from service.web.view import Looking, View
+
+router = APIRouter()
+
+UPLOADS: Final = frozenset({("POST", "/recordings")})
+"""Routes that take files."""
+ROWS: Final = 50
+FARTHEST_S: Final = 1e6
+VIEW = [require(Permission.VIEW)]
+CHANGE = [require(Permission.RECORDINGS)]
+
+Text = Annotated[str | None, Query(max_length=200)]
+Seconds = Annotated[float | None, Query(ge=-FARTHEST_S, le=FARTHEST_S)]
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """Files that were brought and not taken, and why."""
+
+    names: tuple[str, ...]
+    why: str
+
+
+@router.get("/recordings", dependencies=VIEW)
+def show_recordings(
+    view: Looking,
+    motor: Text = None,
+    show: Annotated[str | None, Query(max_length=40)] = None,
+    with_: Annotated[UUID | None, Query(alias="with")] = None,
+    cursor: Annotated[str | None, Query(max_length=1000)] = None,
+) -> Response:
+    """Show recordings, latest first, of one motor or of all; and the form that brings one."""
+    return _list(view, motor or None, show or None, with_, cursor or None)
+
+
+def _list(
+    view: View,
+    motor: str | None,
+    show: str | None = None,
+    with_: UUID | None = None,
+    cursor: str | None = None,
+    refused: Refused | None = None,
+) -> Response:
+    """Return the list. refused: files that were brought and not taken. Raises NotFoundError, ProblemError."""
+    repository = view.context.repository
+    chosen = motor
+    view.context.require_motor(chosen)
+    state = next((one for one in RecordingState if one == show), None)
+    operation = None if state is not None else next((one for one in Operation if one == show), None)
+    if show is not None and state is None and operation is None:
+        expected = ", ".join(dict.fromkeys([*RecordingState, *Operation]))
+        raise ProblemError(
+            HTTPStatus.UNPROCESSABLE_ENTITY, f"query.show: expected one of {expected}, found {show!r}"
+        )
+    found = repository.recordings(
+        motor=chosen, state=state, operation=operation, limit=ROWS, after=decode(cursor, int, str)
+    )
+    verdicts = repository.verdicts([one.id for one in found.items])
+    later = None if found.next is None else encode(found.next)
+    return view.page(
+        "recording/list.html",
+        status=HTTPStatus.OK if refused is None else HTTPStatus.UNPROCESSABLE_ENTITY,
+        refused=refused,
+        title="Recordings" if chosen is None else f"Recordings of {chosen}",
+        recordings=found.items,
+        verdicts=verdicts,
+        motors=sorted(repository.schedules()),
+        motor=chosen,
+        chosen_show=state or operation,
+        states=[*RecordingState],
+        operations=[*Operation],
+        compared=None if with_ is None else str(with_),
+        is_later_page=bool(cursor),
+        next_page=None
+        if later is None
+        else address("/recordings", motor=chosen, show=state or operation, cursor=later, **{"with": with_}),
+        look_of=look_of,
+        words_of=words_of,
+    )
+
+
+@router.post("/recordings", dependencies=CHANGE, form_limits=FORM_LIMITS)
+async def bring_recording(
+    view: Looking,
+    motor: Annotated[str, Form(min_length=1, max_length=200)],
+    files: Annotated[list[UploadFile] | None, File()] = None,
+) -> Response:
+    """Store the files of one recording and queue its diagnosis.
+
+    What is wrong with the files stands beside their field, with the motor chosen as it was.
+    """
+    context = view.context
+    given = [one for one in files or () if one.filename]
+    names = tuple((one.filename or "")[:100] for one in given)
+    if not given:
+        refused = Refused((), "choose the files of one recording first")
+        return await run_in_threadpool(_list, view, motor, refused=refused)
+    try:
+        async with context.uploads.admitted():
+            added, _ = await run_in_threadpool(store_upload, context, view.asking.actor, motor, given)
+    except ProblemError as error:
+        about_files = [one.message for one in error.errors or () if one.location == "body.files"]
+        if not about_files:
+            raise
+        return await run_in_threadpool(_list, view, motor, refused=Refused(names, "; ".join(about_files)))
+    what = "recording-added" if added.created else "recording-known"
+    return view.done(address("/recordings", added.recording.id), what)
+
+
+@router.get("/recordings/{recording_id}", dependencies=VIEW)
+async def show_recording(
+    view: Looking,
+    recording_id: UUID,
+    at_s: Seconds = None,
+    with_: Annotated[UUID | None, Query(alias="with")] = None,
+    model: Annotated[bool, Query(description="With what the model leaves of the currents.")] = False,
+) -> Response:
+    """Show one recording. A script asks for what the model leaves; without one, a link does."""
+    context = view.context
+
+    def seen() -> Response:
+        page = recording_page(context, str(recording_id), at_s)
+        drawn = drawn_model(context, page.entry) if model and page.waveforms is not None else None
+        compared = None if with_ is None else comparison(context, page.entry, str(with_))
+        choices = context.repository.recordings(motor=page.entry.motor, limit=MOST_CHOICES).items
+        return view.page(
+            "recording/recording.html",
+            title=f"{page.entry.motor}: recording {page.entry.name}",
+            page=page,
+            said=sentence(page.entry, page.diagnosis),
+            look=look_of(None if page.diagnosis is None else page.diagnosis.verdict),
+            words=words_of(None if page.diagnosis is None else page.diagnosis.verdict),
+            cursor=None if page.waveforms is None else page.waveforms.cursor,
+            compared=compared,
+            drawn=drawn,
+            live=None if page.diagnosis is not None else address("/live", topic=f"motor:{page.entry.motor}"),
+            choices=[one for one in choices if one.id != page.entry.id and one.digest is not None],
+        )
+
+    return await in_turn(context, seen)
+
+
+@router.get("/recordings/{recording_id}/phasors", dependencies=VIEW)
+async def show_phasors(view: Looking, recording_id: UUID, at_s: Seconds = 0.0) -> Response:
+    """Show the phasors at the cursor, as a part of the page."""
+    context = view.context
+
+    def seen() -> Response:
+        entry = context.repository.recording(str(recording_id))
+        cursor = cursor_at(context.recorded.open(entry), at_s or 0.0)
+        return view.fragment("recording/phasors.html", cursor=cursor)
+
+    return await in_turn(context, seen)
+
+
+@router.get("/recordings/{recording_id}/model", dependencies=VIEW)
+async def show_model(view: Looking, recording_id: UUID) -> Response:
+    """Show what the model leaves of the currents, as a part of the page: a worker draws it anew."""
+    context = view.context
+
+    def seen() -> Response:
+        entry = context.repository.recording(str(recording_id))
+        return view.fragment("recording/model.html", drawn=drawn_model(context, entry))
+
+    return await in_turn(context, seen)
+
+
+@router.post("/recordings/{recording_id}/diagnoses", dependencies=CHANGE)
+def diagnose_again(view: Looking, recording_id: UUID) -> Response:
+    """Queue another diagnosis of the recording with the usual method and model."""
+    queue_diagnosis(view.context, view.asking.actor, str(recording_id), DiagnosisRequest())
+    return view.done(address("/recordings", str(recording_id)), "diagnosis-queued")

@@ -1,0 +1,1 @@
+"""Pages of relays: their links over time, clocks, records, and what differs from their SCL."""

@@ -1,0 +1,90 @@
+"""From a template and what it shows to an answer."""
+
+import gzip
+from functools import cache
+from http import HTTPStatus
+from typing import Final
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from starlette.datastructures import Headers
+from starlette.responses import HTMLResponse
+
+from service.condition.wording import cause
+from service.web import words
+from service.web.addresses import address, path_segment
+from service.web.static_files import static_tree
+
+LEAST_COMPRESSED_BYTES: Final = 1400
+"""A shorter answer goes into one packet as it is."""
+COMPRESSION: Final = 5
+
+HTMX_CONFIG: Final = {
+    "allowEval": False,
+    "allowScriptTags": False,
+    "includeIndicatorStyles": False,
+    "selfRequestsOnly": True,
+    "historyCacheSize": 0,
+    "refreshOnHistoryMiss": True,
+    "responseHandling": [
+        {"code": "204", "swap": False},
+        {"code": "[23]..", "swap": True},
+        {"code": "[45]..", "swap": True, "error": True},
+    ],
+}
+"""Nothing is evaluated, no style is written into the page, and what an error says is shown."""
+
+
+@cache
+def environment() -> Environment:
+    """Return the templates: every value in them is escaped, and an unknown name is an error."""
+    made = Environment(
+        loader=PackageLoader("service.web"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    made.globals |= {
+        "static": static_tree().address,
+        "address": address,
+        "htmx_config": HTMX_CONFIG,
+        "STATE_WORDS": words.STATE_WORDS,
+    }
+    made.filters |= {
+        "segment": path_segment,
+        "percent": words.percent,
+        "interval": words.interval,
+        "utc": words.utc,
+        "rfc3339": words.rfc3339,
+        "figure": words.figure,
+        "bytes": words.size,
+        "age": words.age,
+        "duration": words.duration,
+        "phrase": words.phrase,
+        "cause": cause,
+    }
+    return made
+
+
+def rendered(template: str, **data: object) -> str:
+    """Return what a template makes of data."""
+    return environment().get_template(template).render(data)
+
+
+def html_response(
+    text: str, headers: Headers, *, status: int = HTTPStatus.OK, cache: str = "private, no-cache"
+) -> HTMLResponse:
+    """Return an answer with a page or a part of one, compressed where the browser takes that.
+
+    headers: those of the request.
+    """
+    about = about_html(cache)
+    body = text.encode()
+    if len(body) >= LEAST_COMPRESSED_BYTES and "gzip" in headers.get("accept-encoding", ""):
+        body, about["Content-Encoding"] = gzip.compress(body, COMPRESSION, mtime=0), "gzip"
+    return HTMLResponse(body, status_code=status, headers=about)
+
+
+def about_html(cache: str = "private, no-cache") -> dict[str, str]:
+    """Return the headers of every answer with a page or a part of one."""
+    return {"Cache-Control": cache, "Vary": "Accept-Encoding, HX-Request"}

@@ -1,0 +1,60 @@
+// @ts-check
+/** What lies over the lines of a chart: limits, marks of events, and markers that somebody has set. */
+
+const LETTERING = 11;
+
+/**
+ * @param {any} plot
+ * @param {import("./chart.js").Description} description
+ * @param {number[]} markers
+ * @param {import("./theme.js").Theme} theme
+ */
+export function limitsAndMarks(plot, description, markers, theme) {
+  const { ctx } = plot;
+  const ratio = plot.pxRatio ?? window.devicePixelRatio;
+  const box = plot.bbox;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(box.left, box.top, box.width, box.height);
+  ctx.clip();
+  ctx.font = `${LETTERING * ratio}px ${getComputedStyle(document.body).fontFamily}`;
+  ctx.lineWidth = ratio;
+  for (const limit of description.limits ?? []) {
+    const y = plot.valToPos(limit.y, "y", true);
+    stroke(ctx, theme.of(limit.tone), [4, 3], ratio, [box.left, y], [box.left + box.width, y]);
+    ctx.textAlign = "left";
+    const above = y - box.top > 1.5 * LETTERING * ratio;
+    ctx.fillText(limit.label, box.left + 4 * ratio, above ? y - 3 * ratio : y + LETTERING * ratio);
+  }
+  let rightmost = -Infinity;
+  for (const mark of description.marks ?? []) {
+    const x = plot.valToPos(mark.x, "x", true);
+    stroke(ctx, theme.of(mark.tone), [2, 2], ratio, [x, box.top], [x, box.top + box.height]);
+    // Labels that would lie over one another are left to the list beneath the chart.
+    if (x < rightmost || x < box.left || x > box.left + box.width) continue;
+    ctx.textAlign = "left";
+    ctx.fillText(mark.label, x + 3 * ratio, box.top + LETTERING * ratio);
+    rightmost = x + ctx.measureText(mark.label).width + 6 * ratio;
+  }
+  markers.forEach((at, number) => {
+    const x = plot.valToPos(at, "x", true);
+    stroke(ctx, theme.of("accent"), [], ratio, [x, box.top], [x, box.top + box.height]);
+    ctx.textAlign = "left";
+    ctx.fillText(String(number + 1), x + 3 * ratio, box.top + box.height - 4 * ratio);
+  });
+  ctx.restore();
+}
+
+/**
+ * @param {CanvasRenderingContext2D} ctx @param {string} colour @param {number[]} dashes @param {number} ratio
+ * @param {[number, number]} from @param {[number, number]} to
+ */
+function stroke(ctx, colour, dashes, ratio, from, to) {
+  ctx.strokeStyle = colour;
+  ctx.fillStyle = colour;
+  ctx.setLineDash(dashes.map((one) => one * ratio));
+  ctx.beginPath();
+  ctx.moveTo(...from);
+  ctx.lineTo(...to);
+  ctx.stroke();
+}

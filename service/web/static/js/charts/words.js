@@ -1,0 +1,28 @@
+// @ts-check
+/** Numbers and times of charts as people read them. */
+
+const DIGITS = 4;
+const instant = new Intl.DateTimeFormat(undefined, { dateStyle: "medium", timeStyle: "medium" });
+
+/** @param {number|null|undefined} value */
+export function formatY(value) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-4 || size >= 1e6)) return value.toExponential(DIGITS - 1);
+  return String(Number(value.toPrecision(DIGITS)));
+}
+
+/** @param {number} value @param {{kind: string, unit: string}} axis */
+export function formatX(value, axis) {
+  if (axis.kind === "time") return instant.format(new Date(value * 1000));
+  return `${String(Number(value.toPrecision(7)))}${axis.unit ? ` ${axis.unit}` : ""}`;
+}
+
+const MOST_DECIMALS = 12;
+
+/** Numbers of an axis, with as many decimals as the step from one to the next has. @param {number} step @param {number[]} values */
+export function inStepsOf(step, values) {
+  let decimals = 0;
+  while (decimals < MOST_DECIMALS && Math.abs(step - Number(step.toFixed(decimals))) > 1e-6 * step) decimals += 1;
+  return values.map((value) => (Number(value.toFixed(decimals)) + 0).toFixed(decimals));
+}

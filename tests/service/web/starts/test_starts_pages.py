@@ -1,0 +1,109 @@
+"""The pages of starts: the latest over the reference, their figures, and what cannot be told."""
+
+from dataclasses import replace
+
+import httpx
+import pytest
+
+from core.condition.events import Event, EventKind
+from core.starts.figures import MotorStart
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from service.storage.records import Actor
+from testing.service.plants import NOW_NS, SECOND_NS
+from testing.service.starts import START, RecordedStarts
+from tests.service.web.pages import addresses, page, words
+
+HERE = "/motors/PUMP-A1/starts"
+ADA = Actor("ada", "::1")
+
+
+def slower(share: float) -> MotorStart:
+    assert START.acceleration_s is not None
+    return replace(START, acceleration_s=START.acceleration_s * share, i2t_A2s=START.i2t_A2s * share)
+
+
+@pytest.fixture
+def recorded(repository: Repository, store: RecordingStore) -> RecordedStarts:
+    return RecordedStarts(repository, store)
+
+
+def test_starts_are_shown_beside_the_first_whole_one(client: httpx.Client, recorded: RecordedStarts) -> None:
+    part = replace(START, is_from_rest=False, acceleration_s=None)
+    ids = [recorded.add(one) for one in (part, START, slower(1.2), replace(START, lowest_voltage_V=None))]
+
+    document = page(client.get(HERE))
+
+    rows = words(document, "tbody tr")
+    assert len(rows) == 4
+    assert rows[2].endswith("reference")
+    assert "+20 % time, +20 % I²t" in rows[1]
+    assert "1.5 s" in rows[1]
+    assert "94.6 A 11 ×" in rows[2]
+    assert "372 V 93 %" in rows[2]
+    assert "334 A²s" in rows[2]
+    assert "began before the record" in rows[3]
+    assert "time" not in rows[3].rpartition("A²s")[2]
+    assert addresses(document, "tbody tr td:first-child a") == [f"/recordings/{one}" for one in ids[::-1]]
+    titles = words(document, "figure svg title")
+    assert [title.partition(".")[0] for title in titles] == [
+        "PUMP-A1: current of recorded starts",
+        "PUMP-A1: voltage of recorded starts",
+    ]
+    assert "2 starts; the latest reaches" in titles[0]
+
+
+def test_a_rewound_motor_has_another_reference(
+    client: httpx.Client, repository: Repository, recorded: RecordedStarts
+) -> None:
+    recorded.add(START)
+    event = Event(NOW_NS + 3 * SECOND_NS // 2, EventKind.REWOUND, "new winding")
+    repository.add_event("PUMP-A1", event, by=ADA, now_ns=NOW_NS)
+    recorded.add(replace(START, acceleration_s=None))
+    without = page(client.get(HERE))
+    assert "There is no reference yet: no start since" in without.text_content()
+    recorded.add(slower(2.0))
+    rows = words(page(client.get(HERE)), "tbody tr")
+    assert rows[0].endswith("reference")
+    assert "-50 % time" in rows[2]
+
+
+def test_many_starts_come_in_pages(client: httpx.Client, recorded: RecordedStarts) -> None:
+    for _ in range(53):
+        recorded.add(START)
+    document = page(client.get(HERE))
+    assert len(document.cssselect("tbody tr")) == 50
+    (further,) = addresses(document, 'a[rel="next"]')
+    assert len(page(client.get(further)).cssselect("tbody tr")) == 3
+    (further_of_all,) = addresses(page(client.get("/starts")), 'a[rel="next"]')
+    assert len(page(client.get(further_of_all)).cssselect("tbody tr")) == 3
+    assert client.get(f"{HERE}?cursor=nonsense").status_code == 422
+
+
+def test_the_starts_of_one_motor_have_a_page_of_their_own(client: httpx.Client) -> None:
+    assert client.get("/starts", params={"motor": "nope"}).status_code == 404
+    led = client.get("/starts", params={"motor": "PUMP-A1"}, follow_redirects=False)
+    assert led.headers["location"] == "/motors/PUMP-A1/starts"
+
+
+def test_all_motors_starts_are_listed_the_latest_first(
+    client: httpx.Client, recorded: RecordedStarts
+) -> None:
+    recorded.add(START)
+    recorded.add(START, motor="FAN-A2")
+    document = page(client.get("/starts"))
+    assert addresses(document, "tbody th a") == ["/motors/FAN-A2/starts", HERE]
+
+
+def test_starts_without_figures_are_told(client: httpx.Client, recorded: RecordedStarts) -> None:
+    recorded.add(None)
+    for path in ("/starts", HERE):
+        text = page(client.get(path)).text_content()
+        assert "1 recording of starts was diagnosed by an earlier version" in text
+        assert "start" in text
+
+
+def test_without_starts_the_pages_say_so(client: httpx.Client) -> None:
+    assert "No start was recorded yet" in client.get("/starts").text
+    assert "No start of this motor was recorded yet" in client.get(HERE).text
+    assert client.get("/motors/NO-SUCH/starts").status_code == 404

@@ -1,0 +1,206 @@
+"""Every form that changes something leaves an entry that names who sent it; a new one has to be told here."""
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import count
+from pathlib import Path
+
+import httpx
+import pytest
+from fastapi import FastAPI
+from fastapi.routing import iter_route_contexts
+
+from service.api import ApiContext
+from service.configuration.channels import Channel, CommandChannel
+from service.configuration.notifications import NotificationSettings
+from service.configuration.settings import Settings
+from service.recording_store.store import RecordingStore
+from service.storage import Repository, connect
+from service.web.app import create_site
+from testing.service.accounts import TESTER
+from testing.service.database import make_database
+from testing.service.job_runner import register_runner
+from testing.service.plants import two_motor_plant
+from tests.docs.role_tables import is_page
+from tests.service.api.audit.test_every_change import API, ME, PASSWORD, Prepared
+from tests.service.api.serving import serving
+
+MOTOR = "/motors/PUMP-A1"
+
+
+def _own(path: str) -> str:
+    """Return the page of what a path of the API is about."""
+    return path.removeprefix(API).replace("/users/", "/people/")
+
+
+def _login(it: Prepared) -> httpx.Response:
+    assert it.login().is_success
+    form = {"name": ME, "password": PASSWORD}
+    return httpx.post(f"{it.client.base_url}/login", data=form, trust_env=False, timeout=30)
+
+
+def _logout(it: Prepared) -> httpx.Response:
+    return httpx.post(f"{it.client.base_url}/logout", cookies=it.login().cookies, trust_env=False, timeout=30)
+
+
+def _password(it: Prepared) -> httpx.Response:
+    assert it.login().is_success
+    new = f"{PASSWORD} staple"
+    form = {"old": PASSWORD, "new": new, "again": new}
+    return it.client.post("/account/password", data=form)
+
+
+Send = Callable[[Prepared], httpx.Response]
+
+FORMS: Mapping[str, tuple[Send, str]] = {
+    "POST /login": (_login, "logged-in"),
+    "POST /logout": (_logout, "logged-out"),
+    "POST /alarms/acknowledgements": (
+        lambda it: it.client.post("/alarms/acknowledgements", data={"alarm": it.alarm().rpartition("/")[2]}),
+        "alarm-acknowledged",
+    ),
+    "POST /alarms/{alarm_id}/acknowledgement": (
+        lambda it: it.client.post(f"{_own(it.alarm())}/acknowledgement"),
+        "alarm-acknowledged",
+    ),
+    "POST /alarms/{alarm_id}/shelving": (
+        lambda it: it.client.post(f"{_own(it.alarm())}/shelving", data={"hours": 24}),
+        "alarm-shelved",
+    ),
+    "POST /alarms/{alarm_id}/unshelving": (
+        lambda it: it.client.post(f"{_own(it.shelved())}/unshelving"),
+        "alarm-unshelved",
+    ),
+    "POST /alarms/{alarm_id}/out-of-service": (
+        lambda it: it.client.post(f"{_own(it.alarm())}/out-of-service"),
+        "alarm-taken-out-of-service",
+    ),
+    "POST /alarms/{alarm_id}/back-in-service": (
+        lambda it: it.client.post(f"{_own(it.out_of_service())}/back-in-service"),
+        "alarm-put-back-in-service",
+    ),
+    "POST /relays/{name}/release": (
+        lambda it: it.client.post(
+            f"{it.quarantined().removesuffix('/quarantine').replace(f'{API}/ieds', '/relays')}/release"
+        ),
+        "quarantine-released",
+    ),
+    "POST /account/password": (_password, "password-set"),
+    "POST /account/tokens": (
+        lambda it: it.client.post("/account/tokens", data={"label": "a test"}),
+        "token-added",
+    ),
+    "POST /account/tokens/{token_id}/revocation": (
+        lambda it: it.client.post(f"/account/tokens/{it.token()}/revocation"),
+        "token-revoked",
+    ),
+    "POST /people": (
+        lambda it: it.client.post("/people", data={"name": "sam", "roles": ["VIEWER"]}),
+        "user-added",
+    ),
+    "POST /people/{name}": (
+        lambda it: it.client.post(_own(it.user()), data={"roles": ["OPERATOR"]}),
+        "user-changed",
+    ),
+    "POST /people/{name}/password": (
+        lambda it: it.client.post(f"{_own(it.user())}/password", data={"password": PASSWORD}),
+        "password-set",
+    ),
+    "POST /people/{name}/sessions-end": (
+        lambda it: it.client.post(f"{_own(it.user())}/sessions-end"),
+        "sessions-ended",
+    ),
+    "POST /people/{name}/unlocking": (
+        lambda it: it.client.post(f"{_own(it.user())}/unlocking"),
+        "user-unlocked",
+    ),
+    "POST /people/{name}/deletion": (
+        lambda it: it.client.post(f"{_own(it.user())}/deletion"),
+        "user-deleted",
+    ),
+    "POST /people/{name}/tokens": (
+        lambda it: it.client.post(f"{_own(it.user())}/tokens", data={"label": "a test"}),
+        "token-added",
+    ),
+    "POST /people/{name}/tokens/{token_id}/revocation": (
+        lambda it: it.client.post(f"/people/{ME}/tokens/{it.token()}/revocation"),
+        "token-revoked",
+    ),
+    "POST /motors/{name}/recording-requests": (
+        lambda it: it.client.post(f"{MOTOR}/recording-requests"),
+        "recording-requested",
+    ),
+    "POST /motors/{name}/diagnoses": (
+        lambda it: it.client.post(f"{MOTOR}/diagnoses", data={"recording": it.recording()}),
+        "diagnosis-requested",
+    ),
+    "POST /motors/{name}/reference": (
+        lambda it: it.client.post(f"{MOTOR}/reference", data={"reason": "tested"}),
+        "reference-restarted",
+    ),
+    "POST /motors/{name}/notes": (
+        lambda it: it.client.post(f"{MOTOR}/notes", data={"text": "a note"}),
+        "note-added",
+    ),
+    "POST /motors/{name}/notes/{note_id}/withdrawal": (
+        lambda it: it.client.post(f"{MOTOR}/notes/{it.note()}/withdrawal", data={"reason": "wrong motor"}),
+        "note-withdrawn",
+    ),
+    "POST /notifications/channels/{name}/test": (
+        lambda it: it.client.post("/notifications/channels/hook/test"),
+        "channel-tested",
+    ),
+    "POST /notifications/{notification_id}/attempt": (
+        lambda it: it.client.post(f"{_own(it.given_up())}/attempt"),
+        "notification-retried",
+    ),
+    "POST /recordings": (
+        lambda it: it.client.post("/recordings", data={"motor": "PUMP-A1"}, files=it.files()),
+        "recording-uploaded",
+    ),
+    "POST /recordings/{recording_id}/diagnoses": (
+        lambda it: it.client.post(f"/recordings/{it.recording()}/diagnoses"),
+        "diagnosis-requested",
+    ),
+}
+"""How each form is sent with success, and the action of the entry that it leaves."""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[FastAPI]:
+    data: Path = tmp_path_factory.mktemp("audited")
+    engine = connect(make_database(data))
+    repository = Repository(engine)
+    repository.sync_plant(two_motor_plant())
+    register_runner(repository)
+    channels: dict[str, Channel] = {"hook": CommandChannel(kind="command", command=("/bin/true",))}
+    settings = Settings(data_directory=data, notifications=NotificationSettings(channels=channels))
+    yield create_site(ApiContext(settings, repository, RecordingStore(data / "recordings")))
+    engine.dispose()
+
+
+@pytest.fixture(scope="module")
+def prepared(site: FastAPI) -> Iterator[Prepared]:
+    context = site.state.context
+    with serving(site) as client:
+        yield Prepared(client, context.repository, context.store, count())
+
+
+def test_every_form_is_told(site: FastAPI) -> None:
+    forms = {
+        f"{method} {route.path}"
+        for route in iter_route_contexts(site.routes)
+        for method in set(route.methods or ()) - {"GET", "HEAD"}
+        if is_page(str(route.path))
+    }
+    assert forms == set(FORMS), "tell of each form how it is sent with success"
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_form_leaves_an_entry(prepared: Prepared, form: str) -> None:
+    send, action = FORMS[form]
+    answer = send(prepared)
+    assert answer.status_code in (200, 303), answer.text
+    assert answer.request.method == form.partition(" ")[0]
+    with prepared.repository.audit_trail() as trail:
+        latest = list(trail.entries(first=trail.head.number))
+    assert [(entry.action, entry.actor, entry.origin) for entry in latest] == [(action, TESTER, "127.0.0.1")]

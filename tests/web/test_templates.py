@@ -1,0 +1,68 @@
+"""What no template or script of ours may have: it would need a weaker policy, or run what others wrote."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import service.web
+
+ROOT = Path(service.web.__file__).parent
+TEMPLATES = sorted((ROOT / "templates").rglob("*.html"))
+SCRIPTS = sorted((ROOT / "static" / "js").rglob("*.js"))
+STYLES = sorted((ROOT / "static" / "css").rglob("*.css"))
+
+IN_TEMPLATES = {
+    "an htmx event handler": r"\bhx-on\b|\bdata-hx-on\b",
+    "an htmx expression": r"\bjs:|\bjavascript:|hx-vars|hx-trigger=\"[^\"]*\[",
+    "an event handler": r"\son[a-z]+\s*=",
+    "a style attribute": r"\sstyle\s*=",
+    "a style of its own": r"<style\b",
+    "a script of its own": r"<script(?![^>]*\bsrc=)(?![^>]*type=\"application/json\")",
+    "a value that is not escaped": r"\|\s*safe\b|autoescape\s+false|Markup\(",
+    "an address of another host": r"(?:href|src|action)\s*=\s*[\"'](?:https?:)?//",
+}
+IN_SCRIPTS = {
+    "evaluation": r"\beval\s*\(|new Function\b|setTimeout\(\s*[\"'`]",
+    "markup from a string": r"\.innerHTML\s*=|\.outerHTML\s*=|insertAdjacentHTML|document\.write",
+    "an address of another host": r"[\"'`]https?://(?!www\.w3\.org/)",
+    "an import of another host": r"import[^;]*[\"'](?:https?:)?//",
+}
+IN_STYLES = {"an address of another host": r"url\(\s*[\"']?(?:https?:)?//|@import"}
+
+
+def marks(text: str, patterns: dict[str, str]) -> list[str]:
+    """What of the patterns is in a text, with its line."""
+    bare = re.sub(r"\{#.*?#\}", "", text, flags=re.DOTALL)
+    return [
+        f"line {bare[: found.start()].count(chr(10)) + 1}: {what}: {found[0].strip()}"
+        for what, pattern in patterns.items()
+        for found in re.finditer(pattern, bare)
+    ]
+
+
+@pytest.mark.parametrize("path", TEMPLATES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_template_has_markup_alone(path: Path) -> None:
+    assert marks(path.read_text(encoding="utf-8"), IN_TEMPLATES) == []
+
+
+@pytest.mark.parametrize("path", SCRIPTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_script_makes_no_markup_of_texts(path: Path) -> None:
+    assert marks(path.read_text(encoding="utf-8"), IN_SCRIPTS) == []
+
+
+@pytest.mark.parametrize("path", STYLES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_style_loads_nothing_from_elsewhere(path: Path) -> None:
+    assert marks(path.read_text(encoding="utf-8"), IN_STYLES) == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '<p hx-on:click="x()">', "<a href='javascript:x'>", '<p onclick="x">', '<p style="x">',
+        "<style>x</style>", "<script>x</script>", "{{ x | safe }}", '<img src="//x/y.png">',
+        '<div hx-trigger="click[x()]">',
+    ],
+)  # fmt: skip
+def test_what_is_looked_for_is_found(text: str) -> None:
+    assert len(marks(text, IN_TEMPLATES)) == 1
