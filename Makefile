@@ -34,7 +34,7 @@ $(WARM): $(STAMP) $(wildcard core/machines/*.py core/condition/*/*.py ied_sim/mo
 	touch $@
 
 demo: install
-	$(BIN)/mcc demo
+	@$(BIN)/mcc demo
 
 # What a change can break, within minutes.
 test: install
@@ -75,11 +75,13 @@ lint: install
 docs: install
 	$(BIN)/python -m tests.docs
 
-# The second one ends with 1 where a command answers too slowly. The third one writes docs/evidence/condition.md, in the
-# better part of an hour; with QUICK=1 it prints what a few motors give, within minutes.
+# The second one ends with 1 where a command answers too slowly, the third one where a page does: it needs 10 GB for five
+# million records. The last one writes docs/evidence/condition.md, in the better part of an hour; with QUICK=1 it prints
+# what a few motors give, within minutes.
 bench: install
 	$(BIN)/python -m benchmarks
 	$(BIN)/python -m benchmarks.commands
+	$(BIN)/python -m benchmarks.web $(if $(QUICK),--records 500 --quick)
 	$(BIN)/python -m benchmarks.condition $(if $(QUICK),--quick) $(if $(DATA),--data $(DATA))
 
 # Reads every COMTRADE, CEV and SCL file of a folder, and says of each what became of it.

@@ -1,0 +1,1 @@
+"""What the pages cost: times of answers and of the browser, sizes, and what many viewers add."""
