@@ -18,6 +18,9 @@ BUSY = ("tests/integration", "tests/service/demo", "tests/service/jobs")
 WAITING = ("tests/service/collector", "tests/hostile")
 """Folders of long tests: those that start services keep a core busy, those of relays mostly wait."""
 
+LAST = "tests/web"
+"""Tests in a browser: Playwright leaves a running event loop in its process, in which `asyncio.run` fails."""
+
 PROCESSES_OF_A_CORE = 2
 
 
@@ -44,12 +47,13 @@ def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Run long tests first, busy files and waiting ones in turns, so that no core is idle."""
+    """Run long tests first, busy files and waiting ones in turns, so that no core is idle, browsers last."""
     files = dict.fromkeys(_file(item) for item in items)
     places = {file: float(len(files)) for file in files}
     for folders in (BUSY, WAITING):
         group = [file for file in files if any(file.is_relative_to(folder) for folder in folders)]
         places |= {file: number / len(group) for number, file in enumerate(group)}
+    places |= {file: len(files) + 1.0 for file in files if file.is_relative_to(LAST)}
     items.sort(key=lambda item: places[_file(item)])
 
 

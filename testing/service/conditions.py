@@ -112,19 +112,28 @@ def tell(repository: Repository, condition: Condition, *, now_ns: int = NOW_NS) 
 
     It is folded as if an event had made it.
     """
+    fold(repository, condition, told_event(repository, condition.motor, now_ns=now_ns), now_ns=now_ns)
+
+
+def told_event(repository: Repository, motor: str, *, now_ns: int = NOW_NS) -> str:
+    """Have a motor's events hold one more; return its name. What follows from it is not folded yet."""
     event = Event(now_ns, EventKind.MAINTENANCE, "new bearing")
-    kept = repository.add_event(condition.motor, event, by=SERVICE, told_by="ann", now_ns=now_ns)
-    fold = repository.begin_fold(condition.motor, 1000)
-    assert fold is not None
+    return repository.add_event(motor, event, by=SERVICE, told_by="ann", now_ns=now_ns).id
+
+
+def fold(repository: Repository, condition: Condition, event_id: str, *, now_ns: int = NOW_NS) -> None:
+    """Have the database say this condition of its motor, as if that event had made it: one transaction."""
+    begun = repository.begin_fold(condition.motor, 1000)
+    assert begun is not None
     entry = entry_of(condition)
     figures = {field.name: getattr(entry, field.name) for field in fields(ConditionFigures)}
     points = [
         ConditionPoint(recording_id=one.recording_id, time_ns=one.observation.time_ns, **figures)
-        for one in fold.observations
+        for one in begun.observations
     ]
     change = ConditionChange(
-        motor=condition.motor, time_ns=now_ns, recording_id=None, event_id=kept.id, **figures
+        motor=condition.motor, time_ns=now_ns, recording_id=None, event_id=event_id, **figures
     )
     folded = Checkpoint(max([now_ns, *(point.time_ns for point in points)]), len(points), b"")
-    result = FoldResult(points, [change], [folded], tuple(fold.earlier), entry)
-    assert repository.finish_fold(fold, result, now_ns=now_ns)
+    result = FoldResult(points, [change], [folded], tuple(begun.earlier), entry)
+    assert repository.finish_fold(begun, result, now_ns=now_ns)

@@ -62,10 +62,9 @@ def large(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterato
         yield site
 
 
-# The records of this plant have no files: what is asked of their samples is answered as damage of the store.
 @pytest.mark.campaign
 @pytest.mark.timeout(600)
-@pytest.mark.parametrize("route", [route for route in page_routes() if not route.endswith("/phasors")])
+@pytest.mark.parametrize("route", page_routes())
 def test_a_page_of_500_motors_is_whole(large: Site, route: str) -> None:
     path = address_of(route, large.repository)
     if path is None or not is_page(large.url, path, large.log_in()):

@@ -112,7 +112,9 @@ async def _events(
             yield ": wait\n\n"
             continue
         if stamps[PEOPLE] != people or time.monotonic() - looked_s > LOOK_AGAIN_S:
-            if people is not None and not await _is_still_here(context, asking):
+            # A session may have ended before the first stamps; a token was looked at just now.
+            is_due = people is not None or asking.session is not None
+            if is_due and not await _is_still_here(context, asking):
                 for topic in topics:
                     yield f"event: {topic.event}\ndata: session\n\n"
                 return

@@ -35,6 +35,10 @@ MOST_CHOICES: Final = 100
 """Recordings of the motor that one may be compared with at once; the list has all."""
 
 
+class NotShownError(Exception):
+    """The samples of a recording cannot be shown, and why."""
+
+
 @dataclass(frozen=True, slots=True)
 class Cursor:
     """Phasors at the cursor: the figures, and the picture as SVG; `problem` where there are none."""
@@ -89,10 +93,8 @@ def recording_page(context: ApiContext, recording_id: str, at_s: float | None) -
     earlier, later = repository.neighbours(entry)
     waveforms, problem = None, ""
     try:
-        waveforms = _waveforms(entry, context.recorded.open(entry), diagnosis, at_s)
-    except RecordingTooLongError as error:
-        problem = f"The recording is too long to be shown here; download its files. {error}"
-    except (NotStoredError, RecordingStoreError, RecordingError, OSError) as error:
+        waveforms = _waveforms(entry, _opened(context, entry), diagnosis, at_s)
+    except NotShownError as error:
         problem = str(error)
     return RecordingPage(
         entry=entry,
@@ -106,8 +108,27 @@ def recording_page(context: ApiContext, recording_id: str, at_s: float | None) -
     )
 
 
-def cursor_at(shown: Opened, at_s: float) -> Cursor:
-    """Return the phasors of the cycle around a time, as figures and as a picture."""
+def cursor_of(context: ApiContext, recording_id: str, at_s: float) -> Cursor:
+    """Return the phasors of a recording around a time. Raises NotFoundError."""
+    try:
+        shown = _opened(context, context.repository.recording(recording_id))
+    except NotShownError as error:
+        return Cursor(at_s, None, problem=str(error))
+    return _cursor_at(shown, at_s)
+
+
+def _opened(context: ApiContext, entry: RecordingEntry) -> Opened:
+    """Return what the files of a recording hold. Raises NotShownError."""
+    try:
+        return context.recorded.open(entry)
+    except RecordingTooLongError as error:
+        message = f"The recording is too long to be shown here; download its files. {error}"
+        raise NotShownError(message) from error
+    except (NotStoredError, RecordingStoreError, RecordingError, OSError) as error:
+        raise NotShownError(str(error)) from error
+
+
+def _cursor_at(shown: Opened, at_s: float) -> Cursor:
     try:
         found = phasors_at(shown, at_s)
     except NoPhasorsError as error:
@@ -145,7 +166,7 @@ def _waveforms(
         charts=waveform_charts(window, shown.trigger_s),
         states=states,
         states_chart=states_chart(states, recording.duration_s),
-        cursor=cursor_at(shown, middle if at_s is None or not isfinite(at_s) else at_s),
+        cursor=_cursor_at(shown, middle if at_s is None or not isfinite(at_s) else at_s),
         spectrum=spectrum,
         spectrum_chart=None if spectrum is None else spectrum_chart(spectrum),
         spectrum_problem=spectrum_problem,

@@ -22,7 +22,7 @@ from service.storage.states import RecordingState
 from service.web.addresses import address
 from service.web.recording.comparison import comparison
 from service.web.recording.drawn_model import drawn_model
-from service.web.recording.page_data import MOST_CHOICES, cursor_at, recording_page
+from service.web.recording.page_data import MOST_CHOICES, cursor_of, recording_page
 from service.web.recording.verdicts import look_of, sentence, words_of
 from service.web.view import Looking, View
 
@@ -172,8 +172,7 @@ async def show_phasors(view: Looking, recording_id: UUID, at_s: Seconds = 0.0) -
     context = view.context
 
     def seen() -> Response:
-        entry = context.repository.recording(str(recording_id))
-        cursor = cursor_at(context.recorded.open(entry), at_s or 0.0)
+        cursor = cursor_of(context, str(recording_id), at_s or 0.0)
         return view.fragment("recording/phasors.html", cursor=cursor)
 
     return await in_turn(context, seen)

@@ -2,7 +2,7 @@
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -10,6 +10,7 @@ import httpx
 import pytest
 from fastapi import FastAPI
 
+import service.web.live.changes
 from service.access.bearer_secrets import digest_of, new_session
 from service.api import ApiContext
 from service.api.access.cookies import NAME
@@ -22,12 +23,19 @@ from service.storage.states import LinkState
 from service.web.app import create_site
 from service.web.live.bus import LiveBus
 from service.web.live.routes import live_of
+from service.web.live.topics import Topic
 from testing.service.accounts import token_of
 from testing.service.conditions import FAULT, tell
 from testing.service.listening import listening
 
 BY = Actor("ann", "here")
 LONGEST_S = 20.0
+
+
+@pytest.fixture(autouse=True)
+def no_refresh(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages are told of changes alone, whatever the time is."""
+    monkeypatch.setattr(service.web.live.changes, "REFRESH_S", 10**9)
 
 
 @pytest.fixture
@@ -149,6 +157,23 @@ def test_a_stream_ends_with_its_session(url: str, repository: Repository) -> Non
         until_known(lines)
         repository.end_sessions_of("kim", by=BY, now_ns=time.time_ns())
         assert list(lines) == ["event: fleet", "data: session", "event: alarms", "data: session"]
+
+
+def test_a_session_that_ends_before_anything_is_known_ends_its_stream(
+    url: str, site: FastAPI, repository: Repository, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    is_ended = threading.Event()
+    stamps = live_of(site).changes.stamps
+
+    def after_the_end(topics: Collection[Topic]) -> Mapping[Topic, str]:
+        assert is_ended.wait(LONGEST_S)
+        return stamps(topics)
+
+    monkeypatch.setattr(live_of(site).changes, "stamps", after_the_end)
+    with logged_in(url, repository, Role.VIEWER) as client, following(client, topic="fleet") as lines:
+        repository.end_sessions_of("kim", by=BY, now_ns=time.time_ns())
+        is_ended.set()
+        assert list(lines) == ["event: fleet", "data: session"]
 
 
 def test_a_stream_goes_on_when_others_log_out(url: str, repository: Repository) -> None:
