@@ -14,27 +14,45 @@ export function onChart(listener) {
   for (const [id, chart] of charts) listener(id, chart);
 }
 
-/** @param {ParentNode} within */
+/** Draw what is not drawn yet: what is seen at once, what lies further down one by one. @param {ParentNode} within */
 export function drawCharts(within) {
-  for (const figure of /** @type {NodeListOf<HTMLElement>} */ (within.querySelectorAll("figure[data-chart]"))) {
-    const id = figure.dataset.chart ?? "";
-    const source = document.getElementById(id);
-    if (!source?.textContent || charts.get(id)?.figure === figure) continue;
-    if (figure.dataset.chartLater !== undefined) {
-      delete figure.dataset.chartLater;
-      setTimeout(() => drawCharts(figure.parentElement ?? within));
-      continue;
-    }
-    const chart = new Chart(figure, JSON.parse(source.textContent));
-    charts.set(id, chart);
-    for (const listener of listeners) listener(id, chart);
-  }
+  const figures = [.../** @type {NodeListOf<HTMLElement>} */ (within.querySelectorAll("figure[data-chart]"))].filter(isDue);
+  const isSeen = figures.map((figure) => figure.getBoundingClientRect().top < innerHeight); // before the first one is drawn
+  figures.filter((_, number) => isSeen[number]).forEach(draw);
+  drawAfterwards(figures.filter((_, number) => !isSeen[number]));
+}
+
+/** Draw one after the other, each once what is there already is painted. @param {HTMLElement[]} figures */
+function drawAfterwards([figure, ...others]) {
+  if (figure === undefined) return;
+  afterPainting(() => {
+    if (isDue(figure)) draw(figure);
+    drawAfterwards(others);
+  });
+}
+
+/** @param {() => void} work */
+function afterPainting(work) {
+  requestAnimationFrame(() => setTimeout(work));
+}
+
+/** @param {HTMLElement} figure */
+function isDue(figure) {
+  const id = figure.dataset.chart ?? "";
+  return figure.isConnected && charts.get(id)?.figure !== figure && Boolean(document.getElementById(id)?.textContent);
+}
+
+/** @param {HTMLElement} figure */
+function draw(figure) {
+  const id = figure.dataset.chart ?? "";
+  const chart = new Chart(figure, JSON.parse(document.getElementById(id)?.textContent ?? ""));
+  charts.set(id, chart);
+  for (const listener of listeners) listener(id, chart);
 }
 
 performance.mark("charts: data");
+afterPainting(() => performance.measure("charts: first paint", "charts: data")); // of those that are seen at once
 drawCharts(document);
-// The lines are on the canvas at the end of the frame that follows.
-requestAnimationFrame(() => setTimeout(() => performance.measure("charts: first paint", "charts: data")));
 // Parts that htmx has put into the page anew.
 document.addEventListener("htmx:load", (event) => {
   const part = event.target;

@@ -19,14 +19,37 @@ const tell = () => {
 dark.addEventListener("change", tell);
 new MutationObserver(tell).observe(document.documentElement, { attributeFilter: ["data-theme"] });
 
-/** The colours as they are now: `--tone` of the page, for "a", "b" and "c" `--phase-a` and so on. @returns {Theme} */
+/** The colours as they are now, each read once: `--tone` of the page, for "a", "b" and "c" `--phase-a` and so on. @returns {Theme} */
 export function colours() {
+  known ??= read();
+  return known;
+}
+
+/** @type {Theme | null} */
+let known = null;
+onThemeChange(() => (known = null)); // before anybody draws anew
+
+/** @returns {Theme} */
+function read() {
   const style = getComputedStyle(document.documentElement);
-  const of = (/** @type {string} */ tone) => {
+  const of = once((tone) => {
     const name = /^[abcn]$/.test(tone) ? `--phase-${tone}` : `--${tone}`;
     return style.getPropertyValue(name).trim() || style.getPropertyValue("--ink").trim() || style.color;
+  });
+  return { of, faint: once((tone) => withOpacity(of(tone), FAINT)) };
+}
+
+/** @param {(tone: string) => string} work @returns {(tone: string) => string} */
+function once(work) {
+  /** @type {Map<string, string>} */
+  const found = new Map();
+  return (tone) => {
+    const before = found.get(tone);
+    if (before !== undefined) return before;
+    const colour = work(tone);
+    found.set(tone, colour);
+    return colour;
   };
-  return { of, faint: (tone) => withOpacity(of(tone), FAINT) };
 }
 
 const probe = document.createElement("canvas").getContext("2d", { willReadFrequently: true });
