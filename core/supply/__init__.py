@@ -1,0 +1,1 @@
+"""The supply of a motor: frequency, unbalance, harmonics and power, by the definitions of NEMA and IEC."""
