@@ -36,11 +36,14 @@ class Accepted:
         The record in the winding frame.
     phasors : Fundamental
         Its phasors at supply frequency.
+    recording : Recording
+        The whole recording, of which the others hold only the end.
     """
 
     terminals: Terminals
     case: Case
     phasors: Fundamental
+    recording: Recording
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +148,9 @@ def _accept(recording: Recording, motor: Motor, *, currents_only: bool) -> Accep
     rate, frequency = measured.sample_rate_hz, passed.frequency_hz
     case = case_of(motor, measured.current_abc, passed.voltage_ab, rate, frequency, passed.sequence)
     case = replace(case, voltages_assumed=assumed)
-    return Acceptance(tuple(quality), assumed, Accepted(measured, case, fundamental_of(case)), does)
+    return Acceptance(
+        tuple(quality), assumed, Accepted(measured, case, fundamental_of(case), recording), does
+    )
 
 
 def _without_voltages(
