@@ -1,28 +1,14 @@
 """Every form that changes something leaves an entry that names who sent it; a new one has to be told here."""
 
-from collections.abc import Callable, Iterator, Mapping
-from itertools import count
-from pathlib import Path
+from collections.abc import Iterator, Mapping
 
 import httpx
 import pytest
-from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
 
-from service.api import ApiContext
-from service.configuration.channels import Channel, CommandChannel
-from service.configuration.notifications import NotificationSettings
-from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
-from service.storage import Repository, connect
 from service.web.app import create_site
-from testing.service.accounts import TESTER
-from testing.service.database import make_database
-from testing.service.job_runner import register_runner
-from testing.service.plants import two_motor_plant
 from tests.docs.role_tables import is_page
-from tests.service.api.audit.test_every_change import API, ME, PASSWORD, Prepared
-from tests.service.api.serving import serving
+from tests.service.audited import API, ME, PASSWORD, Prepared, Send, audited_service
 
 MOTOR = "/motors/PUMP-A1"
 
@@ -48,8 +34,6 @@ def _password(it: Prepared) -> httpx.Response:
     form = {"old": PASSWORD, "new": new, "again": new}
     return it.client.post("/account/password", data=form)
 
-
-Send = Callable[[Prepared], httpx.Response]
 
 FORMS: Mapping[str, tuple[Send, str]] = {
     "POST /login": (_login, "logged-in"),
@@ -166,29 +150,15 @@ FORMS: Mapping[str, tuple[Send, str]] = {
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[FastAPI]:
-    data: Path = tmp_path_factory.mktemp("audited")
-    engine = connect(make_database(data))
-    repository = Repository(engine)
-    repository.sync_plant(two_motor_plant())
-    register_runner(repository)
-    channels: dict[str, Channel] = {"hook": CommandChannel(kind="command", command=("/bin/true",))}
-    settings = Settings(data_directory=data, notifications=NotificationSettings(channels=channels))
-    yield create_site(ApiContext(settings, repository, RecordingStore(data / "recordings")))
-    engine.dispose()
+def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Prepared]:
+    with audited_service(tmp_path_factory.mktemp("audited"), create_site) as prepared:
+        yield prepared
 
 
-@pytest.fixture(scope="module")
-def prepared(site: FastAPI) -> Iterator[Prepared]:
-    context = site.state.context
-    with serving(site) as client:
-        yield Prepared(client, context.repository, context.store, count())
-
-
-def test_every_form_is_told(site: FastAPI) -> None:
+def test_every_form_is_told(prepared: Prepared) -> None:
     forms = {
         f"{method} {route.path}"
-        for route in iter_route_contexts(site.routes)
+        for route in iter_route_contexts(prepared.app.routes)
         for method in set(route.methods or ()) - {"GET", "HEAD"}
         if is_page(str(route.path))
     }
@@ -201,6 +171,4 @@ def test_a_form_leaves_an_entry(prepared: Prepared, form: str) -> None:
     answer = send(prepared)
     assert answer.status_code in (200, 303), answer.text
     assert answer.request.method == form.partition(" ")[0]
-    with prepared.repository.audit_trail() as trail:
-        latest = list(trail.entries(first=trail.head.number))
-    assert [(entry.action, entry.actor, entry.origin) for entry in latest] == [(action, TESTER, "127.0.0.1")]
+    assert prepared.latest_entries() == [(action, ME, "127.0.0.1")]

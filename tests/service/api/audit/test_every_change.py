@@ -1,123 +1,13 @@
 """Every route that changes something leaves an entry that names who asked; a new one has to be told here."""
 
-import time
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from itertools import count
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterator, Mapping
 
-import httpx
 import pytest
 
-from core.time_stamps import rfc3339
-from core.units import NANOSECONDS_PER_DAY
-from service.api import ApiContext, create_app
-from service.configuration.channels import Channel, CommandChannel
-from service.configuration.notifications import NotificationSettings
-from service.configuration.settings import Settings
-from service.recording_store.store import RecordingStore
-from service.storage import Repository, connect
-from service.storage.records import SERVICE, Alarm
-from service.storage.states import AlarmKind
-from service.timing.backoff import Backoff
-from testing.service.accounts import TESTER
-from testing.service.database import make_database
-from testing.service.diagnosed import add_diagnosed
-from testing.service.job_runner import register_runner
-from testing.service.plants import NOW_NS, healthy, two_motor_plant
-from tests.service.api.serving import serving
+from service.api import create_app
+from tests.service.audited import API, ME, MOTOR, PASSWORD, SHELVED, Prepared, Send, audited_service
 
-API = "/api/v1"
-MOTOR = f"{API}/motors/PUMP-A1"
 CHANGING = {"post", "put", "patch", "delete"}
-ME = TESTER
-PASSWORD = "correct horse battery"  # noqa: S105 - of nobody
-
-
-@dataclass(frozen=True)
-class Prepared:
-    """A service with what the requests are about; each call makes another one."""
-
-    client: httpx.Client
-    repository: Repository
-    store: RecordingStore
-    numbers: Iterator[int]
-
-    def recording(self) -> str:
-        number = next(self.numbers)
-        return add_diagnosed(self.repository, self.store, healthy(), NOW_NS + number, name=f"E{number}")
-
-    def baseline(self) -> dict[str, Any]:
-        ids = [self.recording() for _ in range(3)]
-        for one in ids:
-            self.repository.leave_out(one, "tells nothing", "test")
-        return {"recording_ids": ids}
-
-    def chosen_baseline(self) -> str:
-        assert self.client.put(f"{MOTOR}/baseline", json=self.baseline()).status_code == 200
-        return f"{MOTOR}/baseline"
-
-    def user(self) -> str:
-        name = f"user-{next(self.numbers)}"
-        wanted = {"name": name, "roles": ["VIEWER"]}
-        assert self.client.post(f"{API}/users", json=wanted).status_code == 201
-        return f"{API}/users/{name}"
-
-    def token(self) -> str:
-        return str(self.client.post(f"{API}/account/tokens", json={"label": "a test"}).json()["id"])
-
-    def login(self) -> httpx.Response:
-        answer = self.client.put(f"{API}/users/{ME}/password", json={"password": PASSWORD})
-        assert answer.status_code == 204
-        wanted = {"name": ME, "password": PASSWORD}
-        return httpx.post(f"{self.client.base_url}{API}/login", json=wanted, trust_env=False, timeout=30)
-
-    def logout(self) -> httpx.Response:
-        url = f"{self.client.base_url}{API}/logout"
-        return httpx.post(url, cookies=self.login().cookies, trust_env=False, timeout=30)
-
-    def other_password(self) -> httpx.Response:
-        assert self.login().status_code == 200
-        wanted = {"old": PASSWORD, "new": f"{PASSWORD} staple"}
-        return self.client.put(f"{API}/account/password", json=wanted)
-
-    def note(self) -> str:
-        return str(self.client.post(f"{MOTOR}/notes", json={"text": "a note"}).json()["id"])
-
-    def alarm(self) -> str:
-        subject = f"X{next(self.numbers)}.CFG"
-        alarm: Alarm = self.repository.raise_alarm(
-            "A1_SEL710", AlarmKind.FILE_REFUSED, subject, "outside", now_ns=NOW_NS
-        )
-        return f"{API}/alarms/{alarm.id}"
-
-    def shelved(self) -> str:
-        alarm = self.alarm()
-        assert self.client.put(f"{alarm}/shelving", json=SHELVED).status_code == 200
-        return alarm
-
-    def out_of_service(self) -> str:
-        alarm = self.alarm()
-        assert self.client.put(f"{alarm}/out-of-service").status_code == 200
-        return alarm
-
-    def quarantined(self) -> str:
-        self.repository.set_aside("A2_SEL710", "crashed", backoff=Backoff(60.0, 60.0), now_ns=NOW_NS)
-        return f"{API}/ieds/A2_SEL710/quarantine"
-
-    def given_up(self) -> str:
-        (queued,) = self.repository.request_test_notifications("gone", [""], by=SERVICE, now_ns=NOW_NS)
-        self.repository.give_up_unknown(["hook"], before_ns=NOW_NS + 1, now_ns=NOW_NS)
-        return f"{API}/notifications/{queued.id}"
-
-    def files(self) -> list[tuple[str, tuple[str, bytes]]]:
-        return [("files", (f"U{next(self.numbers)}.CFF", b"an upload %d" % next(self.numbers)))]
-
-
-SHELVED = {"until": rfc3339(time.time_ns() + NANOSECONDS_PER_DAY)}
-
-Send = Callable[[Prepared], httpx.Response]
 
 REQUESTS: Mapping[str, tuple[Send, str]] = {
     "POST /api/v1/motors/{name}/event-reports": (
@@ -237,17 +127,8 @@ REQUESTS: Mapping[str, tuple[Send, str]] = {
 
 @pytest.fixture(scope="module")
 def prepared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Prepared]:
-    data: Path = tmp_path_factory.mktemp("audited")
-    engine = connect(make_database(data))
-    repository = Repository(engine)
-    repository.sync_plant(two_motor_plant())
-    register_runner(repository)
-    store = RecordingStore(data / "recordings")
-    channels: dict[str, Channel] = {"hook": CommandChannel(kind="command", command=("/bin/true",))}
-    settings = Settings(data_directory=data, notifications=NotificationSettings(channels=channels))
-    with serving(create_app(ApiContext(settings, repository, store))) as client:
-        yield Prepared(client, repository, store, count())
-    engine.dispose()
+    with audited_service(tmp_path_factory.mktemp("audited"), create_app) as prepared:
+        yield prepared
 
 
 def test_every_changing_route_is_told(prepared: Prepared) -> None:
@@ -266,9 +147,7 @@ def test_a_changing_route_leaves_an_entry(prepared: Prepared, route: str) -> Non
     answer = send(prepared)
     assert answer.is_success, answer.text
     assert answer.request.method == route.partition(" ")[0]
-    with prepared.repository.audit_trail() as trail:
-        latest = list(trail.entries(first=trail.head.number))
-    assert [(entry.action, entry.actor, entry.origin) for entry in latest] == [(action, ME, "127.0.0.1")]
+    assert prepared.latest_entries() == [(action, ME, "127.0.0.1")]
 
 
 def test_a_route_that_reads_leaves_none(prepared: Prepared) -> None:
