@@ -2,13 +2,12 @@
 
 from dataclasses import replace
 
-from core.diagnosis.verdict import Verdict
 from core.operation import Operation
 from core.starts.figures import MotorStart, StartCurve
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS, fault
+from testing.service.plants import NOW_NS, SECOND_NS, undiagnosable
 
 START = MotorStart(
     is_from_rest=True,
@@ -44,14 +43,7 @@ class RecordedStarts:
         """Have the next recording that waits diagnosed."""
         claimed = self.repository.claim_job(now_ns=recorded_ns + 1000 * SECOND_NS, runner=RUNNER)
         assert claimed is not None
-        seen = replace(
-            fault(),
-            verdict=Verdict.UNDIAGNOSABLE,
-            mu_f=None,
-            mu_f_ci95=None,
-            theta_f=None,
-            operation=Operation.START,
-        )
+        seen = replace(undiagnosable(), operation=Operation.START)
         self.repository.finish_job(
             claimed.job.id,
             seen,

@@ -21,7 +21,7 @@ from service.storage.errors import UserExistsError
 from service.storage.records import Actor, Role
 from service.web.app import create_site
 from testing.service.accounts import TESTS
-from testing.service.listening import listening
+from testing.service.listening import LONGEST_S, listening
 from testing.web.watched_page import WatchedPage
 
 DESKTOP = (1280, 800)
@@ -29,6 +29,9 @@ PHONE = (360, 740)
 
 Screen = tuple[int, int]
 """Width and height [CSS px]."""
+
+LONGEST_MS = 1000 * LONGEST_S
+"""Nobody waits longer for a page to show something."""
 
 
 @dataclass
@@ -77,7 +80,7 @@ class Site:
                 [{"name": NAME, "value": secret, "url": self.url, "httpOnly": True, "sameSite": "Strict"}]
             )
         page = WatchedPage(window.new_page(), self.url)
-        page.page.set_default_timeout(15_000)
+        page.page.set_default_timeout(LONGEST_MS)
         self.pages.append(page)
         return page
 

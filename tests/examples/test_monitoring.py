@@ -1,7 +1,6 @@
 """examples/monitoring: a real Prometheus takes its files, scrapes a real service, and its alert fires."""
 
 import json
-import os
 import re
 import shutil
 import subprocess
@@ -20,6 +19,7 @@ from service.api import ApiContext, create_app
 from service.configuration.settings import Settings
 from service.recording_store.store import RecordingStore
 from service.storage import Repository
+from testing.not_installed import not_installed
 from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
 from testing.service.plants import NOW_NS, fault
@@ -41,10 +41,7 @@ def prometheus() -> PrometheusPrograms:
     """Where none is installed the test is skipped, and fails where CI=true."""
     found = programs()
     if found is None:
-        reason = "no prometheus and promtool: apt-get install --no-install-recommends prometheus"
-        if os.environ.get("CI") == "true":
-            pytest.fail(reason)
-        pytest.skip(reason)
+        not_installed("no prometheus and promtool: apt-get install --no-install-recommends prometheus")
     return found
 
 

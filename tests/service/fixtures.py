@@ -1,6 +1,5 @@
 """A migrated SQLite file, a repository on it that knows the small plant, and a recording store."""
 
-import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -20,6 +19,7 @@ from service.storage.models import (
     StandingAlarmCountRow,
     StateCountRow,
 )
+from testing.not_installed import not_installed
 from testing.service.job_runner import register_runner
 from testing.service.plants import two_motor_plant
 from testing.service.postgresql import INSTALLED, PostgresServer, binaries, serving_postgresql
@@ -52,10 +52,7 @@ def postgresql() -> Iterator[PostgresServer]:
     """A server for the session. Where none is installed the test is skipped, and fails where CI=true."""
     folder = binaries()
     if folder is None:
-        reason = f"no PostgreSQL server in {INSTALLED}: apt-get install postgresql"
-        if os.environ.get("CI") == "true":
-            pytest.fail(reason)
-        pytest.skip(reason)
+        not_installed(f"no PostgreSQL server in {INSTALLED}: apt-get install postgresql")
     with serving_postgresql(folder) as server:
         yield server
 

@@ -1,6 +1,5 @@
 """One browser for all tests of a process, and a site with a seeded plant for each module or test."""
 
-import os
 import shutil
 from collections.abc import Iterator, MutableMapping
 from contextlib import AbstractContextManager
@@ -9,11 +8,12 @@ from typing import Any
 
 import pytest
 import structlog
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, expect
 
+from testing.not_installed import not_installed
 from testing.web.chromium import INSTALL, chromium_path, running_browser
 from testing.web.seeding import demo_plant, seed
-from testing.web.site import Site, running_site
+from testing.web.site import LONGEST_MS, Site, running_site
 
 
 @pytest.fixture(autouse=True)
@@ -28,10 +28,8 @@ def browser() -> Iterator[Browser]:
     """A browser for the session. Where none is installed the test is skipped, and fails where CI=true."""
     path = chromium_path()
     if path is None:
-        reason = f"no chromium: {INSTALL}"
-        if os.environ.get("CI") == "true":
-            pytest.fail(reason)
-        pytest.skip(reason)
+        not_installed(f"no chromium: {INSTALL}")
+    expect.set_options(timeout=LONGEST_MS)
     with running_browser(path) as browser:
         yield browser
 

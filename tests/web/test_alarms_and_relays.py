@@ -8,18 +8,12 @@ from playwright.sync_api import Browser, expect
 from service.storage.records import Role
 from service.storage.states import AlarmKind, AlarmState
 from service.timing.backoff import Backoff
-from service.web.live.routes import live_of
 from testing.service.accounts import TESTS
-from testing.waiting import wait_until
+from testing.web.followers import until_followed
 from testing.web.seeding import seed
 from testing.web.site import PHONE, Site, running_site
 
 COMMENT = "half a sentence"
-
-
-def until_followed(site: Site, streams: int) -> None:
-    """Wait until so many pages are told of changes."""
-    wait_until(lambda: live_of(site.app).bus.streams == streams, "pages follow what happens")
 
 
 def raise_another(site: Site, subject: str) -> None:
@@ -30,7 +24,7 @@ def raise_another(site: Site, subject: str) -> None:
 def test_news_takes_away_neither_what_is_chosen_nor_what_is_typed(site: Site) -> None:
     page = site.open(Role.OPERATOR)
     page.goto("/alarms")
-    until_followed(site, 1)
+    until_followed(site.app, 1)
     box = page.page.locator("input[name=alarm]").first
     chosen = box.get_attribute("value")
     box.check()
@@ -50,7 +44,7 @@ def test_one_alarm_is_shelved_and_its_end_is_told_to_another_viewer(site: Site) 
     other.goto(f"/alarms/{alarm.id}")
     page = site.open(Role.OPERATOR)
     page.goto(f"/alarms/{alarm.id}")
-    until_followed(site, 2)
+    until_followed(site.app, 2)
     page.page.get_by_label("Comment").fill("spare part on Friday")
     page.page.locator("select[name=hours]").select_option("72")
     page.page.get_by_role("button", name="Shelve").click()
@@ -70,7 +64,7 @@ def test_what_can_be_done_follows_what_others_do(site: Site) -> None:
     )
     page = site.open(Role.OPERATOR)
     page.goto(f"/alarms/{alarm.id}")
-    until_followed(site, 1)
+    until_followed(site.app, 1)
     page.page.get_by_label("Comment").press_sequentially(COMMENT)
     site.repository.acknowledge_alarm(alarm.id, by=TESTS, now_ns=time.time_ns(), comment="first")
     expect(page.page.get_by_role("button", name="Acknowledge")).to_have_count(0)
@@ -82,7 +76,7 @@ def test_a_relay_set_aside_is_released(site: Site) -> None:
     relay = site.repository.relays(limit=1).items[0].name
     page = site.open(Role.OPERATOR, screen=PHONE)
     page.goto("/relays")
-    until_followed(site, 1)
+    until_followed(site.app, 1)
     backoff = Backoff(600.0, 600.0)
     site.repository.set_aside(relay, "crashed a gateway", backoff=backoff, now_ns=time.time_ns())
     card = page.page.locator("tr", has_text=relay)

@@ -6,7 +6,7 @@ import time
 from playwright.sync_api import expect
 
 from service.storage.records import Actor, Role
-from service.web.live.routes import live_of
+from testing.web.followers import until_followed
 from testing.web.seeding import FAULTY, STALE, STANDING, WATCHED, WELL
 from testing.web.site import PHONE, Site
 from testing.web.watched_page import WatchedPage
@@ -27,15 +27,6 @@ def motors_of(page: WatchedPage) -> list[str]:
 def acknowledge_all(site: Site, motor: str) -> None:
     for alarm in site.repository.open_alarms(motor=motor, limit=100).items:
         site.repository.acknowledge_alarms([alarm.id], by=BY, comment=None, now_ns=time.time_ns())
-
-
-def until_followed(site: Site, streams: int) -> None:
-    """Wait until so many pages are told of changes."""
-    deadline = time.monotonic() + 20.0
-    bus = live_of(site.app).bus
-    while bus.streams != streams:
-        assert time.monotonic() < deadline, f"{bus.streams} streams, expected {streams}"
-        time.sleep(0.02)
 
 
 def test_the_worst_motor_comes_first_with_what_to_do(looked_at: Site) -> None:
@@ -99,7 +90,7 @@ def test_two_viewers_see_a_change_within_two_seconds(site: Site) -> None:
     for page in pages:
         page.goto("/")
         expect(page.page.locator("tr", has_text=FAULTY).locator(".calls")).to_have_count(1)
-    until_followed(site, 2)
+    until_followed(site.app, 2)
     pages[0].page.locator("tr", has_text=WELL).get_by_role("link", name=WELL).focus()
     kept = pages[0].page.locator("tr", has_text=WELL).element_handle()
     began = time.monotonic()
@@ -114,9 +105,9 @@ def test_two_viewers_see_a_change_within_two_seconds(site: Site) -> None:
 def test_a_page_that_nobody_looks_at_gives_its_connection_back(site: Site) -> None:
     page = site.open(Role.VIEWER)
     page.goto("/")
-    until_followed(site, 1)
+    until_followed(site.app, 1)
     page.page.evaluate(LOOKED_AT.format("true"))
-    until_followed(site, 0)
+    until_followed(site.app, 0)
     acknowledge_all(site, FAULTY)
     page.page.evaluate(LOOKED_AT.format("false"))
     expect(page.page.locator("tr", has_text=FAULTY).locator(".calls")).to_have_count(0)
@@ -125,9 +116,9 @@ def test_a_page_that_nobody_looks_at_gives_its_connection_back(site: Site) -> No
 def test_a_session_that_ends_is_told(site: Site) -> None:
     page = site.open(Role.VIEWER)
     page.goto("/")
-    until_followed(site, 1)
+    until_followed(site.app, 1)
     page.accepted.add(401)
     site.repository.end_sessions_of("viewer", by=BY, now_ns=time.time_ns())
     expect(page.page.locator("#messages")).to_contain_text("log in", ignore_case=True)
-    until_followed(site, 0)
+    until_followed(site.app, 0)
     page.problems = [one for one in page.problems if "Error Code 401" not in one]

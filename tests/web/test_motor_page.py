@@ -40,9 +40,7 @@ def test_the_page_follows_a_new_record_and_leaves_open_what_was_opened(site: Sit
     page.page.locator("#why summary").click()
     now_ns = time.time_ns()
     tell(site.repository, replace(FAULT, motor=WELL, as_of_ns=now_ns), now_ns=now_ns)
-    expect(page.page.locator("#verdict .sentence")).to_contain_text(
-        "Shorted turns in phase b", timeout=10_000
-    )
+    expect(page.page.locator("#verdict .sentence")).to_contain_text("Shorted turns in phase b")
     expect(page.page.locator("#why")).to_have_attribute("open", "")
 
 
@@ -54,7 +52,7 @@ def test_a_new_record_asks_for_the_page_once(site: Site) -> None:
     asked: list[str] = []
     page.page.on("request", lambda request: asked.append(request.url))
     fold(site.repository, replace(FAULT, motor=WELL, as_of_ns=now_ns), event_id, now_ns=now_ns)
-    expect(page.page.locator("#history tbody tr").first).to_contain_text("fault", timeout=10_000)
+    expect(page.page.locator("#history tbody tr").first).to_contain_text("fault")
     expect(page.page.locator("#verdict .sentence")).to_contain_text("Shorted turns in phase b")
     followed = [one for one in asked if "/motors/" in one]
     # Alarms of the same change are a subject of their own.

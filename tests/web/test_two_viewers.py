@@ -13,7 +13,7 @@ LIMIT_S = 2.0
 
 def within_limit(page: WatchedPage, script: str, argument: object, since_s: float) -> float:
     """Wait until a script of the page returns what is true; return after how long [s]."""
-    page.page.wait_for_function(script, arg=argument, polling=50, timeout=30_000)
+    page.page.wait_for_function(script, arg=argument, polling=50)
     return time.monotonic() - since_s
 
 

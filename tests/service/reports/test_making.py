@@ -7,7 +7,6 @@ from threading import BoundedSemaphore
 
 import pytest
 
-from core.starts.figures import MotorStart, StartCurve
 from service.recording_store.store import RecordingStore
 from service.reports.contents import alarms as alarms_report
 from service.reports.errors import ReportError, ReportRequestError
@@ -21,9 +20,9 @@ from service.storage.records import Actor, AlarmPlace, AlarmSpec, Role
 from service.storage.states import AlarmKind
 from testing.service.conditions import FAULT, tell
 from testing.service.diagnosed import add_diagnosed
-from testing.service.job_runner import RUNNER
 from testing.service.observations import OBSERVATION
-from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant, undiagnosable
+from testing.service.plants import NOW_NS, SECOND_NS, fault, two_motor_plant
+from testing.service.starts import START, RecordedStarts
 from tests.service.reports.conftest import UNTIL_NS
 from tests.service.reports.reading import pages_of, sheets_of, text_of
 
@@ -80,26 +79,7 @@ def test_a_motor_on_a4_with_its_pictures(seeded: ReportSource) -> None:
 
 
 def test_a_motor_with_a_recorded_start(repository: Repository, store: RecordingStore) -> None:
-    stored = store.store({"START.CFF": b"a start"})
-    repository.add_recording(stored, motor="FAN-A2", now_ns=NOW_NS)
-    claimed = repository.claim_job(now_ns=NOW_NS, runner=RUNNER)
-    assert claimed is not None
-    start = MotorStart(
-        is_from_rest=True,
-        acceleration_s=1.25,
-        peak_current_A=94.6,
-        crest_current_A=154.3,
-        running_current_A=9.0,
-        lowest_voltage_V=371.5,
-        i2t_A2s=333.5,
-        i2t_over_s=1.25,
-        rated_current_A=18.0,
-        rated_voltage_V=400.0,
-        curve=StartCurve(0.01, 0.02, (87.7, 9.0), None),
-    )
-    repository.finish_job(
-        claimed.job.id, undiagnosable(), recorded_ns=NOW_NS, now_ns=NOW_NS, runner=RUNNER, start=start
-    )
+    RecordedStarts(repository, store).add(START, "FAN-A2", at_ns=NOW_NS)
     sheets = sheets_of(make_report(ReportSource(repository), MotorReport("FAN-A2", NOW_NS), XLSX).content)
     heading, row = sheets["starts"]
     assert heading[0] == "time (UTC)"

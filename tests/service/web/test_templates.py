@@ -1,4 +1,4 @@
-"""What no template or script of ours may have: it would need a weaker policy, or run what others wrote."""
+"""What no template, script or style of ours has: it needs a weaker policy, or runs what others wrote."""
 
 import re
 from pathlib import Path
@@ -6,11 +6,13 @@ from pathlib import Path
 import pytest
 
 import service.web
+from service.web.static_files import static_tree
 
 ROOT = Path(service.web.__file__).parent
 TEMPLATES = sorted((ROOT / "templates").rglob("*.html"))
 SCRIPTS = sorted((ROOT / "static" / "js").rglob("*.js"))
 STYLES = sorted((ROOT / "static" / "css").rglob("*.css"))
+PICTURES = sorted((ROOT / "static" / "icons").rglob("*.svg"))
 
 IN_TEMPLATES = {
     "an htmx event handler": r"\bhx-on\b|\bdata-hx-on\b",
@@ -22,13 +24,18 @@ IN_TEMPLATES = {
     "a value that is not escaped": r"\|\s*safe\b|autoescape\s+false|Markup\(",
     "an address of another host": r"(?:href|src|action)\s*=\s*[\"'](?:https?:)?//",
 }
+ANOTHER_HOST = r"(?:https?:)?//(?!www\.w3\.org/2000/svg\b)[a-z0-9.-]+\.[a-z]{2,}"
 IN_SCRIPTS = {
     "evaluation": r"\beval\s*\(|new Function\b|setTimeout\(\s*[\"'`]",
     "markup from a string": r"\.innerHTML\s*=|\.outerHTML\s*=|insertAdjacentHTML|document\.write",
-    "an address of another host": r"[\"'`]https?://(?!www\.w3\.org/)",
+    "an address of another host": ANOTHER_HOST,
     "an import of another host": r"import[^;]*[\"'](?:https?:)?//",
 }
-IN_STYLES = {"an address of another host": r"url\(\s*[\"']?(?:https?:)?//|@import"}
+IN_STYLES = {
+    "an address of another host": ANOTHER_HOST,
+    "something to load from another host": r"url\(\s*[\"']?(?:https?:)?//|@import",
+}
+IN_PICTURES = {**IN_TEMPLATES, "an address of another host": ANOTHER_HOST}
 
 
 def marks(text: str, patterns: dict[str, str]) -> list[str]:
@@ -54,6 +61,17 @@ def test_a_script_makes_no_markup_of_texts(path: Path) -> None:
 @pytest.mark.parametrize("path", STYLES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_style_loads_nothing_from_elsewhere(path: Path) -> None:
     assert marks(path.read_text(encoding="utf-8"), IN_STYLES) == []
+
+
+@pytest.mark.parametrize("path", PICTURES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_a_picture_runs_and_loads_nothing(path: Path) -> None:
+    assert marks(path.read_text(encoding="utf-8"), IN_PICTURES) == []
+
+
+def test_every_file_of_ours_is_looked_at() -> None:
+    looked_at = {str(path.relative_to(ROOT / "static")) for path in (*SCRIPTS, *STYLES, *PICTURES)}
+    assert looked_at == {way for way in static_tree().files if not way.startswith("vendor/")}
+    assert TEMPLATES
 
 
 @pytest.mark.parametrize(

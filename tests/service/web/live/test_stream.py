@@ -21,15 +21,14 @@ from service.storage import Repository
 from service.storage.records import Actor, Role
 from service.storage.states import LinkState
 from service.web.app import create_site
-from service.web.live.bus import LiveBus
 from service.web.live.routes import live_of
 from service.web.live.topics import Topic
 from testing.service.accounts import token_of
 from testing.service.conditions import FAULT, tell
-from testing.service.listening import listening
+from testing.service.listening import LONGEST_S, listening
+from testing.web.followers import until_followed
 
 BY = Actor("ann", "here")
-LONGEST_S = 20.0
 
 
 @pytest.fixture(autouse=True)
@@ -83,13 +82,6 @@ def next_event(lines: Iterator[str]) -> str:
     return next(line for line in lines if line.startswith("event"))
 
 
-def until_watched(bus: LiveBus, streams: int) -> None:
-    deadline = time.monotonic() + LONGEST_S
-    while bus.streams != streams:
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
-
-
 def test_a_change_is_told_to_those_whom_it_concerns(url: str, repository: Repository) -> None:
     with (
         logged_in(url, repository, Role.VIEWER) as client,
@@ -134,7 +126,6 @@ def test_a_page_names_what_it_shows_so_that_nothing_is_missed(url: str, reposito
 def test_one_look_serves_all_and_nobody_is_asked_for_when_they_are_gone(
     url: str, site: FastAPI, repository: Repository
 ) -> None:
-    bus = live_of(site).bus
     with (
         logged_in(url, repository, Role.VIEWER) as client,
         following(client, topic="fleet") as first,
@@ -142,11 +133,11 @@ def test_one_look_serves_all_and_nobody_is_asked_for_when_they_are_gone(
     ):
         until_known(first)
         until_known(second)
-        until_watched(bus, 2)
+        until_followed(site, 2)
         tell(repository, FAULT)
         assert next(first) == next(second) == "event: fleet"
         assert next(first) == next(second)
-    until_watched(bus, 0)
+    until_followed(site, 0)
 
 
 def test_a_stream_ends_with_its_session(url: str, repository: Repository) -> None:
@@ -242,7 +233,7 @@ def test_streams_leave_connections_for_others(
             following(client, topic="fleet"),
             following(client, topic="fleet"),
         ):
-            until_watched(live_of(site).bus, 2)
+            until_followed(site, 2)
             answer = client.get("/live", params={"topic": "fleet"})
             assert answer.status_code == 503
             assert "streams of open pages" in answer.json()["detail"]
@@ -262,7 +253,7 @@ def test_the_service_stops_at_once_though_pages_are_open(context: ApiContext) ->
 
         thread = threading.Thread(target=follow)
         thread.start()
-        until_watched(live_of(site).bus, 1)
+        until_followed(site, 1)
         began = time.monotonic()
     thread.join(timeout=LONGEST_S)
     assert time.monotonic() - began < 2.5, "it waits 3 s for requests that do not end"
