@@ -52,6 +52,20 @@ _START_COLUMNS = (
     "crest_current_A", "running_current_A", "lowest_voltage_V", "i2t_A2s", "i2t_over_s", "rated_current_A",
     "rated_voltage_V", "curve",
 )  # fmt: skip
+_ROTOR_COLUMNS = (
+    "recording_id", "motor", "time_ns", "state", "lower_sideband_dB", "upper_sideband_dB", "severity_dB",
+    "severity_dB_ci95_low", "severity_dB_ci95_high", "detection_limit_dB", "slip", "load_level", "load_bin",
+    "duration_s", "load_oscillation_dB", "reasons",
+)  # fmt: skip
+_SUPPLY_COLUMNS = (
+    "recording_id", "motor", "time_ns", "frequency_hz", "line_voltages_V", "voltage_unbalance_iec",
+    "voltage_unbalance_nema", "derating", "voltage_deviation", "thd_voltage", "harmonic_voltage_factor",
+    "voltage_harmonics", "line_currents_A", "current_unbalance", "thd_current", "current_harmonics",
+    "active_power_W", "power_factor", "duration_s", "reasons",
+)  # fmt: skip
+
+HARMONICS = "[1.0,0.001,0.004,0.0,0.03,0.0,0.017,0.0,0.0,0.0,0.006,0.0,0.004,0.0,0.0,0.0,0.002]"
+REASONS = '["no asymmetry of the rotor above -52 dB"]'
 
 
 def tables(amounts: Amounts) -> Iterator[Table]:
@@ -60,6 +74,8 @@ def tables(amounts: Amounts) -> Iterator[Table]:
     yield Table("condition_changes", _CHANGE_COLUMNS, _changes(amounts))
     yield Table("condition_events", _EVENT_COLUMNS, _events(amounts))
     yield Table("starts", _START_COLUMNS, _starts(amounts))
+    yield Table("rotor_findings", _ROTOR_COLUMNS, _rotor_findings(amounts))
+    yield Table("supply_figures", _SUPPLY_COLUMNS, _supply_figures(amounts))
 
 
 def judge(connection: Connection) -> None:
@@ -117,6 +133,26 @@ def _starts(amounts: Amounts) -> Iterator[Row]:
                 recording, motor, time_ns, True, 1.2, 92.0, 131.0, 14.5, 361.0, 9500.0, 1.4, 15.0, 400.0,
                 CURVE,
             )  # fmt: skip
+
+
+def _rotor_findings(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        severity_dB = -70.0 + number % 97 / 10.0
+        yield (
+            id_of(RECORDING, number), motor, time_ns, "healthy", severity_dB - 4.0, severity_dB - 7.0,
+            severity_dB, severity_dB - 5.0, severity_dB + 3.0, -52.0, 0.031, 0.48, number % 12, 10.0, -60.0,
+            REASONS,
+        )  # fmt: skip
+
+
+def _supply_figures(amounts: Amounts) -> Iterator[Row]:
+    for number, motor, time_ns in _observed(amounts):
+        unbalance = number % 89 / 10_000
+        yield (
+            id_of(RECORDING, number), motor, time_ns, 50.02, "[401.0,399.5,396.25]", unbalance, unbalance,
+            1.0, -0.003, 0.021, 0.0085, HARMONICS, "[1.5,1.48,1.53]", 0.02, 0.035, HARMONICS, 612.5, 0.61,
+            10.0, "[]",
+        )  # fmt: skip
 
 
 def _said(mu_f: float) -> Row:

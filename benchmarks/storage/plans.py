@@ -34,7 +34,9 @@ GROWING = frozenset(
         "condition_changes",
         "condition_days",
         "condition_events",
+        "rotor_findings",
         "starts",
+        "supply_figures",
     }
 )
 """Tables that have more rows every day."""

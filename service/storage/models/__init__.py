@@ -47,7 +47,9 @@ from service.storage.models.relays import (
     QuarantineRow,
     RelayFindingsRow,
 )
+from service.storage.models.rotor import RotorFindingRow
 from service.storage.models.starts import StartRow
+from service.storage.models.supply import SupplyFiguresRow
 
 __all__ = [
     "AlarmChangeRow",
@@ -91,10 +93,12 @@ __all__ = [
     "RecordingRow",
     "RelayFindingsRow",
     "RemoteRecordRow",
+    "RotorFindingRow",
     "SiteRow",
     "StandingAlarmCountRow",
     "StartRow",
     "StateCountRow",
+    "SupplyFiguresRow",
     "UnobservedRecordingRow",
     "UserRow",
     "UserSessionRow",

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from enum import StrEnum
+from typing import Any
 
 from sqlalchemy import JSON, BigInteger, Dialect, Enum, MetaData, String, TypeDecorator
 from sqlalchemy.orm import DeclarativeBase
@@ -12,6 +13,7 @@ from core.condition.observation import VoltageChannels
 from core.diagnosis.verdict import Verdict
 from core.machines.parameters import ParametersSource
 from core.operation import Operation
+from core.rotor.finding import RotorState
 from core.signals.sequence import PhaseSequence
 from service.storage.states import (
     AlarmEvent,
@@ -60,6 +62,19 @@ class _Kinds(TypeDecorator[tuple[Kind, ...]]):
         return tuple(map(Kind, value.split())) if value else ()
 
 
+class _Items(TypeDecorator[tuple[Any, ...]]):
+    """Numbers or texts in their order, as a list of JSON."""
+
+    impl = JSON(none_as_null=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: tuple[Any, ...] | None, _dialect: Dialect) -> list[Any] | None:
+        return None if value is None else list(value)
+
+    def process_result_value(self, value: list[Any] | None, _dialect: Dialect) -> tuple[Any, ...] | None:
+        return None if value is None else tuple(value)
+
+
 class Base(DeclarativeBase):
     metadata = MetaData(
         naming_convention={
@@ -95,8 +110,11 @@ class Base(DeclarativeBase):
         Kind: _words(Kind),
         tuple[Kind, ...]: _Kinds,
         EventKind: _words(EventKind, 32),
+        RotorState: _words(RotorState),
         PhaseSequence: _words(PhaseSequence),
         VoltageChannels: _words(VoltageChannels),
+        tuple[float, ...]: _Items,
+        tuple[str, ...]: _Items,
         Mapping[str, object]: JSON,
         list[Mapping[str, object]]: JSON,
     }

@@ -44,6 +44,7 @@ from service.storage.records.diagnoses import (
     TrendPoint,
     interval_of,
 )
+from service.storage.records.examined import RotorEntry, SupplyEntry
 from service.storage.records.fleet import CallingAlarms, FleetMotor
 from service.storage.records.health import MotorHealth, RecordedStarts
 from service.storage.records.measurements import Measurement, Sample
@@ -139,9 +140,11 @@ __all__ = [
     "RelayFindings",
     "RemoteRecord",
     "Role",
+    "RotorEntry",
     "Sample",
     "SiteEntry",
     "StartEntry",
+    "SupplyEntry",
     "ToObserve",
     "TrendPoint",
     "User",

@@ -20,8 +20,10 @@ from service.storage.repository.folders import FolderRows
 from service.storage.repository.folding import FoldingRows
 from service.storage.repository.history.conditions import PastConditionRows
 from service.storage.repository.history.neighbours import NeighbourRows
+from service.storage.repository.history.rotor import RotorRows
 from service.storage.repository.history.seen_records import SeenRecordRows
 from service.storage.repository.history.starts import StartRows
+from service.storage.repository.history.supply import SupplyRows
 from service.storage.repository.history.thinned_trend import ThinnedTrendRows
 from service.storage.repository.job_runners import JobRunnerRows
 from service.storage.repository.jobs import JobRows
@@ -59,6 +61,8 @@ class Repository(
     MotorVersionRows,
     SeenRecordRows,
     StartRows,
+    RotorRows,
+    SupplyRows,
     ThinnedTrendRows,
     NeighbourRows,
     PastConditionRows,

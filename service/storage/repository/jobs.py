@@ -11,7 +11,9 @@ from core.condition.observation import Observation
 from core.diagnosis.methods import DEFAULT_METHOD, DEFAULT_MODEL
 from core.diagnosis.verdict import Diagnosis, Verdict, not_finite
 from core.operation import AT_REST, EXPECTED
+from core.rotor.finding import RotorFinding
 from core.starts.figures import MotorStart
+from core.supply.figures import SupplyFigures
 from core.units import NANOSECONDS_PER_SECOND
 from service.audit.actions import AuditAction
 from service.storage.errors import (
@@ -27,7 +29,9 @@ from service.storage.repository.audit.entries import note_change
 from service.storage.repository.baselines import baseline_rows
 from service.storage.repository.clocks import withdraw_clock
 from service.storage.repository.conditions import note_standstill
+from service.storage.repository.history.rotor import keep_rotor_finding
 from service.storage.repository.history.starts import keep_start
+from service.storage.repository.history.supply import keep_supply
 from service.storage.repository.observations import keep_observation
 from service.storage.repository.recording_requests import diagnose_rows, fail_rows
 from service.storage.repository.recordings import new_job, require_room
@@ -148,13 +152,16 @@ class JobRows(Sessions):
         left_out: str | None = None,
         operation_remark: str | None = None,
         start: MotorStart | None = None,
+        rotor: RotorFinding | None = None,
+        supply: SupplyFigures | None = None,
     ) -> bool:
         """Keep the result: diagnosis, observation, job, recording and requests in one transaction.
 
         Again changes nothing. recorded_ns: trigger time written in the record.  observation: what the record
         tells of its motor's condition; None where it tells nothing.  left_out: why it does not count there,
-        for people.  operation_remark: why the motor's parameters cannot be estimated from this start.
-        start: what a start shows; None of other records.
+        nor in trends, for people.  operation_remark: why the motor's parameters cannot be estimated from this
+        start.  start: what a start shows; None of other records.  rotor, supply: what the record shows of
+        them; None where it shows nothing.
         Returns False, and keeps nothing, where the job is not the runner's any more.
         Raises NotFoundError, UnstorableDiagnosisError.
         """
@@ -165,10 +172,11 @@ class JobRows(Sessions):
             if not _is_held(row, runner):
                 return False
             recording = found(session, RecordingRow, row.recording_id, "recording", lock=True)
+            document = _document(diagnosis, rotor, supply)
             session.execute(
                 update(DiagnosisRow).where(DiagnosisRow.recording_id == recording.id).values(current=False)
             )
-            session.add(_diagnosis_row(row, recording.motor, diagnosis, recorded_ns, now_ns))
+            session.add(_diagnosis_row(row, recording.motor, diagnosis, document, recorded_ns, now_ns))
             _end(row, JobState.DONE, None, now_ns)
             recording.state = RecordingState.DIAGNOSED
             recording.reason = None if left_out is None else storable(left_out)
@@ -180,6 +188,9 @@ class JobRows(Sessions):
             diagnose_rows(session, recording.id, now_ns)
             keep_observation(session, recording.id, recording.motor, observation)
             keep_start(session, recording.id, recording.motor, recorded_ns, start)
+            counts = left_out is None
+            keep_rotor_finding(session, recording.id, recording.motor, recorded_ns, rotor if counts else None)
+            keep_supply(session, recording.id, recording.motor, recorded_ns, supply if counts else None)
             if diagnosis.operation in AT_REST:
                 note_standstill(session, recording.motor, min(recorded_ns, now_ns))
             return True
@@ -287,7 +298,12 @@ def retry_or_give_up(
 
 
 def _diagnosis_row(
-    row: JobRow, motor: str, diagnosis: Diagnosis, recorded_ns: int, now_ns: int
+    row: JobRow,
+    motor: str,
+    diagnosis: Diagnosis,
+    document: Mapping[str, object],
+    recorded_ns: int,
+    now_ns: int,
 ) -> DiagnosisRow:
     if abs(recorded_ns) > LATEST_NS:
         raise UnstorableDiagnosisError(f"the record's time, {recorded_ns:.3g} ns, is beyond the year 2262")
@@ -316,17 +332,22 @@ def _diagnosis_row(
         load_level_ci95_high=load_high,
         method=diagnosis.method,
         model=diagnosis.model,
-        document=_document(diagnosis),
+        document=document,
         says_nothing=diagnosis.verdict is Verdict.UNDIAGNOSABLE and diagnosis.operation in EXPECTED,
     )
 
 
-def _document(diagnosis: Diagnosis) -> Mapping[str, object]:
-    """Return the diagnosis as a document that every database and reader can hold.
+def _document(
+    diagnosis: Diagnosis, rotor: RotorFinding | None, supply: SupplyFigures | None
+) -> Mapping[str, object]:
+    """Return all that a record shows as a document that every database and reader can hold.
 
     Raises UnstorableDiagnosisError.
     """
-    document = diagnosis.as_dict()
+    document = diagnosis.as_dict() | {
+        "rotor": None if rotor is None else rotor.as_dict(),
+        "supply": None if supply is None else supply.as_dict(),
+    }
     way = not_finite(document)
     if way is not None:
         raise UnstorableDiagnosisError(f"{way} is not JSON compliant: it is no finite number")

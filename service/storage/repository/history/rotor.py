@@ -1,0 +1,90 @@
+"""What recordings show of the rotor: kept with their diagnosis, and listed."""
+
+from dataclasses import fields
+from typing import Any, Final
+
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session
+
+from core.rotor.finding import RotorFinding
+from service.storage.models import MotorRow, RotorFindingRow
+from service.storage.records import Cursor, Page, RotorEntry
+from service.storage.repository.sessions import Order, Sessions, found, page_of
+from service.storage.texts import storable
+
+_INTERVAL: Final = "severity_dB_ci95"
+_FIGURES: Final = tuple(field.name for field in fields(RotorFinding) if field.name != _INTERVAL)
+"""Columns that are called as the fields of a RotorFinding are."""
+
+_ENDS: Final = (f"{_INTERVAL}_low", f"{_INTERVAL}_high")
+_COLUMNS: Final = [
+    getattr(RotorFindingRow, name) for name in ("recording_id", "motor", "time_ns", *_FIGURES, *_ENDS)
+]
+
+
+class RotorRows(Sessions):
+    def rotor_trend(
+        self,
+        motor: str,
+        *,
+        limit: int,
+        from_ns: int | None = None,
+        to_ns: int | None = None,
+        after: Cursor | None = None,
+    ) -> Page[RotorEntry]:
+        """Return what a motor's recordings show of its rotor, oldest first, from_ns <= time < to_ns.
+
+        Raises NotFoundError.
+        """
+        query = select(*_COLUMNS).where(RotorFindingRow.motor == motor)
+        if from_ns is not None:
+            query = query.where(RotorFindingRow.time_ns >= from_ns)
+        if to_ns is not None:
+            query = query.where(RotorFindingRow.time_ns < to_ns)
+        order: Order = [RotorFindingRow.time_ns, RotorFindingRow.recording_id]
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            return page_of(session, query, order, _entry, limit=limit, after=after)
+
+    def latest_rotor_findings(self, motor: str, *, limit: int) -> tuple[RotorEntry, ...]:
+        """Return what a motor's latest recordings show of its rotor, oldest first. Raises NotFoundError."""
+        with self._read() as session:
+            found(session, MotorRow, motor, "motor")
+            return latest_findings(session, motor, limit)
+
+
+def latest_findings(session: Session, motor: str, limit: int) -> tuple[RotorEntry, ...]:
+    """Return what a motor's latest recordings show of its rotor, oldest first."""
+    query = (
+        select(*_COLUMNS)
+        .where(RotorFindingRow.motor == motor)
+        .order_by(RotorFindingRow.time_ns.desc(), RotorFindingRow.recording_id.desc())
+        .limit(limit)
+    )
+    return tuple(_entry(*row) for row in reversed(session.execute(query).all()))
+
+
+def keep_rotor_finding(
+    session: Session, recording_id: str, motor: str, time_ns: int, finding: RotorFinding | None
+) -> None:
+    """Keep what a recording shows of the rotor, in place of what an earlier diagnosis found."""
+    forget_rotor_finding(session, recording_id)
+    if finding is None:
+        return
+    values = {name: getattr(finding, name) for name in _FIGURES}
+    values |= dict(zip(_ENDS, finding.severity_dB_ci95 or (None, None), strict=True))
+    values["reasons"] = tuple(map(storable, finding.reasons))
+    session.add(RotorFindingRow(recording_id=recording_id, motor=motor, time_ns=time_ns, **values))
+    session.flush()
+
+
+def forget_rotor_finding(session: Session, recording_id: str) -> None:
+    """Delete what a recording showed of the rotor."""
+    session.execute(delete(RotorFindingRow).where(RotorFindingRow.recording_id == recording_id))
+
+
+def _entry(recording_id: str, motor: str, time_ns: int, *values: Any) -> RotorEntry:
+    *figures, low, high = values
+    named: dict[str, Any] = dict(zip(_FIGURES, figures, strict=True))
+    interval = None if low is None or high is None else (low, high)
+    return RotorEntry(recording_id, motor, time_ns, RotorFinding(**named, severity_dB_ci95=interval))

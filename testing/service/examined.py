@@ -1,0 +1,121 @@
+"""What recordings show beside their diagnosis, for tests without a worker."""
+
+from core.diagnosis.verdict import Diagnosis
+from core.rotor.finding import RotorFinding, RotorState
+from core.supply.figures import SupplyFigures
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from testing.service.job_runner import RUNNER
+from testing.service.plants import NOW_NS, SECOND_NS, healthy
+
+SOUND_ROTOR = RotorFinding(
+    state=RotorState.HEALTHY,
+    lower_sideband_dB=-71.5,
+    upper_sideband_dB=-74.25,
+    severity_dB=-68.0,
+    severity_dB_ci95=(-74.0, -64.5),
+    detection_limit_dB=-52.0,
+    slip=0.031,
+    load_level=0.72,
+    load_bin=6,
+    duration_s=10.0,
+    load_oscillation_dB=-60.0,
+    reasons=("no asymmetry of the rotor above -52 dB",),
+)
+
+BROKEN_ROTOR = RotorFinding(
+    state=RotorState.FAULT,
+    lower_sideband_dB=-35.5,
+    upper_sideband_dB=-41.0,
+    severity_dB=-29.0,
+    severity_dB_ci95=(-31.0, -27.5),
+    detection_limit_dB=-52.0,
+    slip=0.031,
+    load_level=0.72,
+    load_bin=6,
+    duration_s=10.0,
+    load_oscillation_dB=-60.0,
+    reasons=("the rotor's resistance is asymmetric",),
+)
+
+SHORT_RECORD = RotorFinding(
+    state=RotorState.UNSUPPORTED,
+    lower_sideband_dB=None,
+    upper_sideband_dB=None,
+    severity_dB=None,
+    severity_dB_ci95=None,
+    detection_limit_dB=None,
+    slip=0.008,
+    load_level=0.2,
+    load_bin=1,
+    duration_s=1.0,
+    load_oscillation_dB=None,
+    reasons=("the record is too short for this slip",),
+)
+
+SUPPLY = SupplyFigures(
+    frequency_hz=50.01,
+    line_voltages_V=(401.0, 399.5, 396.25),
+    voltage_unbalance_iec=0.0071,
+    voltage_unbalance_nema=0.0068,
+    derating=1.0,
+    voltage_deviation=-0.0027,
+    thd_voltage=0.021,
+    harmonic_voltage_factor=0.0085,
+    voltage_harmonics=(1.0, 0.0, 0.001, 0.0, 0.018, 0.0, 0.011),
+    line_currents_A=(1.5, 1.48, 1.53),
+    current_unbalance=0.02,
+    thd_current=0.035,
+    current_harmonics=(1.0, 0.001, 0.004, 0.0, 0.03, 0.0, 0.017),
+    active_power_W=612.5,
+    power_factor=0.61,
+    duration_s=10.0,
+    reasons=(),
+)
+
+
+class ExaminedRecordings:
+    """Recordings of running motors with what they show, one a second."""
+
+    def __init__(self, repository: Repository, store: RecordingStore) -> None:
+        self.repository, self._store, self._number = repository, store, 0
+
+    def add(
+        self,
+        rotor: RotorFinding | None,
+        supply: SupplyFigures | None = None,
+        *,
+        motor: str = "PUMP-A1",
+        diagnosis: Diagnosis | None = None,
+        left_out: str | None = None,
+    ) -> str:
+        """Add a recording with what it shows; return its id."""
+        self._number += 1
+        now_ns = NOW_NS + self._number * SECOND_NS
+        stored = self._store.store({f"R{self._number}.CFF": f"{motor} {self._number}".encode()})
+        added = self.repository.add_recording(stored, motor=motor, now_ns=now_ns)
+        self.diagnose(rotor, supply, now_ns, diagnosis=diagnosis, left_out=left_out)
+        return added.recording.id
+
+    def diagnose(
+        self,
+        rotor: RotorFinding | None,
+        supply: SupplyFigures | None,
+        recorded_ns: int,
+        *,
+        diagnosis: Diagnosis | None = None,
+        left_out: str | None = None,
+    ) -> None:
+        """Have the next recording that waits diagnosed."""
+        claimed = self.repository.claim_job(now_ns=recorded_ns + 1000 * SECOND_NS, runner=RUNNER)
+        assert claimed is not None
+        assert self.repository.finish_job(
+            claimed.job.id,
+            healthy() if diagnosis is None else diagnosis,
+            recorded_ns=recorded_ns,
+            now_ns=recorded_ns,
+            runner=RUNNER,
+            left_out=left_out,
+            rotor=rotor,
+            supply=supply,
+        )
