@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ied_sim.monitoring.metering import METERING_CYCLES, Metering, meter, metered
 from ied_sim.motor.contactor import Closure
-from ied_sim.motor.plant import DISTURBANCE_MEMORY_S, METERING_STEP_RATE_HZ, START_MEMORY_S, MotorPlant
+from ied_sim.motor.plant import DISTURBANCE_MEMORY_S, METERING_STEP_RATE_HZ, MotorPlant
 
 Array = NDArray[np.float64]
 
@@ -23,6 +23,7 @@ NO_CURRENT = 0.05
 
 _NOTICEABLE_LEVEL = 0.002
 _NOTICEABLE_FAULT = 1e-4
+_NOTICEABLE_BROKEN_BARS = 1e-3
 _NOTICEABLE_RESISTANCE = 0.002
 _NOTICEABLE_VOLTAGE = 2e-4
 _NOTICEABLE_GAIN = 2e-4
@@ -34,8 +35,8 @@ class Start:
     """A motor start from rest, as the relay measured it: one row for each METERING_CYCLES.
 
     `closed_s` is the time of the closing [s since the simulator's start]. `duration_s` is the time until the
-    current had fallen; None where it did not within START_MEMORY_S. `time_s` are the times of the rows after
-    the closing, `current_A` and `voltage_V` the rms values.
+    current had fallen; None where it did not within the plant's `start_memory_s`. `time_s` are the times of
+    the rows after the closing, `current_A` and `voltage_V` the rms values.
     """
 
     closed_s: float
@@ -65,14 +66,14 @@ class MotorMonitor:
         if closure is None:
             self._steady = None
             return meter(self._plant, time_s)
-        if time_s - closure.closed_s <= START_MEMORY_S:
+        if time_s - closure.closed_s <= self._plant.start_memory_s:
             return self._starting(closure, time_s)
         return self._running(time_s)
 
     def start(self, closure: Closure) -> Start:
         """Return the start that began with `closure`."""
         samples = self._start_samples(closure)
-        rows = round(START_MEMORY_S * self._frequency(closure.closed_s) / METERING_CYCLES)
+        rows = round(self._plant.start_memory_s * self._frequency(closure.closed_s) / METERING_CYCLES)
         time_s = (np.arange(rows) + 1) * METERING_CYCLES / self._frequency(closure.closed_s)
         metering = [self._metered(samples, closure.closed_s, closure.closed_s + each) for each in time_s]
         current_A = np.array([each.current_A for each in metering])
@@ -114,6 +115,7 @@ class MotorMonitor:
                 plant.load.level_at(time_s) / _NOTICEABLE_LEVEL,
                 level / _NOTICEABLE_FAULT,
                 joint / _NOTICEABLE_RESISTANCE,
+                plant.broken_share(time_s) / _NOTICEABLE_BROKEN_BARS,
                 *(np.array(plant.resistance_factors(time_s)) / _NOTICEABLE_RESISTANCE),
                 *(phasors.view(np.float64) / _NOTICEABLE_VOLTAGE),
                 *(plant.sensors.gains(time_s) / _NOTICEABLE_GAIN),
@@ -146,7 +148,7 @@ class MotorMonitor:
             )
             window = self._plant.window(
                 closure.closed_s - before_s,
-                before_s + START_MEMORY_S + before_s,
+                before_s + self._plant.start_memory_s + before_s,
                 TRACE_RATE_HZ,
                 step_rate_hz=METERING_STEP_RATE_HZ,
             )

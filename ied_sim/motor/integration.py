@@ -1,7 +1,8 @@
 """Motion of the winding circuit in time: classical Runge-Kutta method of fourth order, compiled.
 
 The state is the loop fluxes [V s], the rotor's speed [rad/s] and its electrical angle [rad]. Voltages and
-load torque are known functions of time, given at the middle of the steps too.
+load torque are known functions of time, given at the middle of the steps too; pulsations of the load's torque
+depend on the rotor's angle beside it.
 """
 
 from math import cos, sin, sqrt
@@ -20,22 +21,30 @@ class Loops(NamedTuple):
 
     Parameters
     ----------
+    leakage : ndarray, shape (m, m)
+        Inductance of the leakage [H].
     A, B, D : ndarray, shape (m, m)
-        Parts of the inductance L(theta) = A + B cos(theta) + D sin(theta) [H].
+        Parts of the inductance of the air-gap field, P (A + B cos(theta) + D sin(theta)) [H], with P the
+        gap's relative permeance.
     R : ndarray, shape (m, m)
         Resistance [ohm].
     pole_pairs : int
         Pole pairs of the motor.
     inertia : float
-        Moment of inertia [kg m^2].
+        Moment of inertia of motor and load [kg m^2].
+    static, dynamic : float
+        Eccentricities, see `eccentricity`.
     """
 
+    leakage: Array
     A: Array
     B: Array
     D: Array
     R: Array
     pole_pairs: int
     inertia: float
+    static: float
+    dynamic: float
 
 
 class Drive(NamedTuple):
@@ -46,13 +55,20 @@ class Drive(NamedTuple):
     voltage : ndarray, shape (2 n + 1, m)
         Voltage around each loop [V].
     load_torque : ndarray, shape (2 n + 1,)
-        Load torque [N m].
+        Load torque without its pulsations [N m].
+    pulsation_torque, pulsation_order : ndarray, shape (k,)
+        Amplitude of each pulsation [N m], and how much its angle grows with the rotor's electrical angle.
+    pulsation_angle : ndarray, shape (2 n + 1, k)
+        The rest of its angle [rad].
     step : float
         Length of a step [s].
     """
 
     voltage: Array
     load_torque: Array
+    pulsation_torque: Array
+    pulsation_order: Array
+    pulsation_angle: Array
     step: float
 
 
@@ -87,39 +103,66 @@ def _solve_symmetric(matrix: Array, x: Array) -> None:
 
 
 @compiled
-def _loop_currents(loops: Loops, c: float, s: float, state: Array, matrix: Array, q: Array) -> None:
-    """Solve L(theta) q = flux for the loop currents q, with c = cos(theta) and s = sin(theta)."""
-    A, B, D = loops.A, loops.B, loops.D
+def _permeance(loops: Loops, angle: float) -> tuple[float, float]:
+    """Return the air gap's relative permeance at an electrical rotor angle, and its slope over a turn."""
+    both = 2 * loops.static * loops.dynamic
+    turn = angle / loops.pole_pairs
+    gap = 1 - loops.static**2 - loops.dynamic**2 - both * cos(turn)
+    permeance = 1 / sqrt(gap)
+    return permeance, -0.5 * both * sin(turn) * permeance / gap
+
+
+@compiled
+def _loop_currents(loops: Loops, angle: float, state: Array, matrix: Array, q: Array) -> None:
+    """Solve L(theta) q = flux for the loop currents q."""
+    leakage, A, B, D = loops.leakage, loops.A, loops.B, loops.D
     m = q.size
+    c, s = cos(angle), sin(angle)
+    P, _ = _permeance(loops, angle)
     for i in range(m):
         q[i] = state[i]
         for j in range(i + 1):
-            matrix[i, j] = A[i, j] + B[i, j] * c + D[i, j] * s
+            matrix[i, j] = leakage[i, j] + P * (A[i, j] + B[i, j] * c + D[i, j] * s)
     _solve_symmetric(matrix, q)
 
 
 @compiled
+def _load_torque(drive: Drive, now: int, angle: float) -> float:
+    """Return the load's torque with its pulsations at half step `now`."""
+    torque: float = drive.load_torque[now]
+    for k in range(drive.pulsation_torque.size):
+        swing = drive.pulsation_order[k] * angle + drive.pulsation_angle[now, k]
+        torque += drive.pulsation_torque[k] * cos(swing)
+    return torque
+
+
+@compiled
 def _derivative(
-    loops: Loops, voltage: Array, load_torque: float, state: Array, work: Array, q: Array, rate: Array
+    loops: Loops, drive: Drive, now: int, state: Array, work: Array, q: Array, rate: Array
 ) -> None:
-    """Compute the state's derivative into `rate`.
+    """Compute the state's derivative at half step `now` into `rate`.
 
     d(flux)/dt = e - R q;  J dw_m/dt = p q' (dL/dtheta) q / 2 - T_load;  dtheta/dt = p w_m.
     """
-    B, D, R = loops.B, loops.D, loops.R
+    A, B, D, R = loops.A, loops.B, loops.D, loops.R
     m = q.size
-    c, s = cos(state[m + 1]), sin(state[m + 1])
-    _loop_currents(loops, c, s, state, work, q)
+    angle = state[m + 1]
+    c, s = cos(angle), sin(angle)
+    P, slope = _permeance(loops, angle)
+    slope /= loops.pole_pairs
+    _loop_currents(loops, angle, state, work, q)
     torque = 0.0
     for i in range(m):
         drop = 0.0
         turn = 0.0
         for j in range(m):
             drop += R[i, j] * q[j]
-            turn += (D[i, j] * c - B[i, j] * s) * q[j]
-        rate[i] = voltage[i] - drop
+            turn += P * (D[i, j] * c - B[i, j] * s) * q[j]
+            if slope != 0.0:
+                turn += slope * (A[i, j] + B[i, j] * c + D[i, j] * s) * q[j]
+        rate[i] = drive.voltage[now, i] - drop
         torque += q[i] * turn
-    rate[m] = (0.5 * loops.pole_pairs * torque - load_torque) / loops.inertia
+    rate[m] = (0.5 * loops.pole_pairs * torque - _load_torque(drive, now, angle)) / loops.inertia
     rate[m + 1] = loops.pole_pairs * state[m]
 
 
@@ -132,7 +175,7 @@ def integrate(loops: Loops, drive: Drive, steps_per_sample: int, state: Array) -
     loops : Loops
         The circuit and its rotor.
     drive : Drive
-        Voltages and load torque at every half step.
+        Voltages and the load's torque at every half step.
     steps_per_sample : int
         Number of steps between samples.
     state : ndarray, shape (m + 2,)
@@ -146,8 +189,8 @@ def integrate(loops: Loops, drive: Drive, steps_per_sample: int, state: Array) -
         Mechanical speed [rad/s].
     """
     m = state.size - 2
-    voltage, load_torque, step = drive.voltage, drive.load_torque, drive.step
-    steps = (load_torque.size - 1) // 2
+    step = drive.step
+    steps = (drive.load_torque.size - 1) // 2
     samples = steps // steps_per_sample + 1
     currents = np.empty((samples, m))
     speed = np.empty(samples)
@@ -156,27 +199,25 @@ def integrate(loops: Loops, drive: Drive, steps_per_sample: int, state: Array) -
     trial = np.empty(m + 2)
     k1, k2, k3, k4 = np.empty(m + 2), np.empty(m + 2), np.empty(m + 2), np.empty(m + 2)
 
-    _loop_currents(loops, cos(state[m + 1]), sin(state[m + 1]), state, work, q)
+    _loop_currents(loops, state[m + 1], state, work, q)
     currents[0] = q
     speed[0] = state[m]
     for n in range(samples - 1):
         for k in range(steps_per_sample):
             now = 2 * (n * steps_per_sample + k)
-            e0, e1, e2 = voltage[now], voltage[now + 1], voltage[now + 2]
-            T0, T1, T2 = load_torque[now], load_torque[now + 1], load_torque[now + 2]
-            _derivative(loops, e0, T0, state, work, q, k1)
+            _derivative(loops, drive, now, state, work, q, k1)
             for i in range(m + 2):
                 trial[i] = state[i] + 0.5 * step * k1[i]
-            _derivative(loops, e1, T1, trial, work, q, k2)
+            _derivative(loops, drive, now + 1, trial, work, q, k2)
             for i in range(m + 2):
                 trial[i] = state[i] + 0.5 * step * k2[i]
-            _derivative(loops, e1, T1, trial, work, q, k3)
+            _derivative(loops, drive, now + 1, trial, work, q, k3)
             for i in range(m + 2):
                 trial[i] = state[i] + step * k3[i]
-            _derivative(loops, e2, T2, trial, work, q, k4)
+            _derivative(loops, drive, now + 2, trial, work, q, k4)
             for i in range(m + 2):
                 state[i] += step / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i])
-        _loop_currents(loops, cos(state[m + 1]), sin(state[m + 1]), state, work, q)
+        _loop_currents(loops, state[m + 1], state, work, q)
         currents[n + 1] = q
         speed[n + 1] = state[m]
     return currents, speed

@@ -12,12 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.parameters import Connection, Motor
+from ied_sim.motor.cage import USUAL_CAGE, Cage, cage_loops
 from ied_sim.motor.contactor import Closure, Contactor
+from ied_sim.motor.course import Points, value_at
+from ied_sim.motor.eccentricity import CENTRED, Eccentricity
 from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, FaultCourse, TurnFault
 from ied_sim.motor.integration import Drive, Loops, integrate
 from ied_sim.motor.interpolation import MARGIN, interpolated
 from ied_sim.motor.joint import JointCourse
 from ied_sim.motor.load import Load
+from ied_sim.motor.rotor import RotorLoops, three_coils
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Supply
 from ied_sim.motor.warming import COLD, ResistanceFactors, Warming
@@ -31,10 +35,15 @@ HIGHEST_STEP_RATE_HZ = 200_000.0
 RATE_PER_STEP = 2.0
 """Fastest decay resolved, in decays a step. RK4 is stable up to 2.78; such a mode follows its drive."""
 SETTLING_S = 1.0
+"""Least time that a motor is simulated before a window, so that it has settled."""
+TIME_CONSTANTS_TO_SETTLE = 6.0
+"""That time over the time constant of the speed, where this is longer."""
 DISTURBANCE_MEMORY_S = 2.0
 """Time after a supply event for which a window is simulated from before the event."""
 START_MEMORY_S = 10.0
-"""Time after the contactor's closing for which a window is simulated from rest."""
+"""Least time after the contactor's closing for which a window is simulated from rest."""
+RUN_UPS_REMEMBERED = 5.0
+"""That time over the run-up with rated torque, where this is longer."""
 RATED_POWER_FACTOR_TIMES_EFFICIENCY = 0.7
 
 
@@ -52,9 +61,10 @@ class MotorPlant:
     """A motor with its supply, load, sensors and contactor.
 
     `fault` is None for a healthy motor, and `seed` is that of the noise. With `warming` None the windings
-    keep the resistance of the parameters. `broken_bars` is the broken share of the cage's bars, and `joint` a
-    bad one in a line. The contactor connects the motor, which then starts from rest; with None the motor
-    always runs.
+    keep the resistance of the parameters. `broken_bars` is the broken share of the bars of the `cage`, or its
+    course over time, and `joint` a bad one in a line. The rotor's angle is arbitrary at the beginning of each
+    window, and with it the phase of all that turns with it. The contactor connects the motor, which then
+    starts from rest; with None the motor always runs.
     """
 
     motor: Motor
@@ -64,9 +74,11 @@ class MotorPlant:
     fault: FaultCourse | None = None
     seed: int = 0
     warming: Warming | None = None
-    broken_bars: float = 0.0
+    broken_bars: float | Points = 0.0
     contactor: Contactor | None = None
     joint: JointCourse | None = None
+    cage: Cage = USUAL_CAGE
+    eccentricity: Eccentricity = CENTRED
 
     def window(
         self, start_s: float, duration_s: float, sample_rate_hz: float, *, step_rate_hz: float = STEP_RATE_HZ
@@ -92,7 +104,7 @@ class MotorPlant:
         """Return line currents, shape (3, samples), each as it was its delay ago."""
         if np.ptp(delays_s) == 0:
             return self._line_currents(
-                start_s - float(delays_s[0]), samples, sample_rate_hz, SETTLING_S, step_rate_hz
+                start_s - float(delays_s[0]), samples, sample_rate_hz, self.settling_s, step_rate_hz
             )[0]
         # Channels apart by less than a sample are read off a finer grid.
         fineness = max(1, ceil(step_rate_hz / sample_rate_hz))
@@ -100,7 +112,7 @@ class MotorPlant:
         begin_s = start_s - float(delays_s.max()) - MARGIN / fine_hz
         spread = ceil(float(np.ptp(delays_s)) * fine_hz)
         fine, _ = self._line_currents(
-            begin_s, samples * fineness + spread + 2 * MARGIN, fine_hz, SETTLING_S, step_rate_hz
+            begin_s, samples * fineness + spread + 2 * MARGIN, fine_hz, self.settling_s, step_rate_hz
         )
         firsts = (start_s - delays_s - begin_s) * fine_hz
         return np.vstack(
@@ -109,6 +121,29 @@ class MotorPlant:
                 for one, first in zip(fine, firsts, strict=True)
             ]
         )
+
+    @property
+    def inertia_kgm2(self) -> float:
+        """Moment of inertia of motor and load."""
+        return self.motor.parameters.inertia_kgm2 + self.load.inertia_kgm2
+
+    @property
+    def settling_s(self) -> float:
+        """Time that the motor is simulated before a window, so that it has settled."""
+        nameplate = self.motor.nameplate
+        synchronous = 2 * np.pi * nameplate.rated_frequency_Hz / nameplate.pole_pairs
+        time_constant_s = (
+            self.inertia_kgm2 * synchronous / self._torque_over_slip(nameplate.rated_frequency_Hz)
+        )
+        return max(SETTLING_S, TIME_CONSTANTS_TO_SETTLE * time_constant_s)
+
+    @property
+    def start_memory_s(self) -> float:
+        """Time after the contactor's closing for which a window is simulated from rest."""
+        nameplate = self.motor.nameplate
+        speed = 2 * np.pi * nameplate.rated_frequency_Hz / nameplate.pole_pairs
+        run_up_s = self.inertia_kgm2 * speed / nameplate.rated_torque_Nm
+        return max(START_MEMORY_S, RUN_UPS_REMEMBERED * run_up_s)
 
     @property
     def rated_values(self) -> Array:
@@ -121,17 +156,21 @@ class MotorPlant:
         duration_s: float,
         sample_rate_hz: float,
         *,
-        settling_s: float = SETTLING_S,
+        settling_s: float | None = None,
         current_delay_s: float = 0.0,
         step_rate_hz: float = STEP_RATE_HZ,
     ) -> Operation:
-        """Return the true operation, simulated from `settling_s` before the window.
+        """Return the true operation, simulated from `settling_s` before the window, or long enough with None.
 
         With `current_delay_s` the currents are those of so much earlier than the voltages beside them.
         """
         samples = round(duration_s * sample_rate_hz)
         currents, speed = self._line_currents(
-            start_s - current_delay_s, samples, sample_rate_hz, settling_s, step_rate_hz
+            start_s - current_delay_s,
+            samples,
+            sample_rate_hz,
+            self.settling_s if settling_s is None else settling_s,
+            step_rate_hz,
         )
         times = start_s + np.arange(samples) / sample_rate_hz
         return Operation(currents, self.supply.phase_voltages(times), speed)
@@ -164,7 +203,7 @@ class MotorPlant:
         last = samples
         if closure.opened_s < inf:
             last = min(samples, ceil((closure.opened_s - begin_s) * sample_rate_hz))
-        if begin_s - closure.closed_s > START_MEMORY_S:
+        if begin_s - closure.closed_s > self.start_memory_s:
             circuit = self.circuit(begin_s)
             from_s = self.supply.disturbed_since(begin_s, DISTURBANCE_MEMORY_S) - settling_s
             settling = ceil((begin_s - from_s) * sample_rate_hz)
@@ -210,6 +249,19 @@ class MotorPlant:
         level = fault.equivalent_level(self.motor.parameters.stator_resistance_ohm)
         return fault if level > NEGLIGIBLE_LEVEL else None
 
+    def broken_share(self, time_s: float) -> float:
+        """Return the share of the bars that are broken at one moment."""
+        if isinstance(self.broken_bars, tuple):
+            return value_at(self.broken_bars, time_s)
+        return self.broken_bars
+
+    def rotor(self, time_s: float) -> RotorLoops:
+        """Return the rotor's loops at one moment."""
+        parameters, broken = self.motor.parameters, self.broken_share(time_s)
+        if broken == 0:
+            return three_coils(parameters)
+        return cage_loops(parameters, self.motor.nameplate.pole_pairs, self.cage, broken)
+
     def circuit(self, time_s: float) -> WindingCircuit:
         """Return the winding circuit at one moment; a window uses that of its start."""
         line_ohm = [0.0, 0.0, 0.0]
@@ -219,8 +271,8 @@ class MotorPlant:
             self.motor.parameters,
             self.motor.nameplate.connection,
             self.fault_at(time_s),
+            rotor=self.rotor(time_s),
             resistance_factors=self.resistance_factors(time_s),
-            broken_bars=self.broken_bars,
             line_resistance_ohm=(line_ohm[0], line_ohm[1], line_ohm[2]),
         )
 
@@ -253,20 +305,37 @@ class MotorPlant:
         step = 1 / (sample_rate_hz * steps_per_sample)
         half_steps = np.arange(2 * (samples - 1) * steps_per_sample + 1, dtype=np.float64)
         times = first_s + half_steps * (step / 2)
-        nameplate = self.motor.nameplate
-        load_torque = self.supply.direction * nameplate.rated_torque_Nm * self.load.levels(times)
-        voltage = self.supply.phase_voltages(times).T @ circuit.drive.T
         loops = Loops(
+            circuit.leakage,
             circuit.constant,
             circuit.cosine,
             circuit.sine,
             circuit.resistance,
-            nameplate.pole_pairs,
-            self.motor.parameters.inertia_kgm2,
+            self.motor.nameplate.pole_pairs,
+            self.inertia_kgm2,
+            self.eccentricity.static,
+            self.eccentricity.dynamic,
         )
-        drive = Drive(np.ascontiguousarray(voltage), load_torque, step)
-        currents, speed = integrate(loops, drive, steps_per_sample, state)
+        currents, speed = integrate(loops, self._drive(circuit, times, step), steps_per_sample, state)
         return circuit.line_currents(currents), speed
+
+    def _drive(self, circuit: WindingCircuit, times: Array, step_s: float) -> Drive:
+        """Return what drives and what loads the motor at the times, which are half a step apart."""
+        nameplate, direction = self.motor.nameplate, self.supply.direction
+        rated_torque = direction * nameplate.rated_torque_Nm
+        pulsations = self.load.pulsations
+        supply_angle = self.supply.angle(times)
+        angles = np.zeros((times.size, len(pulsations)))
+        for k, pulsation in enumerate(pulsations):
+            angles[:, k] = pulsation.angle(times, supply_angle)
+        return Drive(
+            np.ascontiguousarray(self.supply.phase_voltages(times).T @ circuit.drive.T),
+            rated_torque * self.load.levels(times),
+            rated_torque * np.array([pulsation.depth for pulsation in pulsations]),
+            np.array([pulsation.order(nameplate.pole_pairs, direction) for pulsation in pulsations]),
+            angles,
+            step_s,
+        )
 
     def _running_state(self, circuit: WindingCircuit, time_s: float) -> Array:
         """Estimate a state close enough to settle from: no-load fluxes, and slip in proportion to torque."""
@@ -279,15 +348,16 @@ class MotorPlant:
         currents = np.zeros(circuit.loops)
         currents[stator] = np.linalg.solve(inductance[np.ix_(stator, stator)], flux[stator])
 
-        pull = (
-            3
-            * nameplate.pole_pairs
-            * self._winding_voltage() ** 2
-            / (w * self.motor.parameters.rotor_resistance_ohm)
-        )
+        pull = self._torque_over_slip(self.supply.frequency(time_s))
         slip = self.load.level_at(time_s) * nameplate.rated_torque_Nm / pull
         speed = self.supply.direction * (1 - slip) * w / nameplate.pole_pairs
         return np.concatenate((inductance @ currents, [speed, 0.0]))
+
+    def _torque_over_slip(self, frequency_Hz: float) -> float:
+        """Return the torque over the slip where this is small [N m]."""
+        w = 2 * np.pi * frequency_Hz
+        pole_pairs, R_r = self.motor.nameplate.pole_pairs, self.motor.parameters.rotor_resistance_ohm
+        return 3 * pole_pairs * self._winding_voltage() ** 2 / (w * R_r)
 
     def _winding_voltage(self) -> float:
         star = self.motor.nameplate.connection is Connection.STAR

@@ -153,6 +153,13 @@ class Supply:
             np.sin(2 * pi * time_s / self.drift_period_s)
         )
 
+    def angle(self, time_s: Array) -> Array:
+        """Return the angle of the fundamental of phase a at the times [s], shape (n,) [rad]."""
+        swing = self.frequency_drift_Hz * self.drift_period_s / (2 * pi)
+        turns = self.frequency_Hz * time_s - swing * np.cos(2 * pi * time_s / self.drift_period_s)
+        angle: Array = 2 * pi * turns
+        return angle
+
     def sequences(self, time_s: Array) -> Sequences:
         """Return voltage, V2 and V0 at the times [s], shape (n,)."""
         voltage = np.ones(1)
@@ -172,9 +179,7 @@ class Supply:
 
     def phase_voltages(self, time_s: Array) -> Array:
         """Return phase voltages of a, b, c [V], shape (3, n), at the times [s], shape (n,)."""
-        swing = self.frequency_drift_Hz * self.drift_period_s / (2 * pi)
-        turns = self.frequency_Hz * time_s - swing * np.cos(2 * pi * time_s / self.drift_period_s)
-        angle = 2 * pi * turns
+        angle = self.angle(time_s)
         behind = self.direction * np.array([[0.0], [2 * pi / 3], [4 * pi / 3]])
         sequences = self.sequences(time_s)
         voltages: Array = np.cos(angle - behind)

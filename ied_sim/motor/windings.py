@@ -10,47 +10,48 @@ coils couple by the cosine of the angle between their axes,
 and the star or the delta, the fault path and the closed cage are stated as loop currents q with
 i_windings = C q (Kron). What is left is
 
-    flux = L(theta) q,   d(flux)/dt = E v_abc - R q,   L(theta) = A + B cos(theta) + D sin(theta)
+    flux = L(theta) q,   d(flux)/dt = E v_abc - R q,
+    L(theta) = leakage + A + B cos(theta) + D sin(theta)
 
-with theta the electrical angle of the rotor, and by reciprocity the line currents are E' q.
+with A, B and D those of the air-gap field, theta the electrical angle of the rotor, and by reciprocity the
+line currents are E' q.
 References: P. C. Krause, Analysis of Electric Machinery, ch. 1 and 4; Tallam, Habetler and Harley,
 doi:10.1109/TIA.2002.800567, for the split phase.
 """
 
 from dataclasses import dataclass
-from math import pi
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.machines.parameters import Connection, MachineParameters
 from ied_sim.motor.fault import NEGLIGIBLE_LEVEL, TurnFault
+from ied_sim.motor.rotor import FLOATING_POINT, PHASE_AXES, RotorLoops, three_coils
 from ied_sim.motor.warming import COLD, ResistanceFactors
 
 Matrix = NDArray[np.float64]
 
-PHASE_AXES = np.array([0.0, 2 * pi / 3, 4 * pi / 3])
-
-# Loop currents of three coils whose common point floats: the third returns the sum of the other two.
-_FLOATING_POINT = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, -1.0]])
 # Terminal voltages of the delta's windings: a to b, b to c, c to a.
 _LINE_TO_LINE = np.array([[1.0, -1.0, 0.0], [0.0, 1.0, -1.0], [-1.0, 0.0, 1.0]])
 
 
 @dataclass(frozen=True, slots=True)
 class WindingCircuit:
-    """Loop matrices of one motor: m loops, the stator's first, then the fault's if any, then the rotor's two.
+    """Loop matrices of one motor: m loops, the stator's first, then the fault's if any, then the rotor's.
 
     Parameters
     ----------
+    leakage : ndarray, shape (m, m)
+        Inductance of the leakage [H].
     constant, cosine, sine : ndarray, shape (m, m)
-        A, B and D of L(theta) [H].
+        A, B and D, the inductance of the air-gap field [H].
     resistance : ndarray, shape (m, m)
         R [ohm].
     drive : ndarray, shape (m, 3)
         E, voltage around each loop for the three terminal voltages.
     """
 
+    leakage: Matrix
     constant: Matrix
     cosine: Matrix
     sine: Matrix
@@ -64,7 +65,8 @@ class WindingCircuit:
 
     def inductance(self, angle_rad: float) -> Matrix:
         """Return L(theta) at the electrical rotor angle `angle_rad`, shape (m, m) [H]."""
-        inductance: Matrix = self.constant + self.cosine * np.cos(angle_rad) + self.sine * np.sin(angle_rad)
+        gap = self.constant + self.cosine * np.cos(angle_rad) + self.sine * np.sin(angle_rad)
+        inductance: Matrix = self.leakage + gap
         return inductance
 
     def line_currents(self, loop_currents: Matrix) -> Matrix:
@@ -91,8 +93,8 @@ def winding_circuit(
     connection: Connection,
     fault: TurnFault | None = None,
     *,
+    rotor: RotorLoops | None = None,
     resistance_factors: ResistanceFactors = COLD,
-    broken_bars: float = 0.0,
     line_resistance_ohm: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> WindingCircuit:
     """Build the loops of a motor, healthy or with a part of one phase bridged.
@@ -107,11 +109,10 @@ def winding_circuit(
         Star or delta.
     fault : TurnFault, optional
         The bridged turns.
+    rotor : RotorLoops, optional
+        The rotor's loops; None for the three coils of a healthy one.
     resistance_factors : ResistanceFactors
         Stator and rotor resistance over those of the parameters, for warm windings.
-    broken_bars : float
-        Share k = n / N of the cage's bars that are broken, all in one place. One rotor coil then has R (1 + 3
-        k / (1 - 2 k)): along its axis the cage has lost the share 2 k of its conductance, across it none.
     line_resistance_ohm : tuple of float
         Resistance in the lines to terminals a, b, c, as of bad joints. The line currents are E' q, so it adds
         E diag(r) E' to the loops' resistance.
@@ -120,60 +121,65 @@ def winding_circuit(
     -------
     WindingCircuit
         The loops.
-
-    References
-    ----------
-    Bellini et al., doi:10.1109/28.968187, for broken bars.
     """
     if fault is not None and fault.turns == 0:
         fault = None
-    phases = _FLOATING_POINT if connection is Connection.STAR else np.eye(3)
-    drive = _FLOATING_POINT.T if connection is Connection.STAR else _LINE_TO_LINE
+    if rotor is None:
+        rotor = three_coils(parameters)
+    phases = FLOATING_POINT if connection is Connection.STAR else np.eye(3)
+    drive = FLOATING_POINT.T if connection is Connection.STAR else _LINE_TO_LINE
 
-    turns, axes, stator_rows = [], [], []
+    turns, axes, rows = [], [], []
     for phase in range(3):
         shares = [1.0] if fault is None or fault.phase != phase else [1 - fault.turns, fault.turns]
         for share in shares:
             turns.append(share)
             axes.append(PHASE_AXES[phase])
-            stator_rows.append(phases[phase])
-    stator = len(turns)
+            rows.append(phases[phase])
 
     stator_loops = phases.shape[1]
-    fault_loops = 0 if fault is None else 1
-    loops = stator_loops + fault_loops + 2
-    incidence = np.zeros((stator + 3, loops))
-    incidence[:stator, :stator_loops] = stator_rows
+    stator = stator_loops + (0 if fault is None else 1)
+    incidence = np.zeros((len(turns), stator))
+    incidence[:, :stator_loops] = rows
     if fault is not None:
         # The fault path takes its current away from the bridged turns, the second coil of its phase.
         incidence[fault.phase + 1, stator_loops] = -1.0
-    incidence[stator:, -2:] = _FLOATING_POINT
 
-    N = np.array([*turns, 1.0, 1.0, 1.0])
-    axis = np.array([*axes, *PHASE_AXES])
-    on_rotor = np.arange(N.size) >= stator
-    leakage = np.where(on_rotor, parameters.rotor_leakage_H, N * parameters.stator_leakage_H)
-    resistance = np.where(on_rotor, parameters.rotor_resistance_ohm, N * parameters.stator_resistance_ohm)
-    resistance *= np.where(on_rotor, resistance_factors.rotor, resistance_factors.stator)
-    resistance[stator] *= 1 + 3 * broken_bars / (1 - 2 * broken_bars)
+    N, axis = np.array(turns), np.array(axes)
+    L_s = parameters.stator_self_inductance_H
+    own = incidence.T @ np.diag(N) @ incidence
+    coupling = L_s * np.outer(N, N) * np.cos(np.subtract.outer(axis, axis))
+    # The rotor's axes lead by theta: a coil and a rotor loop couple by cos(axis - theta) on the first axis of
+    # the rotor and by sin(axis - theta) on the second.
+    on_stator = incidence.T @ (L_s * N * np.vstack((np.cos(axis), np.sin(axis)))).T
+    across = np.array([[0.0, -1.0], [1.0, 0.0]])
 
-    between = np.subtract.outer(axis, axis)
-    coupling = parameters.stator_self_inductance_H * np.outer(N, N)
-    same_side = np.equal.outer(on_rotor, on_rotor)
-    # The rotor's axes lead by theta: cos(d - theta) from stator to rotor, cos(d + theta) back.
-    turning = np.where(same_side, 0.0, np.where(on_rotor[:, None], -1.0, 1.0))
-    loop_resistance = incidence.T @ np.diag(resistance) @ incidence
-    if fault is not None:
-        loop_resistance[stator_loops, stator_loops] += fault.resistance_ohm
-    loop_drive = np.zeros((loops, 3))
+    loop_drive = np.zeros((stator + rotor.axes.shape[1], 3))
     loop_drive[:stator_loops] = drive
-    loop_resistance += loop_drive @ np.diag(line_resistance_ohm) @ loop_drive.T
+    resistance = _diagonal(
+        resistance_factors.stator * parameters.stator_resistance_ohm * own,
+        resistance_factors.rotor * rotor.resistance,
+    )
+    if fault is not None:
+        resistance[stator_loops, stator_loops] += fault.resistance_ohm
+    resistance += loop_drive @ np.diag(line_resistance_ohm) @ loop_drive.T
     return WindingCircuit(
-        constant=incidence.T
-        @ (np.where(same_side, coupling * np.cos(between), 0.0) + np.diag(leakage))
-        @ incidence,
-        cosine=incidence.T @ np.where(same_side, 0.0, coupling * np.cos(between)) @ incidence,
-        sine=incidence.T @ (turning * coupling * np.sin(between)) @ incidence,
-        resistance=loop_resistance,
+        leakage=_diagonal(parameters.stator_leakage_H * own, rotor.leakage),
+        constant=_diagonal(incidence.T @ coupling @ incidence, rotor.gap),
+        cosine=_off_diagonal(on_stator @ rotor.axes),
+        sine=_off_diagonal(on_stator @ across @ rotor.axes),
+        resistance=resistance,
         drive=loop_drive,
     )
+
+
+def _diagonal(stator: Matrix, rotor: Matrix) -> Matrix:
+    """Return the matrix of all loops with these blocks on its diagonal."""
+    first, second = len(stator), len(rotor)
+    return np.block([[stator, np.zeros((first, second))], [np.zeros((second, first)), rotor]])
+
+
+def _off_diagonal(mutual: Matrix) -> Matrix:
+    """Return the matrix of all loops with this block between stator and rotor, and its transpose back."""
+    first, second = mutual.shape
+    return np.block([[np.zeros((first, first)), mutual], [mutual.T, np.zeros((second, second))]])

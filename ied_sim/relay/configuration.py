@@ -1,6 +1,6 @@
 """What one simulated relay is given: its motor, kind and settings, what it does wrong, whom it lets in."""
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from zoneinfo import ZoneInfo
 
 from ied_sim.misbehaviour import Misbehaviour
@@ -67,8 +67,9 @@ class RelayConfiguration:
     def truth(self, time_s: float) -> dict[str, object]:
         """Return the motor's true condition at a time since the scenario's beginning.
 
-        It is whether it runs, mu_f (the equivalent level), theta_f, load_level, joint_ohm, and of channels
-        that have changed by then how much their gain errors and delays have.
+        It is whether it runs, mu_f (the equivalent level), theta_f, load_level, joint_ohm, the number of
+        broken bars and of all, eccentricities, the load's pulsations, and of channels that have changed by
+        then how much their gain errors and delays have.
         """
         plant = self.plant
         parameters = plant.motor.parameters
@@ -81,6 +82,13 @@ class RelayConfiguration:
             "theta_f": fault.phase if fault is not None and level > 0 else None,
             "load_level": plant.load.level_at(time_s),
             "joint_ohm": 0.0 if plant.joint is None else plant.joint.resistance_ohm(time_s),
+            "broken_bars": plant.broken_share(time_s) * plant.cage.bars,
+            "bars": plant.cage.bars,
+            "eccentricity": asdict(plant.eccentricity),
+            "pulsations": [
+                {name: value for name, value in asdict(pulsation).items() if value}
+                for pulsation in plant.load.pulsations
+            ],
             "channels": {
                 name: {"gain": gain, "delay_us": delay_s * 1e6}
                 for name, (gain, delay_s) in zip(CHANNELS, plant.sensors.changed(time_s), strict=True)

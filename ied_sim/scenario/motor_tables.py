@@ -7,6 +7,9 @@ from pydantic import Field, model_validator
 
 from core.machines.parameters import Motor
 from core.units import SECONDS_PER_DAY
+from ied_sim.motor.cage import USUAL_CAGE, Cage
+from ied_sim.motor.course import Points
+from ied_sim.motor.eccentricity import Eccentricity
 from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.joint import JointCourse
 from ied_sim.motor.plant import rated_current
@@ -18,6 +21,8 @@ from ied_sim.toml_tables import Table
 CURRENT_HEADROOM = 12
 """Full scale of the current channels over the peak of the rated current; a starting current must fit."""
 VOLTAGE_HEADROOM = 2
+MOST_BROKEN = 0.3
+"""Largest share of a cage's bars that may be broken."""
 
 Share = Annotated[float, Field(ge=-0.5, le=0.5)]
 SixShares = tuple[Share, Share, Share, Share, Share, Share]
@@ -25,6 +30,7 @@ Delay = Annotated[float, Field(ge=-20_000, le=20_000)]
 SixDelays = tuple[Delay, Delay, Delay, Delay, Delay, Delay]
 Turns = Annotated[float, Field(ge=0, le=0.5)]
 Resistance = Annotated[float, Field(ge=0)]
+Number = Annotated[float, Field(ge=0)]
 Phase = Literal["a", "b", "c"]
 Duration = Annotated[float, Field(gt=0)]
 
@@ -67,6 +73,65 @@ class FaultTable(Table):
             self.resistance_ohm,
             (self.path_ratio or 0.0) * stator_resistance_ohm,
         )
+
+
+class CagePointTable(MomentTable):
+    """One point of the development of broken bars."""
+
+    broken: Number
+
+
+class CageTable(Table):
+    """The rotor's cage: its bars, and how many of them are broken, by now or over time."""
+
+    bars: Annotated[int, Field(ge=8, le=200)] | None = None
+    ring_share: Annotated[float, Field(gt=0, lt=1)] = USUAL_CAGE.ring_share
+    broken: Number | None = None
+    timeline: Annotated[tuple[CagePointTable, ...], Field(min_length=1)] | None = None
+    places: tuple[Annotated[int, Field(ge=0)], ...] = ()
+
+    @model_validator(mode="after")
+    def _is_one_course_in_time(self) -> Self:
+        if self.broken is not None and self.timeline is not None:
+            raise ValueError("give either broken or timeline")
+        require_rising([point.time_s for point in self.timeline or ()], "timeline")
+        return self
+
+    @model_validator(mode="after")
+    def _names_each_place_once(self) -> Self:
+        if len(set(self.places)) < len(self.places):
+            raise ValueError("places name a bar twice")
+        return self
+
+    def cage(self, rotor_slots: int | None) -> Cage:
+        """Return the cage. Raises ValueError where its places or its broken bars are none of its bars."""
+        cage = Cage(self.bars or rotor_slots or USUAL_CAGE.bars, self.ring_share, self.places)
+        if max(self.places, default=0) >= cage.bars:
+            raise ValueError(f"places name a bar above {cage.bars - 1}, the last of {cage.bars}")
+        most = max(broken for _, broken in self._points())
+        if most > MOST_BROKEN * cage.bars:
+            raise ValueError(f"{most:g} broken bars of {cage.bars} are more than {MOST_BROKEN:.0%}")
+        return cage
+
+    def course(self, cage: Cage) -> Points:
+        """Return the share of broken bars over time."""
+        return tuple((time_s, broken / cage.bars) for time_s, broken in self._points())
+
+    def _points(self) -> Points:
+        if self.timeline is None:
+            return ((0.0, self.broken or 0.0),)
+        return tuple((point.time_s, point.broken) for point in self.timeline)
+
+
+class EccentricityTable(Table):
+    """How far the rotor is out of the middle of its bore, as shares of the air gap."""
+
+    static: Annotated[float, Field(ge=0, le=0.5)] = 0.0
+    dynamic: Annotated[float, Field(ge=0, le=0.4)] = 0.0
+
+    def eccentricity(self) -> Eccentricity:
+        """Return the eccentricity."""
+        return Eccentricity(self.static, self.dynamic)
 
 
 class JointPointTable(MomentTable):

@@ -13,6 +13,7 @@ from core.machines.motor_file.error import MotorFileError
 from core.machines.motor_file.reader import motor_from_table
 from core.machines.parameters import MachineParameters, Motor, Nameplate
 from ied_sim.errors import ScenarioError
+from ied_sim.motor.cage import Cage, cage_loops
 from ied_sim.motor.contactor import Contactor
 from ied_sim.motor.plant import HIGHEST_STEP_RATE_HZ, RATE_PER_STEP, MotorPlant
 from ied_sim.motor.supply import Supply
@@ -161,6 +162,7 @@ def _relay_scenario(
                 expected=f"at most {highest_ohm:.3g}, above which the shorted loop is too fast to simulate",
                 found=f"{course.resistance_ohm:g}",
             )
+    cage = _cage(path, section, motor)
     profile = _profile(path, section, profile_name)
     return RelayConfiguration(
         plant=MotorPlant(
@@ -171,7 +173,9 @@ def _relay_scenario(
             fault=course,
             seed=section.seed,
             warming=None if section.warming is None else section.warming.warming(),
-            broken_bars=section.broken_bars,
+            broken_bars=section.cage.course(cage),
+            cage=cage,
+            eccentricity=section.eccentricity.eccentricity(),
             contactor=Contactor(
                 open_at_first=section.stopped, opens_s=inf if section.stop is None else section.stop.time_s
             ),
@@ -186,6 +190,23 @@ def _relay_scenario(
         time_zone=section.recorder.time_zone,
         access=_access(path, section),
     )
+
+
+def _cage(path: Path, section: MotorTable, motor: Motor) -> Cage:
+    """Return the cage; its bars must be enough for the motor where some are broken."""
+    nameplate = motor.nameplate
+    try:
+        cage = section.cage.cage(nameplate.rotor_slots)
+        if "cage" in section.model_fields_set:
+            cage_loops(motor.parameters, nameplate.pole_pairs, cage, 0.0)
+    except ValueError as error:
+        raise ScenarioError(
+            path,
+            f"[motor {section.ied}] cage",
+            expected="bars, places and broken bars that fit each other and the motor",
+            found=str(error),
+        ) from error
+    return cage
 
 
 def _access(path: Path, section: MotorTable) -> Access:

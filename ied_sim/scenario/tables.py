@@ -10,12 +10,19 @@ from zoneinfo import ZoneInfo
 from pydantic import Field, model_validator
 
 from ied_sim.misbehaviour import BUILT_IN, PARAMETERS, Kind, Misbehaviour
-from ied_sim.motor.load import Load, LoadCycle
+from ied_sim.motor.load import Load, LoadCycle, Pulsation
 from ied_sim.relay.plant_clock import ClockSettings
 from ied_sim.relay.protection import DefiniteTime, ProtectionSettings, ThermalOverload
 from ied_sim.scenario.access import AccessTable
 from ied_sim.scenario.moments import MomentTable, require_rising
-from ied_sim.scenario.motor_tables import FaultTable, JointTable, SensorsTable, WarmingTable
+from ied_sim.scenario.motor_tables import (
+    CageTable,
+    EccentricityTable,
+    FaultTable,
+    JointTable,
+    SensorsTable,
+    WarmingTable,
+)
 from ied_sim.scenario.supply_tables import BusTable, SupplyTable
 from ied_sim.toml_tables import Table
 
@@ -42,6 +49,25 @@ class CyclePointTable(Table):
     level: Level
 
 
+class PulsationTable(Table):
+    """A pulsation of the load's torque: of a frequency, tied to the shaft, or at twice the slip frequency."""
+
+    depth: Annotated[float, Field(gt=0, le=1)]
+    frequency_Hz: Annotated[float, Field(gt=0, le=200)] | None = None
+    per_turn: Annotated[float, Field(gt=0, le=20)] | None = None
+    at_twice_slip: bool = False
+
+    @model_validator(mode="after")
+    def _is_of_one_kind(self) -> Self:
+        if [self.frequency_Hz is not None, self.per_turn is not None, self.at_twice_slip].count(True) != 1:
+            raise ValueError("give one of frequency_Hz, per_turn and at_twice_slip")
+        return self
+
+    def pulsation(self) -> Pulsation:
+        """Return the pulsation."""
+        return Pulsation(self.depth, self.frequency_Hz or 0.0, self.per_turn or 0.0, self.at_twice_slip)
+
+
 class LoadTable(Table):
     """The load."""
 
@@ -50,6 +76,8 @@ class LoadTable(Table):
     swing_period_s: Annotated[float, Field(ge=0.1)] = 20.0
     cycle: Annotated[tuple[CyclePointTable, ...], Field(min_length=2)] | None = None
     cycle_period_s: Duration | None = None
+    pulsations: tuple[PulsationTable, ...] = ()
+    inertia_kgm2: Annotated[float, Field(ge=0)] = 0.0
 
     @model_validator(mode="after")
     def _is_a_cycle(self) -> Self:
@@ -66,7 +94,8 @@ class LoadTable(Table):
         cycle = None
         if self.cycle is not None and self.cycle_period_s is not None:
             cycle = LoadCycle(tuple((point.at_s, point.level) for point in self.cycle), self.cycle_period_s)
-        return Load(self.level, self.swing, self.swing_period_s, cycle)
+        pulsations = tuple(each.pulsation() for each in self.pulsations)
+        return Load(self.level, self.swing, self.swing_period_s, cycle, pulsations, self.inertia_kgm2)
 
 
 class RecorderTable(Table):
@@ -177,7 +206,6 @@ class MotorTable(Table):
     seed: Annotated[int, Field(ge=0)] = 0
     stopped: bool = False
     stop: MomentTable | None = None
-    broken_bars: Annotated[float, Field(ge=0, le=0.3)] = 0.0
     bus: str | None = None
     nameplate: dict[str, object] | None = None
     parameters: dict[str, object] | None = None
@@ -185,6 +213,8 @@ class MotorTable(Table):
     load: LoadTable = LoadTable()
     fault: FaultTable | None = None
     joint: JointTable | None = None
+    cage: CageTable = CageTable()
+    eccentricity: EccentricityTable = EccentricityTable()
     warming: WarmingTable | None = None
     sensors: SensorsTable = SensorsTable()
     recorder: RecorderTable = RecorderTable()

@@ -16,9 +16,10 @@ from core.recordings import Channel, Quantity, Recording
 from ied_sim.motor.fault import FaultCourse
 from ied_sim.motor.load import Load
 from ied_sim.motor.plant import STEP_RATE_HZ, MotorPlant, rated_current
+from ied_sim.motor.rotor import PHASE_AXES
 from ied_sim.motor.sensors import Sensors
 from ied_sim.motor.supply import Harmonic, Supply
-from ied_sim.motor.windings import PHASE_AXES, WindingCircuit, winding_circuit
+from ied_sim.motor.windings import WindingCircuit, winding_circuit
 from testing.machines.steady_faults import Condition, FaultModel
 
 Array = NDArray[np.float64]
@@ -55,8 +56,9 @@ def additional_winding_circuit(motor: Motor, level: float, winding: int) -> Wind
     machine = motor.parameters
     healthy = winding_circuit(machine, motor.nameplate.connection)
     old = np.array([0, 1, 3, 4])
-    constant, cosine, sine, resistance = (np.zeros((5, 5)) for _ in range(4))
+    leakage, constant, cosine, sine, resistance = (np.zeros((5, 5)) for _ in range(5))
     for grown, matrix in (
+        (leakage, healthy.leakage),
         (constant, healthy.constant),
         (cosine, healthy.cosine),
         (sine, healthy.sine),
@@ -71,11 +73,12 @@ def additional_winding_circuit(motor: Motor, level: float, winding: int) -> Wind
     cosine[2, 3:] = cosine[3:, 2] = full * np.cos(angle) @ loop
     # cos(angle + theta) from the winding to the turning axes.
     sine[2, 3:] = sine[3:, 2] = -full * np.sin(angle) @ loop
-    constant[2, 2] = level**2 * (machine.stator_self_inductance_H + machine.stator_leakage_H)
+    leakage[2, 2] = level**2 * machine.stator_leakage_H
+    constant[2, 2] = level**2 * machine.stator_self_inductance_H
     resistance[2, 2] = level * machine.stator_resistance_ohm
     drive = np.zeros((5, 3))
     drive[:2] = healthy.drive[:2]
-    return WindingCircuit(constant, cosine, sine, resistance, drive)
+    return WindingCircuit(leakage, constant, cosine, sine, resistance, drive)
 
 
 def plant_of(motor: Motor, model: FaultModel, condition: Condition, supply: Supply, load: Load) -> MotorPlant:

@@ -32,7 +32,17 @@ from tests.scl.vendor_shapes import SHAPES
 DEMO_SCENARIO = Path(__file__).parents[2] / "service" / "demo" / "scenario.toml"
 RELAYS = ("A1_SEL710", "A2_SEL710", "A3_SEL710", "B1_SEL710", "B2_SEL710", "B3_SEL710")
 
-HEALTHY: dict[str, object] = {"running": True, "mu_f": 0.0, "theta_f": None, "joint_ohm": 0.0, "channels": {}}
+HEALTHY: dict[str, object] = {
+    "running": True,
+    "mu_f": 0.0,
+    "theta_f": None,
+    "joint_ohm": 0.0,
+    "broken_bars": 0.0,
+    "bars": 28,
+    "eccentricity": {"static": 0.0, "dynamic": 0.0},
+    "pulsations": [],
+    "channels": {},
+}
 
 
 @pytest.fixture

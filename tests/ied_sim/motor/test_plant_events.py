@@ -1,4 +1,4 @@
-"""What happens to a simulated motor: starts, stops, warming, load cycles, supply events, broken bars."""
+"""What happens to a simulated motor: starts, stops, warming, load cycles, supply events."""
 
 from dataclasses import replace
 from math import sqrt
@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from core.machines.parameters import Connection
 from ied_sim.monitoring.metering import meter
 from ied_sim.monitoring.motor_monitor import MotorMonitor
 from ied_sim.motor.contactor import Contactor
@@ -15,8 +14,7 @@ from ied_sim.motor.load import Load, LoadCycle
 from ied_sim.motor.plant import MotorPlant, rated_current
 from ied_sim.motor.supply import Supply, SupplyEvent
 from ied_sim.motor.warming import ALUMINIUM_PER_K, COPPER_PER_K, Warming
-from ied_sim.motor.windings import winding_circuit
-from testing.machines.motors import MEDIUM, REFERENCE
+from testing.machines.motors import REFERENCE
 from tests.ied_sim.motor.plants import plant
 
 RATE_HZ = 2_000.0
@@ -138,30 +136,3 @@ def test_events_come_again_and_are_remembered() -> None:
     assert supply.disturbed_since(72.0, 2.0) == 70.0
     assert supply.disturbed_since(75.0, 2.0) == 75.0
     assert supply.disturbed_since(5.0, 2.0) == 5.0
-
-
-def test_broken_bars_make_sidebands_at_twice_the_slip_that_grow_with_them() -> None:
-    """The lower one is about n / N of the fundamental (Bellini et al.; sin a / (2 p (2 pi - a)) is alike)."""
-    found = []
-    for share in (0.0, 0.02, 0.05):
-        motor = replace(plant(MEDIUM, level=0.9), broken_bars=share)
-        run = motor.operation(2.0, 8.0, 1_000.0, settling_s=1.0)
-        slip = 1 - run.speed_rad_s.mean() / (2 * np.pi * 25)
-        spectrum = np.abs(np.fft.rfft(run.currents_A[0] * np.hanning(8_000)))
-        bins = np.fft.rfftfreq(8_000, 1e-3)
-        lower = spectrum[np.abs(bins - 50 * (1 - 2 * slip)) < 0.3].max()
-        found.append(lower / spectrum.max())
-    assert found[0] < 1e-3
-    assert 0.3 * 0.02 < found[1] < 2 * 0.02
-    assert found[2] > 2 * found[1]
-
-
-def test_one_rotor_axis_loses_twice_the_share_of_broken_bars() -> None:
-    circuit = winding_circuit(REFERENCE.parameters, Connection.STAR, broken_bars=0.1)
-    loops = circuit.resistance[-2:, -2:]
-    # Of the loops i_a, i_b the third coil closes both; the axis of coil a has i_b = i_c = -i_a / 2.
-    along = np.array([1.0, -0.5])
-    loss = along @ loops @ along / 1.5
-    assert loss == pytest.approx(REFERENCE.parameters.rotor_resistance_ohm / (1 - 0.2))
-    across = np.array([0.0, 1.0])
-    assert across @ loops @ across / 2 == pytest.approx(REFERENCE.parameters.rotor_resistance_ohm)

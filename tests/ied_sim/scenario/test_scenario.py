@@ -45,6 +45,10 @@ HEALTHY: dict[str, object] = {
     "theta_f": None,
     "load_level": 0.5,
     "joint_ohm": 0.0,
+    "broken_bars": 0.0,
+    "bars": 28,
+    "eccentricity": {"static": 0.0, "dynamic": 0.0},
+    "pulsations": [],
     "channels": {},
 }
 
