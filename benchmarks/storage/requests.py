@@ -51,6 +51,12 @@ UNTIMED = {
 
 _MOTOR = ("{busy}", "{quiet}", "{idle}", "{some}")
 _RELAY = ("{busy_relay}", "{some_relay}")
+_TREND = (
+    *_MOTOR,
+    *(f"{motor}?limit=1000" for motor in _MOTOR),
+    "{busy}?limit=1000&cursor={deep}",
+    "{busy}?limit=1000&from={from}&to={to}",
+)
 
 TIMED: Mapping[str, tuple[str, ...]] = {
     "/api/v1/sites": ("", "?limit=2&cursor={name}"),
@@ -70,6 +76,8 @@ TIMED: Mapping[str, tuple[str, ...]] = {
     ),
     "/api/v1/motors/{name}/condition": (*_MOTOR, "{busy}?history=100"),
     "/api/v1/motors/{name}/condition/history": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
+    "/api/v1/motors/{name}/rotor/trend": _TREND,
+    "/api/v1/motors/{name}/supply/trend": _TREND,
     "/api/v1/motors/{name}/notes": (*_MOTOR, "{busy}?limit=1000", "{busy}?cursor={deep}"),
     "/api/v1/motors/{name}/notes/{note_id}": ("{busy} {note}",),
     "/api/v1/motors/{name}/recordings": (

@@ -16,6 +16,7 @@ from service.api import (
     deletions,
     diagnoses,
     event_reports,
+    examined,
     measurements,
     motors,
     probes,
@@ -69,6 +70,7 @@ def create_app(
     for part in (
         motors,
         conditions,
+        examined,
         baselines,
         measurements,
         relays,

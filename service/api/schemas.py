@@ -14,6 +14,7 @@ from core.machines.parameters import ParametersSource
 from core.operation import Operation
 from service.api.condition_schemas import Condition
 from service.api.document import Document, Listed, Person, Reason, RequestDocument
+from service.api.examined_schemas import RotorFinding, SupplyFigures
 from service.api.relay_schemas import RelayClock
 from service.api.times import Time
 from service.plant import MeteredQuantity
@@ -109,7 +110,7 @@ class Diagnosis(Document):
     a, b, c. load_level: load torque over rated torque. ..._ci95: 95 % interval from noise, sensors and
     parameters. ..._scatter95: from the record's own scatter alone. speed_rpm: of the shaft, from the fit.
     detection_limit: nine of ten such recordings show a fault of that mu_f. currents_only: the voltages are
-    assumed. operation: what the motor does in the recording.
+    assumed. operation: what the motor does in the recording. rotor, supply: what it shows of them.
     Diagnoses of earlier versions lack some: of those that knew only the scatter, ..._ci95 is null.
     """
 
@@ -136,6 +137,8 @@ class Diagnosis(Document):
     currents_only: bool = False
     operation: Operation | None = None
     fit: FittedParameters | None = None
+    rotor: RotorFinding | None = None
+    supply: SupplyFigures | None = None
 
 
 class EventReport(Document):

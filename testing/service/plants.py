@@ -96,3 +96,8 @@ def undiagnosable() -> Diagnosis:
         model="split-winding",
         method="hcpa",
     )
+
+
+def stored_document(diagnosis: Diagnosis) -> dict[str, object]:
+    """What is stored of a diagnosis whose record shows nothing beside."""
+    return {**diagnosis.as_dict(), "rotor": None, "supply": None}

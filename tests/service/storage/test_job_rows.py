@@ -11,7 +11,7 @@ from service.storage.records import ClaimedJob, RemoteRecord
 from service.storage.states import JobState, RecordingRequestState, RecordingState
 from service.timing.backoff import Backoff
 from testing.service.job_runner import RUNNER
-from testing.service.plants import NOW_NS, SECOND_NS, fault, undiagnosable
+from testing.service.plants import NOW_NS, SECOND_NS, fault, stored_document, undiagnosable
 
 
 class Again(TypedDict):
@@ -75,7 +75,7 @@ def test_a_result_ends_job_recording_and_request(repository: Repository, recordi
     assert request_state(repository) == (RecordingRequestState.DIAGNOSED, None)
     diagnosis = repository.current_diagnosis(recording_id)
     assert diagnosis is not None
-    assert diagnosis.document == fault().as_dict()
+    assert diagnosis.document == stored_document(fault())
     assert diagnosis == repository.job(recording_id, job_id).diagnosis
     assert len(repository.trend("PUMP-A1", "mu_f", limit=10).items) == 1
 

@@ -1,0 +1,62 @@
+"""What the recordings of a motor show of its rotor and its supply, over time."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from service.access.permissions import Permission
+from service.api.access.requirements import require
+from service.api.context import Context
+from service.api.document import Name
+from service.api.examined_schemas import RotorTrendPoint, SupplyTrendPoint
+from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
+from service.api.problems import problems
+from service.api.times import TimeParameter
+from service.storage.records import RotorEntry, SupplyEntry
+
+From = Annotated[TimeParameter | None, Query(alias="from", description="First time.")]
+To = Annotated[TimeParameter | None, Query(description="First time not to be included.")]
+
+router = APIRouter(prefix="/motors/{name}", tags=["condition"])
+
+
+@router.get("/rotor/trend", responses=problems(404), dependencies=[require(Permission.VIEW)])
+def list_rotor_trend(
+    context: Context,
+    name: Name,
+    from_: From = None,
+    to: To = None,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
+) -> Page[RotorTrendPoint]:
+    """Return what each recording of a motor shows of its rotor, oldest first."""
+    after = decode(cursor, int, str)
+    found = context.repository.rotor_trend(name, from_ns=from_, to_ns=to, limit=limit, after=after)
+    return page(found, _rotor_point)
+
+
+@router.get("/supply/trend", responses=problems(404), dependencies=[require(Permission.VIEW)])
+def list_supply_trend(
+    context: Context,
+    name: Name,
+    from_: From = None,
+    to: To = None,
+    limit: Limit = DEFAULT_LIMIT,
+    cursor: CursorText = None,
+) -> Page[SupplyTrendPoint]:
+    """Return what each recording of a motor shows of its supply, oldest first."""
+    after = decode(cursor, int, str)
+    found = context.repository.supply_trend(name, from_ns=from_, to_ns=to, limit=limit, after=after)
+    return page(found, _supply_point)
+
+
+def _rotor_point(entry: RotorEntry) -> RotorTrendPoint:
+    return RotorTrendPoint.model_validate(
+        {**entry.finding.as_dict(), "time": entry.time_ns, "recording_id": entry.recording_id}
+    )
+
+
+def _supply_point(entry: SupplyEntry) -> SupplyTrendPoint:
+    return SupplyTrendPoint.model_validate(
+        {**entry.figures.as_dict(), "time": entry.time_ns, "recording_id": entry.recording_id}
+    )

@@ -1,0 +1,72 @@
+"""What recordings show of rotor and supply, by REST."""
+
+from typing import Any
+
+import httpx
+import pytest
+
+from core.time_stamps import rfc3339
+from service.recording_store.store import RecordingStore
+from service.storage import Repository
+from testing.service.examined import BROKEN_ROTOR, SHORT_RECORD, SOUND_ROTOR, SUPPLY, ExaminedRecordings
+from testing.service.plants import NOW_NS, SECOND_NS
+
+MOTOR = "/api/v1/motors/PUMP-A1"
+SHOWN = {"rotor": BROKEN_ROTOR.as_dict(), "supply": SUPPLY.as_dict()}
+
+
+@pytest.fixture
+def recorded(repository: Repository, store: RecordingStore) -> ExaminedRecordings:
+    return ExaminedRecordings(repository, store)
+
+
+@pytest.mark.parametrize("part", SHOWN)
+def test_each_recording_is_told_with_its_time_and_id(
+    client: httpx.Client, recorded: ExaminedRecordings, part: str
+) -> None:
+    ids = [recorded.add(BROKEN_ROTOR, SUPPLY), recorded.add(BROKEN_ROTOR, SUPPLY)]
+    found = client.get(f"{MOTOR}/{part}/trend").json()
+    assert found == {
+        "items": [
+            {**SHOWN[part], "recording_id": one, "time": rfc3339(NOW_NS + at * SECOND_NS)}
+            for at, one in enumerate(ids, start=1)
+        ],
+        "next_cursor": None,
+    }
+
+
+@pytest.mark.parametrize("part", SHOWN)
+def test_trends_come_in_pages_and_pieces_of_time(
+    client: httpx.Client, recorded: ExaminedRecordings, part: str
+) -> None:
+    ids = [recorded.add(SOUND_ROTOR, SUPPLY) for _ in range(3)]
+
+    def ask(**query: Any) -> Any:
+        return client.get(f"{MOTOR}/{part}/trend", params=query).raise_for_status().json()
+
+    first = ask(limit=2)
+    second = ask(limit=2, cursor=first["next_cursor"])
+    assert [one["recording_id"] for one in (*first["items"], *second["items"])] == ids
+    piece = ask(**{"from": rfc3339(NOW_NS + 2 * SECOND_NS), "to": rfc3339(NOW_NS + 3 * SECOND_NS)})
+    assert [one["recording_id"] for one in piece["items"]] == [ids[1]]
+
+
+def test_a_record_that_cannot_tell_says_why(client: httpx.Client, recorded: ExaminedRecordings) -> None:
+    recorded.add(SHORT_RECORD)
+    (found,) = client.get(f"{MOTOR}/rotor/trend").json()["items"]
+    assert (found["state"], found["severity_dB"]) == ("unsupported", None)
+    assert found["reasons"] == ["the record is too short for this slip"]
+    assert client.get(f"{MOTOR}/supply/trend").json()["items"] == []
+
+
+def test_the_diagnosis_of_a_recording_has_both(client: httpx.Client, recorded: ExaminedRecordings) -> None:
+    recording = recorded.add(BROKEN_ROTOR, SUPPLY)
+    diagnosis = client.get(f"/api/v1/recordings/{recording}").json()["diagnosis"]
+    assert {part: diagnosis[part] for part in SHOWN} == SHOWN
+
+
+@pytest.mark.parametrize("part", SHOWN)
+def test_there_is_no_such_motor(client: httpx.Client, part: str) -> None:
+    answer = client.get(f"/api/v1/motors/PUMP-A/{part}/trend")
+    assert answer.status_code == 404
+    assert "PUMP-A1" in answer.json()["detail"]
