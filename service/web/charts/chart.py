@@ -140,7 +140,7 @@ class Chart:
     table_rows: int = MOST_ROWS
 
     def document(self) -> Mapping[str, object]:
-        """Return the chart as the script static/js/charts/chart.js takes it."""
+        """Return the chart as the script static/js/charts/description.js names it."""
         return {
             "x": {
                 "label": self.x_label,

@@ -5,7 +5,7 @@
  */
 
 import { charts, drawCharts, onChart } from "./charts/page.js";
-import { nearest } from "./charts/chart.js";
+import { nearest } from "./charts/description.js";
 import { formatY } from "./charts/words.js";
 import { decoded } from "./charts/samples.js";
 

@@ -5,7 +5,7 @@ const LETTERING = 11;
 
 /**
  * @param {any} plot
- * @param {import("./chart.js").Description} description
+ * @param {import("./description.js").Description} description
  * @param {number[]} markers
  * @param {import("./theme.js").Theme} theme
  */

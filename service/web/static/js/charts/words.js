@@ -12,6 +12,19 @@ export function formatY(value) {
   return String(Number(value.toPrecision(DIGITS)));
 }
 
+/** A value of a series, with its interval. @param {import("./description.js").SeriesDescription} one @param {number} at its number */
+export function inWords(one, at) {
+  const value = one.values[at];
+  const low = one.low?.[at];
+  const high = one.high?.[at];
+  const missing = value === null || value === undefined || Number.isNaN(value);
+  const spread = low !== null && low !== undefined && high !== null && high !== undefined && low !== high;
+  if (missing && !spread) return "–";
+  const unit = one.unit ? ` ${one.unit}` : "";
+  if (missing || (one.kind === "envelope" && spread)) return `${formatY(low)} to ${formatY(high)}${unit}`;
+  return `${formatY(value)}${spread ? ` (${formatY(low)} to ${formatY(high)})` : ""}${unit}`;
+}
+
 /** @param {number} value @param {{kind: string, unit: string}} axis */
 export function formatX(value, axis) {
   if (axis.kind === "time") return instant.format(new Date(value * 1000));
