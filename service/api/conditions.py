@@ -25,7 +25,7 @@ from service.api.condition_schemas import (
 from service.api.context import ApiContext, Context, path_to
 from service.api.document import Name
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
-from service.api.problems import FieldError, ProblemError, problems
+from service.api.problems import WrongFieldError, problems
 from service.api.times import rfc3339
 from service.condition.staleness import stale_after_ns
 from service.storage.records import Actor
@@ -155,7 +155,7 @@ def keep_note(
     TooManyNotesError.
     """
     if kind is EventKind.PARAMETERS_EDITED:
-        raise _refused(
+        raise WrongFieldError(
             "body.kind",
             "what is edited in the motors file is noted by the service itself when it starts: edit the file"
             " and restart the service, or tell of it with the kind 'note'",
@@ -164,9 +164,11 @@ def keep_note(
     if time_ns is None:
         time_ns = now_ns
     if time_ns < 0:
-        raise _refused("body.time", "expected a time after 1970, found an earlier one")
+        raise WrongFieldError("body.time", "expected a time after 1970, found an earlier one")
     if time_ns > now_ns + FURTHEST_AHEAD_NS:
-        raise _refused("body.time", f"expected a time at most a day ahead of now, found {rfc3339(time_ns)}")
+        raise WrongFieldError(
+            "body.time", f"expected a time at most a day ahead of now, found {rfc3339(time_ns)}"
+        )
     # However much was noted of a motor before: who tested it can say that it is healthy.
     most_notes = None if kind is EventKind.REFERENCE_RESTARTED else context.settings.max_notes
     event = context.repository.add_event(
@@ -174,11 +176,3 @@ def keep_note(
     )
     context.on_new_job()
     return Note.model_validate(event)
-
-
-def _refused(location: str, message: str) -> ProblemError:
-    return ProblemError(
-        HTTPStatus.UNPROCESSABLE_ENTITY,
-        f"{location}: {message}",
-        errors=[FieldError(location=location, message=message)],
-    )

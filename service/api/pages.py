@@ -3,14 +3,13 @@
 import base64
 import json
 from collections.abc import Callable
-from http import HTTPStatus
 from typing import Annotated, Generic, TypeVar
 
 from fastapi import Query
 from pydantic import BaseModel, Field
 
 from service.api.document import LONGEST_LIST
-from service.api.problems import FieldError, ProblemError
+from service.api.problems import WrongFieldError
 from service.api.times import MAX_NS
 from service.storage.records import Cursor
 from service.storage.records import Page as StoredPage
@@ -71,9 +70,5 @@ def decode(text: str | None, *kinds: type[int] | type[str]) -> Cursor | None:
     )
     if not fits:
         message = "expected the next_cursor of a page of this list"
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-            f"query.cursor: {message}",
-            errors=[FieldError(location="query.cursor", message=message)],
-        )
+        raise WrongFieldError("query.cursor", message)
     return tuple(parts)

@@ -117,6 +117,14 @@ class ProblemError(Exception):
         super().__init__(detail)
 
 
+class WrongFieldError(ProblemError):
+    """One part of a request is not as it has to be; `location` is the way to it, "query.limit"."""
+
+    def __init__(self, location: str, message: str) -> None:
+        errors = [FieldError(location=location, message=message)]
+        super().__init__(HTTPStatus.UNPROCESSABLE_ENTITY, f"{location}: {message}", errors=errors)
+
+
 class BusyError(Exception):
     """There was no turn within the time one may wait."""
 

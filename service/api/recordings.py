@@ -23,7 +23,7 @@ from service.api.context import ApiContext, Context, path_to
 from service.api.exports.answers import FILES, ListAnswer
 from service.api.listed_recordings import listed
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode
-from service.api.problems import FieldError, ProblemError, problems
+from service.api.problems import ProblemError, WrongFieldError, problems
 from service.api.schemas import Diagnosis, ListedRecording, Recording, RecordingDetails, RecordingFile
 from service.api.waveform import MAX_POINTS, Waveform, WaveformResponse, intervals_within
 from service.exports import recordings as table
@@ -73,11 +73,7 @@ def list_recordings(
     context.require_motor(motor)
     if state is not None and operation is not None:
         message = "expected state or operation, found both: a recording has an operation once it is diagnosed"
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-            f"query.operation: {message}",
-            errors=[FieldError(location="query.operation", message=message)],
-        )
+        raise WrongFieldError("query.operation", message)
     if file is not None:
         chosen = None if motor is None else [motor]
         rows = table.recordings(context.repository, chosen, state=state, operation=operation)
@@ -276,8 +272,4 @@ def _require_one_record(names: list[str]) -> None:
 
 
 def _refused(message: str) -> ProblemError:
-    return ProblemError(
-        HTTPStatus.UNPROCESSABLE_ENTITY,
-        f"body.files: {message}",
-        errors=[FieldError(location="body.files", message=message)],
-    )
+    return WrongFieldError("body.files", message)

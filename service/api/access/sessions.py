@@ -16,7 +16,7 @@ from service.api.access.cookies import clear_session, set_session
 from service.api.access.requirements import open_to_all, require
 from service.api.access.schemas import Account, LoginRequest, LoginWays, PasswordChange
 from service.api.context import ApiContext, Context
-from service.api.problems import FieldError, ProblemError, problems
+from service.api.problems import ProblemError, WrongFieldError, problems
 from service.storage import NotFoundError
 from service.storage.records import Actor, User
 
@@ -132,11 +132,7 @@ def refuse_unusable(password: str, name: str, location: str) -> None:
     """Raise ProblemError (422) for a password that does not fit the rule."""
     if not is_usable(password, name):
         message = f"expected {PASSWORD_RULE}"
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-            f"{location}: {message}",
-            errors=[FieldError(location=location, message=message)],
-        )
+        raise WrongFieldError(location, message)
 
 
 async def _check(context: ApiContext, account: str, password: str, origin: ClientAddress) -> None:

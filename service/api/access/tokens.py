@@ -13,7 +13,7 @@ from service.api.access.requirements import require
 from service.api.access.schemas import NewToken, Token, TokenRequest, UserName
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
-from service.api.problems import FieldError, ProblemError, problems
+from service.api.problems import WrongFieldError, problems
 from service.storage.records import Actor, ApiToken
 
 router = APIRouter(tags=["access"])
@@ -40,11 +40,7 @@ def add_own_token(context: Context, asking: Asking, wanted: TokenRequest) -> New
     beyond = sorted(permission.value for permission in (scope or set()) - asking.permissions)
     if beyond:
         message = f"expected permissions that you have yourself, found {', '.join(beyond)}"
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-            f"body.scope: {message}",
-            errors=[FieldError(location="body.scope", message=message)],
-        )
+        raise WrongFieldError("body.scope", message)
     if scope is None and asking.way == "token":  # a narrow token makes no wide one
         scope = set(asking.permissions)
     return _add(context, asking.actor.name, wanted.model_copy(update={"scope": scope}), asking.actor)
@@ -93,11 +89,7 @@ def _add(context: ApiContext, user: str, wanted: TokenRequest, by: Actor) -> New
     now_ns = time.time_ns()
     if wanted.expires_time is not None and wanted.expires_time <= now_ns:
         message = "expected a time that is still to come"
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-            f"body.expires_time: {message}",
-            errors=[FieldError(location="body.expires_time", message=message)],
-        )
+        raise WrongFieldError("body.expires_time", message)
     secret = new_token()
     kept = context.repository.add_token(
         user,

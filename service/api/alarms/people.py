@@ -24,7 +24,7 @@ from service.api.alarms.schemas import (
     ShelvingRequest,
 )
 from service.api.context import Context
-from service.api.problems import FieldError, ProblemError, problems
+from service.api.problems import FieldError, ProblemError, WrongFieldError, problems
 from service.api.times import rfc3339
 
 LONGEST_SHELVING_DAYS = 90
@@ -93,11 +93,7 @@ def shelve_alarm(context: Context, by: By, alarm_id: UUID, wanted: ShelvingReque
             f"expected a time from now to {LONGEST_SHELVING_DAYS} days ahead, found {rfc3339(wanted.until)};"
             " for longer, take the alarm out of service"
         )
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-            f"body.until: {message}",
-            errors=[FieldError(location="body.until", message=message)],
-        )
+        raise WrongFieldError("body.until", message)
     alarm = context.repository.shelve_alarm(
         str(alarm_id),
         by=by,

@@ -1,7 +1,6 @@
 """Routes of the audit trail."""
 
 from collections.abc import AsyncIterator, Iterator
-from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query
@@ -14,7 +13,7 @@ from service.api.access.requirements import require
 from service.api.audit.schemas import AuditEntry, AuditState, AuditVerification
 from service.api.context import ApiContext, Context
 from service.api.pages import DEFAULT_LIMIT, CursorText, Limit, Page, decode, page
-from service.api.problems import FieldError, ProblemError, problems
+from service.api.problems import WrongFieldError, problems
 from service.api.times import MAX_NS, TimeParameter
 from service.audit.actions import AuditAction
 from service.audit.entries import Anchor, line
@@ -110,8 +109,7 @@ async def verify_audit_trail(
     if (number is None) != (hash_ is None):
         message = "expected number and hash of one entry, found one of the two"
         missing = "query.number" if number is None else "query.hash"
-        errors = [FieldError(location=missing, message=message)]
-        raise ProblemError(HTTPStatus.UNPROCESSABLE_ENTITY, f"{missing}: {message}", errors=errors)
+        raise WrongFieldError(missing, message)
     anchors = [] if number is None or hash_ is None else [Anchor(number, hash_)]
     async with context.audit_verifications.admitted():
         verification = await run_in_threadpool(_verified, context, anchors)

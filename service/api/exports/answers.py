@@ -18,7 +18,7 @@ from structlog.typing import FilteringBoundLogger
 from core.time_stamps import SECONDS_END, rfc3339
 from service.api.context import Context
 from service.api.exports.negotiation import JSON, preferred
-from service.api.problems import FieldError, ProblemError, problems
+from service.api.problems import ProblemError, WrongFieldError, problems
 from service.exports.formats import Format
 from service.exports.tables import Record, Table
 from service.exports.writing import pieces
@@ -115,11 +115,7 @@ async def list_answer(
     for name in ("limit", "cursor"):
         if name in request.query_params:
             message = f"a file has the whole list: leave {name} out, or ask for JSON"
-            raise ProblemError(
-                HTTPStatus.UNPROCESSABLE_ENTITY,
-                f"query.{name}: {message}",
-                errors=[FieldError(location=f"query.{name}", message=message)],
-            )
+            raise WrongFieldError(f"query.{name}", message)
     async with context.exports.admitted():
         yield _answer(chosen)
 

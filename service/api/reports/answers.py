@@ -10,7 +10,7 @@ from pydantic import StringConstraints
 
 from core.units import NANOSECONDS_PER_DAY
 from service.api.context import ApiContext, Context
-from service.api.problems import FieldError, ProblemError, problems
+from service.api.problems import ProblemError, WrongFieldError, problems
 from service.reports.errors import ReportError, ReportRequestError
 from service.reports.making import make_report
 from service.reports.source import ReportSource
@@ -52,9 +52,9 @@ def until(wanted_ns: int | None) -> int:
     """Return the minute until which data is wanted, by default now. Raises ProblemError."""
     now_ns = time.time_ns()
     if wanted_ns is not None and wanted_ns > now_ns:
-        raise _wrong("until", "lies ahead")
+        raise WrongFieldError("query.until", "lies ahead")
     if wanted_ns is not None and wanted_ns < EARLIEST_NS:
-        raise _wrong("until", "expected a time after 1970-01-31")
+        raise WrongFieldError("query.until", "expected a time after 1970-01-31")
     return minute_before(now_ns if wanted_ns is None else wanted_ns)
 
 
@@ -63,7 +63,7 @@ def report_answer(context: ApiContext, wanted: WantedReport, wanted_format: Repo
     try:
         made = make_report(ReportSource.of(context.repository, context.settings), wanted, wanted_format)
     except ReportRequestError as error:
-        raise _wrong(error.parameter, error.problem) from error
+        raise WrongFieldError(f"query.{error.parameter}", error.problem) from error
     except ReportError as error:
         raise ProblemError(HTTPStatus.SERVICE_UNAVAILABLE, str(error)) from error
     return Response(
@@ -73,13 +73,4 @@ def report_answer(context: ApiContext, wanted: WantedReport, wanted_format: Repo
             "Content-Disposition": f'attachment; filename="{made.name}"',
             "Cache-Control": "no-store",
         },
-    )
-
-
-def _wrong(parameter: str, message: str) -> ProblemError:
-    location = f"query.{parameter}"
-    return ProblemError(
-        HTTPStatus.UNPROCESSABLE_ENTITY,
-        f"{location}: {message}",
-        errors=[FieldError(location=location, message=message)],
     )

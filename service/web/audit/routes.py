@@ -1,6 +1,5 @@
 """The page of the audit trail, and its verification."""
 
-from http import HTTPStatus
 from typing import Annotated, Final
 
 from fastapi import APIRouter, Query
@@ -9,7 +8,7 @@ from starlette.responses import Response
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.audit.trail import verify_audit_trail
-from service.api.problems import FieldError, ProblemError
+from service.api.problems import ProblemError, WrongFieldError
 from service.api.times import MAX_NS, nanoseconds
 from service.audit.actions import AuditAction
 from service.web.audit.trail import TrailChoice, trail
@@ -87,6 +86,4 @@ def _number(text: str) -> int | None:
 
 
 def _wrong(field: str, expected: str) -> ProblemError:
-    message = f"expected {expected}"
-    errors = [FieldError(location=f"query.{field}", message=message)]
-    return ProblemError(HTTPStatus.UNPROCESSABLE_ENTITY, f"query.{field}: {message}", errors=errors)
+    return WrongFieldError(f"query.{field}", f"expected {expected}")

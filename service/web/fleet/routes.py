@@ -1,7 +1,6 @@
 """The page of the fleet, which is the first one."""
 
 import gzip
-from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, FastAPI, Query, Request
@@ -11,7 +10,7 @@ from starlette.responses import HTMLResponse
 from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.context import ApiContext
-from service.api.problems import ProblemError
+from service.api.problems import WrongFieldError
 from service.web.fleet.filters import LONGEST, FleetFilter
 from service.web.fleet.fleet import DAYS, Fleet, FleetView, WrittenPart
 from service.web.fleet.rows import FleetRow, counts, digest
@@ -95,8 +94,7 @@ def _state_of(text: str | None) -> FleetState | None:
         return FleetState(text)
     except ValueError as error:
         expected = ", ".join(FleetState)
-        detail = f"query.state: expected one of {expected}, found {text[:50]!r}"
-        raise ProblemError(HTTPStatus.UNPROCESSABLE_ENTITY, detail) from error
+        raise WrongFieldError("query.state", f"expected one of {expected}, found {text[:50]!r}") from error
 
 
 def _fleet_of(request: Request) -> Fleet:

@@ -4,7 +4,6 @@ import time
 from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, FastAPI, Query, Request
@@ -17,7 +16,7 @@ from service.access.permissions import Permission
 from service.api.access.callers import Asking, Caller
 from service.api.access.requirements import require
 from service.api.context import ApiContext, Context
-from service.api.problems import BusyError, ProblemError
+from service.api.problems import BusyError, WrongFieldError
 from service.storage.repository.change_stamps import Subject
 from service.timing.database_silence import does_not_answer
 from service.web.addresses import address
@@ -86,7 +85,7 @@ async def get_live(
     try:
         topics = list(dict.fromkeys(map(topic_of, topic)))
     except ValueError as error:
-        raise ProblemError(HTTPStatus.UNPROCESSABLE_ENTITY, f"query.topic: {error}") from error
+        raise WrongFieldError("query.topic", str(error)) from error
     live = live_of(request.app)
     most = max(context.settings.max_connections // 2, 1)
     if live.bus.streams >= most:

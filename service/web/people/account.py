@@ -1,6 +1,5 @@
 """The page of the own account: who one is here, the own password and tokens."""
 
-from http import HTTPStatus
 from typing import Annotated, Final
 from uuid import UUID
 
@@ -13,7 +12,7 @@ from service.access.permissions import MEANINGS, Permission
 from service.api.access import sessions, tokens
 from service.api.access.requirements import require
 from service.api.access.schemas import PasswordChange
-from service.api.problems import FieldError, ProblemError
+from service.api.problems import WrongFieldError
 from service.storage import NotFoundError
 from service.web.forms import document_of_form
 from service.web.people.token_form import TokenForm, show_new_token, token_request
@@ -58,11 +57,7 @@ async def change_password(
     """Change the own password; all own sessions end, this one too."""
     if new != again:
         message = "expected the same password twice, found two"
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY,
-            f"body.again: {message}",
-            errors=[FieldError(location="body.again", message=message)],
-        )
+        raise WrongFieldError("body.again", message)
     wanted = document_of_form(PasswordChange, {"old": old, "new": new})
     await sessions.change_password(view.context, request, view.asking, wanted)
     return view.done("/login", "password")

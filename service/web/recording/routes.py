@@ -14,7 +14,7 @@ from service.access.permissions import Permission
 from service.api.access.requirements import require
 from service.api.diagnoses import queue_diagnosis
 from service.api.pages import decode, encode
-from service.api.problems import ProblemError
+from service.api.problems import ProblemError, WrongFieldError
 from service.api.recordings import FORM_LIMITS, store_upload
 from service.api.samples.opening import in_turn
 from service.api.schemas import DiagnosisRequest
@@ -75,9 +75,7 @@ def _list(
     operation = None if state is not None else next((one for one in Operation if one == show), None)
     if show is not None and state is None and operation is None:
         expected = ", ".join(dict.fromkeys([*RecordingState, *Operation]))
-        raise ProblemError(
-            HTTPStatus.UNPROCESSABLE_ENTITY, f"query.show: expected one of {expected}, found {show!r}"
-        )
+        raise WrongFieldError("query.show", f"expected one of {expected}, found {show!r}")
     found = repository.recordings(
         motor=chosen, state=state, operation=operation, limit=ROWS, after=decode(cursor, int, str)
     )
